@@ -1,0 +1,2 @@
+//! The shipboard agent.
+fn main() {}

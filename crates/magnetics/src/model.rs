@@ -1,0 +1,80 @@
+//! A ship's magnetic model as it is fitted, stored and sent to the bridge.
+
+use serde::{Deserialize, Serialize};
+
+/// The seven ratios that headings alone can tell: Poisson's parameters over λ.
+///
+/// Fields are in nanotesla, soft-iron coefficients dimensionless. Ship axes:
+/// x forward, y starboard, z down.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parameters {
+    /// Fore-and-aft permanent field over λ (P), nT, forward positive.
+    pub bx_nt: f64,
+    /// χ13/λ (c): fore-and-aft field from the vertical earth field.
+    pub chi13: f64,
+    /// Athwartship permanent field over λ (Q), nT, starboard positive.
+    pub by_nt: f64,
+    /// χ23/λ (f): athwartship field from the vertical earth field.
+    pub chi23: f64,
+    /// (χ11 − χ22)/λ (a − e), twice the exact coefficient D.
+    pub chi11_minus_chi22: f64,
+    /// χ12/λ (b).
+    pub chi12: f64,
+    /// χ21/λ (d).
+    pub chi21: f64,
+}
+
+/// Variances and covariances of the seven parameters, in the order of
+/// [`Parameters`], and of the constant, last: units are the products of nT, 1
+/// and degrees.
+pub type Covariance = [[f64; 8]; 8];
+
+/// Which of the seven parameters and the constant the data determine; what is
+/// `false` rests on the prior.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[allow(clippy::struct_excessive_bools)] // one answer for each parameter, by name
+pub struct Identifiable {
+    /// bx is known apart from χ13 Z.
+    pub bx_nt: bool,
+    /// χ13 is known apart from bx.
+    pub chi13: bool,
+    /// by is known apart from χ23 Z.
+    pub by_nt: bool,
+    /// χ23 is known apart from by.
+    pub chi23: bool,
+    /// D is known.
+    pub chi11_minus_chi22: bool,
+    /// χ12 is known.
+    pub chi12: bool,
+    /// χ21 is known.
+    pub chi21: bool,
+    /// The constant is known apart from A: never from headings alone.
+    pub constant_deg: bool,
+}
+
+/// A fitted model: what `fit` prints, what the server stores, and what the
+/// bridge steers by.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Model {
+    /// The seven ratios to λ.
+    pub parameters_over_lambda: Parameters,
+    /// What is added to the exact deviation: alignment, reference and variation
+    /// offsets, degrees, east positive.
+    #[serde(default)]
+    pub constant_deg: f64,
+    /// 8 × 8, or none when the model came without one.
+    #[serde(default)]
+    pub covariance: Option<Covariance>,
+    /// Which parameters the data determine.
+    #[serde(default)]
+    pub identifiable: Option<Identifiable>,
+    /// Root mean square of the residuals, degrees.
+    #[serde(default)]
+    pub rms_deg: Option<f64>,
+    /// Samples that carried weight.
+    #[serde(default)]
+    pub samples_used: u64,
+    /// Samples that were left out or held to be outliers.
+    #[serde(default)]
+    pub samples_rejected: u64,
+}

@@ -1,0 +1,37 @@
+//! One settled stretch of heading: what the agent keeps and the estimator reads.
+
+use crate::angle::{CompassHeading, TrueHeading};
+use crate::position::Position;
+use crate::time::Timestamp;
+use serde::{Deserialize, Serialize};
+
+/// The mean of up to ten minutes of settled ten-second windows on one heading.
+///
+/// The compass heading is the raw reading: no deviation has been applied. A
+/// missing reference is `None`, never zero. At least one of `gyro` and
+/// `satellite` is present in what the agent keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// The middle of the stretch, UTC.
+    pub time: Timestamp,
+    /// Where the ship was in the middle of the stretch.
+    #[serde(flatten)]
+    pub position: Position,
+    /// Mean raw compass heading.
+    #[serde(rename = "compass_deg")]
+    pub compass: CompassHeading,
+    /// Mean gyro heading, as the gyro gave it.
+    #[serde(rename = "gyro_deg")]
+    pub gyro: Option<TrueHeading>,
+    /// Mean satellite-compass heading.
+    #[serde(rename = "satellite_deg")]
+    pub satellite: Option<TrueHeading>,
+    /// Speed over ground in knots.
+    pub sog_kn: Option<f64>,
+    /// Mean rate of turn in degrees a minute, starboard positive.
+    pub rate_of_turn_deg_min: Option<f64>,
+    /// Standard deviation, in degrees, of compass less reference among the windows.
+    pub spread_deg: Option<f64>,
+    /// How many settled ten-second windows the means are of; at least 1.
+    pub windows: u16,
+}

@@ -1,0 +1,139 @@
+//! Instants, in UTC, to the microsecond.
+
+use chrono::{DateTime, Datelike, SecondsFormat, TimeZone, Utc};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// An instant as microseconds since 1970-01-01T00:00:00Z, between the years
+/// 1 and 9999; RFC 3339 in JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Timestamp(i64);
+
+/// Why something is not an instant.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TimestampError {
+    /// The text does not read as RFC 3339.
+    #[error("{0:?} is not an RFC 3339 time")]
+    NotRfc3339(String),
+    /// The instant lies outside the years 1 to 9999.
+    #[error("{0} microseconds since 1970 lies outside the years 1 to 9999")]
+    OutOfRange(i64),
+}
+
+/// 0001-01-01T00:00:00Z.
+const FIRST_MICROS: i64 = -62_135_596_800_000_000;
+/// 9999-12-31T23:59:59.999999Z.
+const LAST_MICROS: i64 = 253_402_300_799_999_999;
+
+impl Timestamp {
+    /// An instant from microseconds since 1970-01-01T00:00:00Z.
+    ///
+    /// # Errors
+    /// When it lies outside the years 1 to 9999.
+    pub fn from_micros(micros: i64) -> Result<Timestamp, TimestampError> {
+        if (FIRST_MICROS..=LAST_MICROS).contains(&micros) {
+            Ok(Timestamp(micros))
+        } else {
+            Err(TimestampError::OutOfRange(micros))
+        }
+    }
+
+    /// Reads RFC 3339 with any offset.
+    ///
+    /// # Errors
+    /// When the text is not RFC 3339.
+    pub fn parse(text: &str) -> Result<Timestamp, TimestampError> {
+        let parsed = DateTime::parse_from_rfc3339(text.trim())
+            .map_err(|_| TimestampError::NotRfc3339(text.to_owned()))?;
+        Timestamp::from_micros(parsed.timestamp_micros())
+    }
+
+    /// Microseconds since 1970-01-01T00:00:00Z.
+    pub fn micros(self) -> i64 {
+        self.0
+    }
+
+    /// Seconds since `earlier`, negative when that is later.
+    pub fn seconds_since(self, earlier: Timestamp) -> f64 {
+        (self.0 - earlier.0) as f64 * 1e-6
+    }
+
+    /// The instant `seconds` later, held within the years 1 to 9999.
+    pub fn plus_seconds(self, seconds: f64) -> Timestamp {
+        let moved = self.0.saturating_add((seconds * 1e6).round() as i64);
+        Timestamp(moved.clamp(FIRST_MICROS, LAST_MICROS))
+    }
+
+    /// The year and the part of it that has passed, as field models want it.
+    pub fn decimal_year(self) -> f64 {
+        let year = self.to_chrono().year();
+        let start = year_start_micros(year);
+        let length = year_start_micros(year + 1) - start;
+        f64::from(year) + (self.0 - start) as f64 / length as f64
+    }
+
+    /// The same instant as chrono has it.
+    pub fn to_chrono(self) -> DateTime<Utc> {
+        DateTime::from_timestamp_micros(self.0).expect("the range was checked when it was made")
+    }
+}
+
+fn year_start_micros(year: i32) -> i64 {
+    Utc.with_ymd_and_hms(year, 1, 1, 0, 0, 0)
+        .single()
+        .expect("the first of January exists in every year")
+        .timestamp_micros()
+}
+
+impl fmt::Display for Timestamp {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            &self
+                .to_chrono()
+                .to_rfc3339_opts(SecondsFormat::AutoSi, true),
+        )
+    }
+}
+
+impl TryFrom<String> for Timestamp {
+    type Error = TimestampError;
+    fn try_from(text: String) -> Result<Timestamp, TimestampError> {
+        Timestamp::parse(&text)
+    }
+}
+
+impl From<Timestamp> for String {
+    fn from(time: Timestamp) -> String {
+        time.to_string()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rfc_3339_comes_back_as_it_went() {
+        for text in [
+            "2026-11-21T07:00:00Z",
+            "1999-12-31T23:59:59.999999Z",
+            "0001-01-01T00:00:00Z",
+        ] {
+            assert_eq!(Timestamp::parse(text).unwrap().to_string(), text);
+        }
+        assert!(Timestamp::parse("21.11.2026").is_err());
+    }
+
+    #[test]
+    fn the_middle_of_a_leap_year_is_its_half() {
+        let noon = Timestamp::parse("2024-07-02T00:00:00Z").unwrap();
+        assert!((noon.decimal_year() - 2024.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn instants_beyond_the_calendar_are_refused() {
+        assert!(Timestamp::from_micros(i64::MAX).is_err());
+        assert!(Timestamp::from_micros(i64::MIN).is_err());
+    }
+}

@@ -1,0 +1,1 @@
+//! NMEA 0183 and IEC 61162-450 sentences, in and out.

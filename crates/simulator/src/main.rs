@@ -1,0 +1,2 @@
+//! Ships, voyages and instruments that speak NMEA.
+fn main() {}

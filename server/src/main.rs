@@ -1,0 +1,2 @@
+//! The shore server.
+fn main() {}
