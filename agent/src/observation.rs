@@ -1,0 +1,74 @@
+//! What an instrument said, whatever carried it: the agent's inputs make these,
+//! the roles and the sampler read them.
+//!
+//! A value that the instrument left empty is absent here, never zero. The
+//! compass heading is always the raw reading, before any deviation.
+
+use binnacle_magnetics::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use std::sync::Arc;
+
+/// One reading from one source.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Observation {
+    /// Which input carried it, by its configured name.
+    pub(crate) input: Arc<str>,
+    /// Talker (`HC`, `HE`, `GP` …); `SK` for Signal K.
+    pub(crate) talker: [u8; 2],
+    /// Sentence (`HDG`, `THS` …) that Signal K values are given by meaning too.
+    pub(crate) sentence: [u8; 3],
+    /// What it says.
+    pub(crate) reading: Reading,
+}
+
+/// What a source can say that the agent uses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reading {
+    /// HDG: the sensor's own reading, and what it knows of deviation and variation.
+    Compass {
+        /// Before deviation.
+        raw: CompassHeading,
+        /// As the instrument gives it; logged, never applied.
+        deviation: Option<Deviation>,
+        /// As the instrument gives it; logged, never applied.
+        variation: Option<Variation>,
+    },
+    /// HDM: deviation applied or not, only the ship's configuration knows.
+    Magnetic(MagneticHeading),
+    /// HDT, or THS in mode A.
+    True(TrueHeading),
+    /// A true heading the instrument itself says not to trust (THS mode other than A).
+    TrueNotValid,
+    /// A valid fix; `time` when the sentence carries UTC date and time.
+    Fix {
+        /// Where.
+        position: Position,
+        /// UTC date and time of the fix.
+        time: Option<Timestamp>,
+        /// Speed over ground.
+        sog_kn: Option<f64>,
+    },
+    /// ZDA: UTC date and time alone.
+    Time(Timestamp),
+    /// VTG: speed over ground.
+    Speed {
+        /// Knots.
+        sog_kn: f64,
+    },
+    /// ROT with status A: degrees a minute, starboard positive.
+    RateOfTurn {
+        /// Degrees a minute.
+        deg_min: f64,
+    },
+    /// Roll, degrees, starboard down positive.
+    Roll {
+        /// Degrees.
+        deg: f64,
+    },
+    /// Pitch, degrees, bow up positive.
+    Pitch {
+        /// Degrees.
+        deg: f64,
+    },
+}
