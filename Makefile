@@ -1,0 +1,50 @@
+# `make demo` and `make test` set up everything they need; see README.md.
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
+CARGO ?= cargo
+
+.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench clean
+
+help: ## Show what can be made
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
+
+setup: ## Check for, and where possible install, compiler, Rust, Node and Python
+	@scripts/setup
+
+web/dist/index.html: $(shell find web/src web/public -type f 2>/dev/null) web/index.html web/package-lock.json web/vite.config.ts | setup
+	@scripts/web build
+
+web: web/dist/index.html ## Build the dashboard
+
+build: web ## Build the three programs, optimised
+	$(CARGO) build --release --locked -p binnacle-server -p binnacle-agent -p binnacle-simulator
+
+demo: build ## Sail a simulated fleet and open the dashboard (DAYS=60, PORT=8080)
+	@scripts/demo
+
+test: test-web test-rust test-browser ## Run every test, real PostgreSQL and Chromium included
+
+test-web: web ## Test the dashboard's own functions
+	@scripts/web test
+
+test-rust: web ## Test every crate and, end to end, the real programs on both databases
+	$(CARGO) build --locked --workspace --all-targets
+	@scripts/with-postgres $(CARGO) test --locked --workspace
+
+test-browser: web ## Drive the dashboard in a real Chromium
+	$(CARGO) build --locked -p binnacle-server -p binnacle-agent -p binnacle-simulator
+	@scripts/browser-test
+
+lint: web ## Formatter, linters, licences, advisories, documentation
+	@scripts/lint
+
+soak: web ## The long tests: many kills, many voyages
+	$(CARGO) build --locked --workspace --all-targets
+	@BINNACLE_SOAK=1 scripts/with-postgres $(CARGO) test --locked --workspace
+
+bench: setup ## Run the benchmarks of BENCHMARKS.md
+	$(CARGO) bench --locked -p binnacle-magnetics -p binnacle-nmea -p binnacle-wire
+
+clean: ## Remove what was built (tools in .tools are kept)
+	rm -rf target web/dist web/node_modules .demo tests/artefacts
