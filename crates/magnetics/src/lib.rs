@@ -15,3 +15,7 @@ pub mod time;
 
 pub mod model;
 pub mod sample;
+
+pub mod analyse;
+pub mod coverage;
+pub mod fit;

@@ -1,0 +1,55 @@
+//! Why no model came out of a set of observations.
+
+use serde::{Deserialize, Serialize};
+
+/// A refusal to fit; each says what is missing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[serde(tag = "reason", rename_all = "snake_case")]
+pub enum FitError {
+    /// Too few observations with a reference, whatever their headings.
+    #[error("{found} usable samples; at least {needed} are needed")]
+    TooFewSamples {
+        /// How many there are.
+        found: u64,
+        /// How many there must be.
+        needed: u64,
+    },
+    /// The observations lie on too few headings.
+    #[error(
+        "headings in {found} of 24 sectors of 15 degrees, the widest gap {widest_gap_deg:.0} degrees; \
+         at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} degrees"
+    )]
+    TooFewHeadings {
+        /// Sectors of 15° with at least one observation.
+        found: u32,
+        /// How many there must be.
+        needed: u32,
+        /// The widest range of headings without an observation.
+        widest_gap_deg: f64,
+        /// The widest such range that is allowed.
+        allowed_gap_deg: f64,
+    },
+    /// The earth's horizontal field is too weak for a compass.
+    #[error(
+        "horizontal field of at most {strongest_nt:.0} nT; a compass needs at least {needed_nt:.0} nT"
+    )]
+    FieldTooWeak {
+        /// The strongest horizontal field among the observations.
+        strongest_nt: f64,
+        /// What there must be.
+        needed_nt: f64,
+    },
+    /// The fitted magnetism leaves no directive force on some heading, so that
+    /// one compass heading may belong to several courses.
+    #[error("the fitted magnetism makes headings ambiguous at a horizontal field of {h_nt:.0} nT")]
+    AmbiguousHeadings {
+        /// The horizontal field at which it does.
+        h_nt: f64,
+    },
+    /// The iteration did not settle.
+    #[error("the fit did not settle within {iterations} iterations")]
+    NotConverged {
+        /// How many were tried.
+        iterations: u32,
+    },
+}
