@@ -1,0 +1,197 @@
+//! Bits, the most significant first, and the three ways to write an integer in
+//! them.
+//!
+//! A reader never looks beyond its bytes: it says [`DecodeError::Truncated`].
+
+use super::error::DecodeError;
+
+/// Collects bits into bytes; the last byte is filled up with zeros.
+#[derive(Debug, Default)]
+pub(super) struct BitWriter {
+    bytes: Vec<u8>,
+    /// Bits used of the last byte; 0 when it is full or there is none.
+    used: u32,
+}
+
+impl BitWriter {
+    /// The lowest `count` bits of `value`; `count` is at most 64.
+    pub(super) fn bits(&mut self, value: u64, count: u32) {
+        for shift in (0..count).rev() {
+            let bit = (value >> shift & 1) as u8;
+            if self.used == 0 {
+                self.bytes.push(0);
+            }
+            if let Some(last) = self.bytes.last_mut() {
+                *last |= bit << (7 - self.used);
+            }
+            self.used = (self.used + 1) % 8;
+        }
+    }
+
+    /// Elias's gamma code of `value`, which is at least 1.
+    pub(super) fn gamma(&mut self, value: u64) {
+        let below = value.ilog2();
+        self.bits(0, below);
+        self.bits(value, below + 1);
+    }
+
+    /// Seven bits at a time, the lowest first, each group led by whether more follow.
+    pub(super) fn varint(&mut self, mut value: u64) {
+        while value > 0x7f {
+            self.bits(value & 0x7f | 0x80, 8);
+            value >>= 7;
+        }
+        self.bits(value, 8);
+    }
+
+    /// What was written.
+    pub(super) fn into_bytes(self) -> Vec<u8> {
+        self.bytes
+    }
+}
+
+/// Reads what [`BitWriter`] wrote.
+#[derive(Debug)]
+pub(super) struct BitReader<'a> {
+    bytes: &'a [u8],
+    /// Bits already read.
+    at: usize,
+}
+
+impl<'a> BitReader<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> BitReader<'a> {
+        BitReader { bytes, at: 0 }
+    }
+
+    /// Bits that are left.
+    pub(super) fn left(&self) -> usize {
+        self.bytes.len() * 8 - self.at
+    }
+
+    /// One bit.
+    pub(super) fn bit(&mut self) -> Result<bool, DecodeError> {
+        let byte = self.bytes.get(self.at / 8).ok_or(DecodeError::Truncated)?;
+        let bit = byte >> (7 - self.at % 8) & 1;
+        self.at += 1;
+        Ok(bit == 1)
+    }
+
+    /// An unsigned number of `count` bits, at most 64.
+    pub(super) fn bits(&mut self, count: u32) -> Result<u64, DecodeError> {
+        let mut value = 0;
+        for _ in 0..count {
+            value = value << 1 | u64::from(self.bit()?);
+        }
+        Ok(value)
+    }
+
+    /// Elias's gamma code.
+    pub(super) fn gamma(&mut self) -> Result<u64, DecodeError> {
+        let mut below = 0;
+        while !self.bit()? {
+            below += 1;
+            if below > 63 {
+                return Err(DecodeError::NumberTooLong);
+            }
+        }
+        Ok(1 << below | self.bits(below)?)
+    }
+
+    /// Seven bits at a time, the lowest first.
+    pub(super) fn varint(&mut self) -> Result<u64, DecodeError> {
+        let mut value = 0;
+        for shift in (0..64).step_by(7) {
+            let group = self.bits(8)?;
+            let seven = group & 0x7f;
+            // The tenth group has room for one bit only.
+            if shift == 63 && seven > 1 {
+                return Err(DecodeError::NumberTooLong);
+            }
+            value |= seven << shift;
+            if group & 0x80 == 0 {
+                return Ok(value);
+            }
+        }
+        Err(DecodeError::NumberTooLong)
+    }
+
+    /// The rest of a text or other run of bytes.
+    pub(super) fn octets(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
+        if self.left() / 8 < count {
+            return Err(DecodeError::Truncated);
+        }
+        (0..count).map(|_| Ok(self.bits(8)? as u8)).collect()
+    }
+
+    /// Refuses anything but the zero bits that fill the last byte.
+    pub(super) fn finish(mut self) -> Result<(), DecodeError> {
+        let left = self.left();
+        if left > 7 || self.bits(left as u32)? != 0 {
+            return Err(DecodeError::TrailingBits);
+        }
+        Ok(())
+    }
+}
+
+/// 0, −1, 1, −2 … as 0, 1, 2, 3 …
+pub(super) fn zigzag(value: i64) -> u64 {
+    (value << 1 ^ value >> 63) as u64
+}
+
+/// 0, 1, 2, 3 … as 0, −1, 1, −2 …
+pub(super) fn unzigzag(code: u64) -> i64 {
+    (code >> 1) as i64 ^ -((code & 1) as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EDGES: [u64; 7] = [1, 2, 127, 128, 1 << 32, u64::MAX - 1, u64::MAX];
+
+    #[test]
+    fn every_length_of_number_comes_back() {
+        let mut writer = BitWriter::default();
+        for value in EDGES {
+            writer.gamma(value);
+            writer.varint(value);
+            writer.bits(value, 64);
+        }
+        writer.varint(0);
+        let bytes = writer.into_bytes();
+        let mut reader = BitReader::new(&bytes);
+        for value in EDGES {
+            assert_eq!(reader.gamma().unwrap(), value);
+            assert_eq!(reader.varint().unwrap(), value);
+            assert_eq!(reader.bits(64).unwrap(), value);
+        }
+        assert_eq!(reader.varint().unwrap(), 0);
+        reader.finish().unwrap();
+    }
+
+    #[test]
+    fn zigzag_is_its_own_way_back() {
+        for value in [0, -1, 1, i64::MIN, i64::MAX] {
+            assert_eq!(unzigzag(zigzag(value)), value);
+        }
+        assert_eq!([zigzag(0), zigzag(-1), zigzag(1)], [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_number_that_never_ends_is_refused() {
+        let long = [0xff; 12];
+        assert_eq!(
+            BitReader::new(&long).varint(),
+            Err(DecodeError::NumberTooLong)
+        );
+        let none = [0; 12];
+        assert_eq!(
+            BitReader::new(&none).gamma(),
+            Err(DecodeError::NumberTooLong)
+        );
+        assert_eq!(
+            BitReader::new(&none[..2]).gamma(),
+            Err(DecodeError::Truncated)
+        );
+    }
+}

@@ -1,0 +1,267 @@
+//! Samples as columns of integers, and back.
+//!
+//! A column holds one integer a sample, or none where the sample lacks the
+//! value. Directions are unwound first: a column never jumps by more than half
+//! a circle, and only the way back wraps them.
+
+use super::error::{DecodeError, EncodeError};
+use super::step::{Decimal, Step};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+
+/// Column ids, in the order of the frame.
+pub(super) const TIME: u64 = 1;
+const LAT: u64 = 2;
+const LON: u64 = 3;
+const GYRO: u64 = 4;
+const SATELLITE: u64 = 5;
+const COMPASS: u64 = 6;
+const SOG: u64 = 7;
+const RATE_OF_TURN: u64 = 8;
+const SPREAD: u64 = 9;
+const WINDOWS: u64 = 10;
+
+/// The last id that this version gives a meaning.
+pub(super) const LAST_KNOWN: u64 = WINDOWS;
+
+/// Columns that every sample has: time, latitude, longitude, compass, windows.
+pub(super) const REQUIRED: usize = 5;
+
+/// Seconds since 1970: the grid that middles of ten-second windows lie on.
+const TIME_STEP: Step = Step::new(5, 0);
+/// 111 m: a field model changes by less than 0.005° over that.
+const PLACE_STEP: Step = Step::new(1, 3);
+const REFERENCE_STEP: Step = Step::new(5, 2);
+/// A quarter of the noise of ten-minute means, some 0.1°, rounded down.
+const COMPASS_STEP: Step = Step::new(2, 2);
+const SOG_STEP: Step = Step::new(2, 1);
+const RATE_OF_TURN_STEP: Step = Step::new(5, 1);
+const SPREAD_STEP: Step = Step::new(2, 2);
+const WINDOWS_STEP: Step = Step::new(1, 0);
+
+/// 1980-01-06, when GPS time begins, and 2100-01-01, in seconds since 1970.
+const TIME_RANGE_S: (f64, f64) = (315_964_800.0, 4_102_444_800.0);
+const SOG_RANGE_KN: (f64, f64) = (0.0, 200.0);
+const RATE_OF_TURN_RANGE: (f64, f64) = (-3600.0, 3600.0);
+const SPREAD_RANGE_DEG: (f64, f64) = (0.0, 180.0);
+const WINDOWS_RANGE: (f64, f64) = (1.0, 65_535.0);
+
+/// One quantity of all samples.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
+    pub(super) id: u64,
+    pub(super) step: Step,
+    /// One a sample.
+    pub(super) values: Vec<Option<i64>>,
+}
+
+/// Refuses a sample that no frame can carry, naming the field.
+///
+/// An agent asks this before it keeps a sample, so that a sealed batch can
+/// always be written.
+///
+/// # Errors
+/// [`EncodeError::OutOfRange`], with `row` as it was given.
+pub fn check(sample: &Sample, row: usize) -> Result<(), EncodeError> {
+    let fields = [
+        ("time", Some(seconds(sample.time)), TIME_RANGE_S),
+        ("sog_kn", sample.sog_kn, SOG_RANGE_KN),
+        (
+            "rate_of_turn_deg_min",
+            sample.rate_of_turn_deg_min,
+            RATE_OF_TURN_RANGE,
+        ),
+        ("spread_deg", sample.spread_deg, SPREAD_RANGE_DEG),
+        ("windows", Some(f64::from(sample.windows)), WINDOWS_RANGE),
+    ];
+    for (field, value, (low, high)) in fields {
+        let Some(value) = value else { continue };
+        if !(low..=high).contains(&value) {
+            return Err(EncodeError::OutOfRange {
+                row,
+                field,
+                value,
+                low,
+                high,
+            });
+        }
+    }
+    Ok(())
+}
+
+fn seconds(time: Timestamp) -> f64 {
+    time.micros() as f64 * 1e-6
+}
+
+/// The columns of samples that passed [`check`], without those that no sample has.
+pub(super) fn from_samples(samples: &[Sample]) -> Vec<Column> {
+    let mut columns = vec![
+        column(TIME, TIME_STEP, samples, |s| Some(seconds(s.time))),
+        column(LAT, PLACE_STEP, samples, |s| Some(s.position.lat_deg())),
+        direction(LON, PLACE_STEP, samples, |s| Some(s.position.lon_deg())),
+        direction(GYRO, REFERENCE_STEP, samples, |s| {
+            s.gyro.map(TrueHeading::degrees)
+        }),
+        direction(SATELLITE, REFERENCE_STEP, samples, satellite_less_gyro),
+        direction(COMPASS, COMPASS_STEP, samples, compass_less_reference),
+        column(SOG, SOG_STEP, samples, |s| s.sog_kn),
+        column(RATE_OF_TURN, RATE_OF_TURN_STEP, samples, |s| {
+            s.rate_of_turn_deg_min
+        }),
+        column(SPREAD, SPREAD_STEP, samples, |s| s.spread_deg),
+        column(WINDOWS, WINDOWS_STEP, samples, |s| {
+            Some(f64::from(s.windows))
+        }),
+    ];
+    columns.retain(|column| column.values.iter().any(Option::is_some));
+    columns
+}
+
+fn column(
+    id: u64,
+    step: Step,
+    samples: &[Sample],
+    value: impl Fn(&Sample) -> Option<f64>,
+) -> Column {
+    let values = samples
+        .iter()
+        .map(|s| value(s).map(|v| step.count(v)))
+        .collect();
+    Column { id, step, values }
+}
+
+/// A column of angles, unwound.
+fn direction(
+    id: u64,
+    step: Step,
+    samples: &[Sample],
+    degrees: impl Fn(&Sample) -> Option<f64>,
+) -> Column {
+    let mut column = column(id, step, samples, degrees);
+    let circle = step
+        .circle()
+        .expect("the steps of directions divide the circle");
+    let mut last = None;
+    for value in column.values.iter_mut().flatten() {
+        // The first lies within half a circle of north, later ones of the last.
+        let near = last.unwrap_or(0);
+        *value = near + wrap_half(*value - near, circle);
+        last = Some(*value);
+    }
+    column
+}
+
+/// From −circle/2 up to but not circle/2.
+fn wrap_half(steps: i64, circle: i64) -> i64 {
+    (steps + circle / 2).rem_euclid(circle) - circle / 2
+}
+
+/// The gyro as the decoder will see it.
+fn gyro_base(sample: &Sample) -> Decimal {
+    sample.gyro.map_or(Decimal::ZERO, |gyro| {
+        REFERENCE_STEP.exact(REFERENCE_STEP.count(gyro.degrees()))
+    })
+}
+
+fn satellite_less_gyro(sample: &Sample) -> Option<f64> {
+    let satellite = sample.satellite?.degrees();
+    Some(wrap_180(satellite - gyro_base(sample).value()))
+}
+
+/// Against the gyro, or without one against the satellite compass.
+fn compass_less_reference(sample: &Sample) -> Option<f64> {
+    let base = match sample.satellite {
+        Some(satellite) if sample.gyro.is_none() => {
+            REFERENCE_STEP.exact(REFERENCE_STEP.count(satellite.degrees()))
+        }
+        _ => gyro_base(sample),
+    };
+    Some(wrap_180(sample.compass.degrees() - base.value()))
+}
+
+/// The samples of `count` rows, which every column has.
+pub(super) fn to_samples(columns: &[Column], count: usize) -> Result<Vec<Sample>, DecodeError> {
+    for column in columns {
+        let turns = matches!(column.id, LON | GYRO | SATELLITE | COMPASS);
+        if turns && column.step.circle().is_none() {
+            return Err(DecodeError::BadStep(column.id));
+        }
+    }
+    let mut samples: Vec<Sample> = Vec::with_capacity(count);
+    for row in 0..count {
+        let sample = to_sample(&Row { columns, row })?;
+        if samples.last().is_some_and(|last| last.time > sample.time) {
+            return Err(DecodeError::OutOfOrder(row));
+        }
+        samples.push(sample);
+    }
+    Ok(samples)
+}
+
+/// One sample's values.
+struct Row<'a> {
+    columns: &'a [Column],
+    row: usize,
+}
+
+impl Row<'_> {
+    fn optional(&self, id: u64) -> Option<Decimal> {
+        let column = self.columns.iter().find(|column| column.id == id)?;
+        column.values[self.row].map(|steps| column.step.exact(steps))
+    }
+
+    fn required(&self, id: u64) -> Result<Decimal, DecodeError> {
+        self.optional(id).ok_or(DecodeError::MissingColumn(id))
+    }
+
+    fn out_of_range(&self, column: u64) -> DecodeError {
+        DecodeError::OutOfRange {
+            row: self.row,
+            column,
+        }
+    }
+
+    fn within(&self, id: u64, value: Decimal, range: (f64, f64)) -> Result<f64, DecodeError> {
+        let value = value.value();
+        if !(range.0..=range.1).contains(&value) {
+            return Err(self.out_of_range(id));
+        }
+        Ok(value)
+    }
+
+    fn optional_within(&self, id: u64, range: (f64, f64)) -> Result<Option<f64>, DecodeError> {
+        self.optional(id)
+            .map(|v| self.within(id, v, range))
+            .transpose()
+    }
+}
+
+fn to_sample(row: &Row<'_>) -> Result<Sample, DecodeError> {
+    let time = row.required(TIME)?;
+    row.within(TIME, time, TIME_RANGE_S)?;
+    let lon = row.required(LON)?.wrapped_180().value();
+    let position =
+        Position::new(row.required(LAT)?.value(), lon).map_err(|_| row.out_of_range(LAT))?;
+    let gyro = row.optional(GYRO).map(Decimal::wrapped_360);
+    let base = gyro.unwrap_or(Decimal::ZERO);
+    let satellite = row.optional(SATELLITE).map(|s| s.plus(base).wrapped_360());
+    let reference = gyro.or(satellite).unwrap_or(Decimal::ZERO);
+    let compass = row.required(COMPASS)?.plus(reference).wrapped_360();
+    let windows = row.within(WINDOWS, row.required(WINDOWS)?, WINDOWS_RANGE)?;
+    Ok(Sample {
+        time: i64::try_from(time.micros())
+            .ok()
+            .and_then(|micros| Timestamp::from_micros(micros).ok())
+            .ok_or(row.out_of_range(TIME))?,
+        position,
+        compass: CompassHeading::new(compass.value()).ok_or(row.out_of_range(COMPASS))?,
+        gyro: gyro.and_then(|g| TrueHeading::new(g.value())),
+        satellite: satellite.and_then(|s| TrueHeading::new(s.value())),
+        sog_kn: row.optional_within(SOG, SOG_RANGE_KN)?,
+        rate_of_turn_deg_min: row.optional_within(RATE_OF_TURN, RATE_OF_TURN_RANGE)?,
+        spread_deg: row.optional_within(SPREAD, SPREAD_RANGE_DEG)?,
+        windows: windows as u16,
+    })
+}

@@ -1,0 +1,104 @@
+//! Why a batch cannot be written, or bytes are not a batch.
+
+/// Why a batch cannot be written as a frame.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum EncodeError {
+    /// More samples than a frame may hold.
+    #[error("{0} samples are more than the 65535 of one batch")]
+    TooManySamples(usize),
+    /// The frame would be larger than the server takes.
+    #[error("the batch takes {0} bytes, more than 262144")]
+    TooLarge(usize),
+    /// Batches are numbered from 1.
+    #[error("batch number 0: numbers start at 1")]
+    SeqZero,
+    /// A value that no ship can have, or NaN.
+    #[error("sample {row}: {field} {value} is outside {low} to {high}")]
+    OutOfRange {
+        /// Counts the batch's samples from 0.
+        row: usize,
+        /// As it is called in JSON.
+        field: &'static str,
+        /// What was given.
+        value: f64,
+        /// The least that is accepted.
+        low: f64,
+        /// The most that is accepted.
+        high: f64,
+    },
+    /// More reasons than a tally may have.
+    #[error("{0} reasons are more than the 255 of one tally")]
+    TooManyReasons(usize),
+    /// A reason's name is empty or longer than 64 bytes.
+    #[error("reason {0:?} is not 1 to 64 bytes long")]
+    ReasonName(String),
+}
+
+/// Why bytes are not a batch.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DecodeError {
+    /// The bytes end before the frame does.
+    #[error("the frame is cut short")]
+    Truncated,
+    /// More bytes than a frame may have.
+    #[error("{0} bytes are more than the 262144 of one batch")]
+    TooLarge(usize),
+    /// Something else altogether.
+    #[error("these bytes are not a batch: they do not begin with 42 4e")]
+    BadMagic,
+    /// Damaged on the way or on disk.
+    #[error("the checksum is {computed:08x}, the frame says {stated:08x}")]
+    Checksum {
+        /// The frame's last four bytes.
+        stated: u32,
+        /// What the other bytes give.
+        computed: u32,
+    },
+    /// Written by a later agent: keep the batch until the server is newer.
+    #[error("unsupported batch version {0}")]
+    UnsupportedVersion(u8),
+    /// A flag of a later version.
+    #[error("unsupported batch flags {0:#04x}")]
+    UnsupportedFlags(u8),
+    /// Batches are numbered from 1.
+    #[error("batch number 0: numbers start at 1")]
+    SeqZero,
+    /// More samples than a frame may hold, or than its bytes can.
+    #[error("{0} samples do not fit into this frame")]
+    TooManySamples(u64),
+    /// A number of more than 64 bits.
+    #[error("a number has more than 64 bits")]
+    NumberTooLong,
+    /// Column ids must rise, and there may be 64.
+    #[error("column {0} is out of order or one too many")]
+    ColumnOrder(u64),
+    /// A column without which there is no sample.
+    #[error("column {0} is missing or has gaps")]
+    MissingColumn(u64),
+    /// A step of zero, or one that does not divide the circle.
+    #[error("column {0} has no usable step")]
+    BadStep(u64),
+    /// Extrapolation in time asked of the times themselves.
+    #[error("column {0} has a predictor it cannot have")]
+    BadPredictor(u64),
+    /// A run that is longer than what is left to fill.
+    #[error("column {0} has a run beyond its end")]
+    BadRun(u64),
+    /// A value that no ship can have.
+    #[error("sample {row}: column {column} is out of range")]
+    OutOfRange {
+        /// Counts the batch's samples from 0.
+        row: usize,
+        /// The column's id.
+        column: u64,
+    },
+    /// The samples are not in order of time.
+    #[error("sample {0} is earlier than the one before it")]
+    OutOfOrder(usize),
+    /// A reason that is unknown, unreadable, empty, too long or there twice.
+    #[error("entry {0} of the tally cannot be read")]
+    BadReason(usize),
+    /// Something follows the last column.
+    #[error("something follows the last column")]
+    TrailingBits,
+}

@@ -1,0 +1,178 @@
+//! The frame: header, profile, tally, columns, checksum.
+
+use super::bits::{BitReader, BitWriter};
+use super::columns::{self, Column};
+use super::error::{DecodeError, EncodeError};
+use super::stack;
+use super::step::Step;
+use super::tally;
+use crate::batch::{Batch, StreamId};
+use uuid::Uuid;
+
+/// The largest frame, in bytes.
+pub const MAX_BYTES: usize = 262_144;
+/// The most samples of one frame.
+pub const MAX_SAMPLES: usize = 65_535;
+
+const MAGIC: [u8; 2] = *b"BN";
+const VERSION: u8 = 1;
+/// Magic, version and flags; the checksum.
+const HEAD_BYTES: usize = 4;
+const CHECKSUM_BYTES: usize = 4;
+/// Columns that a frame may have, known and unknown.
+const MAX_COLUMNS: u64 = 64;
+
+/// Writes a batch as a frame. Samples are put in order of time.
+///
+/// # Errors
+/// When a value is one that no ship can have (see [`super::check`]) or the batch
+/// is too large.
+pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
+    if batch.samples.len() > MAX_SAMPLES {
+        return Err(EncodeError::TooManySamples(batch.samples.len()));
+    }
+    if batch.seq == 0 {
+        return Err(EncodeError::SeqZero);
+    }
+    for (row, sample) in batch.samples.iter().enumerate() {
+        columns::check(sample, row)?;
+    }
+    let mut samples = batch.samples.clone();
+    samples.sort_by_key(|sample| sample.time);
+    let columns = columns::from_samples(&samples);
+
+    let mut writer = BitWriter::default();
+    MAGIC.iter().for_each(|b| writer.bits(u64::from(*b), 8));
+    writer.bits(u64::from(VERSION), 8);
+    writer.bits(0, 8);
+    let stream = batch.stream.0.as_bytes();
+    stream.iter().for_each(|b| writer.bits(u64::from(*b), 8));
+    writer.varint(batch.seq);
+    tally::write(&mut writer, &batch.tally)?;
+    writer.varint(samples.len() as u64);
+    writer.varint(columns.len() as u64);
+    for column in &columns {
+        writer.varint(column.id);
+        writer.bits(u64::from(column.step.byte()), 8);
+    }
+    let times: Vec<i64> = columns
+        .first()
+        .map(|time| time.values.iter().flatten().copied().collect())
+        .unwrap_or_default();
+    for column in &columns {
+        stack::write(&mut writer, &column.values, &times);
+    }
+
+    let mut bytes = writer.into_bytes();
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    if bytes.len() > MAX_BYTES {
+        return Err(EncodeError::TooLarge(bytes.len()));
+    }
+    Ok(bytes)
+}
+
+/// Reads a frame.
+///
+/// # Errors
+/// When the bytes are not a whole, undamaged frame of a version that this
+/// decoder knows, or hold what no ship can have.
+pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
+    let mut reader = BitReader::new(content(bytes)?);
+    let stream = reader
+        .bits(64)
+        .and_then(|high| Ok((high, reader.bits(64)?)))?;
+    let stream = StreamId(Uuid::from_u64_pair(stream.0, stream.1));
+    let seq = reader.varint()?;
+    if seq == 0 {
+        return Err(DecodeError::SeqZero);
+    }
+    let tally = tally::read(&mut reader)?;
+    let stated = reader.varint()?;
+    let count = usize::try_from(stated)
+        .ok()
+        .filter(|count| *count <= MAX_SAMPLES)
+        .ok_or(DecodeError::TooManySamples(stated))?;
+    let profile = read_profile(&mut reader)?;
+    let columns = read_columns(&mut reader, &profile, count)?;
+    reader.finish()?;
+    Ok(Batch {
+        stream,
+        seq,
+        samples: columns::to_samples(&columns, count)?,
+        tally,
+    })
+}
+
+/// What stands between the head and the checksum of an undamaged frame.
+fn content(bytes: &[u8]) -> Result<&[u8], DecodeError> {
+    if bytes.len() > MAX_BYTES {
+        return Err(DecodeError::TooLarge(bytes.len()));
+    }
+    if !bytes.starts_with(&MAGIC[..bytes.len().min(2)]) {
+        return Err(DecodeError::BadMagic);
+    }
+    if bytes.len() < HEAD_BYTES + CHECKSUM_BYTES {
+        return Err(DecodeError::Truncated);
+    }
+    let (body, checksum) = bytes
+        .split_last_chunk::<CHECKSUM_BYTES>()
+        .ok_or(DecodeError::Truncated)?;
+    let (stated, computed) = (u32::from_le_bytes(*checksum), crc32fast::hash(body));
+    if stated != computed {
+        return Err(DecodeError::Checksum { stated, computed });
+    }
+    if body[2] != VERSION {
+        return Err(DecodeError::UnsupportedVersion(body[2]));
+    }
+    if body[3] != 0 {
+        return Err(DecodeError::UnsupportedFlags(body[3]));
+    }
+    Ok(&body[HEAD_BYTES..])
+}
+
+/// Ids, rising, and their steps.
+fn read_profile(reader: &mut BitReader<'_>) -> Result<Vec<(u64, Step)>, DecodeError> {
+    let count = reader.varint()?;
+    let mut profile = Vec::new();
+    let mut last = 0;
+    for index in 0..count {
+        let id = reader.varint()?;
+        if index >= MAX_COLUMNS || id <= last {
+            return Err(DecodeError::ColumnOrder(id));
+        }
+        last = id;
+        let step = Step::from_byte(reader.bits(8)? as u8).ok_or(DecodeError::BadStep(id))?;
+        profile.push((id, step));
+    }
+    Ok(profile)
+}
+
+/// Every column in turn; those that this version does not know are read and
+/// forgotten.
+fn read_columns(
+    reader: &mut BitReader<'_>,
+    profile: &[(u64, Step)],
+    count: usize,
+) -> Result<Vec<Column>, DecodeError> {
+    // Before anything of the size of `count` is allocated.
+    if count > 0 && columns::REQUIRED * stack::min_bits(count) > reader.left() {
+        return Err(DecodeError::TooManySamples(count as u64));
+    }
+    let mut columns: Vec<Column> = Vec::new();
+    let mut times = None;
+    for (id, step) in profile {
+        let values = stack::read(reader, *id, count, times.as_deref())?;
+        if *id == columns::TIME {
+            let all: Option<Vec<i64>> = values.iter().copied().collect();
+            times = Some(all.ok_or(DecodeError::MissingColumn(*id))?);
+        }
+        if *id <= columns::LAST_KNOWN {
+            columns.push(Column {
+                id: *id,
+                step: *step,
+                values,
+            });
+        }
+    }
+    Ok(columns)
+}

@@ -1,0 +1,136 @@
+//! Predictors: what the next integer of a column is likely to be, from those
+//! before it.
+//!
+//! Integers only, so that every decoder in every language comes to the same
+//! values. Values stay within ±2⁵³, so nothing here can overflow.
+
+/// The greatest magnitude of a column's value: floats hold it exactly.
+pub(super) const VALUE_LIMIT: i64 = 1 << 53;
+
+/// Fractional bits of the running mean.
+const MEAN_BITS: u32 = 8;
+
+/// The next value is foretold as …
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Predictor {
+    /// the first value of the column;
+    First,
+    /// the value before;
+    Previous,
+    /// the line through the two before, evenly spaced;
+    Linear,
+    /// a running mean that takes in 1/2, 1/4, 1/8 or 1/16 of each value's news;
+    Mean(u32),
+    /// the line through the two before, by their times.
+    LinearInTime,
+}
+
+impl Predictor {
+    /// All, by their number in the frame.
+    pub(super) const ALL: [Predictor; 8] = [
+        Predictor::First,
+        Predictor::Previous,
+        Predictor::Linear,
+        Predictor::Mean(1),
+        Predictor::Mean(2),
+        Predictor::Mean(3),
+        Predictor::Mean(4),
+        Predictor::LinearInTime,
+    ];
+}
+
+/// A predictor at work on one column.
+#[derive(Debug)]
+pub(super) struct Foresight {
+    predictor: Predictor,
+    first: i64,
+    /// The last value and its time, and the one before.
+    last: (i64, i64),
+    before: Option<(i64, i64)>,
+    /// The running mean, with [`MEAN_BITS`] fractional bits.
+    mean: i64,
+}
+
+impl Foresight {
+    /// Starts from the column's first value and its time.
+    pub(super) fn new(predictor: Predictor, value: i64, time: i64) -> Foresight {
+        Foresight {
+            predictor,
+            first: value,
+            last: (value, time),
+            before: None,
+            mean: value << MEAN_BITS,
+        }
+    }
+
+    /// What to expect at `time`.
+    pub(super) fn expect(&self, time: i64) -> i64 {
+        let (last, last_time) = self.last;
+        let foretold = match (self.predictor, self.before) {
+            (Predictor::First, _) => self.first,
+            (Predictor::Mean(_), _) => (self.mean + (1 << (MEAN_BITS - 1))) >> MEAN_BITS,
+            (Predictor::Linear, Some((before, _))) => 2 * last - before,
+            (Predictor::LinearInTime, Some((before, before_time))) if last_time > before_time => {
+                let rise = i128::from(last - before) * i128::from(time - last_time);
+                let line = i128::from(last) + rise.div_euclid(i128::from(last_time - before_time));
+                let limit = i128::from(VALUE_LIMIT);
+                line.clamp(-limit, limit) as i64
+            }
+            _ => last,
+        };
+        foretold.clamp(-VALUE_LIMIT, VALUE_LIMIT)
+    }
+
+    /// Takes in what came.
+    pub(super) fn learn(&mut self, value: i64, time: i64) {
+        self.before = Some(self.last);
+        self.last = (value, time);
+        if let Predictor::Mean(shift) = self.predictor {
+            self.mean += ((value << MEAN_BITS) - self.mean) >> shift;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn expectations(predictor: Predictor, values: &[(i64, i64)]) -> Vec<i64> {
+        let mut foresight = Foresight::new(predictor, values[0].0, values[0].1);
+        values[1..]
+            .iter()
+            .map(|(value, time)| {
+                let expected = foresight.expect(*time);
+                foresight.learn(*value, *time);
+                expected
+            })
+            .collect()
+    }
+
+    #[test]
+    fn each_predictor_does_what_its_name_says() {
+        let values = [(10, 0), (12, 1), (14, 3), (20, 6)];
+        assert_eq!(expectations(Predictor::First, &values), [10, 10, 10]);
+        assert_eq!(expectations(Predictor::Previous, &values), [10, 12, 14]);
+        assert_eq!(expectations(Predictor::Linear, &values), [10, 14, 16]);
+        assert_eq!(expectations(Predictor::Mean(1), &values), [10, 11, 13]);
+        assert_eq!(expectations(Predictor::LinearInTime, &values), [10, 16, 17]);
+    }
+
+    #[test]
+    fn two_values_at_one_time_do_not_divide_by_zero() {
+        let values = [(10, 0), (12, 0), (14, 0)];
+        assert_eq!(expectations(Predictor::LinearInTime, &values), [10, 12]);
+    }
+
+    #[test]
+    fn the_widest_values_do_not_overflow() {
+        let (low, high) = (-VALUE_LIMIT, VALUE_LIMIT);
+        let values = [(low, low), (high, low + 1), (low, high), (high, high)];
+        for predictor in Predictor::ALL {
+            for expected in expectations(predictor, &values) {
+                assert!((low..=high).contains(&expected), "{predictor:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! One column in a frame: which samples have it, the predictor, the first
+//! value and the residuals.
+
+use super::bits::{BitReader, BitWriter, unzigzag, zigzag};
+use super::error::DecodeError;
+use super::predict::{Foresight, Predictor, VALUE_LIMIT};
+use super::rice;
+
+/// Writes a column's values; `times` has the times of the same samples.
+pub(super) fn write(writer: &mut BitWriter, values: &[Option<i64>], times: &[i64]) {
+    write_presence(writer, values);
+    let present: Vec<(i64, i64)> = values
+        .iter()
+        .zip(times)
+        .filter_map(|(value, time)| value.map(|v| (v, *time)))
+        .collect();
+    let Some((first, _)) = present.first() else {
+        return;
+    };
+    let (number, residuals) = (0..Predictor::ALL.len())
+        .map(|number| (number, residuals(Predictor::ALL[number], &present)))
+        .min_by_key(|(_, residuals)| rice::cost(residuals))
+        .expect("there are eight predictors to choose from");
+    writer.bits(number as u64, 3);
+    writer.varint(zigzag(*first));
+    rice::write(writer, &residuals);
+}
+
+fn residuals(predictor: Predictor, present: &[(i64, i64)]) -> Vec<i64> {
+    let mut foresight = Foresight::new(predictor, present[0].0, present[0].1);
+    present[1..]
+        .iter()
+        .map(|(value, time)| {
+            let residual = value - foresight.expect(*time);
+            foresight.learn(*value, *time);
+            residual
+        })
+        .collect()
+}
+
+/// Bits that a column without gaps takes at the very least.
+pub(super) fn min_bits(count: usize) -> usize {
+    // Presence, predictor, first value, the blocks' codes.
+    1 + 3 + 8 + rice::min_bits(count.saturating_sub(1))
+}
+
+/// Reads a column of `count` samples. `times` is `None` for the column of
+/// times itself, which cannot be foretold from them.
+pub(super) fn read(
+    reader: &mut BitReader<'_>,
+    id: u64,
+    count: usize,
+    times: Option<&[i64]>,
+) -> Result<Vec<Option<i64>>, DecodeError> {
+    let presence = read_presence(reader, id, count)?;
+    let mut rows = (0..count).filter(|row| presence.as_ref().is_none_or(|p| p[*row]));
+    let mut values = vec![None; count];
+    let Some(first_row) = rows.next() else {
+        return Ok(values);
+    };
+    let predictor = Predictor::ALL[reader.bits(3)? as usize];
+    if times.is_none() && predictor == Predictor::LinearInTime {
+        return Err(DecodeError::BadPredictor(id));
+    }
+    let time = |row: usize| times.map_or(0, |times| times[row]);
+    let first = bounded(unzigzag(reader.varint()?), id, first_row)?;
+    values[first_row] = Some(first);
+    let mut foresight = Foresight::new(predictor, first, time(first_row));
+    let left = presence
+        .as_ref()
+        .map_or(count, |p| p.iter().filter(|p| **p).count())
+        - 1;
+    rice::read(reader, left, id, |residual| {
+        let row = rows.next().ok_or(DecodeError::BadRun(id))?;
+        let value = foresight.expect(time(row)).saturating_add(residual);
+        values[row] = Some(bounded(value, id, row)?);
+        foresight.learn(value, time(row));
+        Ok(())
+    })?;
+    Ok(values)
+}
+
+fn bounded(value: i64, column: u64, row: usize) -> Result<i64, DecodeError> {
+    if (-VALUE_LIMIT..=VALUE_LIMIT).contains(&value) {
+        return Ok(value);
+    }
+    Err(DecodeError::OutOfRange { row, column })
+}
+
+/// One bit when all are there; otherwise runs in turn, the first of those there.
+fn write_presence(writer: &mut BitWriter, values: &[Option<i64>]) {
+    if values.iter().all(Option::is_some) {
+        writer.bits(0, 1);
+        return;
+    }
+    writer.bits(1, 1);
+    let mut rest = values;
+    let mut there = true;
+    while !rest.is_empty() {
+        let run = rest.iter().take_while(|v| v.is_some() == there).count();
+        writer.gamma(run as u64 + 1);
+        rest = &rest[run..];
+        there = !there;
+    }
+}
+
+/// `None` when every sample has the value.
+fn read_presence(
+    reader: &mut BitReader<'_>,
+    id: u64,
+    count: usize,
+) -> Result<Option<Vec<bool>>, DecodeError> {
+    if !reader.bit()? {
+        return Ok(None);
+    }
+    let mut presence = Vec::with_capacity(count);
+    let mut there = true;
+    while presence.len() < count {
+        let run = reader.gamma()? - 1;
+        if run > (count - presence.len()) as u64 {
+            return Err(DecodeError::BadRun(id));
+        }
+        presence.resize(presence.len() + run as usize, there);
+        there = !there;
+    }
+    Ok(Some(presence))
+}

@@ -1,0 +1,137 @@
+//! The step of a column: a mantissa of 1 to 15 and a negative power of ten.
+//!
+//! A value is `integer · mantissa / 10^exponent`, computed in integers as far
+//! as it goes, so that 7 steps of 0.05 are 0.35 and nothing near it.
+
+use super::predict::VALUE_LIMIT;
+
+/// `mantissa / 10^exponent`, one byte in the frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Step {
+    mantissa: u8,
+    exponent: u8,
+}
+
+impl Step {
+    /// A step known when this is compiled: mantissa 1 to 15, exponent 0 to 15.
+    pub(super) const fn new(mantissa: u8, exponent: u8) -> Step {
+        assert!(mantissa >= 1 && mantissa <= 15 && exponent <= 15);
+        Step { mantissa, exponent }
+    }
+
+    /// The mantissa in the high four bits, the exponent in the low four.
+    pub(super) fn byte(self) -> u8 {
+        self.mantissa << 4 | self.exponent
+    }
+
+    /// Reads what [`Step::byte`] wrote; a mantissa of zero is none.
+    pub(super) fn from_byte(byte: u8) -> Option<Step> {
+        let (mantissa, exponent) = (byte >> 4, byte & 15);
+        (mantissa > 0).then_some(Step { mantissa, exponent })
+    }
+
+    /// Steps in a full circle, when they are a whole number.
+    pub(super) fn circle(self) -> Option<i64> {
+        let fine = 360 * 10_i64.pow(u32::from(self.exponent));
+        let mantissa = i64::from(self.mantissa);
+        (fine % mantissa == 0).then_some(fine / mantissa)
+    }
+
+    /// The nearest number of steps, held within what a column can carry.
+    pub(super) fn count(self, value: f64) -> i64 {
+        let scale = 10_f64.powi(i32::from(self.exponent));
+        let steps = (value * scale / f64::from(self.mantissa)).round();
+        // `as` holds what is too large; NaN, which callers have refused, is 0.
+        (steps as i64).clamp(-VALUE_LIMIT, VALUE_LIMIT)
+    }
+
+    /// What `steps` come to, as a fraction.
+    pub(super) fn exact(self, steps: i64) -> Decimal {
+        Decimal {
+            units: i128::from(steps) * i128::from(self.mantissa),
+            exponent: u32::from(self.exponent),
+        }
+    }
+}
+
+/// `units / 10^exponent`, exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Decimal {
+    units: i128,
+    exponent: u32,
+}
+
+impl Decimal {
+    /// Nothing.
+    pub(super) const ZERO: Decimal = Decimal {
+        units: 0,
+        exponent: 0,
+    };
+
+    /// The sum.
+    pub(super) fn plus(self, other: Decimal) -> Decimal {
+        let exponent = self.exponent.max(other.exponent);
+        let units = |d: Decimal| d.units * 10_i128.pow(exponent - d.exponent);
+        Decimal {
+            units: units(self) + units(other),
+            exponent,
+        }
+    }
+
+    /// The same direction from 0 up to 360.
+    pub(super) fn wrapped_360(self) -> Decimal {
+        let circle = 360 * 10_i128.pow(self.exponent);
+        Decimal {
+            units: self.units.rem_euclid(circle),
+            ..self
+        }
+    }
+
+    /// The same direction from −180 up to 180.
+    pub(super) fn wrapped_180(self) -> Decimal {
+        let circle = 360 * 10_i128.pow(self.exponent);
+        Decimal {
+            units: (self.units + circle / 2).rem_euclid(circle) - circle / 2,
+            ..self
+        }
+    }
+
+    /// The nearest float to it.
+    pub(super) fn value(self) -> f64 {
+        self.units as f64 / 10_f64.powi(self.exponent as i32)
+    }
+
+    /// Millionths, rounded down.
+    pub(super) fn micros(self) -> i128 {
+        (self.units * 1_000_000).div_euclid(10_i128.pow(self.exponent))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_come_to_decimals_as_they_are_written() {
+        let step = Step::new(5, 2);
+        assert_eq!(step.exact(7).value(), 0.35);
+        assert_eq!(step.count(0.35), 7);
+        assert_eq!(step.circle(), Some(7200));
+        assert_eq!(Step::new(7, 2).circle(), None);
+    }
+
+    #[test]
+    fn a_step_is_one_byte_and_never_zero() {
+        assert_eq!(
+            Step::from_byte(Step::new(5, 2).byte()),
+            Some(Step::new(5, 2))
+        );
+        assert_eq!(Step::from_byte(0x02), None);
+    }
+
+    #[test]
+    fn a_sum_across_north_is_exact() {
+        let sum = Step::new(5, 2).exact(7199).plus(Step::new(2, 2).exact(5));
+        assert_eq!(sum.wrapped_360().value(), 0.05);
+    }
+}
