@@ -28,6 +28,13 @@ impl BitWriter {
         }
     }
 
+    /// Whole bytes.
+    pub(super) fn octets(&mut self, octets: &[u8]) {
+        for octet in octets {
+            self.bits(u64::from(*octet), 8);
+        }
+    }
+
     /// Elias's gamma code of `value`, which is at least 1.
     pub(super) fn gamma(&mut self, value: u64) {
         let below = value.ilog2();
@@ -115,7 +122,7 @@ impl<'a> BitReader<'a> {
         Err(DecodeError::NumberTooLong)
     }
 
-    /// The rest of a text or other run of bytes.
+    /// Whole bytes.
     pub(super) fn octets(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
         if self.left() / 8 < count {
             return Err(DecodeError::Truncated);
@@ -135,12 +142,12 @@ impl<'a> BitReader<'a> {
 
 /// 0, −1, 1, −2 … as 0, 1, 2, 3 …
 pub(super) fn zigzag(value: i64) -> u64 {
-    (value << 1 ^ value >> 63) as u64
+    (value << 1 ^ value >> 63).cast_unsigned()
 }
 
 /// 0, 1, 2, 3 … as 0, −1, 1, −2 …
 pub(super) fn unzigzag(code: u64) -> i64 {
-    (code >> 1) as i64 ^ -((code & 1) as i64)
+    (code >> 1).cast_signed() ^ -(code & 1).cast_signed()
 }
 
 #[cfg(test)]

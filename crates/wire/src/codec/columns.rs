@@ -105,7 +105,9 @@ pub(super) fn from_samples(samples: &[Sample]) -> Vec<Column> {
             s.gyro.map(TrueHeading::degrees)
         }),
         direction(SATELLITE, REFERENCE_STEP, samples, satellite_less_gyro),
-        direction(COMPASS, COMPASS_STEP, samples, compass_less_reference),
+        direction(COMPASS, COMPASS_STEP, samples, |s| {
+            Some(compass_less_reference(s))
+        }),
         column(SOG, SOG_STEP, samples, |s| s.sog_kn),
         column(RATE_OF_TURN, RATE_OF_TURN_STEP, samples, |s| {
             s.rate_of_turn_deg_min
@@ -171,14 +173,14 @@ fn satellite_less_gyro(sample: &Sample) -> Option<f64> {
 }
 
 /// Against the gyro, or without one against the satellite compass.
-fn compass_less_reference(sample: &Sample) -> Option<f64> {
+fn compass_less_reference(sample: &Sample) -> f64 {
     let base = match sample.satellite {
         Some(satellite) if sample.gyro.is_none() => {
             REFERENCE_STEP.exact(REFERENCE_STEP.count(satellite.degrees()))
         }
         _ => gyro_base(sample),
     };
-    Some(wrap_180(sample.compass.degrees() - base.value()))
+    wrap_180(sample.compass.degrees() - base.value())
 }
 
 /// The samples of `count` rows, which every column has.

@@ -16,6 +16,7 @@ pub const MAX_SAMPLES: usize = 65_535;
 
 const MAGIC: [u8; 2] = *b"BN";
 const VERSION: u8 = 1;
+const NO_FLAGS: u8 = 0;
 /// Magic, version and flags; the checksum.
 const HEAD_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
@@ -42,11 +43,9 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
     let columns = columns::from_samples(&samples);
 
     let mut writer = BitWriter::default();
-    MAGIC.iter().for_each(|b| writer.bits(u64::from(*b), 8));
-    writer.bits(u64::from(VERSION), 8);
-    writer.bits(0, 8);
-    let stream = batch.stream.0.as_bytes();
-    stream.iter().for_each(|b| writer.bits(u64::from(*b), 8));
+    writer.octets(&MAGIC);
+    writer.octets(&[VERSION, NO_FLAGS]);
+    writer.octets(batch.stream.0.as_bytes());
     writer.varint(batch.seq);
     tally::write(&mut writer, &batch.tally)?;
     writer.varint(samples.len() as u64);
@@ -56,11 +55,13 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
         writer.bits(u64::from(column.step.byte()), 8);
     }
     let times: Vec<i64> = columns
-        .first()
-        .map(|time| time.values.iter().flatten().copied().collect())
-        .unwrap_or_default();
+        .iter()
+        .take_while(|column| column.id == columns::TIME)
+        .flat_map(|column| column.values.iter().flatten().copied())
+        .collect();
     for column in &columns {
-        stack::write(&mut writer, &column.values, &times);
+        let times = (column.id != columns::TIME).then_some(&times[..]);
+        stack::write(&mut writer, &column.values, times);
     }
 
     let mut bytes = writer.into_bytes();
@@ -124,7 +125,7 @@ fn content(bytes: &[u8]) -> Result<&[u8], DecodeError> {
     if body[2] != VERSION {
         return Err(DecodeError::UnsupportedVersion(body[2]));
     }
-    if body[3] != 0 {
+    if body[3] != NO_FLAGS {
         return Err(DecodeError::UnsupportedFlags(body[3]));
     }
     Ok(&body[HEAD_BYTES..])

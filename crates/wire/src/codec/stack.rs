@@ -6,24 +6,31 @@ use super::error::DecodeError;
 use super::predict::{Foresight, Predictor, VALUE_LIMIT};
 use super::rice;
 
-/// Writes a column's values; `times` has the times of the same samples.
-pub(super) fn write(writer: &mut BitWriter, values: &[Option<i64>], times: &[i64]) {
+/// Writes a column's values. `times` has the times of the same samples, and is
+/// `None` for the column of times itself.
+pub(super) fn write(writer: &mut BitWriter, values: &[Option<i64>], times: Option<&[i64]>) {
     write_presence(writer, values);
     let present: Vec<(i64, i64)> = values
         .iter()
-        .zip(times)
-        .filter_map(|(value, time)| value.map(|v| (v, *time)))
+        .enumerate()
+        .filter_map(|(row, value)| value.map(|v| (v, times.map_or(0, |times| times[row]))))
         .collect();
     let Some((first, _)) = present.first() else {
         return;
     };
     let (number, residuals) = (0..Predictor::ALL.len())
+        .filter(|number| may_use(Predictor::ALL[*number], times))
         .map(|number| (number, residuals(Predictor::ALL[number], &present)))
         .min_by_key(|(_, residuals)| rice::cost(residuals))
         .expect("there are eight predictors to choose from");
     writer.bits(number as u64, 3);
     writer.varint(zigzag(*first));
     rice::write(writer, &residuals);
+}
+
+/// Times cannot be foretold from themselves.
+fn may_use(predictor: Predictor, times: Option<&[i64]>) -> bool {
+    times.is_some() || predictor != Predictor::LinearInTime
 }
 
 fn residuals(predictor: Predictor, present: &[(i64, i64)]) -> Vec<i64> {
@@ -59,7 +66,7 @@ pub(super) fn read(
         return Ok(values);
     };
     let predictor = Predictor::ALL[reader.bits(3)? as usize];
-    if times.is_none() && predictor == Predictor::LinearInTime {
+    if !may_use(predictor, times) {
         return Err(DecodeError::BadPredictor(id));
     }
     let time = |row: usize| times.map_or(0, |times| times[row]);

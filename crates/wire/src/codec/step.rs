@@ -49,7 +49,7 @@ impl Step {
     pub(super) fn exact(self, steps: i64) -> Decimal {
         Decimal {
             units: i128::from(steps) * i128::from(self.mantissa),
-            exponent: u32::from(self.exponent),
+            exponent: self.exponent,
         }
     }
 }
@@ -58,7 +58,7 @@ impl Step {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Decimal {
     units: i128,
-    exponent: u32,
+    exponent: u8,
 }
 
 impl Decimal {
@@ -71,7 +71,7 @@ impl Decimal {
     /// The sum.
     pub(super) fn plus(self, other: Decimal) -> Decimal {
         let exponent = self.exponent.max(other.exponent);
-        let units = |d: Decimal| d.units * 10_i128.pow(exponent - d.exponent);
+        let units = |d: Decimal| d.units * power(exponent - d.exponent);
         Decimal {
             units: units(self) + units(other),
             exponent,
@@ -80,7 +80,7 @@ impl Decimal {
 
     /// The same direction from 0 up to 360.
     pub(super) fn wrapped_360(self) -> Decimal {
-        let circle = 360 * 10_i128.pow(self.exponent);
+        let circle = 360 * power(self.exponent);
         Decimal {
             units: self.units.rem_euclid(circle),
             ..self
@@ -89,7 +89,7 @@ impl Decimal {
 
     /// The same direction from −180 up to 180.
     pub(super) fn wrapped_180(self) -> Decimal {
-        let circle = 360 * 10_i128.pow(self.exponent);
+        let circle = 360 * power(self.exponent);
         Decimal {
             units: (self.units + circle / 2).rem_euclid(circle) - circle / 2,
             ..self
@@ -98,13 +98,17 @@ impl Decimal {
 
     /// The nearest float to it.
     pub(super) fn value(self) -> f64 {
-        self.units as f64 / 10_f64.powi(self.exponent as i32)
+        self.units as f64 / 10_f64.powi(i32::from(self.exponent))
     }
 
     /// Millionths, rounded down.
     pub(super) fn micros(self) -> i128 {
-        (self.units * 1_000_000).div_euclid(10_i128.pow(self.exponent))
+        (self.units * 1_000_000).div_euclid(power(self.exponent))
     }
+}
+
+fn power(exponent: u8) -> i128 {
+    10_i128.pow(u32::from(exponent))
 }
 
 #[cfg(test)]
@@ -114,7 +118,7 @@ mod tests {
     #[test]
     fn steps_come_to_decimals_as_they_are_written() {
         let step = Step::new(5, 2);
-        assert_eq!(step.exact(7).value(), 0.35);
+        assert_eq!(step.exact(7).value().to_string(), "0.35");
         assert_eq!(step.count(0.35), 7);
         assert_eq!(step.circle(), Some(7200));
         assert_eq!(Step::new(7, 2).circle(), None);
@@ -132,6 +136,6 @@ mod tests {
     #[test]
     fn a_sum_across_north_is_exact() {
         let sum = Step::new(5, 2).exact(7199).plus(Step::new(2, 2).exact(5));
-        assert_eq!(sum.wrapped_360().value(), 0.05);
+        assert_eq!(sum.wrapped_360().value().to_string(), "0.05");
     }
 }

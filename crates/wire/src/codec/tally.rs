@@ -37,7 +37,7 @@ fn write_name(writer: &mut BitWriter, name: &str) -> Result<(), EncodeError> {
     }
     writer.varint(NAMED);
     writer.varint(name.len() as u64);
-    name.bytes().for_each(|b| writer.bits(u64::from(b), 8));
+    writer.octets(name.as_bytes());
     Ok(())
 }
 

@@ -117,12 +117,12 @@ fn what_no_ship_can_have_is_refused_by_name() {
     type Spoil = fn(&mut Sample);
     let spoilt: [(&str, Spoil); 6] = [
         ("time", |s| {
-            s.time = Timestamp::parse("1850-01-01T00:00:00Z").unwrap()
+            s.time = Timestamp::parse("1850-01-01T00:00:00Z").unwrap();
         }),
         ("sog_kn", |s| s.sog_kn = Some(-1.0)),
         ("sog_kn", |s| s.sog_kn = Some(f64::NAN)),
         ("rate_of_turn_deg_min", |s| {
-            s.rate_of_turn_deg_min = Some(f64::INFINITY)
+            s.rate_of_turn_deg_min = Some(f64::INFINITY);
         }),
         ("spread_deg", |s| s.spread_deg = Some(-0.1)),
         ("windows", |s| s.windows = 0),

@@ -1,0 +1,203 @@
+//! What holds for every batch and for any bytes.
+
+mod support;
+
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::codec::{MAX_BYTES, MAX_SAMPLES};
+use binnacle_wire::{DecodeError, decode, encode};
+use proptest::option;
+use proptest::prelude::*;
+use support::Dice;
+use uuid::Uuid;
+
+/// Room for the floating-point sums of the test itself.
+const SLACK: f64 = 1e-9;
+
+fn samples() -> impl Strategy<Value = Vec<Sample>> {
+    let heading = || -10.0..370.0_f64;
+    let sample = (
+        (
+            315_964_800_000_000..4_102_444_800_000_000_i64,
+            -90.0..=90.0_f64,
+            -180.0..=180.0_f64,
+        ),
+        (heading(), option::of(heading()), option::of(heading())),
+        (
+            option::of(0.0..200.0_f64),
+            option::of(-3600.0..3600.0_f64),
+            option::of(0.0..180.0_f64),
+        ),
+        1..=u16::MAX,
+    );
+    let sample = sample.prop_map(|(place, headings, rest, windows)| Sample {
+        time: Timestamp::from_micros(place.0).unwrap(),
+        position: Position::new(place.1, place.2).unwrap(),
+        compass: CompassHeading::new(headings.0).unwrap(),
+        gyro: headings.1.and_then(TrueHeading::new),
+        satellite: headings.2.and_then(TrueHeading::new),
+        sog_kn: rest.0,
+        rate_of_turn_deg_min: rest.1,
+        spread_deg: rest.2,
+        windows,
+    });
+    prop::collection::vec(sample, 0..300)
+}
+
+fn batches() -> impl Strategy<Value = Batch> {
+    let reason = prop_oneof!["accepted", "turning", "settling", "[a-zé_]{1,30}"];
+    let tally = prop::collection::btree_map(reason, any::<u64>(), 0..20);
+    let head = (any::<u128>(), 1..=u64::MAX);
+    (head, samples(), tally).prop_map(|((stream, seq), samples, tally)| Batch {
+        stream: StreamId(Uuid::from_u128(stream)),
+        seq,
+        samples,
+        tally,
+    })
+}
+
+fn close(sent: Option<f64>, came: Option<f64>, half_step: f64) -> bool {
+    match (sent, came) {
+        (None, None) => true,
+        (Some(sent), Some(came)) => (sent - came).abs() <= half_step + SLACK,
+        _ => false,
+    }
+}
+
+fn turned(sent: Option<TrueHeading>, came: Option<TrueHeading>, half_step: f64) -> bool {
+    match (sent, came) {
+        (Some(sent), Some(came)) => {
+            wrap_180(sent.degrees() - came.degrees()).abs() <= half_step + SLACK
+        }
+        (sent, came) => sent.is_none() && came.is_none(),
+    }
+}
+
+fn within_half_a_step(sent: &Sample, came: &Sample) -> bool {
+    let east = wrap_180(sent.position.lon_deg() - came.position.lon_deg());
+    let compass = wrap_180(sent.compass.degrees() - came.compass.degrees());
+    sent.time.seconds_since(came.time).abs() <= 2.5
+        && (sent.position.lat_deg() - came.position.lat_deg()).abs() <= 0.000_5 + SLACK
+        && east.abs() <= 0.000_5 + SLACK
+        && compass.abs() <= 0.01 + SLACK
+        && turned(sent.gyro, came.gyro, 0.025)
+        && turned(sent.satellite, came.satellite, 0.025)
+        && close(sent.sog_kn, came.sog_kn, 0.1)
+        && close(sent.rate_of_turn_deg_min, came.rate_of_turn_deg_min, 0.25)
+        && close(sent.spread_deg, came.spread_deg, 0.01)
+        && sent.windows == came.windows
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn a_batch_comes_back_within_half_a_step_and_then_to_the_byte(sent in batches()) {
+        let bytes = encode(&sent).unwrap();
+        let came = decode(&bytes).unwrap();
+        prop_assert_eq!(encode(&came).unwrap(), bytes);
+        prop_assert_eq!((came.stream, came.seq, &came.tally), (sent.stream, sent.seq, &sent.tally));
+        let mut samples = sent.samples;
+        samples.sort_by_key(|sample| sample.time);
+        prop_assert_eq!(samples.len(), came.samples.len());
+        for (sent, came) in samples.iter().zip(&came.samples) {
+            prop_assert!(within_half_a_step(sent, came), "{:?} came as {:?}", sent, came);
+        }
+    }
+
+    #[test]
+    fn any_bytes_are_answered_or_refused(
+        body in prop::collection::vec(any::<u8>(), 0..400),
+        head in prop_oneof![Just(&b""[..]), Just(&b"BN"[..]), Just(&b"BN\x01\0"[..])],
+    ) {
+        answer(&with_checksum([head, &body].concat()));
+        answer(&body);
+    }
+}
+
+fn with_checksum(mut body: Vec<u8>) -> Vec<u8> {
+    let checksum = crc32fast::hash(&body);
+    body.extend(checksum.to_le_bytes());
+    body
+}
+
+/// Whatever is answered can be sent on.
+fn answer(bytes: &[u8]) -> bool {
+    let Ok(batch) = decode(bytes) else {
+        return false;
+    };
+    assert!(batch.samples.len() <= MAX_SAMPLES);
+    encode(&batch).unwrap();
+    true
+}
+
+#[test]
+fn twenty_thousand_mutations_never_panic() {
+    let frames: Vec<Vec<u8>> = (0..8)
+        .map(|seed| encode(&support::batch(seed + 1, support::voyage(seed, 40))).unwrap())
+        .chain([encode(&support::empty()).unwrap()])
+        .collect();
+    let mut dice = Dice(20_000);
+    let (mut stale, mut refused, mut answered) = (0, 0, 0);
+    for round in 0..20_000 {
+        let frame = &frames[dice.next() as usize % frames.len()];
+        let mut body = frame[..frame.len() - 4].to_vec();
+        mutate(&mut body, &mut dice);
+        if round % 2 == 0 {
+            body.extend(&frame[frame.len() - 4..]);
+            let unchanged = &body == frame;
+            match decode(&body) {
+                Err(DecodeError::Checksum { .. } | DecodeError::BadMagic) => stale += 1,
+                Ok(_) if unchanged => stale += 1,
+                other => panic!("a stale checksum passed: {other:?}"),
+            }
+        } else if answer(&with_checksum(body)) {
+            answered += 1;
+        } else {
+            refused += 1;
+        }
+    }
+    assert_eq!(stale, 10_000);
+    // Both happen often, or the mutations do not reach what they are meant to.
+    assert!(
+        refused > 2000 && answered > 500,
+        "{refused} refused, {answered} answered"
+    );
+}
+
+fn mutate(body: &mut Vec<u8>, dice: &mut Dice) {
+    for _ in 0..1 + dice.next() % 3 {
+        // Behind the version, mostly: what lies before has few ways to be wrong.
+        let at = (dice.next() as usize % body.len()).max(dice.next() as usize % 4);
+        match dice.next() % 5 {
+            0 => body[at] = dice.next() as u8,
+            1 => body[at] ^= 1 << (dice.next() % 8),
+            2 => body.truncate(at.max(8)),
+            3 => body.insert(at, dice.next() as u8),
+            _ => body[at] = [0, 0x7f, 0x80, 0xff][dice.next() as usize % 4],
+        }
+    }
+}
+
+#[test]
+fn a_small_frame_cannot_claim_many_samples() {
+    let mut body = b"BN\x01\0".to_vec();
+    body.extend([0; 16]);
+    // seq 1, no tally, 65,535 samples, five columns that end at once.
+    body.extend([1, 0, 0xff, 0xff, 0x03, 5]);
+    body.extend([1, 0x50, 2, 0x13, 3, 0x13, 6, 0x22, 10, 0x10]);
+    body.extend([0; 60]);
+    assert_eq!(
+        decode(&with_checksum(body)),
+        Err(DecodeError::TooManySamples(65_535))
+    );
+}
+
+#[test]
+fn a_frame_over_the_limit_is_refused_unread() {
+    let huge = with_checksum(vec![b'B'; MAX_BYTES]);
+    assert_eq!(decode(&huge), Err(DecodeError::TooLarge(MAX_BYTES + 4)));
+}
