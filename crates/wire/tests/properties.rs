@@ -1,5 +1,7 @@
 //! What holds for every batch and for any bytes.
 
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
 mod support;
 
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
@@ -169,7 +171,7 @@ fn twenty_thousand_mutations_never_panic() {
 }
 
 fn mutate(body: &mut Vec<u8>, dice: &mut Dice) {
-    for _ in 0..1 + dice.next() % 3 {
+    for _ in 0..=dice.next() % 3 {
         // Behind the version, mostly: what lies before has few ways to be wrong.
         let at = (dice.next() as usize % body.len()).max(dice.next() as usize % 4);
         match dice.next() % 5 {

@@ -1,0 +1,230 @@
+//! The frames that every encoder and decoder must agree on, and the second
+//! decoder, in Python, against them and against many more.
+//!
+//! `UPDATE_VECTORS=1` writes those that are missing; none is ever changed.
+
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
+mod support;
+
+use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::position::Position;
+use binnacle_wire::batch::Batch;
+use binnacle_wire::{DecodeError, decode, encode};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use support::{Dice, batch, voyage};
+
+/// The batches behind the vectors that `encode` writes.
+fn written() -> Vec<(&'static str, Batch)> {
+    let mut references = voyage(3, 40);
+    for (row, sample) in references.iter_mut().enumerate() {
+        let heading = sample.gyro.map(TrueHeading::degrees);
+        sample.satellite = heading
+            .filter(|_| row > 10)
+            .and_then(|h| TrueHeading::new(h + 0.6));
+        sample.gyro = sample.gyro.filter(|_| row < 20);
+    }
+    let mut crossing = voyage(4, 20);
+    for (row, sample) in crossing.iter_mut().enumerate() {
+        let east = 179.9 + 0.02 * row as f64;
+        let lon = if east > 180.0 { east - 360.0 } else { east };
+        sample.position = Position::new(-16.5, lon).unwrap();
+        sample.gyro = TrueHeading::new(359.2 + 0.1 * row as f64);
+    }
+    let mut gaps = voyage(5, 150);
+    for (row, sample) in gaps.iter_mut().enumerate() {
+        sample.sog_kn = sample.sog_kn.filter(|_| row / 50 % 2 == 0);
+        sample.rate_of_turn_deg_min = None;
+        sample.spread_deg = sample.spread_deg.filter(|_| row == 149);
+    }
+    vec![
+        ("tally_only", support::empty()),
+        ("one_sample", batch(1, voyage(1, 1))),
+        ("quarter_day", batch(7, voyage(2, 29))),
+        ("two_references", batch(8, references)),
+        ("antimeridian_and_north", batch(9, crossing)),
+        ("gaps_over_blocks", batch(10, gaps)),
+    ]
+}
+
+/// Frames that only a later or a wrong encoder writes.
+fn edited() -> Vec<(&'static str, Vec<u8>)> {
+    let good = encode(&batch(7, voyage(2, 29))).unwrap();
+    let with = |at: usize, byte: u8| {
+        let mut body = good[..good.len() - 4].to_vec();
+        body[at] = byte;
+        sealed(body)
+    };
+    let mut flipped = good.clone();
+    flipped[60] ^= 1;
+    vec![
+        ("later_version", with(2, 2)),
+        ("later_flags", with(3, 0x80)),
+        ("flipped_bit", flipped),
+        ("cut_short", good[..good.len() - 9].to_vec()),
+        (
+            "cut_short_and_sealed",
+            sealed(good[..good.len() - 9].to_vec()),
+        ),
+        ("not_a_batch", b"{\"samples\":[]}".to_vec()),
+        ("unknown_column", unknown_column()),
+    ]
+}
+
+/// One sample of five columns and a column 77, which no version has yet.
+fn unknown_column() -> Vec<u8> {
+    let mut body = b"BN\x01\0".to_vec();
+    body.extend([0x11; 16]);
+    // seq 1; no tally; one sample; six columns.
+    body.extend([1, 0, 1, 6]);
+    body.extend([1, 0x50, 2, 0x13, 3, 0x13, 6, 0x22, 10, 0x10, 77, 0x10]);
+    // Each: all there, predictor 0, first value as a zigzag varint.
+    let firsts: [i64; 6] = [358_000_000, 43_350, -3_030, 4_500, 60, -5];
+    let mut bits = String::new();
+    for first in firsts {
+        bits.push_str("0000");
+        let mut code = (first << 1 ^ first >> 63).cast_unsigned();
+        while code > 0x7f {
+            write!(bits, "{:08b}", code & 0x7f | 0x80).unwrap();
+            code >>= 7;
+        }
+        write!(bits, "{code:08b}").unwrap();
+    }
+    for octet in bits.as_bytes().chunks(8) {
+        let text = format!("{:0<8}", std::str::from_utf8(octet).unwrap());
+        body.push(u8::from_str_radix(&text, 2).unwrap());
+    }
+    sealed(body)
+}
+
+fn sealed(mut body: Vec<u8>) -> Vec<u8> {
+    let checksum = crc32fast::hash(&body);
+    body.extend(checksum.to_le_bytes());
+    body
+}
+
+fn as_json(decoded: &Result<Batch, DecodeError>) -> Value {
+    match decoded {
+        Ok(batch) => json!({
+            "stream": batch.stream,
+            "seq": batch.seq,
+            "tally": batch.tally,
+            "samples": batch.samples,
+        }),
+        Err(error) => {
+            let kind = format!("{error:?}");
+            let end = kind.find(['(', ' ', '{']).unwrap_or(kind.len());
+            json!({ "error": kind[..end] })
+        }
+    }
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().fold(String::new(), |mut text, byte| {
+        write!(text, "{byte:02x}").unwrap();
+        text
+    })
+}
+
+fn unhex(text: &str) -> Vec<u8> {
+    let digits: Vec<char> = text.chars().filter(|c| !c.is_whitespace()).collect();
+    digits
+        .chunks(2)
+        .map(|pair| u8::from_str_radix(&String::from_iter(pair), 16).unwrap())
+        .collect()
+}
+
+fn folder(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The stored frame and batch of a name.
+fn stored(name: &str, bytes: &[u8]) -> (Vec<u8>, Value) {
+    let frame = folder("vectors").join(format!("{name}.hex"));
+    let meaning = frame.with_extension("json");
+    if std::env::var_os("UPDATE_VECTORS").is_some() && !frame.exists() {
+        let wrapped: Vec<String> = hex(bytes)
+            .as_bytes()
+            .chunks(64)
+            .map(|line| String::from_utf8_lossy(line).into_owned())
+            .collect();
+        std::fs::write(&frame, wrapped.join("\n") + "\n").unwrap();
+        let text = serde_json::to_string_pretty(&as_json(&decode(bytes))).unwrap();
+        std::fs::write(&meaning, text + "\n").unwrap();
+    }
+    let read = |path: PathBuf| {
+        std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    };
+    let meaning = serde_json::from_str(&read(meaning)).unwrap();
+    (unhex(&read(frame)), meaning)
+}
+
+#[test]
+fn frames_are_written_and_read_as_they_always_were() {
+    for (name, batch) in written() {
+        let bytes = encode(&batch).unwrap();
+        let (frame, meaning) = stored(name, &bytes);
+        assert_eq!(hex(&bytes), hex(&frame), "{name}");
+        assert_eq!(as_json(&decode(&frame)), meaning, "{name}");
+    }
+    for (name, bytes) in edited() {
+        let (frame, meaning) = stored(name, &bytes);
+        assert_eq!(as_json(&decode(&frame)), meaning, "{name}");
+    }
+}
+
+#[test]
+fn a_column_of_a_later_version_is_passed_over() {
+    let batch = decode(&unknown_column()).unwrap();
+    assert_eq!(batch.samples.len(), 1);
+    assert_eq!(batch.samples[0].compass.degrees().to_string(), "90");
+    assert_eq!(batch.samples[0].windows, 60);
+}
+
+#[test]
+fn the_python_decoder_agrees_on_every_vector_and_a_thousand_more() {
+    let mut frames: Vec<Vec<u8>> = Vec::new();
+    frames.extend(
+        written()
+            .iter()
+            .map(|(name, b)| stored(name, &encode(b).unwrap()).0),
+    );
+    frames.extend(edited().iter().map(|(name, bytes)| stored(name, bytes).0));
+    let mut dice = Dice(1);
+    for seed in 0..500 {
+        let samples = voyage(seed, 1 + dice.next() as usize % 60);
+        let good = encode(&batch(seed + 1, samples)).unwrap();
+        let mut spoilt = good[..good.len() - 4].to_vec();
+        let at = 4 + dice.next() as usize % (spoilt.len() - 4);
+        spoilt[at] ^= 1 << (dice.next() % 8);
+        frames.extend([good, sealed(spoilt)]);
+    }
+    let answers = python(&frames);
+    assert_eq!(answers.len(), frames.len());
+    for (frame, answer) in frames.iter().zip(answers) {
+        assert_eq!(as_json(&decode(frame)), answer, "{}", hex(frame));
+    }
+}
+
+fn python(frames: &[Vec<u8>]) -> Vec<Value> {
+    let mut python = Command::new("python3")
+        .arg(folder("decoder").join("sr1.py"))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("python3, which the tests need, can be started");
+    let lines: String = frames.iter().map(|frame| hex(frame) + "\n").collect();
+    let mut stdin = python.stdin.take().unwrap();
+    let feeder = std::thread::spawn(move || stdin.write_all(lines.as_bytes()));
+    let output = python.wait_with_output().unwrap();
+    feeder.join().unwrap().unwrap();
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
