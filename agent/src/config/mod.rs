@@ -1,0 +1,353 @@
+//! `agent.toml`: what is connected, what each source is for, and where results go.
+//!
+//! Anything unknown, missing or impossible is refused with the file, the line
+//! and the field; a configuration that loads is one that can run. Paths in the
+//! file are relative to the file.
+
+mod roles;
+
+pub(crate) use roles::{RolesConfig, SourceConfig};
+
+use crate::input::InputConfig;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::net::SocketAddr;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// All of `agent.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Config {
+    /// Where the spool is kept.
+    pub(crate) data_dir: PathBuf,
+    /// What is listened to, by the name that roles refer to.
+    #[serde(default)]
+    pub(crate) inputs: BTreeMap<String, InputConfig>,
+    /// Which source is which instrument.
+    #[serde(default = "RolesConfig::usual")]
+    pub(crate) roles: RolesConfig,
+    /// Where the corrected heading goes.
+    #[serde(default)]
+    pub(crate) output: OutputConfig,
+    /// The local page; none when absent.
+    pub(crate) page: Option<PageConfig>,
+    /// How the shore is spoken to.
+    #[serde(default)]
+    pub(crate) uplink: UplinkConfig,
+    /// When a source counts as silent.
+    #[serde(default)]
+    pub(crate) silence: SilenceConfig,
+}
+
+/// Where the corrected heading goes.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct OutputConfig {
+    /// Listens here and sends to everyone who connects.
+    pub(crate) tcp_server: Option<SocketAddr>,
+    /// Sends datagrams here; a broadcast address will do.
+    pub(crate) udp: Option<SocketAddr>,
+    /// Writes to this port.
+    pub(crate) serial: Option<SerialConfig>,
+    /// Seconds between two outputs.
+    pub(crate) interval_s: PositiveSeconds,
+}
+
+impl Default for OutputConfig {
+    fn default() -> OutputConfig {
+        OutputConfig {
+            tcp_server: None,
+            udp: None,
+            serial: None,
+            interval_s: PositiveSeconds(1.0),
+        }
+    }
+}
+
+/// A serial port to write to.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SerialConfig {
+    /// As `/dev/ttyUSB0`.
+    pub(crate) path: String,
+    /// Bits a second; IEC 61162-1 has 4800, 61162-2 38400.
+    #[serde(default = "standard_baud")]
+    pub(crate) baud: u32,
+}
+
+fn standard_baud() -> u32 {
+    4800
+}
+
+/// The local page.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PageConfig {
+    /// Address and port; port 0 takes a free one.
+    pub(crate) listen: SocketAddr,
+}
+
+/// How the shore is spoken to.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct UplinkConfig {
+    /// A PEM file: the only authority whose certificates are believed.
+    pub(crate) pinned_ca: Option<PathBuf>,
+    /// Asks for news when nothing was sent for so many seconds.
+    pub(crate) poll_s: PositiveSeconds,
+    /// The first pause after a failure, at most.
+    pub(crate) retry_min_s: PositiveSeconds,
+    /// The longest pause after failures.
+    pub(crate) retry_max_s: PositiveSeconds,
+}
+
+impl Default for UplinkConfig {
+    fn default() -> UplinkConfig {
+        UplinkConfig {
+            pinned_ca: None,
+            poll_s: PositiveSeconds(21_600.0),
+            retry_min_s: PositiveSeconds(30.0),
+            retry_max_s: PositiveSeconds(3_600.0),
+        }
+    }
+}
+
+/// When a source counts as silent.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct SilenceConfig {
+    /// Seconds of ship time.
+    pub(crate) stale_s: PositiveSeconds,
+}
+
+impl Default for SilenceConfig {
+    fn default() -> SilenceConfig {
+        SilenceConfig {
+            stale_s: PositiveSeconds(15.0),
+        }
+    }
+}
+
+/// Seconds, from a hundredth to a year.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Deserialize)]
+#[serde(try_from = "f64")]
+pub(crate) struct PositiveSeconds(pub(crate) f64);
+
+impl PositiveSeconds {
+    /// As the standard library has it.
+    pub(crate) fn duration(self) -> std::time::Duration {
+        std::time::Duration::from_secs_f64(self.0)
+    }
+}
+
+impl TryFrom<f64> for PositiveSeconds {
+    type Error = String;
+    fn try_from(seconds: f64) -> Result<PositiveSeconds, String> {
+        if (0.01..=31_557_600.0).contains(&seconds) {
+            Ok(PositiveSeconds(seconds))
+        } else {
+            Err(format!("{seconds} is not from 0.01 to 31557600 seconds"))
+        }
+    }
+}
+
+/// Why a configuration cannot be used: one line for the one who wrote it.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum ConfigError {
+    /// There is no such file, or it cannot be read.
+    #[error("{}: {source}", path.display())]
+    Unreadable {
+        /// The configuration file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Something in it is wrong.
+    #[error("{}:{line}: {field}{problem}", path.display())]
+    Wrong {
+        /// The configuration file.
+        path: PathBuf,
+        /// Counts from 1.
+        line: usize,
+        /// The key before the value, with a colon; empty when there is none.
+        field: String,
+        /// What is wrong.
+        problem: String,
+    },
+}
+
+impl Config {
+    /// Reads and checks a file.
+    pub(crate) fn load(path: &Path) -> Result<Config, ConfigError> {
+        let text = fs::read_to_string(path).map_err(|source| ConfigError::Unreadable {
+            path: path.to_owned(),
+            source,
+        })?;
+        let mut config = parse(&text).map_err(|wrong| wrong.in_file(path, &text))?;
+        let directory = path.parent().unwrap_or(Path::new("."));
+        config.data_dir = directory.join(&config.data_dir);
+        if let Some(ca) = &mut config.uplink.pinned_ca {
+            *ca = directory.join(&ca);
+        }
+        for input in config.inputs.values_mut() {
+            input.resolve(directory);
+        }
+        Ok(config)
+    }
+}
+
+/// A problem and where in the text it is.
+struct Wrong {
+    span: Option<Range<usize>>,
+    problem: String,
+}
+
+fn parse(text: &str) -> Result<Config, Wrong> {
+    let config: Config = toml::from_str(text).map_err(|e| Wrong {
+        span: e.span(),
+        problem: e.message().replace('\n', "; "),
+    })?;
+    for source in config.roles.sources() {
+        let Some(input) = &source.input else { continue };
+        if !config.inputs.contains_key(input.get_ref()) {
+            return Err(Wrong {
+                span: Some(input.span()),
+                problem: format!("there is no input named {:?}", input.get_ref()),
+            });
+        }
+    }
+    if config.uplink.retry_min_s > config.uplink.retry_max_s {
+        return Err(Wrong {
+            span: text.find("retry_m").map(|at| at..at),
+            problem: "retry_min_s is more than retry_max_s".to_owned(),
+        });
+    }
+    Ok(config)
+}
+
+impl Wrong {
+    fn in_file(self, path: &Path, text: &str) -> ConfigError {
+        let at = self.span.map_or(0, |span| span.start.min(text.len()));
+        let before = text.get(..at).unwrap_or_default();
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        ConfigError::Wrong {
+            path: path.to_owned(),
+            line: before.matches('\n').count() + 1,
+            field: key_before(&text[line_start..at]),
+            problem: self.problem,
+        }
+    }
+}
+
+/// `interval_s = ` gives `interval_s: `, `{ input = "a", talker = ` gives `talker: `.
+fn key_before(text: &str) -> String {
+    let Some((left, _)) = text.rsplit_once('=') else {
+        return String::new();
+    };
+    let key = left
+        .trim_end()
+        .rsplit(|c: char| !(c.is_alphanumeric() || c == '_' || c == '-'))
+        .next();
+    match key {
+        Some(key) if !key.is_empty() => format!("{key}: "),
+        _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(text: &str) -> String {
+        parse(text)
+            .expect_err("this configuration is wrong")
+            .in_file(Path::new("agent.toml"), text)
+            .to_string()
+    }
+
+    const WHOLE: &str = r#"
+data_dir = "state"
+[inputs.bridge]
+tcp = "127.0.0.1:10110"
+[roles]
+compass  = [{ input = "bridge", talker = "HC", sentence = "HDG" }]
+gyro     = [{ input = "bridge", talker = "HE", sentence = "THS" }]
+satellite= [{ input = "bridge", talker = "GP", sentence = "THS" }]
+position = [{ input = "bridge", talker = "GP", sentence = "RMC" }]
+rate_of_turn = [{ input = "bridge", sentence = "ROT" }]
+roll     = [{ input = "bridge", sentence = "XDR" }]
+[output]
+tcp_server = "127.0.0.1:10111"
+interval_s = 1
+[page]
+listen = "127.0.0.1:8090"
+[uplink]
+pinned_ca = "ca.pem"
+poll_s = 21600
+retry_min_s = 30
+retry_max_s = 3600
+[silence]
+stale_s = 15
+"#;
+
+    #[test]
+    fn a_whole_configuration_loads() {
+        let config = parse(WHOLE).map_err(|w| w.problem).unwrap();
+        assert_eq!(config.roles.compass.len(), 1);
+        assert_eq!(config.output.interval_s, PositiveSeconds(1.0));
+        assert_eq!(config.page.unwrap().listen.port(), 8090);
+    }
+
+    #[test]
+    fn only_the_data_directory_is_needed() {
+        let config = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
+        assert!(config.roles.compass[0].matches_talker(*b"HC"));
+        assert_eq!(config.silence.stale_s, PositiveSeconds(15.0));
+    }
+
+    #[test]
+    fn mistakes_are_named_by_line_and_field() {
+        let wrong = WHOLE.replace("interval_s = 1", "interval_s = -1");
+        assert_eq!(
+            message(&wrong),
+            "agent.toml:14: interval_s: -1 is not from 0.01 to 31557600 seconds"
+        );
+        let wrong = WHOLE.replace("poll_s = 21600", "pol_s = 21600");
+        assert!(message(&wrong).starts_with("agent.toml:19: unknown field `pol_s`"));
+        let wrong = WHOLE.replace("\"127.0.0.1:8090\"", "\"localhost\"");
+        assert!(message(&wrong).starts_with("agent.toml:16: listen: "));
+        let wrong = WHOLE.replace(
+            "\"bridge\", talker = \"GP\", sentence = \"RMC\"",
+            "\"brdge\"",
+        );
+        assert_eq!(
+            message(&wrong),
+            "agent.toml:9: input: there is no input named \"brdge\""
+        );
+        let wrong = WHOLE.replace("talker = \"HC\"", "talker = \"COMPASS\"");
+        assert!(message(&wrong).starts_with("agent.toml:6: talker: "));
+        assert!(message("").contains("data_dir"));
+    }
+
+    #[test]
+    fn a_magnetic_heading_is_a_compass_only_when_it_is_said_to_be_raw() {
+        let hdm = WHOLE.replace("sentence = \"HDG\"", "sentence = \"HDM\"");
+        assert!(message(&hdm).contains("raw = true"), "{}", message(&hdm));
+        let raw = WHOLE.replace("sentence = \"HDG\"", "sentence = \"HDM\", raw = true");
+        assert!(parse(&raw).is_ok());
+    }
+
+    #[test]
+    fn a_sentence_that_cannot_serve_the_role_is_refused() {
+        let wrong = WHOLE.replace("sentence = \"ROT\"", "sentence = \"HDG\"");
+        assert!(message(&wrong).starts_with("agent.toml:10: rate_of_turn"));
+    }
+
+    #[test]
+    fn no_file_is_one_line_with_its_name() {
+        let error = Config::load(Path::new("no/such.toml")).unwrap_err();
+        assert!(error.to_string().starts_with("no/such.toml: "));
+    }
+}

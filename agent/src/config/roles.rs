@@ -1,0 +1,191 @@
+//! `[roles]`: which source is which instrument, best first.
+
+use serde::{Deserialize, Deserializer};
+use toml::Spanned;
+
+/// Ranked sources for each instrument.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct RolesConfig {
+    /// The magnetic compass, raw.
+    #[serde(deserialize_with = "compass_sources")]
+    pub(crate) compass: Vec<SourceConfig>,
+    /// The gyro compass.
+    #[serde(deserialize_with = "true_heading_sources")]
+    pub(crate) gyro: Vec<SourceConfig>,
+    /// The satellite compass.
+    #[serde(deserialize_with = "true_heading_sources")]
+    pub(crate) satellite: Vec<SourceConfig>,
+    /// Position, speed and the ship's time.
+    #[serde(deserialize_with = "position_sources")]
+    pub(crate) position: Vec<SourceConfig>,
+    /// Rate of turn.
+    #[serde(deserialize_with = "rate_of_turn_sources")]
+    pub(crate) rate_of_turn: Vec<SourceConfig>,
+    /// Roll.
+    #[serde(deserialize_with = "roll_sources")]
+    pub(crate) roll: Vec<SourceConfig>,
+}
+
+/// One source: what is left out matches anything.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct SourceConfig {
+    /// The input's name.
+    pub(crate) input: Option<Spanned<String>>,
+    /// Two letters.
+    #[serde(default, deserialize_with = "two_letters")]
+    pub(crate) talker: Option<[u8; 2]>,
+    /// Three letters.
+    #[serde(default, deserialize_with = "three_letters")]
+    pub(crate) sentence: Option<[u8; 3]>,
+    /// HDM only: the heading has had no deviation applied.
+    #[serde(default)]
+    pub(crate) raw: bool,
+}
+
+impl SourceConfig {
+    fn usual(talker: Option<[u8; 2]>, sentence: [u8; 3]) -> SourceConfig {
+        SourceConfig {
+            input: None,
+            talker,
+            sentence: Some(sentence),
+            raw: false,
+        }
+    }
+
+    /// Whether a talker is the one wanted.
+    pub(crate) fn matches_talker(&self, talker: [u8; 2]) -> bool {
+        self.talker.is_none_or(|wanted| wanted == talker)
+    }
+}
+
+impl RolesConfig {
+    /// Every source of every role.
+    pub(crate) fn sources(&self) -> impl Iterator<Item = &SourceConfig> {
+        [
+            &self.compass,
+            &self.gyro,
+            &self.satellite,
+            &self.position,
+            &self.rate_of_turn,
+            &self.roll,
+        ]
+        .into_iter()
+        .flatten()
+    }
+
+    fn none() -> RolesConfig {
+        RolesConfig {
+            compass: Vec::new(),
+            gyro: Vec::new(),
+            satellite: Vec::new(),
+            position: Vec::new(),
+            rate_of_turn: Vec::new(),
+            roll: Vec::new(),
+        }
+    }
+
+    /// What talkers usually are, when nobody has said.
+    pub(crate) fn usual() -> RolesConfig {
+        let source = SourceConfig::usual;
+        RolesConfig {
+            compass: vec![source(Some(*b"HC"), *b"HDG")],
+            gyro: vec![source(Some(*b"HE"), *b"THS"), source(Some(*b"HE"), *b"HDT")],
+            satellite: vec![
+                source(Some(*b"GP"), *b"THS"),
+                source(Some(*b"GN"), *b"THS"),
+                source(Some(*b"GP"), *b"HDT"),
+                source(Some(*b"GN"), *b"HDT"),
+            ],
+            position: vec![source(None, *b"RMC")],
+            rate_of_turn: vec![source(None, *b"ROT")],
+            roll: vec![source(None, *b"XDR")],
+        }
+    }
+}
+
+impl Default for RolesConfig {
+    fn default() -> RolesConfig {
+        RolesConfig::none()
+    }
+}
+
+fn two_letters<'de, D: Deserializer<'de>>(d: D) -> Result<Option<[u8; 2]>, D::Error> {
+    letters(d, "two capital letters, as \"HC\"")
+}
+
+fn three_letters<'de, D: Deserializer<'de>>(d: D) -> Result<Option<[u8; 3]>, D::Error> {
+    letters(d, "three capital letters, as \"HDG\"")
+}
+
+fn letters<'de, const N: usize, D: Deserializer<'de>>(
+    deserializer: D,
+    wanted: &str,
+) -> Result<Option<[u8; N]>, D::Error> {
+    let text = String::deserialize(deserializer)?;
+    let letters: Option<[u8; N]> = text.as_bytes().try_into().ok();
+    match letters {
+        Some(letters)
+            if letters
+                .iter()
+                .all(|b| b.is_ascii_uppercase() || b.is_ascii_digit()) =>
+        {
+            Ok(Some(letters))
+        }
+        _ => Err(serde::de::Error::custom(format!(
+            "{text:?} is not {wanted}"
+        ))),
+    }
+}
+
+type Sources<E> = Result<Vec<SourceConfig>, E>;
+
+fn compass_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
+    let sources = sources_of(d, &[b"HDG", b"HDM"], "HDG or HDM")?;
+    if sources
+        .iter()
+        .any(|s| s.sentence == Some(*b"HDM") && !s.raw)
+    {
+        return Err(serde::de::Error::custom(
+            "HDM may have deviation applied already: set raw = true if it has not",
+        ));
+    }
+    Ok(sources)
+}
+
+fn true_heading_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
+    sources_of(d, &[b"HDT", b"THS"], "HDT or THS")
+}
+
+fn position_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
+    sources_of(d, &[b"RMC", b"GGA", b"GLL", b"GNS"], "RMC, GGA, GLL or GNS")
+}
+
+fn rate_of_turn_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
+    sources_of(d, &[b"ROT"], "ROT")
+}
+
+fn roll_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
+    sources_of(d, &[b"XDR"], "XDR")
+}
+
+fn sources_of<'de, D: Deserializer<'de>>(
+    deserializer: D,
+    allowed: &[&[u8; 3]],
+    names: &str,
+) -> Sources<D::Error> {
+    let sources = Vec::<SourceConfig>::deserialize(deserializer)?;
+    for source in &sources {
+        let Some(sentence) = source.sentence else {
+            continue;
+        };
+        if !allowed.contains(&&sentence) {
+            let sentence = String::from_utf8_lossy(&sentence).into_owned();
+            return Err(serde::de::Error::custom(format!(
+                "{sentence} cannot serve here: {names} can"
+            )));
+        }
+    }
+    Ok(sources)
+}

@@ -1,0 +1,388 @@
+//! From sources to instruments: which of several gyros is *the* gyro now.
+//!
+//! Sources of a role are ranked. One is used while no better one has been heard
+//! for the time of silence; the better one is used again as soon as it speaks.
+//! An instrument that says itself that it is not to be trusted counts as silent.
+
+use crate::config::{RolesConfig, SourceConfig};
+use crate::observation::{Observation, Reading};
+use crate::ship_time::{ShipClock, Step};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use std::sync::Arc;
+
+/// What an instrument says, whichever source it came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Signal {
+    /// The ship's time went on.
+    Time(Timestamp),
+    /// The ship's time jumped.
+    Jump(Timestamp),
+    /// The raw compass.
+    Compass(CompassHeading),
+    /// The gyro.
+    Gyro(TrueHeading),
+    /// The gyro says it is not valid.
+    GyroInvalid,
+    /// The satellite compass.
+    Satellite(TrueHeading),
+    /// The satellite compass says it is not valid.
+    SatelliteInvalid,
+    /// A fix.
+    Position(Position),
+    /// Speed over ground, knots.
+    Speed(f64),
+    /// Degrees a minute, starboard positive.
+    RateOfTurn(f64),
+    /// Degrees, starboard down positive.
+    Roll(f64),
+}
+
+/// The ship's instruments and her clock.
+#[derive(Debug)]
+pub(crate) struct Roles {
+    compass: Role,
+    gyro: Role,
+    satellite: Role,
+    position: Role,
+    rate_of_turn: Role,
+    roll: Role,
+    clock: ShipClock,
+}
+
+impl Roles {
+    /// Instruments as configured; sources fall silent after `stale_s` of ship time.
+    pub(crate) fn new(config: &RolesConfig, stale_s: f64) -> Roles {
+        let role = |sources: &[SourceConfig]| Role::new(sources, stale_s);
+        Roles {
+            compass: role(&config.compass),
+            gyro: role(&config.gyro),
+            satellite: role(&config.satellite),
+            position: role(&config.position),
+            rate_of_turn: role(&config.rate_of_turn),
+            roll: role(&config.roll),
+            // A recording's own time stamps rank behind every receiver.
+            clock: ShipClock::new(config.position.len() + 1, stale_s),
+        }
+    }
+
+    /// The ship's time, once it is known.
+    pub(crate) fn now(&self) -> Option<Timestamp> {
+        self.clock.now()
+    }
+
+    /// The time that a recording gives a line: used when no receiver gives any.
+    pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
+        self.set_clock(self.position.sources.len(), stamp)
+    }
+
+    /// What an observation means for the instruments: nothing when its source
+    /// has no role, or when a better source is alive.
+    pub(crate) fn observe(&mut self, seen: &Observation) -> [Option<Signal>; 3] {
+        let now = self.clock.now();
+        match seen.reading {
+            Reading::Compass { raw, .. } => {
+                only(self.compass.hear(seen, now).then_some(Signal::Compass(raw)))
+            }
+            Reading::Magnetic(heading) => {
+                let used = self.compass.hear(seen, now);
+                let raw = CompassHeading::new(heading.degrees());
+                only(raw.filter(|_| used).map(Signal::Compass))
+            }
+            Reading::True(heading) => {
+                if self.gyro.hear(seen, now) {
+                    return only(Some(Signal::Gyro(heading)));
+                }
+                let used = self.satellite.hear(seen, now);
+                only(used.then_some(Signal::Satellite(heading)))
+            }
+            Reading::TrueNotValid => {
+                if self.gyro.lose(seen, now) {
+                    return only(Some(Signal::GyroInvalid));
+                }
+                let used = self.satellite.lose(seen, now);
+                only(used.then_some(Signal::SatelliteInvalid))
+            }
+            Reading::Fix {
+                position,
+                time,
+                sog_kn,
+            } => self.fix(seen, position, time, sog_kn),
+            Reading::Time(stamp) => {
+                let rank = self.position.beside(seen);
+                only(rank.and_then(|rank| self.set_clock(rank, stamp)))
+            }
+            Reading::Speed { sog_kn } => {
+                let rank = self.position.beside(seen);
+                let used = rank.is_some_and(|rank| self.position.is_best(rank, now));
+                only(used.then_some(Signal::Speed(sog_kn)))
+            }
+            Reading::RateOfTurn { deg_min } => {
+                let used = self.rate_of_turn.hear(seen, now);
+                only(used.then_some(Signal::RateOfTurn(deg_min)))
+            }
+            Reading::Roll { deg } => only(self.roll.hear(seen, now).then_some(Signal::Roll(deg))),
+            Reading::Pitch { .. } => only(None),
+        }
+    }
+
+    fn fix(
+        &mut self,
+        seen: &Observation,
+        position: Position,
+        time: Option<Timestamp>,
+        sog_kn: Option<f64>,
+    ) -> [Option<Signal>; 3] {
+        let Some(rank) = self.position.rank(seen) else {
+            return only(None);
+        };
+        // Time first: the fix belongs to the time it brings.
+        let time = time.and_then(|stamp| self.set_clock(rank, stamp));
+        if !self.position.hear(seen, self.clock.now()) {
+            return only(time);
+        }
+        [
+            time,
+            Some(Signal::Position(position)),
+            sog_kn.map(Signal::Speed),
+        ]
+    }
+
+    fn set_clock(&mut self, rank: usize, stamp: Timestamp) -> Option<Signal> {
+        match self.clock.observe(rank, stamp) {
+            Step::Held => None,
+            Step::Advanced(now) => Some(Signal::Time(now)),
+            Step::Jumped(now) => Some(Signal::Jump(now)),
+        }
+    }
+}
+
+fn only(signal: Option<Signal>) -> [Option<Signal>; 3] {
+    [signal, None, None]
+}
+
+/// One instrument's sources, best first.
+#[derive(Debug)]
+struct Role {
+    sources: Vec<Source>,
+    stale_s: f64,
+}
+
+#[derive(Debug)]
+struct Source {
+    input: Option<Arc<str>>,
+    config: SourceConfig,
+    heard: Heard,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Heard {
+    Never,
+    /// Before the ship's time was known.
+    Timeless,
+    At(Timestamp),
+}
+
+impl Role {
+    fn new(sources: &[SourceConfig], stale_s: f64) -> Role {
+        let sources = sources.iter().map(|config| Source {
+            input: config
+                .input
+                .as_ref()
+                .map(|name| name.get_ref().as_str().into()),
+            config: config.clone(),
+            heard: Heard::Never,
+        });
+        Role {
+            sources: sources.collect(),
+            stale_s,
+        }
+    }
+
+    /// Notes that a source spoke; whether it is the one to use.
+    fn hear(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
+        let Some(rank) = self.rank(seen) else {
+            return false;
+        };
+        self.sources[rank].heard = now.map_or(Heard::Timeless, Heard::At);
+        self.is_best(rank, now)
+    }
+
+    /// Notes that a source cannot be trusted; whether it was the one in use.
+    fn lose(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
+        let Some(rank) = self.rank(seen) else {
+            return false;
+        };
+        self.sources[rank].heard = Heard::Never;
+        self.is_best(rank, now)
+    }
+
+    fn is_best(&self, rank: usize, now: Option<Timestamp>) -> bool {
+        !self.sources[..rank]
+            .iter()
+            .any(|better| self.is_alive(better, now))
+    }
+
+    fn is_alive(&self, source: &Source, now: Option<Timestamp>) -> bool {
+        match (source.heard, now) {
+            (Heard::At(heard), Some(now)) => now.seconds_since(heard).abs() <= self.stale_s,
+            (Heard::Timeless, None) => true,
+            _ => false,
+        }
+    }
+
+    fn rank(&self, seen: &Observation) -> Option<usize> {
+        self.sources.iter().position(|source| source.is(seen))
+    }
+
+    /// The rank of the source that this one stands beside: ZDA and VTG come
+    /// from the receiver whose position is used.
+    fn beside(&self, seen: &Observation) -> Option<usize> {
+        self.sources
+            .iter()
+            .position(|source| source.is_same_device(seen))
+    }
+}
+
+impl Source {
+    fn is(&self, seen: &Observation) -> bool {
+        if self
+            .config
+            .sentence
+            .is_some_and(|wanted| wanted != seen.sentence)
+        {
+            return false;
+        }
+        // A magnetic heading is a raw one only where the ship says so.
+        if matches!(seen.reading, Reading::Magnetic(_)) && !self.config.raw {
+            return false;
+        }
+        self.is_same_device(seen)
+    }
+
+    fn is_same_device(&self, seen: &Observation) -> bool {
+        self.config.matches_talker(seen.talker)
+            && self
+                .input
+                .as_ref()
+                .is_none_or(|input| **input == *seen.input)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+    use Signal::{Gyro, Satellite, SatelliteInvalid, Time};
+
+    fn roles(toml: &str) -> Roles {
+        let text = format!(
+            "data_dir = \"d\"\n[inputs.a]\ntcp = \"h:1\"\n[inputs.b]\ntcp = \"h:2\"\n[roles]\n{toml}"
+        );
+        let config: Config = toml::from_str(&text).unwrap();
+        Roles::new(&config.roles, 15.0)
+    }
+
+    fn seen(input: &str, id: &str, reading: Reading) -> Observation {
+        let id = id.as_bytes();
+        Observation {
+            input: input.into(),
+            talker: [id[0], id[1]],
+            sentence: [id[2], id[3], id[4]],
+            reading,
+        }
+    }
+
+    fn heading(degrees: f64) -> Reading {
+        Reading::True(TrueHeading::new(degrees).unwrap())
+    }
+
+    fn fix(seconds: i64) -> Reading {
+        Reading::Fix {
+            position: Position::new(43.0, -3.0).unwrap(),
+            time: Some(at(seconds)),
+            sog_kn: Some(12.0),
+        }
+    }
+
+    fn at(seconds: i64) -> Timestamp {
+        Timestamp::from_micros((1_700_000_000 + seconds) * 1_000_000).unwrap()
+    }
+
+    const TWO_GYROS: &str = r#"
+gyro = [{ input = "a", talker = "HE", sentence = "THS" }, { input = "b", sentence = "HDT" }]
+satellite = [{ input = "a", talker = "GP" }]
+position = [{ input = "a", talker = "GP", sentence = "RMC" }]
+"#;
+
+    fn first(roles: &mut Roles, observation: &Observation) -> Option<Signal> {
+        roles.observe(observation)[0]
+    }
+
+    #[test]
+    fn the_second_gyro_serves_while_the_first_is_silent() {
+        let mut roles = roles(TWO_GYROS);
+        let (main, spare) = (
+            seen("a", "HETHS", heading(10.0)),
+            seen("b", "HEHDT", heading(11.0)),
+        );
+        let gyro = |degrees| Some(Gyro(TrueHeading::new(degrees).unwrap()));
+        roles.observe(&seen("a", "GPRMC", fix(0)));
+        assert_eq!(first(&mut roles, &main), gyro(10.0));
+        assert_eq!(first(&mut roles, &spare), None);
+        roles.observe(&seen("a", "GPRMC", fix(16)));
+        assert_eq!(first(&mut roles, &spare), gyro(11.0));
+        assert_eq!(first(&mut roles, &main), gyro(10.0));
+        assert_eq!(first(&mut roles, &spare), None);
+    }
+
+    #[test]
+    fn a_satellite_compass_that_says_it_is_not_valid_is_told_apart_from_a_gyro() {
+        let mut roles = roles(TWO_GYROS);
+        let valid = seen("a", "GPTHS", heading(10.0));
+        assert_eq!(
+            first(&mut roles, &valid),
+            Some(Satellite(TrueHeading::new(10.0).unwrap()))
+        );
+        let lost = seen("a", "GPTHS", Reading::TrueNotValid);
+        assert_eq!(first(&mut roles, &lost), Some(SatelliteInvalid));
+    }
+
+    #[test]
+    fn an_invalid_source_makes_way_at_once() {
+        let mut roles = roles(TWO_GYROS);
+        roles.observe(&seen("a", "GPRMC", fix(0)));
+        roles.observe(&seen("a", "HETHS", heading(10.0)));
+        roles.observe(&seen("a", "HETHS", Reading::TrueNotValid));
+        assert!(first(&mut roles, &seen("b", "HEHDT", heading(11.0))).is_some());
+    }
+
+    #[test]
+    fn a_source_without_a_role_means_nothing() {
+        let mut roles = roles(TWO_GYROS);
+        assert_eq!(first(&mut roles, &seen("b", "GPRMC", fix(0))), None);
+        assert_eq!(first(&mut roles, &seen("b", "HETHS", heading(1.0))), None);
+        assert_eq!(
+            first(&mut roles, &seen("a", "GPZDA", Reading::Time(at(0)))),
+            Some(Time(at(0)))
+        );
+        assert_eq!(
+            first(&mut roles, &seen("b", "GPZDA", Reading::Time(at(1)))),
+            None
+        );
+    }
+
+    #[test]
+    fn a_magnetic_heading_is_the_compass_only_when_it_is_raw() {
+        let hdm = seen(
+            "a",
+            "HCHDM",
+            Reading::Magnetic(binnacle_magnetics::angle::MagneticHeading::new(7.0).unwrap()),
+        );
+        let mut plain = roles(r#"compass = [{ input = "a", talker = "HC" }]"#);
+        assert_eq!(first(&mut plain, &hdm), None);
+        let mut raw = roles(r#"compass = [{ input = "a", sentence = "HDM", raw = true }]"#);
+        assert!(first(&mut raw, &hdm).is_some());
+    }
+}

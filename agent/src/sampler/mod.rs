@@ -1,0 +1,307 @@
+//! Settled ten-second windows from instruments' signals, and samples from them.
+//!
+//! Pure: time comes with the signals. What always holds:
+//!
+//! - Windows lie on the UTC grid of ten seconds. Each is counted once: accepted,
+//!   or refused by the first reason that applies.
+//! - Only accepted windows are in samples, and each in one sample at most.
+//! - The compass heading is the raw reading; no deviation is applied to it.
+//! - No signal, in whatever order or with whatever time, makes it panic.
+//!
+//! After a turn, eddy currents in the hull and the liquid in the bowl disturb
+//! the compass for two to three minutes (the Gaussian error): windows are
+//! refused until [`Settings::settle_s`] has passed. The limit on swinging is
+//! that of Basterretxea-Iribar, Sotés & Uriarte 2016, J. Navigation.
+
+mod outcome;
+mod stretch;
+mod track;
+
+pub(crate) use outcome::{Outcome, Tally};
+
+use crate::hold::Hold;
+use crate::roles::Signal;
+use binnacle_magnetics::angle::{wrap_180, wrap_360};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::messages::Settings;
+use stretch::{Stretch, WINDOW_S, Window};
+use track::{Span, Track};
+
+/// Fewer readings than this in ten seconds make no mean.
+const LEAST_READINGS: u32 = 4;
+/// A change of heading beyond this is a turn.
+const TURN_DEG: f64 = 10.0;
+/// Without a heading for more than so many windows, there may have been a turn.
+const LONGEST_BLIND_WINDOWS: i64 = 3;
+/// Positions and speeds serve for so many windows.
+const FIX_LASTS_WINDOWS: i64 = 2;
+const WINDOW_MICROS: i64 = WINDOW_S * 1_000_000;
+/// What a ship and her instruments can say; anything else is not taken.
+const SPEED_KN: std::ops::RangeInclusive<f64> = 0.0..=100.0;
+const RATE_OF_TURN_DEG_MIN: std::ops::RangeInclusive<f64> = -720.0..=720.0;
+
+/// The state between two signals.
+#[derive(Debug)]
+pub(crate) struct Sampler {
+    settings: Settings,
+    hold: Option<Hold>,
+    /// The open window, in tens of seconds since 1970.
+    window: Option<i64>,
+    compass: Track,
+    gyro: Track,
+    satellite: Track,
+    rate_of_turn: (f64, u32),
+    position: Option<(Position, i64)>,
+    speed: Option<(f64, i64)>,
+    turns: Turns,
+    stretch: Stretch,
+    samples: Vec<Sample>,
+    tally: Tally,
+}
+
+/// Where the ship last steadied, and when the compass has come to rest.
+#[derive(Debug, Default)]
+struct Turns {
+    /// The heading that a turn is measured from, unwound.
+    anchor: Option<f64>,
+    /// The first window that may be settled.
+    settled_from: Option<i64>,
+    /// The last window that had a heading.
+    seen: Option<i64>,
+}
+
+impl Sampler {
+    /// A sampler that has heard nothing yet.
+    pub(crate) fn new(settings: Settings, hold: Option<Hold>) -> Sampler {
+        Sampler {
+            settings,
+            hold,
+            window: None,
+            compass: Track::default(),
+            gyro: Track::default(),
+            satellite: Track::default(),
+            rate_of_turn: (0.0, 0),
+            position: None,
+            speed: None,
+            turns: Turns::default(),
+            stretch: Stretch::default(),
+            samples: Vec::new(),
+            tally: Tally::default(),
+        }
+    }
+
+    /// Puts new limits in effect from the open window on.
+    pub(crate) fn set_settings(&mut self, settings: Settings) {
+        self.settings = settings;
+    }
+
+    /// Begins or ends a hold, from the open window on.
+    pub(crate) fn set_hold(&mut self, hold: Option<Hold>) {
+        self.hold = hold;
+    }
+
+    /// Takes what an instrument said.
+    pub(crate) fn take(&mut self, signal: Signal) {
+        match signal {
+            Signal::Time(now) => self.advance(window_of(now)),
+            Signal::Jump(now) => self.jump(window_of(now)),
+            Signal::Compass(heading) => self.compass.take(heading.degrees()),
+            Signal::Gyro(heading) => self.gyro.take(heading.degrees()),
+            Signal::GyroInvalid => self.gyro.invalidate(),
+            Signal::Satellite(heading) => self.satellite.take(heading.degrees()),
+            Signal::SatelliteInvalid => self.satellite.invalidate(),
+            Signal::Position(position) => self.position = self.window.map(|w| (position, w)),
+            Signal::Speed(knots) if SPEED_KN.contains(&knots) => {
+                self.speed = self.window.map(|w| (knots, w));
+            }
+            Signal::RateOfTurn(rate) if RATE_OF_TURN_DEG_MIN.contains(&rate) => {
+                self.rate_of_turn = (self.rate_of_turn.0 + rate, self.rate_of_turn.1 + 1);
+            }
+            Signal::Speed(_) | Signal::RateOfTurn(_) | Signal::Roll(_) => {}
+        }
+    }
+
+    /// The samples that are finished; leaves none behind.
+    pub(crate) fn take_samples(&mut self) -> Vec<Sample> {
+        std::mem::take(&mut self.samples)
+    }
+
+    /// Whether there are finished samples.
+    pub(crate) fn has_samples(&self) -> bool {
+        !self.samples.is_empty()
+    }
+
+    /// Windows by outcome since this was last asked.
+    pub(crate) fn take_tally(&mut self) -> Tally {
+        self.tally.take()
+    }
+
+    /// Ends the stretch that is open, as when the agent stops: what has settled
+    /// so far becomes a sample. The open window is dropped.
+    pub(crate) fn finish(&mut self) {
+        self.samples.extend(self.stretch.finish());
+        self.begin(None);
+    }
+
+    fn advance(&mut self, now: i64) {
+        let Some(open) = self.window else {
+            self.begin(Some(now));
+            return;
+        };
+        if now <= open {
+            return;
+        }
+        self.close(open);
+        self.window = Some(now);
+        let missed = now - open - 1;
+        if missed == 0 {
+            return;
+        }
+        self.tally.add(Outcome::NoTime, missed as u64);
+        for track in [&mut self.compass, &mut self.gyro, &mut self.satellite] {
+            track.forget();
+        }
+        self.samples.extend(self.stretch.expire(now));
+    }
+
+    fn jump(&mut self, now: i64) {
+        if self.window.is_some() {
+            self.tally.add(Outcome::Clock, 1);
+        }
+        self.samples.extend(self.stretch.finish());
+        self.begin(Some(now));
+    }
+
+    /// Forgets everything that was open and begins at a window.
+    fn begin(&mut self, window: Option<i64>) {
+        self.window = window;
+        self.compass.forget();
+        self.gyro.forget();
+        self.satellite.forget();
+        self.rate_of_turn = (0.0, 0);
+        self.position = None;
+        self.speed = None;
+        self.turns = Turns::default();
+    }
+
+    fn close(&mut self, index: i64) {
+        let outcome = match self.judge(index) {
+            Ok(window) => {
+                let finished = self.stretch.add(window, self.settings.sample_s);
+                self.samples.extend(finished);
+                Outcome::Accepted
+            }
+            Err(reason) => {
+                self.samples.extend(self.stretch.expire(index));
+                reason
+            }
+        };
+        self.tally.add(outcome, 1);
+        self.compass.close();
+        self.gyro.close();
+        self.satellite.close();
+        self.rate_of_turn = (0.0, 0);
+    }
+
+    /// The window's means, or the first reason to refuse it.
+    fn judge(&mut self, index: i64) -> Result<Window, Outcome> {
+        let rate = self.rate_of_turn_deg_min();
+        let turning = rate.is_some_and(|r| r.abs() > self.settings.max_rate_of_turn_deg_min);
+        let settled = self.follow_turns(index, turning);
+        if let Some(hold) = self.hold {
+            return Err(hold.outcome());
+        }
+        let compass = self.compass.span().ok_or(Outcome::NoCompass)?;
+        let (gyro, satellite) = (self.gyro.span(), self.satellite.span());
+        if gyro.or(satellite).is_none() {
+            return Err(Outcome::NoReference);
+        }
+        let position = fresh(self.position, index).ok_or(Outcome::NoPosition)?;
+        let enough = |span: &Span| span.readings >= LEAST_READINGS;
+        let (gyro, satellite) = (gyro.filter(enough), satellite.filter(enough));
+        if !enough(&compass) || gyro.or(satellite).is_none() {
+            return Err(Outcome::Sparse);
+        }
+        let sog_kn = fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
+        if sog_kn < self.settings.min_sog_kn {
+            return Err(Outcome::Slow);
+        }
+        if turning {
+            return Err(Outcome::Turning);
+        }
+        if !settled {
+            return Err(Outcome::Settling);
+        }
+        if self.heading_track().swing_deg() > 2.0 * self.settings.max_swing_deg {
+            return Err(Outcome::Swinging);
+        }
+        let degrees = |span: Span| wrap_360(span.mean);
+        Ok(Window {
+            index,
+            compass_deg: degrees(compass),
+            gyro_deg: gyro.map(degrees),
+            satellite_deg: satellite.map(degrees),
+            position,
+            sog_kn,
+            rate_of_turn_deg_min: rate,
+        })
+    }
+
+    /// Notes turns and blind stretches; whether the compass has come to rest.
+    fn follow_turns(&mut self, index: i64, turning: bool) -> bool {
+        let Some(span) = self.heading_track().span() else {
+            return false;
+        };
+        let heading = span.mean;
+        let settle_windows = (i64::from(self.settings.settle_s) + WINDOW_S - 1) / WINDOW_S;
+        let turns = &mut self.turns;
+        let blind = turns
+            .seen
+            .is_none_or(|seen| index - seen > LONGEST_BLIND_WINDOWS);
+        let turned = turns
+            .anchor
+            .is_none_or(|anchor| wrap_180(heading - anchor).abs() > TURN_DEG);
+        turns.seen = Some(index);
+        if blind || turning || turned {
+            turns.anchor = Some(heading);
+            turns.settled_from = Some(index + 1 + settle_windows);
+            return false;
+        }
+        let settled_from = turns.settled_from.unwrap_or(index);
+        if index == settled_from {
+            turns.anchor = Some(heading);
+        }
+        index >= settled_from
+    }
+
+    /// The best heading to tell turns and swings by.
+    fn heading_track(&self) -> &Track {
+        [&self.gyro, &self.satellite]
+            .into_iter()
+            .find(|track| track.span().is_some())
+            .unwrap_or(&self.compass)
+    }
+
+    /// The mean of the instrument's, else by how much the heading moved.
+    fn rate_of_turn_deg_min(&self) -> Option<f64> {
+        let (sum, readings) = self.rate_of_turn;
+        if readings > 0 {
+            return Some(sum / f64::from(readings));
+        }
+        Some(self.heading_track().moved_deg()? * 60.0 / WINDOW_S as f64)
+    }
+}
+
+fn window_of(time: Timestamp) -> i64 {
+    time.micros().div_euclid(WINDOW_MICROS)
+}
+
+fn fresh<T: Copy>(last: Option<(T, i64)>, index: i64) -> Option<T> {
+    let (value, at) = last?;
+    (index - at < FIX_LASTS_WINDOWS).then_some(value)
+}
+
+#[cfg(test)]
+mod tests;

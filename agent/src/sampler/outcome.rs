@@ -1,0 +1,108 @@
+//! What became of a ten-second window, and how often.
+
+use std::collections::BTreeMap;
+
+/// Accepted, or the first reason that it was not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// Went into a sample.
+    Accepted,
+    /// The crew said that the ship lies alongside.
+    HoldBerthed,
+    /// The crew said that magnetic cargo is aboard.
+    HoldMagneticCargo,
+    /// The crew said that degaussing is under way.
+    HoldDegaussing,
+    /// The ship's clock jumped while it was open.
+    Clock,
+    /// No time stamp fell into it.
+    NoTime,
+    /// No compass heading.
+    NoCompass,
+    /// Neither gyro nor satellite compass.
+    NoReference,
+    /// No fresh position.
+    NoPosition,
+    /// No fresh speed.
+    NoSpeed,
+    /// Too few readings for a mean.
+    Sparse,
+    /// Too slow over ground.
+    Slow,
+    /// The rate of turn was above the limit.
+    Turning,
+    /// Too soon after a turn, or after the agent began to listen.
+    Settling,
+    /// The heading swung too far.
+    Swinging,
+}
+
+const ALL: [(Outcome, &str); 15] = [
+    (Outcome::Accepted, "accepted"),
+    (Outcome::HoldBerthed, "hold_berthed"),
+    (Outcome::HoldMagneticCargo, "hold_magnetic_cargo"),
+    (Outcome::HoldDegaussing, "hold_degaussing"),
+    (Outcome::Clock, "clock"),
+    (Outcome::NoTime, "no_time"),
+    (Outcome::NoCompass, "no_compass"),
+    (Outcome::NoReference, "no_reference"),
+    (Outcome::NoPosition, "no_position"),
+    (Outcome::NoSpeed, "no_speed"),
+    (Outcome::Sparse, "sparse"),
+    (Outcome::Slow, "slow"),
+    (Outcome::Turning, "turning"),
+    (Outcome::Settling, "settling"),
+    (Outcome::Swinging, "swinging"),
+];
+
+/// Windows by outcome.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Tally([u64; ALL.len()]);
+
+impl Tally {
+    /// Counts windows.
+    pub(crate) fn add(&mut self, outcome: Outcome, windows: u64) {
+        let count = &mut self.0[outcome as usize];
+        *count = count.saturating_add(windows);
+    }
+
+    /// What has been counted of one outcome.
+    pub(crate) fn of(&self, outcome: Outcome) -> u64 {
+        self.0[outcome as usize]
+    }
+
+    /// By name, without what did not happen.
+    pub(crate) fn by_name(&self) -> BTreeMap<String, u64> {
+        ALL.iter()
+            .filter(|(outcome, _)| self.of(*outcome) > 0)
+            .map(|(outcome, name)| ((*name).to_owned(), self.of(*outcome)))
+            .collect()
+    }
+
+    /// What has been counted, starting again from nothing.
+    pub(crate) fn take(&mut self) -> Tally {
+        std::mem::take(self)
+    }
+
+    /// The sum of two tallies.
+    pub(crate) fn plus(&mut self, other: &Tally) {
+        for (count, more) in self.0.iter_mut().zip(other.0) {
+            *count = count.saturating_add(more);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_outcome_is_counted_under_its_own_name() {
+        for (index, (outcome, name)) in ALL.iter().enumerate() {
+            assert_eq!(*outcome as usize, index, "{name}");
+            let mut tally = Tally::default();
+            tally.add(*outcome, 2);
+            assert_eq!(tally.by_name(), BTreeMap::from([((*name).to_owned(), 2)]));
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! One instrument's heading through the windows, unwound so that north is no edge.
+
+use binnacle_magnetics::angle::wrap_180;
+
+/// A heading as it was in one window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    /// Mean of the readings, unwound.
+    pub(super) mean: f64,
+    /// Least, unwound.
+    low: f64,
+    /// Most, unwound.
+    high: f64,
+    /// How many readings.
+    pub(super) readings: u32,
+}
+
+/// The readings of one instrument: the open window and the two before it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Track {
+    /// The latest reading, in degrees that go on past a full circle.
+    unwound: Option<f64>,
+    sum: f64,
+    low: f64,
+    high: f64,
+    readings: u32,
+    invalid: bool,
+    earlier: [Option<Span>; 2],
+}
+
+impl Track {
+    /// Takes a heading in degrees.
+    pub(super) fn take(&mut self, degrees: f64) {
+        let unwound = match self.unwound {
+            Some(last) => last + wrap_180(degrees - last),
+            None => degrees,
+        };
+        self.unwound = Some(unwound);
+        if self.readings == 0 {
+            (self.sum, self.low, self.high) = (0.0, unwound, unwound);
+        }
+        self.sum += unwound;
+        self.low = self.low.min(unwound);
+        self.high = self.high.max(unwound);
+        self.readings += 1;
+    }
+
+    /// The instrument said that it is not to be trusted: nothing in this window is.
+    pub(super) fn invalidate(&mut self) {
+        self.invalid = true;
+    }
+
+    /// The heading in the open window, if there was any.
+    pub(super) fn span(&self) -> Option<Span> {
+        if self.readings == 0 || self.invalid {
+            return None;
+        }
+        Some(Span {
+            mean: self.sum / f64::from(self.readings),
+            low: self.low,
+            high: self.high,
+            readings: self.readings,
+        })
+    }
+
+    /// How far the heading went from end to end in this window and the two
+    /// before it: thirty seconds.
+    pub(super) fn swing_deg(&self) -> f64 {
+        let spans = self.earlier.iter().copied().chain([self.span()]).flatten();
+        let (low, high) = spans.fold((f64::MAX, f64::MIN), |(low, high), span| {
+            (low.min(span.low), high.max(span.high))
+        });
+        (high - low).max(0.0)
+    }
+
+    /// How far the mean moved since the window before, if both had readings.
+    pub(super) fn moved_deg(&self) -> Option<f64> {
+        Some(self.span()?.mean - self.earlier[0]?.mean)
+    }
+
+    /// Closes the window.
+    pub(super) fn close(&mut self) {
+        self.earlier = [self.span(), self.earlier[0]];
+        self.readings = 0;
+        self.invalid = false;
+    }
+
+    /// Forgets the windows before, which no longer adjoin this one.
+    pub(super) fn forget(&mut self) {
+        *self = Track::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_magnetics::angle::wrap_360;
+
+    #[test]
+    fn a_mean_across_north_is_north() {
+        let mut track = Track::default();
+        for degrees in [359.0, 1.0, 358.0, 2.0] {
+            track.take(degrees);
+        }
+        let mean = wrap_180(track.span().unwrap().mean);
+        assert!(mean.abs() < 1e-9, "{}", wrap_360(mean));
+        assert!((track.swing_deg() - 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn swing_looks_back_two_windows_and_no_further() {
+        let mut track = Track::default();
+        track.take(10.0);
+        track.close();
+        for _ in 0..2 {
+            track.take(20.0);
+            assert!((track.swing_deg() - 10.0).abs() < 1e-9);
+            track.close();
+        }
+        track.take(20.0);
+        assert!(track.swing_deg() < 1e-9);
+    }
+
+    #[test]
+    fn an_invalid_reading_spoils_its_window_only() {
+        let mut track = Track::default();
+        track.take(10.0);
+        track.invalidate();
+        assert_eq!(track.span(), None);
+        track.close();
+        track.take(10.0);
+        assert!(track.span().is_some());
+    }
+}
