@@ -1,12 +1,13 @@
 //! What the agent and the server say to each other.
 //!
 //! Samples go up as binary [`batch`]es, immutable once sealed, in the frame of
-//! [`codec`]; enrolment, acknowledgement, models and settings are the JSON
-//! [`messages`].
+//! [`codec`], with the [`reasons`] why windows were refused; enrolment,
+//! acknowledgement, models and [`settings`] are the JSON [`messages`].
 
 pub mod batch;
 pub mod codec;
 pub mod messages;
 pub mod reasons;
+pub mod settings;
 
 pub use codec::{DecodeError, EncodeError, decode, encode};

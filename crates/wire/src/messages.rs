@@ -1,6 +1,7 @@
 //! The JSON part of the conversation: enrolment, acknowledgement, downlink.
 
 use crate::batch::StreamId;
+pub use crate::settings::Settings;
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -70,36 +71,80 @@ pub struct ModelDownlink {
     pub model: Model,
 }
 
-/// What the shore decides about how an agent samples and sends.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Settings {
-    /// Rises with every change; 0 is the agent's built-in default.
-    pub version: u32,
-    /// Speed over ground below which nothing is sampled, knots.
-    pub min_sog_kn: f64,
-    /// Rate of turn above which a window is refused, degrees a minute.
-    pub max_rate_of_turn_deg_min: f64,
-    /// Seconds after a turn in which nothing is sampled (Gaussian error).
-    pub settle_s: u32,
-    /// How far heading may swing to either side within 30 s, degrees.
-    pub max_swing_deg: f64,
-    /// The longest stretch that one sample is the mean of, seconds.
-    pub sample_s: u32,
-    /// A batch is sealed when its first sample is this old, seconds of ship time.
-    pub seal_s: u32,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::de::DeserializeOwned;
+    use serde_json::{Value, json};
+    use std::fmt::Debug;
 
-impl Default for Settings {
-    /// Three minutes outlast the Gaussian error; the swing limit is the source paper's.
-    fn default() -> Settings {
-        Settings {
-            version: 0,
-            min_sog_kn: 4.0,
-            max_rate_of_turn_deg_min: 18.0,
-            settle_s: 180,
-            max_swing_deg: 2.0,
-            sample_s: 600,
-            seal_s: 6 * 3600,
-        }
+    fn assert_comes_back<M: Serialize + DeserializeOwned + PartialEq + Debug>(sent: &Value) -> M {
+        let message: M = serde_json::from_value(sent.clone()).unwrap();
+        assert_eq!(&serde_json::to_value(&message).unwrap(), sent);
+        let text = serde_json::to_string(&message).unwrap();
+        assert_eq!(serde_json::from_str::<M>(&text).unwrap(), message);
+        message
+    }
+
+    const ID: &str = "01934f2a-7c00-7000-8000-00000000002a";
+
+    #[test]
+    fn an_enrolment_reads_as_it_is_written() {
+        assert_comes_back::<EnrolRequest>(&json!({"code": "K7QF-2M9X", "agent_version": "0.1.0"}));
+        assert_comes_back::<EnrolAnswer>(&json!({
+            "token": "secret",
+            "stream": ID,
+            "vessel_name": "Nao Victoria",
+            "compass_name": "Standard compass",
+            "server_time": "2026-11-21T07:00:00Z",
+        }));
+        assert_comes_back::<OpenStreamAnswer>(&json!({ "stream": ID }));
+    }
+
+    #[test]
+    fn a_downlink_leaves_out_what_did_not_change() {
+        let bare = json!({"contiguous_seq": 12, "server_time": "2026-11-21T07:00:00.250Z"});
+        let downlink = assert_comes_back::<Downlink>(&bare);
+        assert_eq!((downlink.model, downlink.settings), (None, None));
+    }
+
+    #[test]
+    fn a_downlink_carries_model_and_settings_whole() {
+        let parameters = json!({
+            "bx_nt": 2060.0, "chi13": -0.0215, "by_nt": -2930.0, "chi23": 0.0022,
+            "chi11_minus_chi22": 0.0352, "chi12": 0.0012, "chi21": 0.0016,
+        });
+        let sent = json!({
+            "contiguous_seq": 3,
+            "server_time": "2026-11-21T07:00:00Z",
+            "settings": Settings::default(),
+            "model": {
+                "id": ID,
+                "version": 4,
+                "data_until": "2026-11-20T00:00:00Z",
+                "model": { "parameters_over_lambda": parameters },
+            },
+        });
+        let downlink: Downlink = serde_json::from_value(sent).unwrap();
+        let again = serde_json::to_value(&downlink).unwrap();
+        assert_eq!(serde_json::from_value::<Downlink>(again).unwrap(), downlink);
+        let model = downlink.model.unwrap();
+        assert_eq!((model.version, model.model.samples_used), (4, 0));
+    }
+
+    #[test]
+    fn settings_out_of_range_spoil_the_downlink() {
+        let mut settings = serde_json::to_value(Settings::default()).unwrap();
+        settings["min_sog_kn"] = json!(-4.0);
+        let sent = json!({
+            "contiguous_seq": 0, "server_time": "2026-11-21T07:00:00Z", "settings": settings,
+        });
+        let error = serde_json::from_value::<Downlink>(sent).unwrap_err();
+        assert!(
+            error
+                .to_string()
+                .contains("min_sog_kn -4 is outside 0 to 50"),
+            "{error}"
+        );
     }
 }

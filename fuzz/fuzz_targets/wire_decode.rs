@@ -1,0 +1,22 @@
+//! Any bytes, as they are and with the checksum made right: `decode` answers or
+//! refuses, and what it answers can be written again, to the same meaning.
+
+#![no_main]
+
+use binnacle_wire::{EncodeError, decode, encode};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let _ = decode(bytes);
+    let mut sealed = bytes.to_vec();
+    sealed.extend(crc32fast::hash(bytes).to_le_bytes());
+    let Ok(batch) = decode(&sealed) else { return };
+    let again = match encode(&batch) {
+        Ok(again) => again,
+        // A smooth curve in finer steps than ours may take more room in ours.
+        Err(EncodeError::TooLarge(_)) => return,
+        Err(error) => panic!("what was decoded cannot be encoded: {error}"),
+    };
+    let batch = decode(&again).expect("what was encoded can be decoded");
+    assert_eq!(encode(&batch).as_deref(), Ok(&again[..]));
+});
