@@ -16,6 +16,7 @@ REASONS = [
     "accepted", "slow", "turning", "settling", "swinging", "no_compass",
     "no_reference", "no_position", "no_speed", "hold_berthed",
     "hold_magnetic_cargo", "hold_degaussing", "high_latitude", "clock", "sparse",
+    "no_time",
 ]
 TIME, LAT, LON, GYRO, SATELLITE, COMPASS, SOG, RATE_OF_TURN, SPREAD, WINDOWS = range(1, 11)
 REQUIRED = (TIME, LAT, LON, COMPASS, WINDOWS)

@@ -33,9 +33,11 @@ pub const HIGH_LATITUDE: &str = "high_latitude";
 pub const CLOCK: &str = "clock";
 /// Too few readings within the window.
 pub const SPARSE: &str = "sparse";
+/// No time stamp fell into the window.
+pub const NO_TIME: &str = "no_time";
 
 /// Number 1 first.
-const KNOWN: [&str; 15] = [
+const KNOWN: [&str; 16] = [
     ACCEPTED,
     SLOW,
     TURNING,
@@ -51,6 +53,7 @@ const KNOWN: [&str; 15] = [
     HIGH_LATITUDE,
     CLOCK,
     SPARSE,
+    NO_TIME,
 ];
 
 /// The number a reason has in a frame; `None` when it travels by name.
@@ -75,6 +78,6 @@ mod tests {
             assert_eq!(number(known).and_then(name), Some(known));
         }
         assert_eq!(number("no such reason"), None);
-        assert_eq!((name(0), name(16), name(u64::MAX)), (None, None, None));
+        assert_eq!((name(0), name(17), name(u64::MAX)), (None, None, None));
     }
 }
