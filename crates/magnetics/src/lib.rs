@@ -16,6 +16,9 @@ pub mod time;
 pub mod model;
 pub mod sample;
 
+pub mod deviation;
+pub mod ship;
+
 pub mod analyse;
 pub mod coverage;
 pub mod fit;
