@@ -1,0 +1,182 @@
+//! TAG blocks: what stands before a sentence between backslashes, with a
+//! checksum of its own, for example `\s:GP0001,c:1700000000*hh\`.
+
+use crate::checksum;
+use crate::parse::parse;
+use crate::rejected::Rejected;
+use crate::sentence::Sentence;
+
+/// TAG blocks longer than this are refused; the standard says 80.
+const MAX_TAG_BYTES: usize = 256;
+/// From this on a `c:` number counts milliseconds, below it seconds: as
+/// milliseconds it lies in 1973, as seconds in the year 5138.
+const FIRST_MILLISECONDS: i64 = 100_000_000_000;
+
+/// What the TAG blocks before a sentence say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tag<'a> {
+    /// `s:`, the sender (IEC 61162-450 system function, `HE0001`).
+    pub source: Option<&'a [u8]>,
+    /// `c:`, the sender's clock, in microseconds since 1970 UTC.
+    pub unix_micros: Option<i64>,
+}
+
+/// A sentence and the TAG blocks before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tagged<'a> {
+    /// All `None` without a TAG block.
+    pub tag: Tag<'a>,
+    /// What follows.
+    pub sentence: Sentence,
+}
+
+/// Reads a sentence and any TAG blocks before it.
+///
+/// # Errors
+/// The one reason why the line is not used. A bad TAG block spoils its line:
+/// bytes were lost on the way.
+pub fn parse_tagged(line: &[u8]) -> Result<Tagged<'_>, Rejected> {
+    let mut tag = Tag::default();
+    let mut rest = line;
+    while let [b'\\', block @ ..] = rest {
+        let end = block
+            .iter()
+            .take(MAX_TAG_BYTES)
+            .position(|&byte| byte == b'\\')
+            .ok_or(Rejected::BadTagBlock)?;
+        read_block(&block[..end], &mut tag)?;
+        rest = &block[end + 1..];
+    }
+    Ok(Tagged {
+        tag,
+        sentence: parse(rest)?,
+    })
+}
+
+/// Appends a TAG block, checksum included, for a sentence to follow.
+pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
+    out.push(b'\\');
+    let start = out.len();
+    if let Some(source) = tag.source {
+        out.extend_from_slice(b"s:");
+        out.extend_from_slice(source);
+    }
+    if let Some(micros) = tag.unix_micros {
+        if tag.source.is_some() {
+            out.push(b',');
+        }
+        let (seconds, millis) = (
+            micros.div_euclid(1_000_000),
+            micros.rem_euclid(1_000_000) / 1000,
+        );
+        // Whole seconds are what every reader knows.
+        let text = if millis == 0 {
+            format!("c:{seconds}")
+        } else {
+            format!("c:{seconds}{millis:03}")
+        };
+        out.extend_from_slice(text.as_bytes());
+    }
+    let sum = checksum::of(&out[start..]);
+    checksum::append(sum, out);
+    out.push(b'\\');
+}
+
+fn read_block<'a>(block: &'a [u8], tag: &mut Tag<'a>) -> Result<(), Rejected> {
+    let body = checksum::checked(block).map_err(|_| Rejected::BadTagBlock)?;
+    for parameter in body.split(|&byte| byte == b',') {
+        match parameter {
+            [b's', b':', source @ ..] => tag.source = Some(source),
+            [b'c', b':', clock @ ..] => {
+                tag.unix_micros = Some(unix_micros(clock).ok_or(Rejected::BadTagBlock)?);
+            }
+            // Groups, destinations, line counts and texts say nothing here.
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// Whole seconds or milliseconds since 1970.
+fn unix_micros(text: &[u8]) -> Option<i64> {
+    if text.is_empty() || text.len() > 15 {
+        return None;
+    }
+    let mut value = 0_i64;
+    for byte in text {
+        if !byte.is_ascii_digit() {
+            return None;
+        }
+        value = value * 10 + i64::from(byte - b'0');
+    }
+    Some(if value >= FIRST_MILLISECONDS {
+        value * 1000
+    } else {
+        value * 1_000_000
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tagged(tag: &str) -> Vec<u8> {
+        let mut line = format!("\\{tag}*{:02X}\\", checksum::of(tag.as_bytes())).into_bytes();
+        line.extend_from_slice(b"$GPHDT,274.07,T*03");
+        line
+    }
+
+    #[test]
+    fn seconds_and_milliseconds_are_told_apart() {
+        for (clock, micros) in [
+            ("c:1700000000", 1_700_000_000_000_000),
+            ("c:1700000000123", 1_700_000_000_123_000),
+        ] {
+            let line = tagged(clock);
+            let read = parse_tagged(&line).unwrap();
+            assert_eq!(read.tag.unix_micros, Some(micros));
+        }
+    }
+
+    #[test]
+    fn source_and_clock_come_through_among_other_parameters() {
+        let line = tagged("g:1-2-1234,s:HE0001,n:17,c:1700000000");
+        let tag = parse_tagged(&line).unwrap().tag;
+        assert_eq!(tag.source, Some(&b"HE0001"[..]));
+        assert_eq!(tag.unix_micros, Some(1_700_000_000_000_000));
+    }
+
+    #[test]
+    fn a_bad_tag_block_spoils_its_line() {
+        let good = tagged("s:HE0001");
+        for at in 1..10 {
+            let mut line = good.clone();
+            line[at] ^= 1;
+            assert_eq!(parse_tagged(&line), Err(Rejected::BadTagBlock), "{at}");
+        }
+        for clock in ["c:", "c:-1", "c:17e8", "c:1234567890123456"] {
+            assert_eq!(parse_tagged(&tagged(clock)), Err(Rejected::BadTagBlock));
+        }
+        assert_eq!(parse_tagged(b"\\s:HE0001"), Err(Rejected::BadTagBlock));
+    }
+
+    #[test]
+    fn a_written_tag_block_is_read_back() {
+        for tag in [
+            Tag::default(),
+            Tag {
+                source: Some(b"GP0001"),
+                unix_micros: Some(1_700_000_000_000_000),
+            },
+            Tag {
+                source: None,
+                unix_micros: Some(1_700_000_000_250_000),
+            },
+        ] {
+            let mut line = Vec::new();
+            write_tag(&tag, &mut line);
+            line.extend_from_slice(b"$GPHDT,274.07,T*03\r\n");
+            assert_eq!(parse_tagged(&line).unwrap().tag, tag);
+        }
+    }
+}
