@@ -1,0 +1,216 @@
+//! Sealed batches: which is next, what became of it, and a new stream.
+
+use super::seal::insert_batch;
+use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, put};
+use binnacle_wire::batch::StreamId;
+use binnacle_wire::messages::Downlink;
+use serde::{Deserialize, Serialize};
+use sqlx::SqliteConnection;
+
+/// So many acknowledged batches are remembered.
+const REMEMBERED: i64 = 20_000;
+
+/// A batch as it is sent.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SealedBatch {
+    /// Its number within the stream.
+    pub(crate) seq: u64,
+    /// The frame.
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// How far the shore has come with what is here.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Standing {
+    /// Samples that are in no batch yet.
+    pub(crate) pending_samples: u64,
+    /// Sealed batches that were not acknowledged.
+    pub(crate) waiting_batches: u64,
+    /// Batches that the shore refused; kept, and tried again at the next start.
+    pub(crate) parked_batches: u64,
+    /// Why the last of those was refused.
+    pub(crate) parked_because: Option<String>,
+    /// Batches that the shore acknowledged, as far as they are remembered.
+    pub(crate) acknowledged_batches: u64,
+    /// The samples in those.
+    pub(crate) acknowledged_samples: u64,
+    /// Every batch up to this one is durable on shore.
+    pub(crate) contiguous_seq: u64,
+}
+
+impl Spool {
+    /// The first batch that waits to be sent.
+    pub(crate) async fn next_batch(&self) -> sqlx::Result<Option<SealedBatch>> {
+        let row: Option<(i64, Vec<u8>)> = sqlx::query_as(
+            "SELECT seq, bytes FROM batches WHERE standing = 'waiting' ORDER BY seq LIMIT 1",
+        )
+        .fetch_optional(&self.pool)
+        .await?;
+        Ok(row.map(|(seq, bytes)| SealedBatch {
+            seq: seq.cast_unsigned(),
+            bytes,
+        }))
+    }
+
+    /// The shore has this batch: notes it, and deletes what is acknowledged at
+    /// or below the highest contiguous number.
+    pub(crate) async fn acknowledge(
+        &self,
+        stream: StreamId,
+        batch: &SealedBatch,
+        downlink: &Downlink,
+    ) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        keep_downlink(&mut tx, downlink).await?;
+        let samples: Option<i64> = sqlx::query_scalar(
+            "UPDATE batches SET standing = 'acknowledged', problem = NULL
+             WHERE seq = $1 AND bytes = $2 RETURNING samples",
+        )
+        .bind(batch.seq.cast_signed())
+        .bind(&batch.bytes)
+        .fetch_optional(&mut *tx)
+        .await?;
+        if let Some(samples) = samples {
+            remember(&mut tx, stream, batch, samples).await?;
+        }
+        sqlx::query("DELETE FROM batches WHERE standing = 'acknowledged' AND seq <= $1")
+            .bind(downlink.contiguous_seq.cast_signed())
+            .execute(&mut *tx)
+            .await?;
+        tx.commit().await
+    }
+
+    /// The shore refused this batch: keeps it, and goes on without it.
+    pub(crate) async fn park(&self, seq: u64, problem: &str) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        sqlx::query("UPDATE batches SET standing = 'parked', problem = $2 WHERE seq = $1")
+            .bind(seq.cast_signed())
+            .bind(problem)
+            .execute(&mut *tx)
+            .await?;
+        tx.commit().await
+    }
+
+    /// Gives parked batches another chance, as at a start.
+    pub(crate) async fn unpark(&self) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        sqlx::query("UPDATE batches SET standing = 'waiting' WHERE standing = 'parked'")
+            .execute(&mut *tx)
+            .await?;
+        tx.commit().await
+    }
+
+    /// Goes on in a new stream of the same identity: batches that were not
+    /// acknowledged are numbered anew in it.
+    pub(crate) async fn move_to_stream(&self, stream: StreamId) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        renumber(&mut tx, stream).await?;
+        if let Some(identity) = get::<Identity>(&mut tx, IDENTITY).await? {
+            put(&mut tx, IDENTITY, &Identity { stream, ..identity }).await?;
+        }
+        tx.commit().await
+    }
+
+    /// Whether the shore lacks batches that are no longer here, as when it was
+    /// restored from an old copy: its contiguous number can then never rise.
+    pub(crate) async fn has_unfillable_gap(&self, contiguous_seq: u64) -> sqlx::Result<bool> {
+        let mut connection = self.pool.acquire().await?;
+        let lowest: Option<i64> = sqlx::query_scalar("SELECT MIN(seq) FROM batches")
+            .fetch_one(&mut *connection)
+            .await?;
+        let next = get::<u64>(&mut connection, NEXT_SEQ).await?.unwrap_or(1);
+        let lowest = lowest.map_or(next, i64::cast_unsigned);
+        Ok(contiguous_seq + 1 < lowest)
+    }
+
+    /// How far the shore has come.
+    pub(crate) async fn standing(&self) -> sqlx::Result<Standing> {
+        let pending_samples = self.pending().await?.samples;
+        let mut connection = self.pool.acquire().await?;
+        let (waiting, parked, because): (i64, i64, Option<String>) = sqlx::query_as(
+            "SELECT COUNT(*) FILTER (WHERE standing = 'waiting'),
+                    COUNT(*) FILTER (WHERE standing = 'parked'),
+                    (SELECT problem FROM batches WHERE standing = 'parked'
+                     ORDER BY seq DESC LIMIT 1)
+             FROM batches",
+        )
+        .fetch_one(&mut *connection)
+        .await?;
+        let (batches, samples): (i64, i64) =
+            sqlx::query_as("SELECT COUNT(*), COALESCE(SUM(samples), 0) FROM acknowledged")
+                .fetch_one(&mut *connection)
+                .await?;
+        Ok(Standing {
+            pending_samples,
+            waiting_batches: waiting.cast_unsigned(),
+            parked_batches: parked.cast_unsigned(),
+            parked_because: because,
+            acknowledged_batches: batches.cast_unsigned(),
+            acknowledged_samples: samples.cast_unsigned(),
+            contiguous_seq: get(&mut connection, CONTIGUOUS_SEQ).await?.unwrap_or(0),
+        })
+    }
+}
+
+async fn remember(
+    tx: &mut SqliteConnection,
+    stream: StreamId,
+    batch: &SealedBatch,
+    samples: i64,
+) -> sqlx::Result<()> {
+    sqlx::query(
+        "INSERT INTO acknowledged (stream, seq, samples, crc32) VALUES ($1, $2, $3, $4)
+         ON CONFLICT (stream, seq) DO NOTHING",
+    )
+    .bind(stream.to_string())
+    .bind(batch.seq.cast_signed())
+    .bind(samples)
+    .bind(i64::from(crc32fast::hash(&batch.bytes)))
+    .execute(&mut *tx)
+    .await?;
+    sqlx::query("DELETE FROM acknowledged WHERE id <= (SELECT MAX(id) FROM acknowledged) - $1")
+        .bind(REMEMBERED)
+        .execute(tx)
+        .await?;
+    Ok(())
+}
+
+/// Numbers the batches that were not acknowledged from 1 in another stream.
+///
+/// What was acknowledged is durable on shore in the old stream, and dropped
+/// here. Bytes that no longer read are put aside, never fatal.
+pub(super) async fn renumber(tx: &mut SqliteConnection, stream: StreamId) -> sqlx::Result<()> {
+    let rows: Vec<(i64, Vec<u8>)> = sqlx::query_as(
+        "SELECT seq, bytes FROM batches WHERE standing <> 'acknowledged' ORDER BY seq",
+    )
+    .fetch_all(&mut *tx)
+    .await?;
+    sqlx::query("DELETE FROM batches").execute(&mut *tx).await?;
+    let mut next = 1;
+    for (_, bytes) in rows {
+        match in_stream(&bytes, stream, next) {
+            Ok((bytes, samples)) => {
+                insert_batch(tx, next, &bytes, samples).await?;
+                next += 1;
+            }
+            Err(problem) => {
+                tracing::error!(problem, "a damaged batch was put aside");
+                sqlx::query("INSERT INTO quarantine (bytes, problem) VALUES ($1, $2)")
+                    .bind(bytes)
+                    .bind(problem)
+                    .execute(&mut *tx)
+                    .await?;
+            }
+        }
+    }
+    put(tx, NEXT_SEQ, &next).await?;
+    put(tx, CONTIGUOUS_SEQ, &0_u64).await
+}
+
+fn in_stream(bytes: &[u8], stream: StreamId, seq: u64) -> Result<(Vec<u8>, usize), String> {
+    let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
+    batch.stream = stream;
+    batch.seq = seq;
+    let bytes = binnacle_wire::encode(&batch).map_err(|e| e.to_string())?;
+    Ok((bytes, batch.samples.len()))
+}

@@ -1,0 +1,244 @@
+//! What must outlive the agent: one SQLite file in the data directory.
+//!
+//! What always holds, also when the process is killed or the power fails at any
+//! point (WAL, every commit synced):
+//!
+//! - A sample is in exactly one place: pending, or in one sealed batch.
+//! - A sealed batch is never changed. Batches of a stream are numbered from 1
+//!   without gaps, and sent again byte for byte until they are acknowledged.
+//! - A batch is deleted only when the shore acknowledged that very batch and
+//!   everything before it; a record of its number, size and checksum remains.
+//! - Position and data are one thing: there is no ledger beside the rows that
+//!   could disagree with them.
+//! - What is not in here yet: samples of the last second or of the last
+//!   [`crate::run::SAMPLES_PER_COMMIT`], whichever is less, and the stretch of at most
+//!   ten minutes that the sampler is still in.
+
+mod batches;
+mod seal;
+
+pub(crate) use batches::{SealedBatch, Standing};
+pub(crate) use seal::{Pending, Seal};
+
+use crate::hold::Hold;
+use anyhow::Context;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::batch::StreamId;
+use binnacle_wire::messages::{Downlink, ModelDownlink, Settings};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::{Sqlite, SqliteConnection, SqlitePool, Transaction};
+use std::fmt;
+use std::net::SocketAddr;
+use std::path::Path;
+use std::time::Duration;
+
+/// The agent's memory. Cheap to clone; all clones share one connection.
+#[derive(Clone, Debug)]
+pub(crate) struct Spool {
+    pool: SqlitePool,
+}
+
+/// Who the agent is to the shore.
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Identity {
+    /// Where the shore is, as `https://host`.
+    pub(crate) server: String,
+    /// Bearer token; never logged.
+    pub(crate) token: String,
+    /// The stream that batches are numbered in.
+    pub(crate) stream: StreamId,
+    /// For the local page.
+    pub(crate) vessel_name: String,
+    /// For the local page.
+    pub(crate) compass_name: String,
+}
+
+impl fmt::Debug for Identity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} at {} (token withheld)", self.stream, self.server)
+    }
+}
+
+const IDENTITY: &str = "identity";
+const NEXT_SEQ: &str = "next_seq";
+const CONTIGUOUS_SEQ: &str = "contiguous_seq";
+const MODEL: &str = "model";
+const SETTINGS: &str = "settings";
+const HOLD: &str = "hold";
+const PAGE: &str = "page";
+const LAST_CONTACT: &str = "last_contact";
+
+impl Spool {
+    /// Opens the spool in a directory, which is made if need be; both are the
+    /// owner's only.
+    pub(crate) async fn open(directory: &Path) -> anyhow::Result<Spool> {
+        let path = directory.join("spool.db");
+        create_private(directory, &path)
+            .with_context(|| format!("{}: cannot create the spool", path.display()))?;
+        let options = SqliteConnectOptions::new()
+            .filename(&path)
+            .journal_mode(SqliteJournalMode::Wal)
+            .synchronous(SqliteSynchronous::Full)
+            .busy_timeout(Duration::from_secs(20));
+        let opened = SqlitePoolOptions::new()
+            .max_connections(1)
+            .connect_with(options)
+            .await;
+        let pool = opened.with_context(|| format!("{}: cannot open the spool", path.display()))?;
+        sqlx::raw_sql(include_str!("schema.sql"))
+            .execute(&pool)
+            .await
+            .with_context(|| format!("{}: cannot use the spool", path.display()))?;
+        Ok(Spool { pool })
+    }
+
+    /// Finishes what is under way and closes the file.
+    pub(crate) async fn close(&self) {
+        self.pool.close().await;
+    }
+
+    /// Who the agent is, once it is enrolled.
+    pub(crate) async fn identity(&self) -> sqlx::Result<Option<Identity>> {
+        self.get(IDENTITY).await
+    }
+
+    /// Becomes another stream, as after enrolment: batches that were not
+    /// acknowledged are numbered anew in it.
+    pub(crate) async fn enrol(&self, identity: &Identity) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        batches::renumber(&mut tx, identity.stream).await?;
+        put(&mut tx, IDENTITY, identity).await?;
+        tx.commit().await
+    }
+
+    /// The last model from shore.
+    pub(crate) async fn model(&self) -> sqlx::Result<Option<ModelDownlink>> {
+        self.get(MODEL).await
+    }
+
+    /// The last settings from shore, or the built-in ones.
+    pub(crate) async fn settings(&self) -> sqlx::Result<Settings> {
+        Ok(self.get(SETTINGS).await?.unwrap_or_default())
+    }
+
+    /// Keeps what the shore sent.
+    pub(crate) async fn keep_downlink(&self, downlink: &Downlink) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        keep_downlink(&mut tx, downlink).await?;
+        tx.commit().await
+    }
+
+    /// When the shore last answered, by its clock.
+    pub(crate) async fn last_contact(&self) -> sqlx::Result<Option<Timestamp>> {
+        self.get(LAST_CONTACT).await
+    }
+
+    /// The crew's hold.
+    pub(crate) async fn hold(&self) -> sqlx::Result<Option<Hold>> {
+        Ok(self.get(HOLD).await?.flatten())
+    }
+
+    /// Keeps the crew's hold.
+    pub(crate) async fn set_hold(&self, hold: Option<Hold>) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        put(&mut tx, HOLD, &hold).await?;
+        tx.commit().await
+    }
+
+    /// Where the running agent's page is, for the command line.
+    pub(crate) async fn page(&self) -> sqlx::Result<Option<SocketAddr>> {
+        Ok(self.get(PAGE).await?.flatten())
+    }
+
+    /// Notes where the page is, or that there is none.
+    pub(crate) async fn set_page(&self, address: Option<SocketAddr>) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        put(&mut tx, PAGE, &address).await?;
+        tx.commit().await
+    }
+
+    async fn write(&self) -> sqlx::Result<Transaction<'static, Sqlite>> {
+        // At once, so that two processes wait for each other instead of failing.
+        self.pool.begin_with("BEGIN IMMEDIATE").await
+    }
+
+    async fn get<T: DeserializeOwned>(&self, name: &str) -> sqlx::Result<Option<T>> {
+        let mut connection = self.pool.acquire().await?;
+        get(&mut connection, name).await
+    }
+}
+
+/// A value by name. One that does not read is reported and counts as absent:
+/// a damaged value must not stop the agent.
+async fn get<T: DeserializeOwned>(
+    connection: &mut SqliteConnection,
+    name: &str,
+) -> sqlx::Result<Option<T>> {
+    let text: Option<String> = sqlx::query_scalar("SELECT value FROM state WHERE name = $1")
+        .bind(name)
+        .fetch_optional(connection)
+        .await?;
+    let Some(text) = text else { return Ok(None) };
+    match serde_json::from_str(&text) {
+        Ok(value) => Ok(Some(value)),
+        Err(error) => {
+            tracing::error!(name, %error, "a value in the spool cannot be read; going on without");
+            Ok(None)
+        }
+    }
+}
+
+async fn put<T: Serialize>(
+    connection: &mut SqliteConnection,
+    name: &str,
+    value: &T,
+) -> sqlx::Result<()> {
+    let text = serde_json::to_string(value).map_err(|e| sqlx::Error::Encode(e.into()))?;
+    sqlx::query(
+        "INSERT INTO state (name, value) VALUES ($1, $2)
+         ON CONFLICT (name) DO UPDATE SET value = excluded.value",
+    )
+    .bind(name)
+    .bind(text)
+    .execute(connection)
+    .await?;
+    Ok(())
+}
+
+async fn keep_downlink(connection: &mut SqliteConnection, downlink: &Downlink) -> sqlx::Result<()> {
+    put(connection, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
+    put(connection, LAST_CONTACT, &downlink.server_time).await?;
+    if let Some(model) = &downlink.model {
+        put(connection, MODEL, model).await?;
+    }
+    if let Some(settings) = &downlink.settings {
+        put(connection, SETTINGS, settings).await?;
+    }
+    Ok(())
+}
+
+#[cfg(unix)]
+fn create_private(directory: &Path, file: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
+    std::fs::DirBuilder::new()
+        .recursive(true)
+        .mode(0o700)
+        .create(directory)?;
+    // SQLite gives its journals the mode of the database.
+    std::fs::OpenOptions::new()
+        .append(true)
+        .create(true)
+        .mode(0o600)
+        .open(file)?;
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn create_private(directory: &Path, _file: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(directory)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,33 @@
+CREATE TABLE IF NOT EXISTS state (
+    name  TEXT PRIMARY KEY,
+    value TEXT NOT NULL
+);
+CREATE TABLE IF NOT EXISTS pending_samples (
+    id          INTEGER PRIMARY KEY,
+    time_micros BIGINT NOT NULL,
+    sample      TEXT NOT NULL
+);
+CREATE TABLE IF NOT EXISTS pending_tally (
+    reason  TEXT PRIMARY KEY,
+    windows BIGINT NOT NULL
+);
+CREATE TABLE IF NOT EXISTS batches (
+    seq      BIGINT PRIMARY KEY,
+    bytes    BLOB NOT NULL,
+    samples  BIGINT NOT NULL,
+    standing TEXT NOT NULL CHECK (standing IN ('waiting', 'acknowledged', 'parked')),
+    problem  TEXT
+);
+CREATE TABLE IF NOT EXISTS acknowledged (
+    id      INTEGER PRIMARY KEY,
+    stream  TEXT NOT NULL,
+    seq     BIGINT NOT NULL,
+    samples BIGINT NOT NULL,
+    crc32   BIGINT NOT NULL,
+    UNIQUE (stream, seq)
+);
+CREATE TABLE IF NOT EXISTS quarantine (
+    id      INTEGER PRIMARY KEY,
+    bytes   BLOB NOT NULL,
+    problem TEXT NOT NULL
+);

@@ -1,0 +1,168 @@
+//! From samples to sealed batches, in one transaction.
+
+use super::{IDENTITY, Identity, NEXT_SEQ, Spool, get, put};
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::batch::Batch;
+use binnacle_wire::codec;
+use sqlx::SqliteConnection;
+use std::collections::BTreeMap;
+
+/// A batch is sealed when it holds so many samples.
+pub(crate) const SAMPLES_PER_BATCH: u32 = 256;
+
+/// Whether to seal what is pending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Seal {
+    /// Only full batches.
+    Full,
+    /// Everything, the tally too.
+    All,
+}
+
+/// What is not sealed yet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) struct Pending {
+    /// How many samples.
+    pub(crate) samples: u64,
+    /// The time of the first.
+    pub(crate) since: Option<Timestamp>,
+}
+
+impl Spool {
+    /// Adds samples and counted windows, and seals. Without an identity nothing
+    /// is sealed: there is no stream to number it in. Returns what then pends
+    /// and how many batches were sealed.
+    pub(crate) async fn store(
+        &self,
+        samples: &[Sample],
+        tally: &BTreeMap<String, u64>,
+        seal: Seal,
+    ) -> sqlx::Result<(Pending, usize)> {
+        let mut tx = self.write().await?;
+        for sample in samples {
+            insert_sample(&mut tx, sample).await?;
+        }
+        for (reason, windows) in tally {
+            add_to_tally(&mut tx, reason, *windows).await?;
+        }
+        let mut sealed = 0;
+        let mut pending = pending(&mut tx).await?;
+        if let Some(identity) = get::<Identity>(&mut tx, IDENTITY).await? {
+            while pending.samples >= u64::from(SAMPLES_PER_BATCH)
+                || (seal == Seal::All && (pending.samples > 0 || sealed == 0))
+            {
+                if !seal_one(&mut tx, &identity).await? {
+                    break;
+                }
+                sealed += 1;
+                pending = self::pending(&mut tx).await?;
+            }
+        }
+        tx.commit().await?;
+        Ok((pending, sealed))
+    }
+
+    /// What is not sealed yet.
+    pub(crate) async fn pending(&self) -> sqlx::Result<Pending> {
+        let mut connection = self.pool.acquire().await?;
+        pending(&mut connection).await
+    }
+}
+
+async fn insert_sample(tx: &mut SqliteConnection, sample: &Sample) -> sqlx::Result<()> {
+    if let Err(error) = codec::check(sample, 0) {
+        tracing::error!(%error, "a sample that no batch can carry was dropped");
+        return add_to_tally(tx, "unsendable", u64::from(sample.windows)).await;
+    }
+    let text = serde_json::to_string(sample).map_err(|e| sqlx::Error::Encode(e.into()))?;
+    sqlx::query("INSERT INTO pending_samples (time_micros, sample) VALUES ($1, $2)")
+        .bind(sample.time.micros())
+        .bind(text)
+        .execute(tx)
+        .await?;
+    Ok(())
+}
+
+async fn add_to_tally(tx: &mut SqliteConnection, reason: &str, windows: u64) -> sqlx::Result<()> {
+    sqlx::query(
+        "INSERT INTO pending_tally (reason, windows) VALUES ($1, $2)
+         ON CONFLICT (reason) DO UPDATE SET windows = windows + excluded.windows",
+    )
+    .bind(reason)
+    .bind(i64::try_from(windows).unwrap_or(i64::MAX))
+    .execute(tx)
+    .await?;
+    Ok(())
+}
+
+async fn pending(connection: &mut SqliteConnection) -> sqlx::Result<Pending> {
+    let (samples, since): (i64, Option<i64>) =
+        sqlx::query_as("SELECT COUNT(*), MIN(time_micros) FROM pending_samples")
+            .fetch_one(connection)
+            .await?;
+    Ok(Pending {
+        samples: samples.unsigned_abs(),
+        since: since.and_then(|micros| Timestamp::from_micros(micros).ok()),
+    })
+}
+
+/// Seals the oldest samples and the whole tally; `false` when there is nothing.
+async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Result<bool> {
+    let rows: Vec<(i64, String)> = sqlx::query_as(
+        "DELETE FROM pending_samples WHERE id IN
+         (SELECT id FROM pending_samples ORDER BY time_micros, id LIMIT $1)
+         RETURNING id, sample",
+    )
+    .bind(SAMPLES_PER_BATCH)
+    .fetch_all(&mut *tx)
+    .await?;
+    let tally: Vec<(String, i64)> =
+        sqlx::query_as("DELETE FROM pending_tally RETURNING reason, windows")
+            .fetch_all(&mut *tx)
+            .await?;
+    if rows.is_empty() && tally.is_empty() {
+        return Ok(false);
+    }
+    let mut samples: Vec<Sample> = rows.iter().filter_map(|(_, text)| readable(text)).collect();
+    samples.sort_by_key(|sample| sample.time);
+    let seq = get::<u64>(tx, NEXT_SEQ).await?.unwrap_or(1);
+    let count = samples.len();
+    let batch = Batch {
+        stream: identity.stream,
+        seq,
+        samples,
+        tally: tally
+            .into_iter()
+            .map(|(reason, windows)| (reason, windows.unsigned_abs()))
+            .collect(),
+    };
+    let bytes = binnacle_wire::encode(&batch).map_err(|e| sqlx::Error::Encode(e.into()))?;
+    insert_batch(tx, seq, &bytes, count).await?;
+    put(tx, NEXT_SEQ, &(seq + 1)).await?;
+    Ok(true)
+}
+
+fn readable(text: &str) -> Option<Sample> {
+    serde_json::from_str(text)
+        .inspect_err(|error| tracing::error!(%error, "a damaged sample was left out"))
+        .ok()
+}
+
+/// Adds a sealed batch that waits to be sent.
+pub(super) async fn insert_batch(
+    tx: &mut SqliteConnection,
+    seq: u64,
+    bytes: &[u8],
+    samples: usize,
+) -> sqlx::Result<()> {
+    sqlx::query(
+        "INSERT INTO batches (seq, bytes, samples, standing) VALUES ($1, $2, $3, 'waiting')",
+    )
+    .bind(seq.cast_signed())
+    .bind(bytes)
+    .bind(samples as i64)
+    .execute(tx)
+    .await?;
+    Ok(())
+}

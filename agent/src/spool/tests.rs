@@ -1,0 +1,242 @@
+//! The spool on a real file.
+
+use super::*;
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use std::collections::BTreeMap;
+use tempfile::TempDir;
+use uuid::Uuid;
+
+fn sample(minute: i64) -> Sample {
+    Sample {
+        time: Timestamp::from_micros((1_700_000_000 + minute * 60) * 1_000_000).unwrap(),
+        position: Position::new(43.0, -3.0).unwrap(),
+        compass: CompassHeading::new(100.0).unwrap(),
+        gyro: TrueHeading::new(98.0),
+        satellite: None,
+        sog_kn: Some(12.0),
+        rate_of_turn_deg_min: Some(0.0),
+        spread_deg: Some(0.1),
+        windows: 60,
+    }
+}
+
+fn identity(stream: u128) -> Identity {
+    Identity {
+        server: "http://127.0.0.1:1".to_owned(),
+        token: "secret-token".to_owned(),
+        stream: StreamId(Uuid::from_u128(stream)),
+        vessel_name: "Txori".to_owned(),
+        compass_name: "Standard compass".to_owned(),
+    }
+}
+
+fn downlink(contiguous_seq: u64) -> Downlink {
+    Downlink {
+        contiguous_seq,
+        model: None,
+        settings: None,
+        server_time: sample(0).time,
+    }
+}
+
+fn accepted(windows: u64) -> BTreeMap<String, u64> {
+    BTreeMap::from([("accepted".to_owned(), windows)])
+}
+
+async fn enrolled() -> (TempDir, Spool) {
+    let directory = TempDir::new().unwrap();
+    let spool = Spool::open(directory.path()).await.unwrap();
+    spool.enrol(&identity(7)).await.unwrap();
+    (directory, spool)
+}
+
+async fn seal(spool: &Spool, minutes: std::ops::Range<i64>) {
+    let samples: Vec<Sample> = minutes.map(sample).collect();
+    spool
+        .store(&samples, &accepted(60), Seal::All)
+        .await
+        .unwrap();
+}
+
+#[tokio::test]
+async fn a_sealed_batch_holds_the_samples_and_the_tally_once() {
+    let (_directory, spool) = enrolled().await;
+    spool
+        .store(&[sample(1)], &accepted(60), Seal::Full)
+        .await
+        .unwrap();
+    assert_eq!(spool.next_batch().await.unwrap(), None);
+    let (pending, sealed) = spool
+        .store(&[sample(0)], &accepted(30), Seal::All)
+        .await
+        .unwrap();
+    assert_eq!((pending, sealed), (Pending::default(), 1));
+    let sent = spool.next_batch().await.unwrap().unwrap();
+    let batch = binnacle_wire::decode(&sent.bytes).unwrap();
+    assert_eq!(
+        (sent.seq, batch.seq, batch.stream),
+        (1, 1, identity(7).stream)
+    );
+    assert_eq!(batch.tally, accepted(90));
+    let times: Vec<Timestamp> = batch.samples.iter().map(|s| s.time).collect();
+    assert_eq!(times, [sample(0).time, sample(1).time]);
+    let (_, sealed) = spool.store(&[], &BTreeMap::new(), Seal::All).await.unwrap();
+    assert_eq!(sealed, 0, "nothing is left to seal");
+}
+
+#[tokio::test]
+async fn before_enrolment_samples_wait_and_then_go_in_batches_of_256() {
+    let directory = TempDir::new().unwrap();
+    let spool = Spool::open(directory.path()).await.unwrap();
+    seal(&spool, 0..600).await;
+    assert_eq!(spool.pending().await.unwrap().samples, 600);
+    spool.enrol(&identity(7)).await.unwrap();
+    let (pending, sealed) = spool
+        .store(&[], &BTreeMap::new(), Seal::Full)
+        .await
+        .unwrap();
+    assert_eq!((pending.samples, sealed), (600 - 512, 2));
+    assert_eq!(pending.since, Some(sample(512).time));
+}
+
+#[tokio::test]
+async fn a_batch_goes_only_when_it_and_all_before_it_are_acknowledged() {
+    let (_directory, spool) = enrolled().await;
+    for minute in 0..3 {
+        seal(&spool, minute..minute + 1).await;
+    }
+    let stream = identity(7).stream;
+    let first = spool.next_batch().await.unwrap().unwrap();
+    spool.park(1, "unreadable").await.unwrap();
+    let second = spool.next_batch().await.unwrap().unwrap();
+    assert_eq!(second.seq, 2);
+    spool
+        .acknowledge(stream, &second, &downlink(0))
+        .await
+        .unwrap();
+    assert!(!spool.has_unfillable_gap(0).await.unwrap());
+    let standing = spool.standing().await.unwrap();
+    assert_eq!((standing.waiting_batches, standing.parked_batches), (1, 1));
+    assert_eq!(standing.parked_because.as_deref(), Some("unreadable"));
+    spool.unpark().await.unwrap();
+    spool
+        .acknowledge(stream, &first, &downlink(2))
+        .await
+        .unwrap();
+    let standing = spool.standing().await.unwrap();
+    assert_eq!(
+        (standing.acknowledged_batches, standing.acknowledged_samples),
+        (2, 2)
+    );
+    assert_eq!((standing.waiting_batches, standing.contiguous_seq), (1, 2));
+    assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 3);
+    assert!(spool.has_unfillable_gap(1).await.unwrap());
+}
+
+#[tokio::test]
+async fn a_shore_that_claims_too_much_deletes_nothing_unsent() {
+    let (_directory, spool) = enrolled().await;
+    seal(&spool, 0..1).await;
+    seal(&spool, 1..2).await;
+    let first = spool.next_batch().await.unwrap().unwrap();
+    spool
+        .acknowledge(identity(7).stream, &first, &downlink(99))
+        .await
+        .unwrap();
+    assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 2);
+}
+
+#[tokio::test]
+async fn a_new_stream_numbers_what_is_left_from_one() {
+    let (_directory, spool) = enrolled().await;
+    for minute in 0..3 {
+        seal(&spool, minute..minute + 1).await;
+    }
+    let first = spool.next_batch().await.unwrap().unwrap();
+    spool
+        .acknowledge(identity(7).stream, &first, &downlink(1))
+        .await
+        .unwrap();
+    spool
+        .move_to_stream(StreamId(Uuid::from_u128(8)))
+        .await
+        .unwrap();
+    let moved = spool.next_batch().await.unwrap().unwrap();
+    let batch = binnacle_wire::decode(&moved.bytes).unwrap();
+    assert_eq!((moved.seq, batch.seq, batch.stream.0.as_u128()), (1, 1, 8));
+    assert_eq!(batch.samples[0].time, sample(1).time);
+    assert_eq!(
+        spool.identity().await.unwrap().unwrap().stream.0.as_u128(),
+        8
+    );
+    seal(&spool, 9..10).await;
+    assert_eq!(spool.standing().await.unwrap().waiting_batches, 3);
+    assert!(!spool.has_unfillable_gap(0).await.unwrap());
+}
+
+#[tokio::test]
+async fn a_damaged_batch_is_put_aside_and_the_others_go_on() {
+    let (_directory, spool) = enrolled().await;
+    seal(&spool, 0..1).await;
+    seal(&spool, 1..2).await;
+    sqlx::query("UPDATE batches SET bytes = x'00' WHERE seq = 1")
+        .execute(&spool.pool)
+        .await
+        .unwrap();
+    spool
+        .move_to_stream(StreamId(Uuid::from_u128(8)))
+        .await
+        .unwrap();
+    let moved = spool.next_batch().await.unwrap().unwrap();
+    assert_eq!(
+        binnacle_wire::decode(&moved.bytes).unwrap().samples[0].time,
+        sample(1).time
+    );
+}
+
+#[tokio::test]
+async fn everything_is_there_after_opening_again() {
+    let (directory, spool) = enrolled().await;
+    seal(&spool, 0..1).await;
+    spool
+        .store(&[sample(5)], &BTreeMap::new(), Seal::Full)
+        .await
+        .unwrap();
+    spool.set_hold(Some(Hold::Berthed)).await.unwrap();
+    let settings = Settings {
+        version: 4,
+        min_sog_kn: 6.0,
+        ..Settings::default()
+    };
+    let news = Downlink {
+        settings: Some(settings.clone()),
+        ..downlink(0)
+    };
+    spool.keep_downlink(&news).await.unwrap();
+    drop(spool);
+    let spool = Spool::open(directory.path()).await.unwrap();
+    assert_eq!(spool.identity().await.unwrap(), Some(identity(7)));
+    assert_eq!(spool.hold().await.unwrap(), Some(Hold::Berthed));
+    assert_eq!(spool.settings().await.unwrap(), settings);
+    assert_eq!(spool.pending().await.unwrap().samples, 1);
+    assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 1);
+    spool.set_hold(None).await.unwrap();
+    assert_eq!(spool.hold().await.unwrap(), None);
+}
+
+#[cfg(unix)]
+#[tokio::test]
+async fn the_token_is_readable_by_its_owner_only_and_never_shown() {
+    use std::os::unix::fs::PermissionsExt;
+    let (directory, _spool) = enrolled().await;
+    for name in ["spool.db", "spool.db-wal"] {
+        let mode = std::fs::metadata(directory.path().join(name))
+            .unwrap()
+            .permissions()
+            .mode();
+        assert_eq!(mode & 0o077, 0, "{name}");
+    }
+    assert!(!format!("{:?}", identity(7)).contains("secret"));
+}

@@ -1,0 +1,66 @@
+//! How long to wait after failures: longer and longer, never for good.
+
+use rand::{Rng, RngExt};
+use std::time::Duration;
+
+/// Exponential backoff with full jitter above a least pause.
+#[derive(Clone, Debug)]
+pub(crate) struct Backoff {
+    least: Duration,
+    most: Duration,
+    failures: u32,
+}
+
+impl Backoff {
+    /// Pauses between `least` and `most`.
+    pub(crate) fn new(least: Duration, most: Duration) -> Backoff {
+        Backoff {
+            least,
+            most: most.max(least),
+            failures: 0,
+        }
+    }
+
+    /// All is well again.
+    pub(crate) fn reset(&mut self) {
+        self.failures = 0;
+    }
+
+    /// The pause after one more failure: anywhere from the least to a limit
+    /// that doubles each time, so that a fleet does not come back all at once.
+    pub(crate) fn next(&mut self, rng: &mut impl Rng) -> Duration {
+        self.failures = self.failures.saturating_add(1);
+        let doubled = self
+            .least
+            .saturating_mul(2_u32.saturating_pow(self.failures));
+        let limit = doubled.min(self.most);
+        let spread = limit.saturating_sub(self.least);
+        self.least + spread.mul_f64(rng.random::<f64>())
+    }
+
+    /// The longest pause.
+    pub(crate) fn most(&self) -> Duration {
+        self.most
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+
+    #[test]
+    fn pauses_grow_within_their_limits_and_start_anew_after_success() {
+        let (least, most) = (Duration::from_secs(30), Duration::from_secs(3600));
+        let mut backoff = Backoff::new(least, most);
+        let mut rng = StdRng::seed_from_u64(1);
+        let pauses: Vec<Duration> = (0..200).map(|_| backoff.next(&mut rng)).collect();
+        assert!(pauses.iter().all(|p| (least..=most).contains(p)));
+        assert!(pauses[0] <= Duration::from_secs(60));
+        assert!(pauses.iter().any(|p| *p > Duration::from_secs(3000)));
+        assert!(pauses[20..].iter().any(|p| *p < Duration::from_secs(600)));
+        backoff.reset();
+        assert!(backoff.next(&mut rng) <= Duration::from_secs(60));
+    }
+}

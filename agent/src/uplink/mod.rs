@@ -1,0 +1,303 @@
+//! Sealed batches to the shore, models and settings back: one after another,
+//! again and again, never giving up.
+//!
+//! What always holds:
+//!
+//! - A batch counts as sent when the shore's answer has been read and kept, not
+//!   before. Until then it is sent again, byte for byte.
+//! - No failure loses data or stops the agent; each is on the page in words.
+//! - A model or settings that arrive are kept first and then in effect at once.
+
+mod backoff;
+mod shore;
+
+pub(crate) use backoff::Backoff;
+pub(crate) use shore::{Have, Shore, Trouble};
+
+use crate::spool::{Identity, SealedBatch, Spool};
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::messages::{Downlink, ModelDownlink, Settings};
+use rand::rngs::StdRng;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::{Notify, watch};
+use tokio::time::{Instant, timeout};
+use tokio_util::sync::CancellationToken;
+
+/// How often a pause is interrupted to see whether the agent was enrolled anew.
+const LOOK_FOR_ENROLMENT: Duration = Duration::from_secs(5);
+
+/// How the link is, for the page.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct LinkStatus {
+    /// In one word.
+    pub(crate) state: LinkState,
+    /// What is wrong, in words.
+    pub(crate) problem: Option<String>,
+    /// When the shore last answered, by its clock.
+    pub(crate) last_contact: Option<Timestamp>,
+}
+
+/// How the link is, in one word.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum LinkState {
+    /// There is no token: see `enrol`.
+    #[default]
+    NotEnrolled,
+    /// The first try is under way.
+    Connecting,
+    /// The last request was answered.
+    Up,
+    /// The last request was not answered.
+    Down,
+    /// The shore does not know the token or the stream.
+    Refused,
+}
+
+/// What the shore decides, as it is now.
+#[derive(Debug)]
+pub(crate) struct Tell {
+    /// The model to steer by.
+    pub(crate) model: watch::Sender<Option<ModelDownlink>>,
+    /// How to sample and send.
+    pub(crate) settings: watch::Sender<Settings>,
+    /// How the link is.
+    pub(crate) link: watch::Sender<LinkStatus>,
+}
+
+/// Everything the uplink works with.
+#[derive(Debug)]
+pub(crate) struct Uplink {
+    pub(crate) spool: Spool,
+    pub(crate) shore: Shore,
+    pub(crate) backoff: Backoff,
+    /// Asks for news when nothing was sent for so long.
+    pub(crate) poll: Duration,
+    pub(crate) tell: Tell,
+    /// Rings when a batch has been sealed.
+    pub(crate) sealed: Arc<Notify>,
+    pub(crate) rng: StdRng,
+}
+
+/// What to do next.
+enum Next {
+    /// Look for work at once.
+    GoOn,
+    /// Wait for a sealed batch, or for so long.
+    Idle(Duration),
+    /// Wait for so long, work or no work.
+    Pause(Duration),
+}
+
+impl Uplink {
+    /// Runs until `shutdown`.
+    pub(crate) async fn run(mut self, shutdown: CancellationToken) {
+        if let Err(error) = self.spool.unpark().await {
+            tracing::error!(%error, "cannot look at the parked batches");
+        }
+        let mut answered = None;
+        loop {
+            let work = self.step(&mut answered);
+            let Some(next) = shutdown.run_until_cancelled(work).await else {
+                return;
+            };
+            let wait = self.wait(next);
+            if shutdown.run_until_cancelled(wait).await.is_none() {
+                return;
+            }
+        }
+    }
+
+    /// One request at most; `answered` is when the shore last answered.
+    async fn step(&mut self, answered: &mut Option<Instant>) -> Next {
+        match self.try_step(answered).await {
+            Ok(next) => next,
+            Err(error) => {
+                tracing::error!(%error, "the spool cannot be used");
+                Next::Pause(self.backoff.next(&mut self.rng))
+            }
+        }
+    }
+
+    async fn try_step(&mut self, answered: &mut Option<Instant>) -> sqlx::Result<Next> {
+        let Some(identity) = self.spool.identity().await? else {
+            self.tell.link.send_replace(LinkStatus::default());
+            return Ok(Next::Idle(LOOK_FOR_ENROLMENT));
+        };
+        if answered.is_none() {
+            self.connecting();
+        }
+        let have = Have {
+            model: self.tell.model.borrow().as_ref().map(|model| model.id),
+            settings: self.tell.settings.borrow().version,
+        };
+        let batch = self.spool.next_batch().await?;
+        let result = match &batch {
+            Some(batch) => self.shore.put_batch(&identity, batch, have).await,
+            None => {
+                let idle = answered.map(|at| at.elapsed());
+                if let Some(left) = idle.and_then(|idle| self.poll.checked_sub(idle)) {
+                    return Ok(Next::Idle(left));
+                }
+                self.shore.downlink(&identity, have).await
+            }
+        };
+        match result {
+            Ok(downlink) => {
+                *answered = Some(Instant::now());
+                self.succeed(&identity, batch.as_ref(), downlink).await
+            }
+            Err(trouble) => self.fail(&identity, batch.as_ref(), trouble).await,
+        }
+    }
+
+    async fn succeed(
+        &mut self,
+        identity: &Identity,
+        batch: Option<&SealedBatch>,
+        downlink: Downlink,
+    ) -> sqlx::Result<Next> {
+        match batch {
+            Some(batch) => {
+                self.spool
+                    .acknowledge(identity.stream, batch, &downlink)
+                    .await?;
+                tracing::info!(
+                    seq = batch.seq,
+                    bytes = batch.bytes.len(),
+                    "a batch is ashore"
+                );
+            }
+            None => self.spool.keep_downlink(&downlink).await?,
+        }
+        self.backoff.reset();
+        let contiguous = downlink.contiguous_seq;
+        self.take_effect(downlink);
+        // Only the answer to a batch is sure to come from where batches are kept.
+        if batch.is_some() && self.spool.has_unfillable_gap(contiguous).await? {
+            tracing::warn!(
+                contiguous,
+                "the shore lacks batches that are no longer here"
+            );
+            return self.open_stream(identity).await;
+        }
+        Ok(Next::GoOn)
+    }
+
+    fn take_effect(&self, downlink: Downlink) {
+        self.tell.link.send_replace(LinkStatus {
+            state: LinkState::Up,
+            problem: None,
+            last_contact: Some(downlink.server_time),
+        });
+        if let Some(model) = downlink.model {
+            tracing::info!(version = model.version, "a new model is in effect");
+            self.tell.model.send_replace(Some(model));
+        }
+        if let Some(settings) = downlink.settings {
+            tracing::info!(version = settings.version, "new settings are in effect");
+            self.tell.settings.send_replace(settings);
+        }
+    }
+
+    async fn fail(
+        &mut self,
+        identity: &Identity,
+        batch: Option<&SealedBatch>,
+        trouble: Trouble,
+    ) -> sqlx::Result<Next> {
+        let problem = trouble.to_string();
+        let (state, pause) = match (trouble, batch) {
+            (Trouble::Forked, _) => {
+                tracing::warn!("the stream has forked: opening another");
+                return self.open_stream(identity).await;
+            }
+            (Trouble::Refused(_), Some(batch)) => {
+                tracing::error!(
+                    seq = batch.seq,
+                    problem,
+                    "the shore refuses a batch: kept aside"
+                );
+                self.spool.park(batch.seq, &problem).await?;
+                (LinkState::Up, self.backoff.next(&mut self.rng))
+            }
+            (Trouble::Unknown(_) | Trouble::Refused(_), _) => {
+                tracing::error!(problem, "the shore refuses the agent: enrol it again");
+                (LinkState::Refused, self.backoff.most())
+            }
+            (Trouble::Busy { retry_after, .. }, _) => {
+                let pause = self.backoff.next(&mut self.rng);
+                (
+                    LinkState::Down,
+                    retry_after.map_or(pause, |asked| asked.max(pause)),
+                )
+            }
+            (Trouble::Link(_), _) => (LinkState::Down, self.backoff.next(&mut self.rng)),
+        };
+        tracing::warn!(problem, pause_s = pause.as_secs_f64(), "not sent");
+        self.tell.link.send_modify(|link| {
+            link.state = state;
+            link.problem = Some(problem);
+        });
+        Ok(Next::Pause(pause))
+    }
+
+    async fn open_stream(&mut self, identity: &Identity) -> sqlx::Result<Next> {
+        match self.shore.open_stream(identity).await {
+            Ok(stream) => {
+                self.spool.move_to_stream(stream).await?;
+                Ok(Next::GoOn)
+            }
+            Err(trouble) => {
+                let pause = self.backoff.next(&mut self.rng);
+                tracing::warn!(%trouble, pause_s = pause.as_secs_f64(), "no new stream");
+                self.tell.link.send_modify(|link| {
+                    link.state = LinkState::Down;
+                    link.problem = Some(trouble.to_string());
+                });
+                Ok(Next::Pause(pause))
+            }
+        }
+    }
+
+    fn connecting(&self) {
+        self.tell.link.send_if_modified(|link| {
+            let first = link.state == LinkState::NotEnrolled;
+            if first {
+                link.state = LinkState::Connecting;
+            }
+            first
+        });
+    }
+
+    async fn wait(&self, next: Next) {
+        match next {
+            Next::GoOn => {}
+            Next::Idle(longest) => {
+                // A batch that was sealed meanwhile has left its ring behind.
+                timeout(longest, self.sealed.notified()).await.ok();
+            }
+            Next::Pause(pause) => self.pause(pause).await,
+        }
+    }
+
+    /// Waits, but not longer than until the agent is enrolled anew.
+    async fn pause(&self, pause: Duration) {
+        let until = Instant::now() + pause;
+        let before = self.spool.identity().await.ok().flatten();
+        while Instant::now() < until {
+            tokio::time::sleep_until(until.min(Instant::now() + LOOK_FOR_ENROLMENT)).await;
+            let Ok(identity) = self.spool.identity().await else {
+                continue;
+            };
+            if identity != before {
+                return;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

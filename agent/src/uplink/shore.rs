@@ -1,0 +1,254 @@
+//! Requests to the shore and what their answers mean.
+//!
+//! Nothing counts as an answer but the JSON that the shore writes: the login
+//! page of a harbour's network, with whatever status, is a failure of the link.
+
+use crate::spool::{Identity, SealedBatch};
+use anyhow::Context;
+use binnacle_wire::batch::StreamId;
+use binnacle_wire::messages::{Downlink, EnrolAnswer, EnrolRequest, OpenStreamAnswer};
+use reqwest::header::{CONTENT_TYPE, RETRY_AFTER};
+use reqwest::{RequestBuilder, Response, StatusCode, redirect};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::fmt;
+use std::path::Path;
+use std::time::Duration;
+use uuid::Uuid;
+
+/// A TLS handshake over a satellite takes five seconds and may lose packets.
+const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
+/// Between two bytes.
+const READ_TIMEOUT: Duration = Duration::from_secs(90);
+/// Several batches go over one connection, which is then closed: keeping it
+/// alive would cost more than opening it again.
+const IDLE_CONNECTION: Duration = Duration::from_secs(5);
+/// No answer is longer.
+const LARGEST_ANSWER: usize = 1 << 20;
+
+/// The shore, as far as HTTP goes.
+#[derive(Clone, Debug)]
+pub(crate) struct Shore {
+    http: reqwest::Client,
+}
+
+/// What the agent already has of what the shore decides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Have {
+    /// The model's id.
+    pub(crate) model: Option<Uuid>,
+    /// The settings' version.
+    pub(crate) settings: u32,
+}
+
+/// Why a request did not succeed.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Trouble {
+    /// No answer, or none from the shore: try again.
+    Link(String),
+    /// The shore cannot take it now.
+    Busy {
+        /// What it said.
+        problem: String,
+        /// When it wants to be asked again.
+        retry_after: Option<Duration>,
+    },
+    /// This number was used for other bytes: the stream has forked.
+    Forked,
+    /// The token or the stream is not known (any more).
+    Unknown(String),
+    /// The shore will never take these bytes.
+    Refused(String),
+}
+
+impl fmt::Display for Trouble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Trouble::Link(problem) | Trouble::Unknown(problem) | Trouble::Refused(problem) => {
+                f.write_str(problem)
+            }
+            Trouble::Busy { problem, .. } => f.write_str(problem),
+            Trouble::Forked => f.write_str("the shore has another batch of this number"),
+        }
+    }
+}
+
+/// RFC 9457, as far as it is read.
+#[derive(Deserialize)]
+struct Problem {
+    #[serde(rename = "type", default)]
+    kind: String,
+    #[serde(default)]
+    title: String,
+    #[serde(default)]
+    detail: String,
+}
+
+impl Shore {
+    /// A client that believes the usual authorities, or only the pinned one.
+    pub(crate) fn new(pinned_ca: Option<&Path>) -> anyhow::Result<Shore> {
+        let mut builder = reqwest::Client::builder()
+            .http1_only()
+            .redirect(redirect::Policy::none())
+            .connect_timeout(CONNECT_TIMEOUT)
+            .read_timeout(READ_TIMEOUT)
+            .pool_idle_timeout(IDLE_CONNECTION)
+            .pool_max_idle_per_host(1);
+        if let Some(path) = pinned_ca {
+            let name = path.display();
+            let pem = std::fs::read(path).with_context(|| format!("{name}: pinned_ca"))?;
+            let certificates = reqwest::Certificate::from_pem_bundle(&pem)
+                .with_context(|| format!("{name}: pinned_ca is not a PEM certificate"))?;
+            anyhow::ensure!(
+                !certificates.is_empty(),
+                "{name}: pinned_ca has no certificate"
+            );
+            builder = builder.tls_certs_only(certificates);
+        }
+        let http = builder.build().context("cannot set up TLS")?;
+        Ok(Shore { http })
+    }
+
+    /// Exchanges a one-time code for a token.
+    pub(crate) async fn enrol(&self, server: &str, code: &str) -> Result<EnrolAnswer, Trouble> {
+        let request = EnrolRequest {
+            code: code.to_owned(),
+            agent_version: env!("CARGO_PKG_VERSION").to_owned(),
+        };
+        let url = format!("{server}/api/v1/agents/enrol");
+        answer(self.http.post(url).json(&request)).await
+    }
+
+    /// Opens a new stream for the same compass.
+    pub(crate) async fn open_stream(&self, identity: &Identity) -> Result<StreamId, Trouble> {
+        let url = format!("{}/api/v1/streams", identity.server);
+        let request = self.http.post(url).bearer_auth(&identity.token);
+        let opened: OpenStreamAnswer = answer(request).await?;
+        Ok(opened.stream)
+    }
+
+    /// Sends one batch; success only when the shore says that it is durable.
+    pub(crate) async fn put_batch(
+        &self,
+        identity: &Identity,
+        batch: &SealedBatch,
+        have: Have,
+    ) -> Result<Downlink, Trouble> {
+        let path = format!("batches/{}", batch.seq);
+        let request = self
+            .http
+            .put(stream_url(identity, &path, have))
+            .bearer_auth(&identity.token)
+            .header(CONTENT_TYPE, "application/octet-stream")
+            .body(batch.bytes.clone());
+        answer(request).await
+    }
+
+    /// Asks for news.
+    pub(crate) async fn downlink(
+        &self,
+        identity: &Identity,
+        have: Have,
+    ) -> Result<Downlink, Trouble> {
+        let request = self
+            .http
+            .get(stream_url(identity, "downlink", have))
+            .bearer_auth(&identity.token);
+        answer(request).await
+    }
+}
+
+fn stream_url(identity: &Identity, path: &str, have: Have) -> String {
+    let (server, stream) = (&identity.server, identity.stream);
+    let model = have
+        .model
+        .map(|id| format!("model={id}&"))
+        .unwrap_or_default();
+    let settings = have.settings;
+    format!("{server}/api/v1/streams/{stream}/{path}?{model}settings={settings}")
+}
+
+async fn answer<T: DeserializeOwned>(request: RequestBuilder) -> Result<T, Trouble> {
+    let response = request.send().await.map_err(|e| link_trouble(&e))?;
+    let status = response.status();
+    let retry_after = retry_after(&response);
+    let body = body(response).await?;
+    if status.is_success() {
+        return serde_json::from_slice(&body).map_err(|_| not_the_shore(status));
+    }
+    let Ok(problem) = serde_json::from_slice::<Problem>(&body) else {
+        if status.is_server_error() || status == StatusCode::TOO_MANY_REQUESTS {
+            return Err(Trouble::Busy {
+                problem: format!("the shore answered {status}"),
+                retry_after,
+            });
+        }
+        return Err(not_the_shore(status));
+    };
+    Err(trouble(status, &problem, retry_after))
+}
+
+fn trouble(status: StatusCode, problem: &Problem, retry_after: Option<Duration>) -> Trouble {
+    let text = if problem.detail.is_empty() {
+        format!("{} {}", status.as_u16(), problem.title)
+    } else {
+        format!("{} {}: {}", status.as_u16(), problem.title, problem.detail)
+    };
+    match status {
+        StatusCode::CONFLICT if problem.kind.ends_with("stream-forked") => Trouble::Forked,
+        StatusCode::UNAUTHORIZED
+        | StatusCode::FORBIDDEN
+        | StatusCode::NOT_FOUND
+        | StatusCode::GONE => Trouble::Unknown(text),
+        StatusCode::TOO_MANY_REQUESTS | StatusCode::REQUEST_TIMEOUT | StatusCode::TOO_EARLY => {
+            Trouble::Busy {
+                problem: text,
+                retry_after,
+            }
+        }
+        status if status.is_client_error() => Trouble::Refused(text),
+        _ => Trouble::Busy {
+            problem: text,
+            retry_after,
+        },
+    }
+}
+
+fn not_the_shore(status: StatusCode) -> Trouble {
+    Trouble::Link(format!(
+        "something other than the shore answered ({status}): a network's login page, or a wrong address?"
+    ))
+}
+
+/// Whole seconds; the other form, a date, would need the shore's clock.
+fn retry_after(response: &Response) -> Option<Duration> {
+    let text = response.headers().get(RETRY_AFTER)?.to_str().ok()?;
+    text.trim().parse().ok().map(Duration::from_secs)
+}
+
+async fn body(mut response: Response) -> Result<Vec<u8>, Trouble> {
+    let mut body = Vec::new();
+    while let Some(chunk) = response.chunk().await.map_err(|e| link_trouble(&e))? {
+        body.extend_from_slice(&chunk);
+        if body.len() > LARGEST_ANSWER {
+            return Err(not_the_shore(response.status()));
+        }
+    }
+    Ok(body)
+}
+
+/// The innermost cause says most: "connection refused", "certificate expired".
+fn link_trouble(error: &reqwest::Error) -> Trouble {
+    let mut cause: &dyn std::error::Error = error;
+    while let Some(inner) = cause.source() {
+        cause = inner;
+    }
+    let kind = if error.is_timeout() {
+        "no answer in time"
+    } else if error.is_connect() {
+        "cannot connect"
+    } else {
+        "the connection broke"
+    };
+    Trouble::Link(format!("{kind}: {cause}"))
+}

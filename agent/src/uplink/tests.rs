@@ -1,0 +1,355 @@
+//! The uplink against a made-up shore on a real socket.
+
+use super::*;
+use crate::spool::Seal;
+use axum::body::Bytes;
+use axum::extract::{Path, Query, State};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post, put};
+use axum::{Json, Router};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::batch::StreamId;
+use rand::SeedableRng;
+use serde_json::json;
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::sync::Mutex;
+use tempfile::TempDir;
+use uuid::Uuid;
+
+/// What the shore was sent, and what it is to answer before it behaves well.
+#[derive(Default)]
+struct Fake {
+    batches: BTreeMap<(Uuid, u64), Vec<u8>>,
+    streams: u128,
+    queries: Vec<HashMap<String, String>>,
+    answers: VecDeque<Response>,
+    settings: Option<Settings>,
+    requests: u32,
+}
+
+type Shared = Arc<Mutex<Fake>>;
+
+fn time() -> Timestamp {
+    Timestamp::parse("2026-11-21T07:00:00Z").unwrap()
+}
+
+fn problem(status: StatusCode, kind: &str) -> Response {
+    let body =
+        json!({"type": format!("https://x/problems/{kind}"), "title": kind, "detail": "why"});
+    (status, Json(body)).into_response()
+}
+
+async fn put_batch(
+    State(fake): State<Shared>,
+    Path((stream, seq)): Path<(Uuid, u64)>,
+    Query(query): Query<HashMap<String, String>>,
+    body: Bytes,
+) -> Response {
+    let mut fake = fake.lock().unwrap();
+    fake.requests += 1;
+    fake.queries.push(query);
+    if let Some(answer) = fake.answers.pop_front() {
+        return answer;
+    }
+    let known = fake
+        .batches
+        .entry((stream, seq))
+        .or_insert(body.to_vec())
+        .clone();
+    if known != body {
+        return problem(StatusCode::CONFLICT, "stream-forked");
+    }
+    Json(downlink(&fake, stream)).into_response()
+}
+
+async fn get_downlink(State(fake): State<Shared>, Path(stream): Path<Uuid>) -> Json<Downlink> {
+    Json(downlink(&fake.lock().unwrap(), stream))
+}
+
+async fn open_stream(State(fake): State<Shared>) -> Response {
+    let mut fake = fake.lock().unwrap();
+    fake.streams += 1;
+    let stream = Uuid::from_u128(1000 + fake.streams);
+    (StatusCode::CREATED, Json(json!({"stream": stream}))).into_response()
+}
+
+fn downlink(fake: &Fake, stream: Uuid) -> Downlink {
+    let contiguous_seq = (1..).take_while(|seq| fake.batches.contains_key(&(stream, *seq)));
+    Downlink {
+        contiguous_seq: contiguous_seq.last().unwrap_or(0),
+        model: None,
+        settings: fake.settings.clone(),
+        server_time: time(),
+    }
+}
+
+struct Rig {
+    fake: Shared,
+    spool: Spool,
+    link: watch::Receiver<LinkStatus>,
+    settings: watch::Receiver<Settings>,
+    sealed: Arc<Notify>,
+    shutdown: CancellationToken,
+    _directory: TempDir,
+}
+
+impl Drop for Rig {
+    fn drop(&mut self) {
+        self.shutdown.cancel();
+    }
+}
+
+const STREAM: Uuid = Uuid::from_u128(7);
+
+/// An enrolled agent's spool with `batches` sealed, and a shore to send to.
+async fn rig(batches: i64, fake: Fake) -> Rig {
+    rustls::crypto::ring::default_provider()
+        .install_default()
+        .ok();
+    let fake = Arc::new(Mutex::new(fake));
+    let router = Router::new()
+        .route("/api/v1/streams/{stream}/batches/{seq}", put(put_batch))
+        .route("/api/v1/streams/{stream}/downlink", get(get_downlink))
+        .route("/api/v1/streams", post(open_stream))
+        .with_state(fake.clone());
+    let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let server = format!("http://{}", listener.local_addr().unwrap());
+    tokio::spawn(async move { axum::serve(listener, router).await });
+
+    let directory = TempDir::new().unwrap();
+    let spool = Spool::open(directory.path()).await.unwrap();
+    let identity = Identity {
+        server,
+        token: "t".to_owned(),
+        stream: StreamId(STREAM),
+        vessel_name: "Txori".to_owned(),
+        compass_name: "Standard compass".to_owned(),
+    };
+    spool.enrol(&identity).await.unwrap();
+    for number in 0..batches {
+        seal(&spool, number).await;
+    }
+    let (link_tx, link) = watch::channel(LinkStatus::default());
+    let (settings_tx, settings) = watch::channel(Settings::default());
+    let sealed = Arc::new(Notify::new());
+    let uplink = Uplink {
+        spool: spool.clone(),
+        shore: Shore::new(None).unwrap(),
+        backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
+        poll: Duration::from_secs(3600),
+        tell: Tell {
+            model: watch::channel(None).0,
+            settings: settings_tx,
+            link: link_tx,
+        },
+        sealed: sealed.clone(),
+        rng: StdRng::seed_from_u64(1),
+    };
+    let shutdown = CancellationToken::new();
+    tokio::spawn(uplink.run(shutdown.clone()));
+    Rig {
+        fake,
+        spool,
+        link,
+        settings,
+        sealed,
+        shutdown,
+        _directory: directory,
+    }
+}
+
+async fn seal(spool: &Spool, number: i64) {
+    let sample = Sample {
+        time: time().plus_seconds(number as f64 * 600.0),
+        position: Position::new(43.0, -3.0).unwrap(),
+        compass: CompassHeading::new(100.0).unwrap(),
+        gyro: TrueHeading::new(98.0),
+        satellite: None,
+        sog_kn: Some(12.0),
+        rate_of_turn_deg_min: Some(0.0),
+        spread_deg: Some(0.1),
+        windows: 60,
+    };
+    spool
+        .store(&[sample], &BTreeMap::new(), Seal::All)
+        .await
+        .unwrap();
+}
+
+impl Rig {
+    /// Waits until nothing is left to send.
+    async fn all_sent(&mut self) {
+        loop {
+            if self.spool.next_batch().await.unwrap().is_none()
+                && self.link.borrow().state == LinkState::Up
+            {
+                return;
+            }
+            let changed = self.link.changed();
+            timeout(Duration::from_secs(20), changed)
+                .await
+                .expect("the link says nothing new")
+                .unwrap();
+        }
+    }
+
+    fn seqs(&self, stream: Uuid) -> Vec<u64> {
+        let fake = self.fake.lock().unwrap();
+        let keys = fake.batches.keys();
+        keys.filter(|(s, _)| *s == stream)
+            .map(|(_, seq)| *seq)
+            .collect()
+    }
+}
+
+#[tokio::test]
+async fn every_batch_is_sent_and_then_forgotten() {
+    let mut rig = rig(3, Fake::default()).await;
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2, 3]);
+    seal(&rig.spool, 3).await;
+    rig.sealed.notify_one();
+    rig.link.mark_unchanged();
+    rig.all_sent().await;
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!(
+        (standing.acknowledged_samples, standing.contiguous_seq),
+        (4, 4)
+    );
+    assert_eq!(standing.waiting_batches, 0);
+    assert_eq!(rig.link.borrow().last_contact, Some(time()));
+}
+
+#[tokio::test]
+async fn no_failure_of_the_link_loses_a_batch() {
+    let login = "<html>Welcome to Harbour Wi-Fi</html>";
+    let answers = [
+        (StatusCode::OK, login).into_response(),
+        (StatusCode::FOUND, [("location", "http://portal/")]).into_response(),
+        (StatusCode::FORBIDDEN, login).into_response(),
+        (StatusCode::OK, "{\"contiguous_seq\":").into_response(),
+        (StatusCode::BAD_GATEWAY, "nginx").into_response(),
+        problem(StatusCode::SERVICE_UNAVAILABLE, "busy"),
+    ];
+    let fake = Fake {
+        answers: answers.into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2]);
+    assert_eq!(rig.fake.lock().unwrap().requests, 6 + 2);
+    assert_eq!(rig.spool.standing().await.unwrap().acknowledged_batches, 2);
+}
+
+#[tokio::test]
+async fn the_shore_is_given_the_time_it_asks_for() {
+    let busy = (
+        StatusCode::TOO_MANY_REQUESTS,
+        [("retry-after", "1")],
+        "slow down",
+    );
+    let fake = Fake {
+        answers: [busy.into_response()].into(),
+        ..Fake::default()
+    };
+    let before = Instant::now();
+    let mut rig = rig(1, fake).await;
+    rig.all_sent().await;
+    assert!(before.elapsed() >= Duration::from_secs(1));
+}
+
+#[tokio::test]
+async fn a_forked_stream_is_left_for_a_new_one() {
+    let mut fake = Fake::default();
+    fake.batches.insert((STREAM, 1), b"other bytes".to_vec());
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    let new = Uuid::from_u128(1001);
+    assert_eq!(rig.seqs(new), [1, 2]);
+    let fake = rig.fake.lock().unwrap();
+    for seq in [1, 2] {
+        let batch = binnacle_wire::decode(&fake.batches[&(new, seq)]).unwrap();
+        assert_eq!(
+            (batch.stream.0, batch.seq, batch.samples.len()),
+            (new, seq, 1)
+        );
+    }
+}
+
+#[tokio::test]
+async fn a_shore_that_lost_its_batches_gets_a_new_stream() {
+    let mut rig = rig(3, Fake::default()).await;
+    rig.all_sent().await;
+    rig.fake.lock().unwrap().batches.clear();
+    seal(&rig.spool, 3).await;
+    seal(&rig.spool, 4).await;
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [4]);
+    assert_eq!(rig.seqs(Uuid::from_u128(1001)), [1]);
+}
+
+#[tokio::test]
+async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
+    let fake = Fake {
+        answers: [problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable")].into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [2]);
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!((standing.parked_batches, standing.contiguous_seq), (1, 0));
+    assert_eq!(
+        standing.parked_because.as_deref(),
+        Some("422 undecodable: why")
+    );
+}
+
+#[tokio::test]
+async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
+    let fake = Fake {
+        answers: [
+            problem(StatusCode::UNAUTHORIZED, "unauthorized"),
+            problem(StatusCode::NOT_FOUND, "not-found"),
+        ]
+        .into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(1, fake).await;
+    rig.link
+        .wait_for(|link| link.state == LinkState::Refused)
+        .await
+        .unwrap();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1]);
+}
+
+#[tokio::test]
+async fn settings_are_in_effect_and_kept_and_then_asked_for_by_version() {
+    let settings = Settings {
+        version: 3,
+        min_sog_kn: 7.0,
+        ..Settings::default()
+    };
+    let fake = Fake {
+        settings: Some(settings.clone()),
+        ..Fake::default()
+    };
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    assert_eq!(*rig.settings.borrow(), settings);
+    assert_eq!(rig.spool.settings().await.unwrap(), settings);
+    let fake = rig.fake.lock().unwrap();
+    let asked: Vec<&str> = fake
+        .queries
+        .iter()
+        .map(|q| q["settings"].as_str())
+        .collect();
+    assert_eq!(asked, ["0", "3"]);
+}
