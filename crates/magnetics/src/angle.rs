@@ -264,6 +264,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::float_cmp, reason = "these wrap exactly")]
     fn a_full_circle_is_north_and_minus_180_is_180() {
         assert_eq!(CompassHeading::try_from(360.0).unwrap().degrees(), 0.0);
         assert_eq!(CompassHeading::new(-1e-20).unwrap().degrees(), 0.0);

@@ -16,6 +16,8 @@ pub mod time;
 pub mod model;
 pub mod sample;
 
+pub mod field;
+
 pub mod deviation;
 pub mod ship;
 

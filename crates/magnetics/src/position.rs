@@ -40,7 +40,7 @@ impl Position {
         if !(-180.0..=180.0).contains(&lon_deg) {
             return Err(PositionError::Longitude(lon_deg));
         }
-        let lon_deg = if lon_deg == 180.0 { -180.0 } else { lon_deg };
+        let lon_deg = if lon_deg < 180.0 { lon_deg } else { -180.0 };
         Ok(Position { lat_deg, lon_deg })
     }
 

@@ -74,6 +74,7 @@ impl Timestamp {
     }
 
     /// The same instant as chrono has it.
+    #[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
     pub fn to_chrono(self) -> DateTime<Utc> {
         DateTime::from_timestamp_micros(self.0).expect("the range was checked when it was made")
     }
