@@ -1,1 +1,17 @@
-//! End-to-end tests of the real programs.
+//! End-to-end tests of the real programs: what they share.
+//!
+//! The tests start the server, agents and the simulator as users would, as
+//! processes, on loopback ports that the system chooses, and kill them. Nothing
+//! is skipped: a missing program or database fails the test with what to do.
+
+pub mod database;
+pub mod eventually;
+pub mod program;
+pub mod ship;
+pub mod shore;
+
+pub use database::{Database, Engine};
+pub use eventually::eventually;
+pub use program::{Program, output_of};
+pub use ship::Ship;
+pub use shore::Shore;

@@ -1,0 +1,32 @@
+//! Waiting for what another process does.
+
+use anyhow::{Result, bail};
+use std::fmt::Display;
+use std::time::Duration;
+use tokio::time::{Instant, MissedTickBehavior, interval};
+
+/// How often is asked.
+const EVERY: Duration = Duration::from_millis(50);
+
+/// Asks until there is an answer.
+///
+/// # Errors
+/// With `what` when there is none `within` the time; or as soon as asking fails.
+pub async fn eventually<T>(
+    what: impl Display,
+    within: Duration,
+    mut ask: impl AsyncFnMut() -> Result<Option<T>>,
+) -> Result<T> {
+    let deadline = Instant::now() + within;
+    let mut ticks = interval(EVERY);
+    ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    loop {
+        ticks.tick().await;
+        if let Some(answer) = ask().await? {
+            return Ok(answer);
+        }
+        if Instant::now() >= deadline {
+            bail!("{what}: not within {} s", within.as_secs());
+        }
+    }
+}

@@ -1,0 +1,133 @@
+//! A ship: an agent process with its own folder, fed over TCP.
+
+use crate::program::{self, Program};
+use anyhow::{Context, Result, ensure};
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+
+/// An agent, running or not.
+#[derive(Debug)]
+pub struct Ship {
+    name: String,
+    folder: PathBuf,
+    agent: Option<Program>,
+}
+
+impl Ship {
+    /// Writes `agent.toml` into a new folder. The agent reads its sentences at
+    /// `feed`, and gives out corrected headings at `output`.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub fn new(name: &str, parent: &Path, feed: SocketAddr, output: SocketAddr) -> Result<Ship> {
+        let folder = parent.join(name);
+        std::fs::create_dir_all(&folder)?;
+        let config = format!(
+            r#"data_dir = "state"
+[inputs.bridge]
+tcp = "{feed}"
+[roles]
+compass = [{{ input = "bridge", talker = "HC", sentence = "HDG" }}]
+gyro = [{{ input = "bridge", talker = "HE", sentence = "THS" }}]
+satellite = [{{ input = "bridge", talker = "GP", sentence = "THS" }}]
+position = [{{ input = "bridge", talker = "GP", sentence = "RMC" }}]
+rate_of_turn = [{{ input = "bridge", sentence = "ROT" }}]
+[output]
+tcp_server = "{output}"
+interval_s = 1
+[page]
+listen = "127.0.0.1:0"
+[uplink]
+poll_s = 2
+retry_min_s = 1
+retry_max_s = 2
+[silence]
+stale_s = 15
+"#
+        );
+        std::fs::write(folder.join("agent.toml"), config)?;
+        Ok(Ship {
+            name: name.to_owned(),
+            folder,
+            agent: None,
+        })
+    }
+
+    /// The path of `agent.toml`.
+    pub fn config(&self) -> PathBuf {
+        self.folder.join("agent.toml")
+    }
+
+    /// Where the agent keeps its spool.
+    pub fn data_dir(&self) -> PathBuf {
+        self.folder.join("state")
+    }
+
+    /// Exchanges a code for the agent's token and stream.
+    ///
+    /// # Errors
+    /// When the agent or the server refuses.
+    pub async fn enrol(&self, server: &str, code: &str) -> Result<()> {
+        let mut command = program::command("binnacle-agent")?;
+        command
+            .args(["enrol", "--server", server, "--code", code, "--config"])
+            .arg(self.config());
+        program::answer_of(command, "").await?;
+        Ok(())
+    }
+
+    /// Starts the agent.
+    ///
+    /// # Errors
+    /// When it cannot be started.
+    pub fn start(&mut self) -> Result<()> {
+        ensure!(
+            self.agent.is_none(),
+            "the agent of {} runs already",
+            self.name
+        );
+        let mut command = program::command("binnacle-agent")?;
+        command.args(["run", "--config"]).arg(self.config());
+        let log = self.folder.join("agent.log");
+        self.agent = Some(Program::start(&self.name, command, &log)?);
+        Ok(())
+    }
+
+    /// Kills the agent with signal 9.
+    ///
+    /// # Errors
+    /// When it had ended by itself.
+    pub async fn kill(&mut self) -> Result<()> {
+        let agent = self.agent.take().context("the agent runs")?;
+        ensure!(
+            !agent.log().contains("panicked"),
+            "the agent panicked:\n{}",
+            agent.log()
+        );
+        agent.kill().await
+    }
+
+    /// Kills the agent with signal 9 and starts it again.
+    ///
+    /// # Errors
+    /// When it had ended by itself, or does not start.
+    pub async fn kill_and_restart(&mut self) -> Result<()> {
+        self.kill().await?;
+        self.start()
+    }
+
+    /// Fails unless the agent is up.
+    ///
+    /// # Errors
+    /// When it is not.
+    pub fn assert_running(&mut self) -> Result<()> {
+        let agent = self.agent.as_mut().context("the agent runs")?;
+        ensure!(
+            agent.is_running()?,
+            "the agent of {} has ended:\n{}",
+            self.name,
+            agent.log()
+        );
+        Ok(())
+    }
+}

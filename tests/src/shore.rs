@@ -1,0 +1,310 @@
+//! The server, and its API as an operator's admin sees it.
+
+use crate::database::{Database, Engine};
+use crate::program::{self, Program};
+use anyhow::{Context, Result, bail, ensure};
+use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::sync::Once;
+use std::time::Duration;
+use tokio::io::{AsyncBufReadExt, BufReader};
+use tokio::time::timeout;
+
+const EMAIL: &str = "captain@test.example";
+const PASSWORD: &str = "correct-horse-battery";
+/// A start migrates the database; machines may be busy.
+const START: Duration = Duration::from_mins(1);
+
+/// A running server with one operator, and an admin signed in.
+#[derive(Debug)]
+pub struct Shore {
+    /// `http://127.0.0.1:PORT`, the same after a restart.
+    pub url: String,
+    database: Database,
+    folder: PathBuf,
+    server: Option<Program>,
+    http: Client,
+    cookie: String,
+}
+
+impl Shore {
+    /// Starts a server on a new database.
+    ///
+    /// # Errors
+    /// When it does not start.
+    pub async fn start(engine: Engine, folder: &Path) -> Result<Shore> {
+        let database = Database::create(engine, folder).await?;
+        let mut shore = Shore {
+            url: String::new(),
+            database,
+            folder: folder.to_owned(),
+            server: None,
+            http: http_client()?,
+            cookie: String::new(),
+        };
+        shore.admin(&["migrate"], "").await?;
+        shore.create_admin(EMAIL).await?;
+        shore.serve("127.0.0.1:0").await?;
+        shore.cookie = shore.sign_in(EMAIL).await?;
+        Ok(shore)
+    }
+
+    /// Another operator, with an admin: the cookie of a stranger.
+    ///
+    /// # Errors
+    /// When the server refuses.
+    pub async fn stranger(&self) -> Result<String> {
+        let email = "stranger@elsewhere.example";
+        self.create_admin(email).await?;
+        self.sign_in(email).await
+    }
+
+    async fn create_admin(&self, email: &str) -> Result<()> {
+        let name = ["admin", "create", "operator", "--name", email];
+        let operator: Value = serde_json::from_str(&self.admin(&name, "").await?)?;
+        let operator = operator["operator_id"].as_str().context("operator_id")?;
+        let user = [
+            "admin",
+            "create",
+            "user",
+            "--operator",
+            operator,
+            "--email",
+            email,
+        ];
+        let rest = [
+            "--name",
+            "Test Admin",
+            "--role",
+            "admin",
+            "--password-stdin",
+        ];
+        self.admin(&[&user[..], &rest].concat(), PASSWORD).await?;
+        Ok(())
+    }
+
+    async fn admin(&self, arguments: &[&str], input: &str) -> Result<String> {
+        let mut command = program::command("binnacle-server")?;
+        command
+            .args(arguments)
+            .env("BINNACLE_DATABASE_URL", self.database.url());
+        program::answer_of(command, &format!("{input}\n")).await
+    }
+
+    async fn serve(&mut self, listen: &str) -> Result<()> {
+        let mut command = program::command("binnacle-server")?;
+        command
+            .args(["serve", "--listen", listen])
+            .env("BINNACLE_DATABASE_URL", self.database.url())
+            .env("BINNACLE_ANALYSIS_DELAY_S", "0")
+            .stdout(Stdio::piped());
+        let log = self.folder.join("server.log");
+        let mut server = Program::start("binnacle-server", command, &log)?;
+        let stdout = server
+            .child()
+            .stdout
+            .take()
+            .context("standard output was asked for")?;
+        let mut lines = BufReader::new(stdout).lines();
+        let line = timeout(START, lines.next_line())
+            .await
+            .context("the server's first line")??;
+        // Keeps the pipe open: the server may write more.
+        tokio::spawn(async move { while let Ok(Some(_)) = lines.next_line().await {} });
+        let line = line.with_context(|| format!("the server ended:\n{}", server.log()))?;
+        let url = line
+            .strip_prefix("listening on ")
+            .with_context(|| line.clone())?;
+        url.clone_into(&mut self.url);
+        self.server = Some(server);
+        Ok(())
+    }
+
+    /// Kills the server with signal 9 and starts it again on the same port.
+    ///
+    /// # Errors
+    /// When it had ended by itself, or does not start again.
+    pub async fn kill_and_restart(&mut self) -> Result<()> {
+        let server = self.server.take().context("the server runs")?;
+        server.kill().await?;
+        let listen = self.url.trim_start_matches("http://").to_owned();
+        self.serve(&listen).await
+    }
+
+    /// Fails unless the server is up and well.
+    ///
+    /// # Errors
+    /// When it is not.
+    pub async fn assert_well(&mut self) -> Result<()> {
+        let server = self.server.as_mut().context("the server runs")?;
+        ensure!(
+            server.is_running()?,
+            "the server has ended:\n{}",
+            server.log()
+        );
+        let answer = self
+            .http
+            .get(format!("{}/healthz", self.url))
+            .send()
+            .await?;
+        ensure!(answer.status().is_success(), "healthz: {}", answer.status());
+        Ok(())
+    }
+
+    /// Stops the server and removes its database.
+    ///
+    /// # Errors
+    /// When the server had ended by itself.
+    pub async fn finish(mut self) -> Result<()> {
+        let server = self.server.take().context("the server runs")?;
+        ensure!(
+            !server.log().contains("panicked"),
+            "the server panicked:\n{}",
+            server.log()
+        );
+        server.kill().await?;
+        self.database.remove().await
+    }
+
+    async fn sign_in(&self, email: &str) -> Result<String> {
+        let answer = self
+            .http
+            .post(format!("{}/api/v1/session", self.url))
+            .json(&json!({ "email": email, "password": PASSWORD }))
+            .send()
+            .await?;
+        ensure!(
+            answer.status().is_success(),
+            "signing in: {}",
+            answer.text().await?
+        );
+        let cookie = answer
+            .headers()
+            .get("set-cookie")
+            .context("a session cookie")?;
+        let pair = cookie.to_str()?.split(';').next().unwrap_or_default();
+        Ok(pair.to_owned())
+    }
+
+    /// A request below `/api/v1` with nobody's name on it.
+    pub fn anonymous(&self, method: Method, path: &str) -> RequestBuilder {
+        self.http
+            .request(method, format!("{}/api/v1{path}", self.url))
+    }
+
+    /// A request with an agent's token.
+    pub fn as_agent(&self, method: Method, path: &str, token: &str) -> RequestBuilder {
+        self.anonymous(method, path).bearer_auth(token)
+    }
+
+    /// A request with a session's cookie.
+    pub fn with_cookie(&self, method: Method, path: &str, cookie: &str) -> RequestBuilder {
+        self.anonymous(method, path)
+            .header("cookie", cookie)
+            .header("x-binnacle-request", "1")
+    }
+
+    /// What the admin sees at a path; `None` for what is not there.
+    ///
+    /// # Errors
+    /// When the answer is neither.
+    pub async fn find(&self, path: &str) -> Result<Option<Value>> {
+        let answer = self
+            .with_cookie(Method::GET, path, &self.cookie)
+            .send()
+            .await?;
+        if answer.status() == StatusCode::NOT_FOUND {
+            return Ok(None);
+        }
+        json_of(answer).await.map(Some)
+    }
+
+    /// What the admin sees at a path.
+    ///
+    /// # Errors
+    /// When there is nothing.
+    pub async fn get(&self, path: &str) -> Result<Value> {
+        self.find(path)
+            .await?
+            .with_context(|| format!("nothing at {path}"))
+    }
+
+    /// Posts as the admin.
+    ///
+    /// # Errors
+    /// When the server refuses.
+    pub async fn post(&self, path: &str, body: &Value) -> Result<Value> {
+        let request = self
+            .with_cookie(Method::POST, path, &self.cookie)
+            .json(body);
+        json_of(request.send().await?).await
+    }
+
+    /// A list, all its pages.
+    ///
+    /// # Errors
+    /// When a page is refused.
+    pub async fn list(&self, path: &str) -> Result<Vec<Value>> {
+        let mut items = Vec::new();
+        let mut after = String::new();
+        loop {
+            let mark = if path.contains('?') { '&' } else { '?' };
+            let mut page = self.get(&format!("{path}{mark}limit=1000{after}")).await?;
+            let Value::Array(found) = page["items"].take() else {
+                bail!("no items at {path}");
+            };
+            items.extend(found);
+            let Some(next) = page["next"].as_str() else {
+                return Ok(items);
+            };
+            after = format!("&after={next}");
+        }
+    }
+
+    /// A new vessel with its standard compass, and a code to enrol an agent with.
+    ///
+    /// # Errors
+    /// When the server refuses.
+    pub async fn create_vessel(&self, name: &str) -> Result<(String, String)> {
+        let vessel = self.post("/vessels", &json!({ "name": name })).await?;
+        let id = vessel["id"].as_str().context("a vessel's id")?.to_owned();
+        let code = self.enrolment_code(&id).await?;
+        Ok((id, code))
+    }
+
+    /// A code to enrol an agent of a vessel with.
+    ///
+    /// # Errors
+    /// When the server refuses.
+    pub async fn enrolment_code(&self, vessel: &str) -> Result<String> {
+        let answer = self
+            .post(&format!("/vessels/{vessel}/agents"), &json!({}))
+            .await?;
+        Ok(answer["code"]
+            .as_str()
+            .context("an enrolment code")?
+            .to_owned())
+    }
+}
+
+async fn json_of(answer: Response) -> Result<Value> {
+    let (status, path) = (answer.status(), answer.url().path().to_owned());
+    let text = answer.text().await?;
+    ensure!(status.is_success(), "{path}: {status}: {text}");
+    if text.is_empty() {
+        return Ok(Value::Null);
+    }
+    serde_json::from_str(&text).with_context(|| format!("{path}: {text}"))
+}
+
+fn http_client() -> Result<Client> {
+    static PROVIDER: Once = Once::new();
+    // A second installation fails, which is as good.
+    PROVIDER.call_once(|| drop(rustls::crypto::ring::default_provider().install_default()));
+    Ok(Client::builder()
+        .timeout(Duration::from_mins(1))
+        .no_proxy()
+        .build()?)
+}

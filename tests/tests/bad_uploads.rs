@@ -1,0 +1,263 @@
+//! Batches that must not be stored, and what the server says to each.
+
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
+use anyhow::{Context, Result, ensure};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_tests::{Engine, Shore};
+use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::encode;
+use binnacle_wire::messages::{EnrolAnswer, EnrolRequest};
+use reqwest::{Method, StatusCode};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use uuid::Uuid;
+
+/// An agent without a ship: this test sends its batches.
+struct Agent {
+    vessel: String,
+    token: String,
+    stream: StreamId,
+}
+
+async fn enrol(shore: &Shore, name: &str) -> Result<Agent> {
+    let (vessel, code) = shore.create_vessel(name).await?;
+    let request = EnrolRequest {
+        code,
+        agent_version: "0.0.0".to_owned(),
+    };
+    let answer = shore
+        .anonymous(Method::POST, "/agents/enrol")
+        .json(&request)
+        .send()
+        .await?;
+    let answer: EnrolAnswer = answer.error_for_status()?.json().await?;
+    Ok(Agent {
+        vessel,
+        token: answer.token,
+        stream: answer.stream,
+    })
+}
+
+fn samples(count: usize) -> Vec<Sample> {
+    let start = Timestamp::parse("2026-11-20T00:00:05Z").unwrap();
+    (0..count)
+        .map(|i| Sample {
+            time: start.plus_seconds(600.0 * i as f64),
+            position: Position::new(48.0, -6.0).unwrap(),
+            compass: CompassHeading::new(31.0 * i as f64).unwrap(),
+            gyro: TrueHeading::new(31.0 * i as f64 - 3.0),
+            satellite: None,
+            sog_kn: Some(12.0),
+            rate_of_turn_deg_min: None,
+            spread_deg: Some(0.3),
+            windows: 60,
+        })
+        .collect()
+}
+
+fn frame(stream: StreamId, seq: u64, samples: Vec<Sample>) -> Vec<u8> {
+    encode(&Batch {
+        stream,
+        seq,
+        samples,
+        tally: BTreeMap::new(),
+    })
+    .unwrap()
+}
+
+/// Sends a frame and gives back the status and the problem.
+async fn put(
+    shore: &Shore,
+    token: Option<&str>,
+    stream: StreamId,
+    seq: u64,
+    body: Vec<u8>,
+) -> Result<(StatusCode, Value)> {
+    let path = format!("/streams/{stream}/batches/{seq}");
+    let request = match token {
+        Some(token) => shore.as_agent(Method::PUT, &path, token),
+        None => shore.anonymous(Method::PUT, &path),
+    };
+    let request = request
+        .header("content-type", "application/octet-stream")
+        .body(body);
+    let answer = request.send().await?;
+    let status = answer.status();
+    let kind = answer.headers().get("content-type").cloned();
+    let text = answer.text().await?;
+    let body: Value = serde_json::from_str(&text).with_context(|| text.clone())?;
+    if !status.is_success() {
+        ensure!(
+            kind.is_some_and(|k| k == "application/problem+json"),
+            "{status}: {text}"
+        );
+        ensure!(body["status"] == status.as_u16(), "{text}");
+        ensure!(
+            body["title"].is_string() && body["detail"].is_string(),
+            "{text}"
+        );
+    }
+    Ok((status, body))
+}
+
+async fn assert_nothing_stored(shore: &mut Shore, agent: &Agent) -> Result<()> {
+    shore.assert_well().await?;
+    let path = format!("/streams/{}/downlink", agent.stream);
+    let downlink = shore
+        .as_agent(Method::GET, &path, &agent.token)
+        .send()
+        .await?;
+    let downlink: Value = downlink.error_for_status()?.json().await?;
+    ensure!(downlink["contiguous_seq"] == 0, "{downlink}");
+    let stored = shore
+        .list(&format!("/vessels/{}/samples", agent.vessel))
+        .await?;
+    ensure!(stored.is_empty(), "{stored:?}");
+    Ok(())
+}
+
+/// What is sent in whose name, and the statuses that may answer it.
+struct Attempt<'a> {
+    name: &'static str,
+    token: Option<&'a str>,
+    stream: StreamId,
+    seq: u64,
+    body: Vec<u8>,
+    expected: &'static [u16],
+}
+
+fn attempts<'a>(ours: &'a Agent, other: &'a Agent) -> Vec<Attempt<'a>> {
+    let good = || frame(ours.stream, 1, samples(12));
+    let mut flipped = good();
+    flipped[40] ^= 0x10;
+    let attempt = |name: &'static str, body| Attempt {
+        name,
+        token: Some(&ours.token),
+        stream: ours.stream,
+        seq: 1,
+        body,
+        expected: &[400, 422],
+    };
+    let unknown = StreamId(Uuid::now_v7());
+    let by = |name, token, expected: &'static [u16]| Attempt {
+        token,
+        expected,
+        ..attempt(name, good())
+    };
+    vec![
+        attempt("a flipped bit", flipped),
+        attempt("half a batch", good()[..30].to_vec()),
+        attempt("nothing", Vec::new()),
+        attempt("something else", b"{\"samples\":[]}".to_vec()),
+        attempt("another stream's batch", frame(other.stream, 1, samples(3))),
+        Attempt {
+            seq: 2,
+            ..attempt("another number", good())
+        },
+        Attempt {
+            stream: unknown,
+            expected: &[404],
+            ..attempt("an unknown stream", frame(unknown, 1, samples(3)))
+        },
+        Attempt {
+            expected: &[413],
+            ..attempt("too much", vec![0x42; 300_000])
+        },
+        by("another vessel's token", Some(&other.token), &[404]),
+        by("no token", None, &[401]),
+        by("a made-up token", Some("made-up"), &[401]),
+    ]
+}
+
+/// The real batch, once, again, and changed.
+async fn assert_stored_once(shore: &Shore, ours: &Agent) -> Result<()> {
+    let send = async |samples| {
+        let body = frame(ours.stream, 1, samples);
+        put(shore, Some(&ours.token), ours.stream, 1, body).await
+    };
+    for _ in 0..2 {
+        let (status, answer) = send(samples(12)).await?;
+        ensure!(
+            status == StatusCode::OK && answer["contiguous_seq"] == 1,
+            "{status} {answer}"
+        );
+    }
+    let (status, problem) = send(samples(13)).await?;
+    let kind = problem["type"].as_str().unwrap_or_default();
+    ensure!(
+        status == StatusCode::CONFLICT && kind.ends_with("/stream-forked"),
+        "{problem}"
+    );
+    let stored = shore
+        .list(&format!("/vessels/{}/samples", ours.vessel))
+        .await?;
+    ensure!(stored.len() == 12, "{} samples", stored.len());
+    Ok(())
+}
+
+async fn assert_strangers_see_nothing(shore: &Shore, vessel: &str) -> Result<()> {
+    let stranger = shore.stranger().await?;
+    for path in [
+        "",
+        "/samples",
+        "/model",
+        "/deviation",
+        "/agents",
+        "/coverage",
+    ] {
+        let path = format!("/vessels/{vessel}{path}");
+        let answer = shore
+            .with_cookie(Method::GET, &path, &stranger)
+            .send()
+            .await?;
+        ensure!(
+            answer.status() == StatusCode::NOT_FOUND,
+            "{path}: {}",
+            answer.status()
+        );
+    }
+    Ok(())
+}
+
+async fn bad_uploads(engine: Engine) -> Result<()> {
+    let folder = tempfile::tempdir()?;
+    let mut shore = Shore::start(engine, folder.path()).await?;
+    let ours = enrol(&shore, "Ours").await?;
+    let other = enrol(&shore, "Other").await?;
+    for attempt in attempts(&ours, &other) {
+        let Attempt {
+            name,
+            token,
+            stream,
+            seq,
+            body,
+            expected,
+        } = attempt;
+        let (status, problem) = put(&shore, token, stream, seq, body).await.context(name)?;
+        ensure!(
+            expected.contains(&status.as_u16()),
+            "{name}: {status} {problem}"
+        );
+        assert_nothing_stored(&mut shore, &ours)
+            .await
+            .context(name)?;
+    }
+    assert_stored_once(&shore, &ours).await?;
+    assert_strangers_see_nothing(&shore, &ours.vessel).await?;
+    shore.assert_well().await?;
+    shore.finish().await
+}
+
+#[tokio::test]
+async fn a_bad_upload_is_refused_and_leaves_nothing_on_sqlite() {
+    bad_uploads(Engine::Sqlite).await.unwrap();
+}
+
+#[tokio::test]
+async fn a_bad_upload_is_refused_and_leaves_nothing_on_postgres() {
+    bad_uploads(Engine::Postgres).await.unwrap();
+}
