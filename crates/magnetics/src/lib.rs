@@ -19,9 +19,9 @@ pub mod sample;
 pub mod field;
 
 pub mod deviation;
-pub mod handbook;
 pub mod ship;
 
 pub mod analyse;
 pub mod coverage;
+pub mod estimate;
 pub mod fit;
