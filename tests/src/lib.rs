@@ -6,12 +6,14 @@
 
 pub mod database;
 pub mod eventually;
+pub mod feed;
 pub mod program;
 pub mod ship;
 pub mod shore;
 
 pub use database::{Database, Engine};
 pub use eventually::eventually;
+pub use feed::{Feed, Pace, Progress};
 pub use program::{Program, output_of};
 pub use ship::Ship;
 pub use shore::Shore;

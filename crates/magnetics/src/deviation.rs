@@ -6,6 +6,12 @@
 //! name: where this module answers, compass and magnetic headings correspond
 //! one to one.
 
+mod check;
+mod model;
+
+pub use check::{ModelError, NAMES};
+pub use model::Prediction;
+
 use crate::angle::{CompassHeading, Deviation, MagneticHeading};
 use crate::model::Parameters;
 use crate::ship::{EarthField, PARAMETERS};

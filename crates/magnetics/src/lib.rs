@@ -19,6 +19,7 @@ pub mod sample;
 pub mod field;
 
 pub mod deviation;
+pub mod handbook;
 pub mod ship;
 
 pub mod analyse;

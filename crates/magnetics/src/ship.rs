@@ -187,6 +187,6 @@ impl ShipMagnetism {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod test_support;
 #[cfg(test)]
-pub(crate) mod tests_support;
+mod tests;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::ship::tests_support::{random_earth, random_ship};
+use crate::ship::test_support::{random_earth, random_ship};
 use crate::ship::wrap_pi;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

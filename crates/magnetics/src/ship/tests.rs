@@ -1,4 +1,4 @@
-use super::tests_support::{random_earth, random_ship};
+use super::test_support::{random_earth, random_ship};
 use super::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

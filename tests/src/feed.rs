@@ -1,0 +1,206 @@
+//! A ship's bridge: sentences over TCP, as fast as the agent takes them.
+//!
+//! Time passes on the bridge whether an agent listens or not: what was on the
+//! way to an agent that died is lost, and the next one goes on from there.
+
+use anyhow::{Context, Result, bail};
+use binnacle_magnetics::time::Timestamp;
+use std::net::SocketAddr;
+use std::time::Duration;
+use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncWriteExt, BufReader};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::watch;
+use tokio::task::JoinHandle;
+use tokio::time::{MissedTickBehavior, interval, timeout};
+
+/// Sentences are sent in pieces of about so many bytes.
+const PIECE: usize = 32 * 1024;
+/// How long a ship's second takes once the feed sails on live.
+const LIVE_SECOND: Duration = Duration::from_millis(20);
+
+/// How fast time passes on the bridge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Pace {
+    /// As fast as the agent reads, up to an instant; then the ship waits.
+    FastUntil(Timestamp),
+    /// Fifty seconds in one, to the end.
+    Live,
+}
+
+/// How far the bridge has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress {
+    /// Nothing was sent yet.
+    Waiting,
+    /// The last fix that was sent.
+    At(Timestamp),
+    /// The ship waits, at the end of [`Pace::FastUntil`].
+    Held(Timestamp),
+    /// There is nothing more to send.
+    Ended,
+}
+
+/// A bridge that sends its sentences to one agent.
+#[derive(Debug)]
+pub struct Feed {
+    address: SocketAddr,
+    pace: watch::Sender<Pace>,
+    progress: watch::Receiver<Progress>,
+    task: JoinHandle<Result<()>>,
+}
+
+impl Feed {
+    /// Listens on a free port for an agent.
+    ///
+    /// # Errors
+    /// When there is no port.
+    pub async fn start(
+        source: impl AsyncRead + Send + Unpin + 'static,
+        pace: Pace,
+    ) -> Result<Feed> {
+        let listener = TcpListener::bind("127.0.0.1:0").await?;
+        let address = listener.local_addr()?;
+        let (pace, paces) = watch::channel(pace);
+        let (news, progress) = watch::channel(Progress::Waiting);
+        let bridge = Bridge {
+            listener,
+            agent: None,
+            source: BufReader::with_capacity(PIECE, source),
+            piece: Vec::with_capacity(2 * PIECE),
+            paces,
+            news,
+        };
+        let task = tokio::spawn(bridge.run());
+        Ok(Feed {
+            address,
+            pace,
+            progress,
+            task,
+        })
+    }
+
+    /// Where the agent finds its sentences.
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Changes the pace.
+    ///
+    /// # Errors
+    /// When the feed has failed.
+    pub fn set_pace(&self, pace: Pace) -> Result<()> {
+        self.pace.send(pace).context("the feed has ended")
+    }
+
+    /// Waits until the bridge has come so far.
+    ///
+    /// # Errors
+    /// When it has not `within` the time, or failed on the way.
+    pub async fn reached(
+        &mut self,
+        within: Duration,
+        enough: impl FnMut(&Progress) -> bool,
+    ) -> Result<Progress> {
+        let seen = self.progress.clone();
+        match timeout(within, self.progress.wait_for(enough)).await {
+            Ok(progress) => Ok(*progress.context("the feed has failed")?),
+            Err(_) => bail!("the ship only came to {:?}", *seen.borrow()),
+        }
+    }
+}
+
+impl Drop for Feed {
+    fn drop(&mut self) {
+        self.task.abort();
+    }
+}
+
+struct Bridge<S> {
+    listener: TcpListener,
+    agent: Option<TcpStream>,
+    source: BufReader<S>,
+    piece: Vec<u8>,
+    paces: watch::Receiver<Pace>,
+    news: watch::Sender<Progress>,
+}
+
+impl<S: AsyncRead + Unpin> Bridge<S> {
+    async fn run(mut self) -> Result<()> {
+        let mut ticks = interval(LIVE_SECOND);
+        ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            let start = self.piece.len();
+            if self.source.read_until(b'\n', &mut self.piece).await? == 0 {
+                break;
+            }
+            let fix = time_of_fix(&self.piece[start..]);
+            if let Some(time) = fix {
+                self.news.send_replace(Progress::At(time));
+                let pace = *self.paces.borrow();
+                match pace {
+                    Pace::Live => {
+                        self.send().await?;
+                        ticks.tick().await;
+                    }
+                    Pace::FastUntil(end) if time >= end => {
+                        self.send().await?;
+                        self.news.send_replace(Progress::Held(time));
+                        self.paces.wait_for(|pace| *pace == Pace::Live).await?;
+                    }
+                    Pace::FastUntil(_) => {}
+                }
+            }
+            if self.piece.len() >= PIECE {
+                self.send().await?;
+            }
+        }
+        self.send().await?;
+        self.news.send_replace(Progress::Ended);
+        // The instruments fall silent; the line stays open.
+        std::future::pending().await
+    }
+
+    /// Sends the piece to the agent that listens, or waits for one.
+    async fn send(&mut self) -> Result<()> {
+        while !self.piece.is_empty() {
+            let agent = match &mut self.agent {
+                Some(agent) => agent,
+                None => self.agent.insert(self.listener.accept().await?.0),
+            };
+            if agent.write_all(&self.piece).await.is_err() {
+                self.agent = None;
+            }
+            // Heard or lost: the bridge does not say it again.
+            self.piece.clear();
+        }
+        Ok(())
+    }
+}
+
+/// When the fix of an RMC sentence was taken.
+fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
+    if line.get(3..7)? != b"RMC," {
+        return None;
+    }
+    let line = std::str::from_utf8(line).ok()?;
+    let mut fields = line.split(',').skip(1);
+    let (clock, day) = (fields.next()?, fields.nth(7)?);
+    let (dd, mm, yy) = (day.get(0..2)?, day.get(2..4)?, day.get(4..6)?);
+    let (hour, minute, second) = (clock.get(0..2)?, clock.get(2..4)?, clock.get(4..6)?);
+    Timestamp::parse(&format!("20{yy}-{mm}-{dd}T{hour}:{minute}:{second}Z")).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fix_tells_its_time_and_other_sentences_do_not() {
+        let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*00\r\n";
+        let time = Timestamp::parse("2026-11-21T07:30:15Z").unwrap();
+        assert_eq!(time_of_fix(fix), Some(time));
+        assert_eq!(time_of_fix(b"$HCHDG,010.0,,,,*00\r\n"), None);
+        assert_eq!(time_of_fix(b"$GPRMC,,V,,,,,,,,,,N*00\r\n"), None);
+        assert_eq!(time_of_fix(b"\xff\r\n"), None);
+    }
+}
