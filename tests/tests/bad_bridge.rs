@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use binnacle_tests::{Feed, Pace, Ship};
-use std::fmt::Write as _;
 use std::io::Cursor;
 use std::time::Duration;
 use tokio::io::{AsyncBufReadExt, BufReader};
@@ -21,14 +20,9 @@ fn watch(seconds: u32) -> String {
         let (minute, second) = (second / 60, second % 60);
         let clock = format!("12{minute:02}{second:02}.00");
         let fix = format!("GPRMC,{clock},A,4321.10,N,00301.50,W,12.4,085.0,201126,,,A");
-        let lines = [
-            fix,
-            "HCHDG,087.3,,,,".to_owned(),
-            "HETHS,085.1,A".to_owned(),
-        ];
-        lines
-            .iter()
-            .for_each(|line| write!(text, "{}", sentence(line)).unwrap());
+        for line in [&fix, "HCHDG,087.3,,,,", "HETHS,085.1,A"] {
+            text += &sentence(line);
+        }
         text
     })
 }
