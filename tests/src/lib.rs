@@ -7,8 +7,6 @@
 pub mod database;
 pub mod eventually;
 pub mod feed;
-pub mod heard;
-pub mod ledger;
 pub mod program;
 pub mod ship;
 pub mod shore;

@@ -1,54 +1,87 @@
-//! What the agent listens to: each input delivers observations into one
-//! bounded channel, and waits when the channel is full.
+//! What the agent listens to. Each input is one task that delivers observations
+//! into one bounded channel.
+//!
+//! What always holds:
+//! - An input never gives up: what cannot be opened, or breaks off, is tried
+//!   again with growing pauses. Only a file comes to an end.
+//! - Nothing is buffered without bound. Where the sender can wait (TCP, serial,
+//!   Signal K, files) it waits while the channel is full; datagrams cannot, and
+//!   those that find no room are counted.
+//! - Every line that is not used is counted by reason.
+
+mod config;
+mod decode;
+mod delta;
+mod link;
+mod pump;
+mod readings;
+mod stats;
+
+mod file;
+mod serial;
+mod signalk;
+mod tcp;
+mod udp;
+
+pub(crate) use config::InputConfig;
+#[allow(unused_imports)] // until every part is wired
+pub(crate) use decode::is_recorded_time;
+#[allow(unused_imports)] // until every part is wired
+pub(crate) use file::replay;
+#[allow(unused_imports)] // until every part is wired
+pub(crate) use stats::{InputStats, InputStatus};
 
 use crate::observation::Observation;
-use serde::Deserialize;
-use std::path::{Path, PathBuf};
+use link::{Backoff, End, Link};
+use std::io;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64};
 use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-/// One input: exactly one kind.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum InputConfig {
-    /// Connects to a host and port.
-    Tcp(String),
-    /// Reads recorded sentences.
-    File(PathBuf),
+/// Starts reading an input until `shutdown`, the end of a file, or until nobody
+/// takes the observations any more.
+pub(crate) fn spawn(
+    name: Arc<str>,
+    config: InputConfig,
+    tx: mpsc::Sender<Vec<Observation>>,
+    stats: Arc<InputStats>,
+    shutdown: CancellationToken,
+) -> JoinHandle<()> {
+    let link = Link::new(name, tx, stats);
+    tokio::spawn(async move {
+        shutdown.run_until_cancelled(run(&config, &link)).await;
+        link.closed("stopped");
+    })
 }
 
-impl InputConfig {
-    /// Makes paths relative to the configuration's directory.
-    pub(crate) fn resolve(&mut self, directory: &Path) {
-        if let InputConfig::File(path) = self {
-            *path = directory.join(&path);
+async fn run(config: &InputConfig, link: &Link) {
+    let mut backoff = Backoff::default();
+    loop {
+        let heard_before = link.stats.bytes();
+        let why = match session(config, link).await {
+            Ok(End::Finished) => return,
+            Ok(End::Closed) => "the other side has closed the connection".to_owned(),
+            Err(error) => error.to_string(),
+        };
+        if link.is_abandoned() {
+            return;
         }
+        link.closed(&why);
+        if link.stats.bytes() > heard_before {
+            backoff = Backoff::default();
+        }
+        tokio::time::sleep(backoff.next_pause()).await;
     }
 }
 
-/// How an input is doing; counts since the agent started.
-#[derive(Debug, Default)]
-pub(crate) struct InputStats {
-    /// Connected or open.
-    pub(crate) connected: AtomicBool,
-    /// Sentences understood.
-    pub(crate) sentences: AtomicU64,
-    /// Lines with a wrong checksum; never used.
-    pub(crate) bad_checksums: AtomicU64,
-    /// Lines that are no sentence, or one that is not read.
-    pub(crate) unread: AtomicU64,
-}
-
-/// Starts reading an input until `shutdown`.
-pub(crate) fn spawn(
-    _name: Arc<str>,
-    _config: InputConfig,
-    _tx: mpsc::Sender<Vec<Observation>>,
-    _stats: Arc<InputStats>,
-    shutdown: CancellationToken,
-) -> JoinHandle<()> {
-    tokio::spawn(async move { shutdown.cancelled().await })
+async fn session(config: &InputConfig, link: &Link) -> io::Result<End> {
+    match config {
+        InputConfig::Serial(port) => serial::session(port, link).await,
+        InputConfig::Tcp(address) => tcp::session(address, link).await,
+        InputConfig::Udp(address) => udp::unicast(*address, link).await,
+        InputConfig::Multicast(group) => udp::multicast(group, link).await,
+        InputConfig::SignalK(url) => signalk::session(url, link).await,
+        InputConfig::File(path) => file::session(path, link).await,
+    }
 }

@@ -24,5 +24,4 @@ pub mod ship;
 
 pub mod analyse;
 pub mod coverage;
-pub mod estimate;
 pub mod fit;

@@ -16,15 +16,15 @@ fn data(body: &str) -> Data {
         .data
 }
 
-fn position(lat_deg_north: f64, lon_deg_east: f64) -> Option<Position> {
-    Some(Position {
+fn position(lat_deg_north: f64, lon_deg_east: f64) -> Position {
+    Position {
         lat_deg_north,
         lon_deg_east,
-    })
+    }
 }
 
 fn near(found: Option<Position>, lat: f64, lon: f64) {
-    let found = found.unwrap();
+    let found = found.expect("a position");
     assert!((found.lat_deg_north - lat).abs() < 1e-9, "{found:?}");
     assert!((found.lon_deg_east - lon).abs() < 1e-9, "{found:?}");
 }
@@ -59,7 +59,7 @@ fn printed_sentences_with_their_printed_checksums_are_read() {
         gga,
         Gga {
             time: TimeOfDay::new(12, 35, 19, 0),
-            position: position(48.1173, 11.516_666_666_666_667),
+            position: Some(position(48.1173, 11.516_666_666_666_667)),
             quality: 1,
             satellites: Some(8),
             hdop: Some(0.9),
@@ -155,7 +155,7 @@ fn north_and_east_are_positive_up_to_the_poles_and_the_antimeridian() {
                     };
                     assert_eq!(
                         gll.position,
-                        position(lat_sign * lat_deg, lon_sign * lon_deg)
+                        Some(position(lat_sign * lat_deg, lon_sign * lon_deg))
                     );
                 }
             }
@@ -165,7 +165,7 @@ fn north_and_east_are_positive_up_to_the_poles_and_the_antimeridian() {
             let Data::Gll(Some(gll)) = data(&body) else {
                 panic!()
             };
-            assert_eq!(gll.position, position(lat_sign * 12.0, -180.0));
+            assert_eq!(gll.position, Some(position(lat_sign * 12.0, -180.0)));
         }
     }
 }

@@ -1,0 +1,258 @@
+//! From bytes to observations: cut into lines, read, counted.
+
+use super::readings::{readings, timestamp};
+use crate::observation::{Observation, Reading};
+use binnacle_magnetics::time::Timestamp;
+use binnacle_nmea::lines::Line;
+use binnacle_nmea::{Lines, Rejected, Tally, datagram};
+use std::sync::Arc;
+
+/// Talker and sentence of a time that the recording gave, not an instrument.
+const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
+
+/// Whether an observation is the time that a recording gives its lines.
+pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
+    (seen.talker, seen.sentence) == RECORDED_TIME
+}
+
+/// What the lines of an input may have before the sentence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Source {
+    /// Instruments themselves. A clock in a TAG block is some device's own and
+    /// is not looked at.
+    Live,
+    /// A recording: an RFC 3339 time and a space or tab, or the clock in a TAG
+    /// block, says when a line was received.
+    Recording,
+}
+
+/// Decodes one connection's bytes; a new connection starts a new one.
+#[derive(Debug)]
+pub(super) struct Decoder {
+    lines: Lines,
+    reader: Reader,
+}
+
+#[derive(Debug)]
+struct Reader {
+    input: Arc<str>,
+    source: Source,
+    tally: Tally,
+    recorded_at: Option<Timestamp>,
+    /// The text of the last time, which many lines share.
+    time_text: Vec<u8>,
+    out: Vec<Observation>,
+}
+
+impl Decoder {
+    pub(super) fn new(input: Arc<str>, source: Source) -> Decoder {
+        Decoder {
+            lines: Lines::default(),
+            reader: Reader {
+                input,
+                source,
+                tally: Tally::default(),
+                recorded_at: None,
+                time_text: Vec::new(),
+                out: Vec::new(),
+            },
+        }
+    }
+
+    /// Reads what a chunk completes.
+    pub(super) fn chunk(&mut self, chunk: &[u8]) {
+        let reader = &mut self.reader;
+        self.lines.push(chunk, |line| reader.line(line));
+    }
+
+    /// Reads the last line, whose end may be missing.
+    pub(super) fn finish(&mut self) {
+        let reader = &mut self.reader;
+        self.lines.finish(|line| reader.line(line));
+    }
+
+    /// Reads a datagram of plain sentences.
+    pub(super) fn plain_datagram(&mut self, bytes: &[u8]) {
+        self.chunk(bytes);
+        self.finish();
+    }
+
+    /// Reads an IEC 61162-450 datagram.
+    pub(super) fn tagged_datagram(&mut self, bytes: &[u8]) {
+        match datagram::lines(bytes) {
+            Ok(lines) => lines.for_each(|line| self.reader.line(Line::Whole(line))),
+            Err(rejected) => self.reader.tally.reject(rejected),
+        }
+    }
+
+    /// The observations so far; leaves none behind.
+    pub(super) fn take_observations(&mut self) -> Vec<Observation> {
+        let room = Vec::with_capacity(self.reader.out.len());
+        std::mem::replace(&mut self.reader.out, room)
+    }
+
+    /// The counts so far; leaves none behind.
+    pub(super) fn take_tally(&mut self) -> Tally {
+        std::mem::take(&mut self.reader.tally)
+    }
+}
+
+impl Reader {
+    fn line(&mut self, line: Line<'_>) {
+        let Line::Whole(mut line) = line else {
+            self.tally.reject(Rejected::TooLong);
+            return;
+        };
+        if self.source == Source::Recording {
+            let Some(rest) = self.after_time(line) else {
+                self.tally.reject(Rejected::NotASentence);
+                return;
+            };
+            line = rest;
+        }
+        let Some(tagged) = self.tally.read(line) else {
+            return;
+        };
+        if self.source == Source::Recording
+            && let Some(at) = tagged.tag.unix_micros.and_then(timestamp)
+        {
+            self.recorded(at);
+        }
+        let sentence = tagged.sentence;
+        readings(&sentence.data, |reading| {
+            self.out.push(Observation {
+                input: Arc::clone(&self.input),
+                talker: sentence.talker,
+                sentence: sentence.data.kind().code(),
+                reading,
+            });
+        });
+    }
+
+    /// What follows the time before a sentence; `None` when there is something
+    /// that should be a time and is not.
+    fn after_time<'a>(&mut self, line: &'a [u8]) -> Option<&'a [u8]> {
+        if !line.first().is_some_and(u8::is_ascii_digit) {
+            return Some(line);
+        }
+        let end = line.iter().position(|byte| matches!(byte, b' ' | b'\t'))?;
+        let (text, rest) = (&line[..end], line[end..].trim_ascii_start());
+        if text != self.time_text {
+            let at = Timestamp::parse(std::str::from_utf8(text).ok()?).ok()?;
+            self.time_text.clear();
+            self.time_text.extend_from_slice(text);
+            self.recorded(at);
+        }
+        Some(rest)
+    }
+
+    fn recorded(&mut self, at: Timestamp) {
+        if self.recorded_at.replace(at) == Some(at) {
+            return;
+        }
+        let (talker, sentence) = RECORDED_TIME;
+        self.out.push(Observation {
+            input: Arc::clone(&self.input),
+            talker,
+            sentence,
+            reading: Reading::Time(at),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADING: &str = "$GPHDT,274.07,T*03";
+
+    fn decode(source: Source, text: &str) -> (Vec<Observation>, Tally) {
+        let mut decoder = Decoder::new("log".into(), source);
+        decoder.chunk(text.as_bytes());
+        decoder.finish();
+        (decoder.take_observations(), decoder.take_tally())
+    }
+
+    fn times(seen: &[Observation]) -> Vec<String> {
+        let times = seen.iter().filter(|seen| is_recorded_time(seen));
+        times
+            .map(|seen| match seen.reading {
+                Reading::Time(at) => at.to_string(),
+                _ => panic!("{seen:?}"),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_recording_gives_its_times_before_its_sentences() {
+        let text = format!(
+            "2026-01-02T12:00:00Z {HEADING}\n2026-01-02T12:00:00Z\t{HEADING}\r\n\
+             2026-01-02T13:00:01.25+01:00  {HEADING}\n{HEADING}"
+        );
+        let (seen, tally) = decode(Source::Recording, &text);
+        assert_eq!(
+            times(&seen),
+            ["2026-01-02T12:00:00Z", "2026-01-02T12:00:01.250Z"]
+        );
+        assert_eq!((seen.len(), tally.total_read()), (6, 4));
+        assert!(is_recorded_time(&seen[0]) && is_recorded_time(&seen[3]));
+    }
+
+    #[test]
+    fn the_clock_of_a_tag_block_is_a_time_in_recordings_alone() {
+        let text = format!("\\c:1767355200*5F\\{HEADING}\n");
+        let (seen, tally) = decode(Source::Recording, &text);
+        assert_eq!(tally.total_rejected(), 0, "{tally:?}");
+        assert_eq!(times(&seen), ["2026-01-02T12:00:00Z"]);
+        let (seen, _) = decode(Source::Live, &text);
+        assert_eq!((seen.len(), times(&seen).len()), (1, 0));
+    }
+
+    #[test]
+    fn a_line_whose_time_is_no_time_is_counted_and_not_used() {
+        for time in ["2026-13-02T12:00:00Z", "12", "2026-01-02"] {
+            let (seen, tally) = decode(Source::Recording, &format!("{time} {HEADING}\n"));
+            assert_eq!(seen, []);
+            assert_eq!(
+                tally.rejected().collect::<Vec<_>>(),
+                [("not a sentence", 1)]
+            );
+        }
+    }
+
+    #[test]
+    fn observations_carry_their_source() {
+        let (seen, _) = decode(Source::Live, "$HCHDG,98.3,0.0,E,12.6,W*57\r\n");
+        assert_eq!(&*seen[0].input, "log");
+        assert_eq!((&seen[0].talker, &seen[0].sentence), (b"HC", b"HDG"));
+    }
+
+    #[test]
+    fn nothing_of_noise_or_of_spoilt_sentences_is_used() {
+        let text = "\u{0}\u{1}\u{fffd}\n$HCHDG,98.4,0.0,E,12.6,W*57\n$HCHDG,98.3,0.0,E,12.6,W\n";
+        let (seen, tally) = decode(Source::Live, text);
+        assert_eq!(seen, []);
+        let reasons = [
+            ("not a sentence", 1),
+            ("no checksum", 1),
+            ("wrong checksum", 1),
+        ];
+        assert_eq!(tally.rejected().collect::<Vec<_>>(), reasons);
+    }
+
+    #[test]
+    fn datagrams_may_lack_the_last_line_end() {
+        let mut decoder = Decoder::new("log".into(), Source::Live);
+        for _ in 0..2 {
+            decoder.plain_datagram(HEADING.as_bytes());
+            decoder.tagged_datagram(format!("UdPbC\0{HEADING}").as_bytes());
+            decoder.tagged_datagram(HEADING.as_bytes());
+        }
+        assert_eq!(decoder.take_observations().len(), 4);
+        let tally = decoder.take_tally();
+        assert_eq!(
+            tally.rejected().collect::<Vec<_>>(),
+            [("not a datagram of sentences", 2)]
+        );
+    }
+}

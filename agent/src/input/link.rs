@@ -1,0 +1,138 @@
+//! What every kind of input needs: where observations go, how it is doing, and
+//! how long to wait before the next try.
+
+use super::stats::InputStats;
+use crate::observation::Observation;
+use std::io;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::net::TcpStream;
+use tokio::sync::mpsc;
+use tokio::sync::mpsc::error::TrySendError;
+
+/// How long a connection may take to open.
+pub(super) const CONNECT_LIMIT: Duration = Duration::from_secs(10);
+
+const FIRST_PAUSE: Duration = Duration::from_millis(100);
+const LONGEST_PAUSE: Duration = Duration::from_secs(10);
+
+/// How a session ended without an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// There is no more: the file was read to its end.
+    Finished,
+    /// The other side hung up.
+    Closed,
+}
+
+/// One input's way into the agent.
+#[derive(Debug)]
+pub(super) struct Link {
+    pub(super) name: Arc<str>,
+    pub(super) stats: Arc<InputStats>,
+    tx: mpsc::Sender<Vec<Observation>>,
+}
+
+impl Link {
+    pub(super) fn new(
+        name: Arc<str>,
+        tx: mpsc::Sender<Vec<Observation>>,
+        stats: Arc<InputStats>,
+    ) -> Link {
+        Link { name, stats, tx }
+    }
+
+    pub(super) fn opened(&self) {
+        tracing::info!(input = %self.name, "input is open");
+        self.stats.opened();
+    }
+
+    pub(super) fn closed(&self, why: &str) {
+        if self.stats.closed(why) {
+            tracing::warn!(input = %self.name, why, "input is closed");
+        }
+    }
+
+    /// Whether nobody takes observations any more.
+    pub(super) fn is_abandoned(&self) -> bool {
+        self.tx.is_closed()
+    }
+
+    /// Hands observations on, waiting while there is no room.
+    pub(super) async fn deliver(&self, observations: Vec<Observation>) -> io::Result<()> {
+        if observations.is_empty() {
+            return Ok(());
+        }
+        let count = observations.len();
+        self.tx.send(observations).await.map_err(|_| abandoned())?;
+        self.stats.handed_on(count);
+        Ok(())
+    }
+
+    /// Hands observations on, or drops and counts them where there is no room.
+    pub(super) fn offer(&self, observations: Vec<Observation>) -> io::Result<()> {
+        if observations.is_empty() {
+            return Ok(());
+        }
+        let count = observations.len();
+        match self.tx.try_send(observations) {
+            Ok(()) => self.stats.handed_on(count),
+            Err(TrySendError::Full(_)) => self.stats.dropped(count),
+            Err(TrySendError::Closed(_)) => return Err(abandoned()),
+        }
+        Ok(())
+    }
+}
+
+fn abandoned() -> io::Error {
+    io::Error::new(
+        io::ErrorKind::BrokenPipe,
+        "nobody takes the observations any more",
+    )
+}
+
+/// Connects, with a limit, and lets the system notice a peer that has gone
+/// without a word: its power may fail at sea.
+pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
+    let stream = tokio::time::timeout(CONNECT_LIMIT, TcpStream::connect(host_port))
+        .await
+        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "no answer to the connection"))??;
+    let keepalive = socket2::TcpKeepalive::new()
+        .with_time(Duration::from_secs(30))
+        .with_interval(Duration::from_secs(10));
+    socket2::SockRef::from(&stream).set_tcp_keepalive(&keepalive)?;
+    Ok(stream)
+}
+
+/// Pauses that double from a tenth of a second to ten seconds.
+#[derive(Debug)]
+pub(super) struct Backoff(Duration);
+
+impl Default for Backoff {
+    fn default() -> Backoff {
+        Backoff(FIRST_PAUSE)
+    }
+}
+
+impl Backoff {
+    pub(super) fn next_pause(&mut self) -> Duration {
+        let pause = self.0;
+        self.0 = (pause * 2).min(LONGEST_PAUSE);
+        pause
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pauses_double_up_to_ten_seconds() {
+        let mut backoff = Backoff::default();
+        let pauses: Vec<_> = (0..9).map(|_| backoff.next_pause().as_millis()).collect();
+        assert_eq!(
+            pauses,
+            [100, 200, 400, 800, 1600, 3200, 6400, 10_000, 10_000]
+        );
+    }
+}

@@ -1,0 +1,35 @@
+//! Reads a stream of bytes to its end, each chunk one delivery.
+
+use super::decode::{Decoder, Source};
+use super::link::{End, Link};
+use std::io;
+use tokio::io::{AsyncRead, AsyncReadExt};
+
+/// About eight hundred sentences.
+const CHUNK_BYTES: usize = 64 * 1024;
+
+pub(super) async fn pump(
+    mut stream: impl AsyncRead + Unpin,
+    source: Source,
+    link: &Link,
+) -> io::Result<End> {
+    let mut decoder = Decoder::new(link.name.clone(), source);
+    let mut buffer = vec![0; CHUNK_BYTES];
+    loop {
+        let count = stream.read(&mut buffer).await?;
+        if count == 0 {
+            break;
+        }
+        decoder.chunk(&buffer[..count]);
+        link.stats.heard(count, &decoder.take_tally());
+        link.deliver(decoder.take_observations()).await?;
+    }
+    // The last line of a connection that broke off is a part of a sentence;
+    // that of a recording may be whole.
+    if source == Source::Recording {
+        decoder.finish();
+        link.stats.heard(0, &decoder.take_tally());
+        link.deliver(decoder.take_observations()).await?;
+    }
+    Ok(End::Closed)
+}

@@ -1,0 +1,196 @@
+//! From sentences to readings: what each sentence says to the agent.
+//!
+//! VHW, HBT and courses over ground say nothing: VHW repeats the heading of
+//! another instrument without its status, and a course is never a heading.
+
+use crate::observation::Reading;
+use binnacle_magnetics::angle::{
+    CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
+};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_nmea::Data;
+use binnacle_nmea::sentence::{self, Hdg, Rmc, Ths, ThsMode, Xdr};
+
+/// Hands each reading of a sentence to `each`: none, one or two.
+pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
+    let reading = match data {
+        Data::Hdg(hdg) => compass(hdg),
+        Data::Hdm(hdm) => hdm
+            .heading_deg_magnetic
+            .and_then(MagneticHeading::new)
+            .map(Reading::Magnetic),
+        Data::Hdt(hdt) => hdt
+            .heading_deg_true
+            .and_then(TrueHeading::new)
+            .map(Reading::True),
+        Data::Ths(ths) => true_heading(ths),
+        Data::Rot(rot) => rot
+            .rate_deg_min_starboard
+            .map(|deg_min| Reading::RateOfTurn { deg_min }),
+        Data::Rmc(Some(rmc)) => fix_with_time(rmc),
+        Data::Gga(Some(gga)) => gga.position.and_then(fix),
+        Data::Gll(Some(gll)) => gll.position.and_then(fix),
+        Data::Zda(zda) => zda.unix_micros().and_then(timestamp).map(Reading::Time),
+        Data::Vtg(Some(vtg)) => vtg.sog_kn.map(|sog_kn| Reading::Speed { sog_kn }),
+        Data::Xdr(Xdr {
+            roll_deg_starboard_down,
+            pitch_deg_bow_up,
+        }) => {
+            if let Some(deg) = *pitch_deg_bow_up {
+                each(Reading::Pitch { deg });
+            }
+            roll_deg_starboard_down.map(|deg| Reading::Roll { deg })
+        }
+        Data::Rmc(None)
+        | Data::Gga(None)
+        | Data::Gll(None)
+        | Data::Vtg(None)
+        | Data::Vhw(_)
+        | Data::Hbt(_) => None,
+    };
+    if let Some(reading) = reading {
+        each(reading);
+    }
+}
+
+fn compass(hdg: &Hdg) -> Option<Reading> {
+    Some(Reading::Compass {
+        raw: CompassHeading::new(hdg.reading_deg?)?,
+        deviation: hdg.deviation_deg_east.and_then(Deviation::new),
+        variation: hdg.variation_deg_east.and_then(Variation::new),
+    })
+}
+
+/// In mode A without a heading the instrument has merely said nothing.
+fn true_heading(ths: &Ths) -> Option<Reading> {
+    if ths.mode != ThsMode::Autonomous {
+        return Some(Reading::TrueNotValid);
+    }
+    let heading = ths.valid_heading_deg_true().and_then(TrueHeading::new);
+    heading.map(Reading::True)
+}
+
+fn fix_with_time(rmc: &Rmc) -> Option<Reading> {
+    let time = rmc.unix_micros().and_then(timestamp);
+    let Some(position) = rmc.position.and_then(place) else {
+        return time.map(Reading::Time);
+    };
+    Some(Reading::Fix {
+        position,
+        time,
+        sog_kn: rmc.sog_kn,
+    })
+}
+
+fn fix(position: sentence::Position) -> Option<Reading> {
+    Some(Reading::Fix {
+        position: place(position)?,
+        time: None,
+        sog_kn: None,
+    })
+}
+
+fn place(position: sentence::Position) -> Option<Position> {
+    Position::new(position.lat_deg_north, position.lon_deg_east).ok()
+}
+
+/// An instant, where the calendar has it.
+pub(super) fn timestamp(unix_micros: i64) -> Option<Timestamp> {
+    Timestamp::from_micros(unix_micros).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_nmea::parse;
+
+    fn read(body: &str) -> Vec<Reading> {
+        let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+        let sentence = parse(format!("${body}*{sum:02X}").as_bytes()).unwrap();
+        let mut out = Vec::new();
+        readings(&sentence.data, |reading| out.push(reading));
+        out
+    }
+
+    #[test]
+    fn the_compass_reading_is_kept_apart_from_its_deviation() {
+        for (body, raw, deviation, variation) in [
+            ("HCHDG,100.0,3.0,E,20.0,W", 100.0, Some(3.0), Some(-20.0)),
+            ("HCHDG,359.5,3.0,W,20.0,E", 359.5, Some(-3.0), Some(20.0)),
+            ("HCHDG,360.0,0.0,E,180.0,W", 0.0, Some(0.0), Some(180.0)),
+            ("HCHDG,0.0,,,,", 0.0, None, None),
+        ] {
+            let expected = Reading::Compass {
+                raw: CompassHeading::new(raw).unwrap(),
+                deviation: deviation.and_then(Deviation::new),
+                variation: variation.and_then(Variation::new),
+            };
+            assert_eq!(read(body), [expected], "{body}");
+        }
+    }
+
+    #[test]
+    fn unknown_and_void_values_say_nothing() {
+        for body in [
+            "HCHDG,,3.0,E,20.0,W",
+            "HCHDM,,M",
+            "HEHDT,,T",
+            "HETHS,,A",
+            "HEROT,5.0,V",
+            "GPRMC,120000,V,4330.0,N,00515.0,E,5.0,90.0,010126,,",
+            "GPGGA,120000,4330.0,N,00515.0,E,0,08,0.9,5.4,M,46.9,M,,",
+            "GPGLL,4330.0,N,00515.0,E,120000,V",
+            "GPVTG,90.0,T,,M,5.0,N,9.3,K,N",
+            "GPZDA,120000,,,,,",
+            "IIVHW,90.0,T,80.0,M,5.0,N,9.3,K",
+            "HEHBT,30,A,9",
+        ] {
+            assert_eq!(read(body), [], "{body}");
+        }
+    }
+
+    #[test]
+    fn a_true_heading_is_used_in_mode_a_alone() {
+        let heading = TrueHeading::new(77.0).unwrap();
+        assert_eq!(read("HETHS,77.0,A"), [Reading::True(heading)]);
+        assert_eq!(read("HEHDT,77.0,T"), [Reading::True(heading)]);
+        for mode in ["E", "M", "S", "V"] {
+            let body = format!("HETHS,77.0,{mode}");
+            assert_eq!(read(&body), [Reading::TrueNotValid]);
+        }
+    }
+
+    #[test]
+    fn positions_and_times_come_with_their_signs_and_dates() {
+        let time = Timestamp::parse("2026-01-02T12:00:00.5Z").ok();
+        let position = Position::new(-43.5, -5.25).unwrap();
+        assert_eq!(
+            read("GPRMC,120000.5,A,4330.0,S,00515.0,W,5.0,90.0,020126,,"),
+            [Reading::Fix {
+                position,
+                time,
+                sog_kn: Some(5.0)
+            }]
+        );
+        assert_eq!(
+            read("GPGLL,4330.0,S,00515.0,W,120000,A"),
+            [Reading::Fix {
+                position,
+                time: None,
+                sog_kn: None
+            }]
+        );
+        let time = Reading::Time(time.unwrap());
+        assert_eq!(read("GPRMC,120000.5,A,,,,,,,020126,,"), [time]);
+        assert_eq!(read("GPZDA,120000.5,02,01,2026,,"), [time]);
+    }
+
+    #[test]
+    fn roll_and_pitch_come_as_two() {
+        assert_eq!(
+            read("IIXDR,A,-1.5,D,ROLL,A,0.5,D,PTCH"),
+            [Reading::Pitch { deg: 0.5 }, Reading::Roll { deg: -1.5 }]
+        );
+    }
+}

@@ -1,0 +1,122 @@
+//! How an input is doing, shared between its task and the status page.
+
+use binnacle_nmea::Tally;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// Counts since the agent started; written once for each chunk of bytes.
+#[derive(Debug, Default)]
+pub(crate) struct InputStats(Mutex<Counts>);
+
+#[derive(Debug, Default)]
+struct Counts {
+    connected: bool,
+    problem: Option<String>,
+    times_opened: u64,
+    bytes: u64,
+    observations: u64,
+    dropped: u64,
+    sentences: Tally,
+    /// Signal K values used, and deltas and values refused.
+    values: BTreeMap<&'static str, u64>,
+    refused: BTreeMap<&'static str, u64>,
+    last_heard: Option<Instant>,
+}
+
+/// An input's counts at one moment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct InputStatus {
+    /// Open or connected.
+    pub(crate) connected: bool,
+    /// Why it was closed last, when it is not open.
+    pub(crate) problem: Option<String>,
+    /// Seconds since the last byte came.
+    pub(crate) last_heard_s_ago: Option<f64>,
+    /// Bytes received.
+    pub(crate) bytes: u64,
+    /// Observations handed on.
+    pub(crate) observations: u64,
+    /// Observations that came faster than they could be taken (datagrams only).
+    pub(crate) dropped: u64,
+    /// Times it was opened again.
+    pub(crate) reconnects: u64,
+    /// Sentences, and Signal K values, that were understood, by kind.
+    pub(crate) sentences: BTreeMap<&'static str, u64>,
+    /// Lines, deltas and values that were not used, by reason.
+    pub(crate) rejected: BTreeMap<&'static str, u64>,
+}
+
+impl InputStats {
+    /// The counts now.
+    pub(crate) fn status(&self) -> InputStatus {
+        let counts = self.lock();
+        let mut sentences: BTreeMap<_, _> = counts.sentences.sentences().collect();
+        sentences.extend(&counts.values);
+        let mut rejected: BTreeMap<_, _> = counts.sentences.rejected().collect();
+        rejected.extend(&counts.refused);
+        InputStatus {
+            connected: counts.connected,
+            problem: counts.problem.clone(),
+            last_heard_s_ago: counts.last_heard.map(|at| at.elapsed().as_secs_f64()),
+            bytes: counts.bytes,
+            observations: counts.observations,
+            dropped: counts.dropped,
+            reconnects: counts.times_opened.saturating_sub(1),
+            sentences,
+            rejected,
+        }
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.lock().bytes
+    }
+
+    pub(super) fn opened(&self) {
+        let mut counts = self.lock();
+        counts.connected = true;
+        counts.problem = None;
+        counts.times_opened += 1;
+    }
+
+    /// Whether the reason is another than the last.
+    pub(super) fn closed(&self, problem: &str) -> bool {
+        let mut counts = self.lock();
+        counts.connected = false;
+        if counts.problem.as_deref() == Some(problem) {
+            return false;
+        }
+        counts.problem = Some(problem.to_owned());
+        true
+    }
+
+    /// A chunk came and was read.
+    pub(super) fn heard(&self, bytes: usize, sentences: &Tally) {
+        let mut counts = self.lock();
+        counts.bytes += bytes as u64;
+        counts.sentences.add(sentences);
+        counts.last_heard = Some(Instant::now());
+    }
+
+    pub(super) fn handed_on(&self, observations: usize) {
+        self.lock().observations += observations as u64;
+    }
+
+    pub(super) fn dropped(&self, observations: usize) {
+        self.lock().dropped += observations as u64;
+    }
+
+    pub(super) fn value(&self, kind: &'static str) {
+        *self.lock().values.entry(kind).or_default() += 1;
+    }
+
+    pub(super) fn refuse(&self, reason: &'static str) {
+        *self.lock().refused.entry(reason).or_default() += 1;
+    }
+
+    /// Counts stay sound when a thread dies between two of them.
+    fn lock(&self) -> MutexGuard<'_, Counts> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,56 @@
+//! Sentences in datagrams: plain ones to a port of ours, or those of an
+//! IEC 61162-450 network to its multicast groups.
+//!
+//! Senders of datagrams do not wait: what finds no room is dropped and counted.
+
+use super::config::Group;
+use super::decode::{Decoder, Source};
+use super::link::{End, Link};
+use socket2::{Domain, Protocol, Socket, Type};
+use std::io;
+use std::net::SocketAddr;
+use tokio::net::UdpSocket;
+
+const LONGEST_DATAGRAM: usize = 65_536;
+/// Datagrams that are already there are handed on together, up to so many.
+const MOST_AT_ONCE: usize = 64;
+/// Room in the kernel for a burst while the agent is busy.
+const RECEIVE_BUFFER_BYTES: usize = 1024 * 1024;
+
+pub(super) async fn unicast(address: SocketAddr, link: &Link) -> io::Result<End> {
+    let socket = Socket::new(Domain::for_address(address), Type::DGRAM, None)?;
+    socket.bind(&address.into())?;
+    receive(socket, Decoder::plain_datagram, link).await
+}
+
+pub(super) async fn multicast(group: &Group, link: &Link) -> io::Result<End> {
+    let socket = Socket::new(Domain::IPV4, Type::DGRAM, Some(Protocol::UDP))?;
+    // Others on this machine may listen to the same group.
+    socket.set_reuse_address(true)?;
+    // Bound to the group itself, so that other groups on the port stay out.
+    socket.bind(&SocketAddr::V4(group.address).into())?;
+    socket.join_multicast_v4(group.address.ip(), &group.interface)?;
+    receive(socket, Decoder::tagged_datagram, link).await
+}
+
+async fn receive(socket: Socket, decode: fn(&mut Decoder, &[u8]), link: &Link) -> io::Result<End> {
+    socket.set_nonblocking(true)?;
+    socket.set_recv_buffer_size(RECEIVE_BUFFER_BYTES)?;
+    let socket = UdpSocket::from_std(socket.into())?;
+    link.opened();
+    let mut decoder = Decoder::new(link.name.clone(), Source::Live);
+    let mut buffer = vec![0; LONGEST_DATAGRAM];
+    loop {
+        let mut waiting = Some(socket.recv(&mut buffer).await?);
+        let (mut datagrams, mut bytes) = (0, 0);
+        while let Some(count) = waiting {
+            decode(&mut decoder, &buffer[..count]);
+            datagrams += 1;
+            bytes += count;
+            let more = datagrams < MOST_AT_ONCE;
+            waiting = more.then(|| socket.try_recv(&mut buffer).ok()).flatten();
+        }
+        link.stats.heard(bytes, &decoder.take_tally());
+        link.offer(decoder.take_observations())?;
+    }
+}
