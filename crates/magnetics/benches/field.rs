@@ -19,14 +19,14 @@ fn off_ushant() -> (Position, Timestamp) {
 }
 
 /// Place and time both new: coefficients are interpolated for each evaluation.
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = MODELS, sample_size = 100)]
 fn field_evaluation(bencher: Bencher<'_, '_>, model: FieldModel) {
     let (position, time) = off_ushant();
     bencher.bench(|| field(model, black_box(position), black_box(0.0), black_box(time)));
 }
 
 /// Many places at one time: coefficients are interpolated beforehand.
-#[divan::bench(args = MODELS)]
+#[divan::bench(args = MODELS, sample_size = 100)]
 fn field_evaluation_at_one_time(bencher: Bencher<'_, '_>, model: FieldModel) {
     let (position, time) = off_ushant();
     let model = FieldAt::time(model, time).expect("a date that both models know");

@@ -12,7 +12,7 @@ use crate::angle::Variation;
 use crate::position::Position;
 use crate::ship::EarthField;
 use crate::time::Timestamp;
-use coefficients::Terms;
+use coefficients::{Between, Terms};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -120,7 +120,8 @@ pub fn field(
     altitude_m: f64,
     time: Timestamp,
 ) -> Result<Field, FieldError> {
-    FieldAt::time(model, time)?.at(position, altitude_m)
+    let instant = around(model, time.decimal_year())?;
+    synthesise(&instant.terms(), position, altitude_m)
 }
 
 /// A model's coefficients for one instant: for many places at that time.
@@ -146,16 +147,10 @@ impl FieldAt {
     /// # Errors
     /// When the model does not know the date, or it is not a number.
     pub fn year(model: FieldModel, decimal_year: f64) -> Result<FieldAt, FieldError> {
-        let table = coefficients::table(model);
-        match table.at(decimal_year) {
-            Some(terms) => Ok(FieldAt { terms }),
-            None => Err(FieldError::DateOutside {
-                model,
-                year: decimal_year,
-                first: table.first_year(),
-                last: table.last_year(),
-            }),
-        }
+        let instant = around(model, decimal_year)?;
+        Ok(FieldAt {
+            terms: instant.terms(),
+        })
     }
 
     /// The field at a place and an altitude in metres above the ellipsoid.
@@ -163,11 +158,25 @@ impl FieldAt {
     /// # Errors
     /// When the altitude is not finite or far from the sea.
     pub fn at(&self, position: Position, altitude_m: f64) -> Result<Field, FieldError> {
-        if !(LOWEST_ALTITUDE_M..=HIGHEST_ALTITUDE_M).contains(&altitude_m) {
-            return Err(FieldError::Altitude(altitude_m));
-        }
-        Ok(synthesis::synthesise(&self.terms, position, altitude_m))
+        synthesise(&self.terms, position, altitude_m)
     }
+}
+
+fn around(model: FieldModel, year: f64) -> Result<Between, FieldError> {
+    let table = coefficients::table(model);
+    table.around(year).ok_or_else(|| FieldError::DateOutside {
+        model,
+        year,
+        first: table.first_year(),
+        last: table.last_year(),
+    })
+}
+
+fn synthesise(terms: &Terms, position: Position, altitude_m: f64) -> Result<Field, FieldError> {
+    if !(LOWEST_ALTITUDE_M..=HIGHEST_ALTITUDE_M).contains(&altitude_m) {
+        return Err(FieldError::Altitude(altitude_m));
+    }
+    Ok(synthesis::synthesise(terms, position, altitude_m))
 }
 
 impl FieldModel {

@@ -47,8 +47,8 @@ impl Table {
         self.years[self.years.len() - 1]
     }
 
-    /// The coefficients in a decimal year; `None` outside the model or for NaN.
-    pub(super) fn at(&self, year: f64) -> Option<Terms> {
+    /// The epochs around a decimal year; `None` outside the model or for NaN.
+    pub(super) fn around(&'static self, year: f64) -> Option<Between> {
         if !(self.first_year()..=self.last_year()).contains(&year) {
             return None;
         }
@@ -56,14 +56,32 @@ impl Table {
         // The last year itself belongs to the interval that it ends.
         let later = later.min(self.years.len() - 1);
         let (from, to) = (self.years[later - 1], self.years[later]);
-        let share = (year - from) / (to - from);
-        let (before, after) = (&self.terms[later - 1], &self.terms[later]);
-        let mut terms = NO_TERMS;
-        for index in 0..TERMS {
-            terms.g[index] = before.g[index] + share * (after.g[index] - before.g[index]);
-            terms.h[index] = before.h[index] + share * (after.h[index] - before.h[index]);
+        Some(Between {
+            before: &self.terms[later - 1],
+            after: &self.terms[later],
+            share: (year - from) / (to - from),
+        })
+    }
+}
+
+/// An instant between two epochs.
+pub(super) struct Between {
+    before: &'static Terms,
+    after: &'static Terms,
+    /// How much of the way to the later one has gone, 0 to 1.
+    share: f64,
+}
+
+impl Between {
+    /// The coefficients at the instant.
+    pub(super) fn terms(&self) -> Terms {
+        let between = |before: &[f64; TERMS], after: &[f64; TERMS]| {
+            std::array::from_fn(|index| before[index] + self.share * (after[index] - before[index]))
+        };
+        Terms {
+            g: between(&self.before.g, &self.after.g),
+            h: between(&self.before.h, &self.after.h),
         }
-        Some(terms)
     }
 }
 
@@ -160,17 +178,17 @@ mod tests {
         assert_eq!(igrf.years.len(), 27);
         assert!(igrf.years.is_sorted());
         // 195 numbers of degrees 1 to 13, none of them zero in 2020 but few.
-        let in_2020 = igrf.at(2020.0).unwrap();
+        let in_2020 = igrf.around(2020.0).unwrap().terms();
         let count = |side: &[f64]| side.iter().filter(|value| **value != 0.0).count();
         assert!(count(&in_2020.g) + count(&in_2020.h) > 190);
-        let wmm = table(FieldModel::Wmm2025).at(2025.0).unwrap();
+        let wmm = table(FieldModel::Wmm2025).around(2025.0).unwrap().terms();
         assert!(count(&wmm.g) + count(&wmm.h) > 160);
     }
 
     #[test]
     fn between_epochs_coefficients_are_linear() {
         let table = table(FieldModel::Igrf14);
-        let dipole = |year| table.at(year).unwrap().g[place(1, 0)];
+        let dipole = |year| table.around(year).unwrap().terms().g[place(1, 0)];
         assert!((dipole(2025.0) + 29_350.0).abs() < 1e-9);
         assert!((dipole(2030.0) + 29_287.0).abs() < 1e-9);
         assert!((dipole(2027.5) - f64::midpoint(dipole(2025.0), dipole(2030.0))).abs() < 1e-9);

@@ -19,9 +19,9 @@ const REFERENCE_M: f64 = 6_371_200.0;
 
 /// Factors of the recursions, which depend on degree and order only.
 struct Factors {
-    /// (2n − 1)/√(n² − m²)
+    /// (2n + 1)/√((n + 1)² − m²), from n to n + 1.
     cosine: [f64; TERMS],
-    /// √((n − 1)² − m²)/√(n² − m²)
+    /// √(n² − m²)/√((n + 1)² − m²), from n to n + 1.
     before: [f64; TERMS],
     /// √(n² − m²)
     root: [f64; TERMS],
@@ -41,15 +41,14 @@ static FACTORS: LazyLock<Factors> = LazyLock::new(|| {
         if order > 1 {
             factors.diagonal[order] = ((2.0 * m - 1.0) / (2.0 * m)).sqrt();
         }
-        for degree in order.max(1)..=MAX_DEGREE {
+        for degree in order..=MAX_DEGREE {
             let n = degree as f64;
             let index = place(degree, order);
             let root = (n * n - m * m).sqrt();
             factors.root[index] = root;
-            if degree > order {
-                factors.cosine[index] = (2.0 * n - 1.0) / root;
-                factors.before[index] = ((n - 1.0).powi(2) - m * m).max(0.0).sqrt() / root;
-            }
+            let next_root = ((n + 1.0).powi(2) - m * m).sqrt();
+            factors.cosine[index] = (2.0 * n + 1.0) / next_root;
+            factors.before[index] = root / next_root;
         }
     }
     factors
@@ -122,23 +121,32 @@ fn geocentric_field(terms: &Terms, at: &Geocentric, lon_deg: f64) -> (f64, f64, 
         if order > 1 {
             q_diagonal *= factors.diagonal[order] * at.sin;
         }
-        let m = order as f64;
         let (mut q_before, mut q) = (0.0, q_diagonal);
-        for (degree, power) in powers.iter().enumerate().skip(order) {
-            let index = place(degree, order);
-            if degree > order {
-                let next = factors.cosine[index] * at.cos * q - factors.before[index] * q_before;
-                q_before = q;
-                q = next;
-            }
-            let n = degree as f64;
-            let in_phase = power * (terms.g[index] * cos_m + terms.h[index] * sin_m);
-            let across = power * (terms.g[index] * sin_m - terms.h[index] * cos_m);
+        let range = place(order, order)..=place(MAX_DEGREE, order);
+        let rows = terms.g[range.clone()]
+            .iter()
+            .zip(&terms.h[range.clone()])
+            .zip(&factors.cosine[range.clone()])
+            .zip(&factors.before[range.clone()])
+            .zip(&factors.root[range])
+            .zip(&powers[order..]);
+        let mut n = order as f64;
+        let (mut north_m, mut east_m, mut down_m) = (0.0, 0.0, 0.0);
+        for (((((g, h), cosine), before), root), power) in rows {
+            let in_phase = power * (g * cos_m + h * sin_m);
+            let across = power * (g * sin_m - h * cos_m);
             // dP/dθ, which is n cos θ Q(n) − √(n² − m²) Q(n − 1).
-            north += in_phase * (n * at.cos * q - factors.root[index] * q_before);
-            east += across * m * q;
-            down -= in_phase * (n + 1.0) * at.sin * q;
+            north_m += in_phase * (n * at.cos * q - root * q_before);
+            east_m += across * q;
+            n += 1.0;
+            down_m += in_phase * n * q;
+            let next = cosine * at.cos * q - before * q_before;
+            q_before = q;
+            q = next;
         }
+        north += north_m;
+        east += order as f64 * east_m;
+        down -= at.sin * down_m;
     }
     (north, east, down)
 }
@@ -160,7 +168,7 @@ fn zonal(
         let n = degree as f64;
         let index = place(degree, 0);
         slope = at.cos * slope + n * p;
-        let next = factors.cosine[index] * at.cos * p - factors.before[index] * p_before;
+        let next = factors.cosine[index - 1] * at.cos * p - factors.before[index - 1] * p_before;
         p_before = p;
         p = next;
         let strength = power * terms.g[index];
