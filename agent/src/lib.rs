@@ -1,14 +1,32 @@
 //! The shipboard agent: instruments → settled windows → samples → spool → shore,
 //! and from the shore's model a corrected heading back to the bridge.
-#![allow(dead_code)] // until every part is wired
+//!
+//! A library only so that tests can reach it; the program is `main.rs`.
 
-mod clock;
+#![allow(dead_code)] // the inputs that make observations come next
+
+pub mod cli;
+mod run;
+
 mod config;
-mod hold;
+
 mod input;
 mod observation;
+
+mod hold;
 mod roles;
 mod sampler;
+mod ship;
 mod ship_time;
+
 mod spool;
 mod uplink;
+
+mod corrected;
+mod output;
+mod sentences;
+
+mod page;
+mod status;
+
+mod clock;

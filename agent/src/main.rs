@@ -1,2 +1,10 @@
 //! The shipboard agent.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    rustls::crypto::ring::default_provider()
+        .install_default()
+        .expect("no other provider has been installed before");
+    binnacle_agent::cli::main()
+}

@@ -7,6 +7,8 @@
 pub mod database;
 pub mod eventually;
 pub mod feed;
+pub mod heard;
+pub mod ledger;
 pub mod program;
 pub mod ship;
 pub mod shore;

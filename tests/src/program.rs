@@ -87,6 +87,8 @@ pub struct Program {
     name: String,
     child: Child,
     log: PathBuf,
+    /// Bytes of the log that earlier runs wrote.
+    before: usize,
 }
 
 impl Program {
@@ -100,6 +102,7 @@ impl Program {
             .append(true)
             .open(log)
             .with_context(|| log.display().to_string())?;
+        let before = errors.metadata()?.len() as usize;
         let child = command
             .stderr(errors)
             .spawn()
@@ -108,6 +111,7 @@ impl Program {
             name: name.to_owned(),
             child,
             log: log.to_owned(),
+            before,
         })
     }
 
@@ -116,10 +120,10 @@ impl Program {
         &mut self.child
     }
 
-    /// What it wrote to standard error so far, earlier runs included.
+    /// What it wrote to standard error since it was started.
     pub fn log(&self) -> String {
         let bytes = std::fs::read(&self.log).unwrap_or_default();
-        String::from_utf8_lossy(&bytes).into_owned()
+        String::from_utf8_lossy(bytes.get(self.before..).unwrap_or_default()).into_owned()
     }
 
     /// Is it still up?

@@ -1,25 +1,32 @@
 //! A ship: an agent process with its own folder, fed over TCP.
 
+use crate::eventually::eventually;
 use crate::program::{self, Program};
 use anyhow::{Context, Result, ensure};
-use std::net::SocketAddr;
+use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Machines may be busy.
+const START: Duration = Duration::from_secs(30);
 
 /// An agent, running or not.
 #[derive(Debug)]
 pub struct Ship {
     name: String,
     folder: PathBuf,
+    output: SocketAddr,
     agent: Option<Program>,
 }
 
 impl Ship {
     /// Writes `agent.toml` into a new folder. The agent reads its sentences at
-    /// `feed`, and gives out corrected headings at `output`.
+    /// `feed`, and gives out corrected headings at [`Ship::output`].
     ///
     /// # Errors
     /// When the folder cannot be written.
-    pub fn new(name: &str, parent: &Path, feed: SocketAddr, output: SocketAddr) -> Result<Ship> {
+    pub fn new(name: &str, parent: &Path, feed: SocketAddr) -> Result<Ship> {
+        let output = free_port()?;
         let folder = parent.join(name);
         std::fs::create_dir_all(&folder)?;
         let config = format!(
@@ -34,13 +41,13 @@ position = [{{ input = "bridge", talker = "GP", sentence = "RMC" }}]
 rate_of_turn = [{{ input = "bridge", sentence = "ROT" }}]
 [output]
 tcp_server = "{output}"
-interval_s = 1
+interval_s = 0.1
 [page]
 listen = "127.0.0.1:0"
 [uplink]
 poll_s = 2
-retry_min_s = 1
-retry_max_s = 2
+retry_min_s = 0.2
+retry_max_s = 1
 [silence]
 stale_s = 15
 "#
@@ -49,8 +56,14 @@ stale_s = 15
         Ok(Ship {
             name: name.to_owned(),
             folder,
+            output,
             agent: None,
         })
+    }
+
+    /// Where the agent gives out corrected headings.
+    pub fn output(&self) -> SocketAddr {
+        self.output
     }
 
     /// The path of `agent.toml`.
@@ -93,6 +106,32 @@ stale_s = 15
         Ok(())
     }
 
+    /// Waits until the agent has opened everything.
+    ///
+    /// # Errors
+    /// When it ends instead, or takes too long.
+    pub async fn ready(&mut self) -> Result<()> {
+        let agent = self.agent.as_mut().context("the agent runs")?;
+        eventually(format!("{} is ready", self.name), START, async || {
+            ensure!(agent.is_running()?, "the agent has ended:\n{}", agent.log());
+            Ok(agent.log().contains("ready").then_some(()))
+        })
+        .await
+    }
+
+    /// The most memory the agent ever had, in kilobytes.
+    ///
+    /// # Errors
+    /// When the system does not say.
+    pub fn peak_memory_kb(&mut self) -> Result<u64> {
+        let agent = self.agent.as_mut().context("the agent runs")?;
+        let id = agent.child().id().context("the agent has ended")?;
+        let status = std::fs::read_to_string(format!("/proc/{id}/status"))?;
+        let line = status.lines().find(|line| line.starts_with("VmHWM:"));
+        let kb = line.and_then(|line| line.split_whitespace().nth(1));
+        Ok(kb.context("VmHWM in /proc")?.parse()?)
+    }
+
     /// Kills the agent with signal 9.
     ///
     /// # Errors
@@ -130,4 +169,10 @@ stale_s = 15
         );
         Ok(())
     }
+}
+
+/// A port that was free a moment ago: the same after a restart, which port 0
+/// would not be.
+fn free_port() -> Result<SocketAddr> {
+    Ok(TcpListener::bind("127.0.0.1:0")?.local_addr()?)
 }

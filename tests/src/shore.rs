@@ -51,6 +51,11 @@ impl Shore {
         Ok(shore)
     }
 
+    /// The server's database.
+    pub fn database(&self) -> &Database {
+        &self.database
+    }
+
     /// Another operator, with an admin: the cookie of a stranger.
     ///
     /// # Errors

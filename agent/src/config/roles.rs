@@ -159,7 +159,7 @@ fn true_heading_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
 }
 
 fn position_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
-    sources_of(d, &[b"RMC", b"GGA", b"GLL", b"GNS"], "RMC, GGA, GLL or GNS")
+    sources_of(d, &[b"RMC", b"GGA", b"GLL"], "RMC, GGA or GLL")
 }
 
 fn rate_of_turn_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {

@@ -161,7 +161,7 @@ pub(super) async fn insert_batch(
     )
     .bind(seq.cast_signed())
     .bind(bytes)
-    .bind(samples as i64)
+    .bind(i64::try_from(samples).unwrap_or(i64::MAX))
     .execute(tx)
     .await?;
     Ok(())

@@ -134,15 +134,14 @@ impl Uplink {
             settings: self.tell.settings.borrow().version,
         };
         let batch = self.spool.next_batch().await?;
-        let result = match &batch {
-            Some(batch) => self.shore.put_batch(&identity, batch, have).await,
-            None => {
-                let idle = answered.map(|at| at.elapsed());
-                if let Some(left) = idle.and_then(|idle| self.poll.checked_sub(idle)) {
-                    return Ok(Next::Idle(left));
-                }
-                self.shore.downlink(&identity, have).await
+        let result = if let Some(batch) = &batch {
+            self.shore.put_batch(&identity, batch, have).await
+        } else {
+            let idle = answered.map(|at| at.elapsed());
+            if let Some(left) = idle.and_then(|idle| self.poll.checked_sub(idle)) {
+                return Ok(Next::Idle(left));
             }
+            self.shore.downlink(&identity, have).await
         };
         match result {
             Ok(downlink) => {

@@ -139,7 +139,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
         spool: spool.clone(),
         shore: Shore::new(None).unwrap(),
         backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
-        poll: Duration::from_secs(3600),
+        poll: Duration::from_hours(1),
         tell: Tell {
             model: watch::channel(None).0,
             settings: settings_tx,

@@ -118,7 +118,7 @@ impl Coefficients {
         1.0 + self.b * c1 - self.c * s1 + self.d * c2 - self.e * s2
     }
 
-    /// Deviation on a magnetic heading, radians (docs/science.md, eq. 5).
+    /// Deviation on a magnetic heading, radians (docs/science.md, eq. 7).
     ///
     /// Right for any ship whose field at the compass is not nil; unique
     /// backwards only after [`Coefficients::check_unambiguous`].
@@ -131,7 +131,7 @@ impl Coefficients {
     }
 
     /// Deviation on a compass heading, radians, in closed form
-    /// (docs/science.md, eq. 6); `None` where no or more than one magnetic
+    /// (docs/science.md, eq. 8); `None` where no or more than one magnetic
     /// heading could give this reading.
     pub fn deviation_at_compass_rad(&self, compass_rad: f64) -> Option<f64> {
         let across = AtCompass::new(self, compass_rad)?;
@@ -248,7 +248,7 @@ impl AtCompass {
 }
 
 /// Deviation on a compass heading, radians, and its gradient at that fixed
-/// compass heading in the order of [`Parameters`] (docs/science.md, eq. 9).
+/// compass heading in the order of [`Parameters`] (docs/science.md, eq. 10).
 ///
 /// # Errors
 /// When the field is none to steer by or headings are ambiguous.

@@ -24,4 +24,5 @@ pub mod ship;
 
 pub mod analyse;
 pub mod coverage;
+pub mod estimate;
 pub mod fit;

@@ -85,7 +85,7 @@ impl Parameters {
     }
 
     /// The deviation on a magnetic heading and its gradient at that fixed
-    /// magnetic heading (docs/science.md, eq. 8).
+    /// magnetic heading (docs/science.md, eq. 9).
     ///
     /// Where the ship's own field exactly cancels the earth's the gradient is
     /// infinite or NaN; check [`Coefficients::check_unambiguous`] first where

@@ -6,23 +6,29 @@
 //! without a reason; and a set of samples that does not carry a model yields a
 //! refusal that says what is missing.
 
+mod epoch;
 mod logbook;
+mod reading;
 mod settings;
 
+pub use crate::fit::GyroSpeedError;
 pub use logbook::{LogbookEntry, LogbookKind};
-pub use settings::{AnalysisSettings, GyroSpeedError};
+pub use settings::AnalysisSettings;
 
-use crate::coverage::Coverage;
-use crate::fit::FitError;
+use crate::coverage::{Coverage, coverage};
+use crate::estimate::NoiseLevels;
+use crate::fit::{FitError, ReferenceCheck};
 use crate::model::Model;
 use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
+use epoch::{epochs, fit_epoch};
+use reading::{Reading, readings};
 use serde::{Deserialize, Serialize};
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "robust-1";
+pub const ESTIMATOR: &str = "state-space-1";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,6 +86,10 @@ pub struct Epoch {
     pub data_from: Option<Timestamp>,
     /// Time of its last sample.
     pub data_until: Option<Timestamp>,
+    /// How gyro and satellite compass compare.
+    pub references: Option<ReferenceCheck>,
+    /// How large each kind of noise was found to be.
+    pub noise: Option<NoiseLevels>,
     /// The fit; exactly one of `model` and `refusal` is present.
     pub model: Option<Model>,
     /// Why there is no model.
@@ -112,7 +122,7 @@ pub struct SampleDiagnostic {
     pub reason: Option<SampleReason>,
 }
 
-/// Why a sample was left out, or counted for less.
+/// Why a sample was left out, or held to be wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SampleReason {
@@ -124,7 +134,7 @@ pub enum SampleReason {
     FieldTooWeak,
     /// Taken with magnetic cargo on board.
     MagneticCargo,
-    /// It disagrees with the rest: its weight was lowered.
+    /// It disagrees with the rest: its weight was lowered by more than half.
     Outlier,
     /// Its epoch has no model.
     NoModel,
@@ -136,25 +146,26 @@ pub fn analyse(
     logbook: &[LogbookEntry],
     settings: &AnalysisSettings,
 ) -> Analysis {
-    let _ = (logbook, settings);
+    let mut readings = readings(samples, logbook, settings);
+    let mut epochs = epochs(logbook);
+    for epoch in &mut epochs {
+        let begin = readings.partition_point(|r| epoch.from.is_some_and(|t| r.sample.time < t));
+        let end = readings.partition_point(|r| epoch.to.is_none_or(|t| r.sample.time < t));
+        fit_epoch(epoch, &mut readings[begin..end], settings);
+    }
+    let with_deviation = readings
+        .iter()
+        .filter(|r| r.diagnostic.deviation_deg.is_some());
+    let coverage = coverage(
+        with_deviation.filter_map(|r| r.earth.map(|e| (r.sample.compass, e.h_nt, e.z_nt))),
+    );
     Analysis {
         estimator: ESTIMATOR.to_owned(),
-        epochs: vec![Epoch {
-            from: None,
-            to: None,
-            begun_by: None,
-            data_from: None,
-            data_until: None,
-            model: None,
-            refusal: Some(FitError::TooFewSamples {
-                found: samples.len() as u64,
-                needed: 20,
-            }),
-        }],
-        samples: Vec::new(),
-        coverage: Coverage::default(),
-        data_from: None,
-        data_until: None,
-        last_place: None,
+        data_from: readings.first().map(|r| r.sample.time),
+        data_until: readings.last().map(|r| r.sample.time),
+        last_place: readings.iter().rev().find_map(Reading::place),
+        coverage,
+        epochs,
+        samples: readings.into_iter().map(|r| r.diagnostic).collect(),
     }
 }

@@ -1,5 +1,7 @@
 //! What an operator decides about how a vessel's samples are read.
 
+use crate::field::FieldModel;
+use crate::fit::GyroSpeedError;
 use serde::{Deserialize, Serialize};
 
 /// Settings of an analysis. They are part of its input: a change of settings
@@ -7,6 +9,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct AnalysisSettings {
+    /// Which model of the earth's field the samples are held against.
+    pub field_model: FieldModel,
     /// Whether the gyro already takes its speed error out.
     pub gyro_speed_error: GyroSpeedError,
     /// What is known beforehand of one reference's constant error: its standard
@@ -18,20 +22,9 @@ pub struct AnalysisSettings {
 impl Default for AnalysisSettings {
     fn default() -> AnalysisSettings {
         AnalysisSettings {
+            field_model: FieldModel::Igrf14,
             gyro_speed_error: GyroSpeedError::Corrected,
             reference_constant_sd_deg: 0.5,
         }
     }
-}
-
-/// Who takes out the error that a gyro has from the ship's own motion over the
-/// turning earth. It must be done once, never twice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GyroSpeedError {
-    /// The gyro does it itself.
-    #[default]
-    Corrected,
-    /// The gyro does not: the analysis does, from speed and latitude.
-    Uncorrected,
 }

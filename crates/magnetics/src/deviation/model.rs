@@ -3,7 +3,7 @@
 //! The prediction is what the compass's user sees: the exact deviation of the
 //! parameters plus the model's constant. Its standard error comes from the
 //! model's covariance through the gradient at the fixed compass heading
-//! (docs/science.md, eq. 10).
+//! (docs/science.md, eq. 11).
 
 use super::{Coefficients, DeviationError, linearised_at_compass};
 use crate::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};

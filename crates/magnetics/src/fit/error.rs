@@ -46,10 +46,13 @@ pub enum FitError {
         /// The horizontal field at which it does.
         h_nt: f64,
     },
+    /// All observations have the same dip, so that the paper's equations have
+    /// no unique solution: bx and χ13 Z, by and χ23 Z are known as sums only.
+    #[error(
+        "all samples lie at one magnetic latitude: bx and chi13, by and chi23 cannot be told apart"
+    )]
+    OneMagneticLatitude,
     /// The iteration did not settle.
-    #[error("the fit did not settle within {iterations} iterations")]
-    NotConverged {
-        /// How many were tried.
-        iterations: u32,
-    },
+    #[error("the fit did not settle: the samples contradict each other or any ship")]
+    NotConverged,
 }

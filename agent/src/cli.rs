@@ -1,0 +1,314 @@
+//! The commands: `run`, `status`, `enrol`, `hold`, `replay`.
+//!
+//! Exit code 2 and one line for what the one who typed it got wrong, 1 for
+//! everything else that fails.
+
+use crate::config::{Config, ConfigError};
+use crate::hold::Hold;
+use crate::page::{GUARD_HEADER, HoldRequest};
+use crate::run::{self, offline_status};
+use crate::spool::{Identity, Spool};
+use crate::status::Status;
+use crate::uplink::{Shore, Trouble};
+use anyhow::Context;
+use clap::{Parser, Subcommand, ValueEnum};
+use std::io::Write;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+use tokio_util::sync::CancellationToken;
+
+/// The running agent answers at once or not at all.
+const LOCAL_TIMEOUT: Duration = Duration::from_secs(5);
+
+/// Binnacle's agent on board: settled compass headings to the shore, the
+/// corrected heading back to the bridge.
+#[derive(Debug, Parser)]
+#[command(name = "binnacle-agent", version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Listens to the instruments, sends samples ashore, puts the corrected heading out.
+    Run {
+        /// The configuration file.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+    },
+    /// Says how the agent is doing.
+    Status {
+        /// The configuration file.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+        /// As JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Exchanges the code from the dashboard for a token, which is kept in the data directory.
+    Enrol {
+        /// Where the shore is, as https://binnacle.example.
+        #[arg(long)]
+        server: String,
+        /// The one-time code.
+        #[arg(long)]
+        code: String,
+        /// The configuration file.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+    },
+    /// Stops sampling while the compass is disturbed from outside, or resumes it.
+    Hold {
+        /// The configuration file.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+        /// Why, or `off`.
+        hold: HoldArgument,
+    },
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum HoldArgument {
+    /// Alongside.
+    Berthed,
+    /// Magnetic cargo or gear aboard.
+    MagneticCargo,
+    /// Degaussing coils on, or treatment under way.
+    Degaussing,
+    /// Resume sampling.
+    Off,
+}
+
+/// What the one who typed it got wrong.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct BadInput(String);
+
+impl From<ConfigError> for BadInput {
+    fn from(error: ConfigError) -> BadInput {
+        BadInput(error.to_string())
+    }
+}
+
+/// Runs the command line; the exit code of the process.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    start_logging();
+    match execute(cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // A closed standard error leaves nobody to tell.
+            writeln!(std::io::stderr(), "binnacle-agent: {error:#}").ok();
+            ExitCode::from(if error.is::<BadInput>() { 2 } else { 1 })
+        }
+    }
+}
+
+fn start_logging() {
+    use tracing_subscriber::EnvFilter;
+    let filter = EnvFilter::try_from_env("BINNACLE_LOG").unwrap_or_else(|_| EnvFilter::new("info"));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(false)
+        .init();
+}
+
+fn execute(command: Command) -> anyhow::Result<()> {
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()
+        .context("cannot start")?;
+    runtime.block_on(async {
+        match command {
+            Command::Run { config } => {
+                let config = load(&config)?;
+                let shutdown = CancellationToken::new();
+                stop_on_signals(&shutdown)?;
+                run::run(config, shutdown).await
+            }
+            Command::Status { config, json } => status(&load(&config)?, json).await,
+            Command::Enrol {
+                server,
+                code,
+                config,
+            } => enrol(&load(&config)?, &server, &code).await,
+            Command::Hold { config, hold } => set_hold(&load(&config)?, hold).await,
+        }
+    })
+}
+
+fn load(path: &std::path::Path) -> Result<Config, BadInput> {
+    Ok(Config::load(path)?)
+}
+
+#[cfg(unix)]
+fn stop_on_signals(shutdown: &CancellationToken) -> anyhow::Result<()> {
+    use tokio::signal::unix::{SignalKind, signal};
+    for kind in [SignalKind::terminate(), SignalKind::interrupt()] {
+        let mut signals = signal(kind).context("cannot listen for signals")?;
+        let shutdown = shutdown.clone();
+        tokio::spawn(async move {
+            signals.recv().await;
+            shutdown.cancel();
+        });
+    }
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn stop_on_signals(shutdown: &CancellationToken) -> anyhow::Result<()> {
+    let shutdown = shutdown.clone();
+    tokio::spawn(async move {
+        tokio::signal::ctrl_c().await.ok();
+        shutdown.cancel();
+    });
+    Ok(())
+}
+
+async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
+    let spool = Spool::open(&config.data_dir).await?;
+    let status = match ask_running(&spool).await {
+        Some(status) => status,
+        None => offline_status(&spool).await?,
+    };
+    let text = if json {
+        serde_json::to_string_pretty(&status)? + "\n"
+    } else {
+        status.text()
+    };
+    std::io::stdout().write_all(text.as_bytes())?;
+    Ok(())
+}
+
+/// The status of the running agent; none when none answers.
+async fn ask_running(spool: &Spool) -> Option<Status> {
+    let url = format!("http://{}/api/status", page_of(spool).await?);
+    let response = local_client().ok()?.get(url).send().await.ok()?;
+    response.json().await.ok()
+}
+
+async fn set_hold(config: &Config, argument: HoldArgument) -> anyhow::Result<()> {
+    let hold = match argument {
+        HoldArgument::Berthed => Some(Hold::Berthed),
+        HoldArgument::MagneticCargo => Some(Hold::MagneticCargo),
+        HoldArgument::Degaussing => Some(Hold::Degaussing),
+        HoldArgument::Off => None,
+    };
+    let spool = Spool::open(&config.data_dir).await?;
+    // A running agent looks into the spool every second, but obeys its page at once.
+    spool.set_hold(hold).await?;
+    if let Some(page) = page_of(&spool).await {
+        let told = local_client()?
+            .post(format!("http://{page}/api/hold"))
+            .header(GUARD_HEADER, "1")
+            .json(&HoldRequest { hold })
+            .send()
+            .await;
+        if let Err(error) = told {
+            tracing::debug!(%error, "no running agent answers");
+        }
+    }
+    let said = hold.map_or_else(
+        || "sampling resumes".to_owned(),
+        |h| format!("on hold: {h}"),
+    );
+    writeln!(std::io::stdout(), "{said}")?;
+    Ok(())
+}
+
+async fn page_of(spool: &Spool) -> Option<SocketAddr> {
+    let mut address = spool.page().await.ok()??;
+    if address.ip().is_unspecified() {
+        // Listening everywhere: ask here.
+        address.set_ip(match address {
+            SocketAddr::V4(_) => std::net::Ipv4Addr::LOCALHOST.into(),
+            SocketAddr::V6(_) => std::net::Ipv6Addr::LOCALHOST.into(),
+        });
+    }
+    Some(address)
+}
+
+fn local_client() -> reqwest::Result<reqwest::Client> {
+    reqwest::Client::builder()
+        .no_proxy()
+        .timeout(LOCAL_TIMEOUT)
+        .build()
+}
+
+async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> {
+    let server = server_url(server)?;
+    let shore = Shore::new(config.uplink.pinned_ca.as_deref())?;
+    let spool = Spool::open(&config.data_dir).await?;
+    let answer = match shore.enrol(&server, code.trim()).await {
+        Ok(answer) => answer,
+        Err(trouble @ (Trouble::Unknown(_) | Trouble::Refused(_))) => {
+            return Err(BadInput(format!("the code was refused: {trouble}")).into());
+        }
+        Err(trouble) => anyhow::bail!("{server}: {trouble}"),
+    };
+    let said = format!("enrolled: {}, {}", answer.vessel_name, answer.compass_name);
+    spool
+        .enrol(&Identity {
+            server,
+            token: answer.token,
+            stream: answer.stream,
+            vessel_name: answer.vessel_name,
+            compass_name: answer.compass_name,
+        })
+        .await?;
+    writeln!(std::io::stdout(), "{said}")?;
+    Ok(())
+}
+
+fn server_url(text: &str) -> Result<String, BadInput> {
+    let bad = |why: &str| BadInput(format!("--server {text:?} {why}"));
+    let url = reqwest::Url::parse(text).map_err(|e| bad(&format!("is not a URL: {e}")))?;
+    if !matches!(url.scheme(), "http" | "https") || url.host().is_none() {
+        return Err(bad("is not an http or https URL"));
+    }
+    if url.query().is_some() || url.fragment().is_some() || !url.username().is_empty() {
+        return Err(bad("must be scheme, host, port and path only"));
+    }
+    if url.scheme() == "http"
+        && !matches!(url.host_str(), Some("localhost" | "127.0.0.1" | "[::1]"))
+    {
+        tracing::warn!("without https, the token travels in the clear");
+    }
+    Ok(url.as_str().trim_end_matches('/').to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_commands_are_well_formed() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_server_is_a_url_without_a_slash_at_its_end() {
+        assert_eq!(
+            server_url("https://b.example/").unwrap(),
+            "https://b.example"
+        );
+        assert_eq!(
+            server_url("http://127.0.0.1:8080").unwrap(),
+            "http://127.0.0.1:8080"
+        );
+        for wrong in [
+            "b.example",
+            "ftp://b.example",
+            "",
+            "https://u@b.example",
+            "http://x/?q",
+        ] {
+            assert!(server_url(wrong).is_err(), "{wrong}");
+        }
+    }
+}

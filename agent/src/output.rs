@@ -1,0 +1,263 @@
+//! Where the corrected heading goes: a TCP server, UDP datagrams, a serial port.
+//!
+//! No listener can hold the agent up: a TCP client that does not read is
+//! dropped, a serial port that is busy or gone misses a line.
+
+use crate::config::{OutputConfig, SerialConfig};
+use anyhow::Context;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::io::AsyncWriteExt;
+use tokio::net::{TcpListener, TcpStream, UdpSocket};
+use tokio::sync::{broadcast, mpsc};
+use tokio::time::{sleep, timeout};
+use tokio_serial::SerialPortBuilderExt;
+use tokio_util::sync::CancellationToken;
+
+/// So many outputs behind, a client is dropped.
+const CLIENT_LAG: usize = 16;
+/// A client that takes no byte for so long is dropped.
+const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
+/// A serial port that failed is opened again after this.
+const SERIAL_RETRY: Duration = Duration::from_secs(5);
+
+/// Open outputs.
+#[derive(Debug)]
+pub(crate) struct Outputs {
+    clients: Option<broadcast::Sender<Arc<[u8]>>>,
+    udp: Option<(UdpSocket, SocketAddr)>,
+    serial: Option<mpsc::Sender<Arc<[u8]>>>,
+    /// Where the TCP server listens.
+    pub(crate) tcp_address: Option<SocketAddr>,
+}
+
+impl Outputs {
+    /// Opens what is configured; runs until `shutdown`.
+    pub(crate) async fn open(
+        config: &OutputConfig,
+        shutdown: &CancellationToken,
+    ) -> anyhow::Result<Outputs> {
+        let mut outputs = Outputs {
+            clients: None,
+            udp: None,
+            serial: None,
+            tcp_address: None,
+        };
+        if let Some(address) = config.tcp_server {
+            let listener = TcpListener::bind(address)
+                .await
+                .with_context(|| format!("output.tcp_server {address}: cannot listen"))?;
+            outputs.tcp_address = Some(listener.local_addr()?);
+            let (clients, _) = broadcast::channel(CLIENT_LAG);
+            outputs.clients = Some(clients.clone());
+            tokio::spawn(accept(listener, clients, shutdown.clone()));
+        }
+        if let Some(target) = config.udp {
+            outputs.udp = Some((udp_socket(target).await?, target));
+        }
+        if let Some(serial) = &config.serial {
+            let (lines, waiting) = mpsc::channel(1);
+            outputs.serial = Some(lines);
+            tokio::spawn(write_serial(serial.clone(), waiting, shutdown.clone()));
+        }
+        Ok(outputs)
+    }
+
+    /// Sends to everyone who listens, waiting for nobody.
+    pub(crate) fn send(&self, sentences: Vec<u8>) {
+        let sentences: Arc<[u8]> = sentences.into();
+        if let Some((socket, target)) = &self.udp
+            && let Err(error) = socket.try_send_to(&sentences, *target)
+        {
+            tracing::debug!(%error, %target, "a datagram was not sent");
+        }
+        if let Some(serial) = &self.serial {
+            // Full: the port is slower than the interval, or gone.
+            serial.try_send(sentences.clone()).ok();
+        }
+        if let Some(clients) = &self.clients {
+            // An error only says that nobody is connected.
+            clients.send(sentences).ok();
+        }
+    }
+}
+
+async fn udp_socket(target: SocketAddr) -> anyhow::Result<UdpSocket> {
+    let any = if target.is_ipv4() {
+        "0.0.0.0:0"
+    } else {
+        "[::]:0"
+    };
+    let socket = UdpSocket::bind(any)
+        .await
+        .with_context(|| format!("output.udp {target}: cannot open a socket"))?;
+    socket
+        .set_broadcast(true)
+        .with_context(|| format!("output.udp {target}: cannot broadcast"))?;
+    Ok(socket)
+}
+
+async fn accept(
+    listener: TcpListener,
+    clients: broadcast::Sender<Arc<[u8]>>,
+    shutdown: CancellationToken,
+) {
+    while let Some(accepted) = shutdown.run_until_cancelled(listener.accept()).await {
+        match accepted {
+            Ok((stream, address)) => {
+                let lines = clients.subscribe();
+                let shutdown = shutdown.clone();
+                tokio::spawn(async move {
+                    let served = shutdown.run_until_cancelled(serve(stream, lines)).await;
+                    let reason = served.unwrap_or("the agent stops");
+                    tracing::info!(%address, reason, "a heading client is gone");
+                });
+            }
+            Err(error) => {
+                tracing::warn!(%error, "a heading client could not be accepted");
+                // Out of file handles, most likely: some will be closed in a while.
+                sleep(Duration::from_secs(1)).await;
+            }
+        }
+    }
+}
+
+/// Writes to one client until it fails; says why.
+async fn serve(mut stream: TcpStream, mut lines: broadcast::Receiver<Arc<[u8]>>) -> &'static str {
+    loop {
+        let line = match lines.recv().await {
+            Ok(line) => line,
+            Err(broadcast::error::RecvError::Lagged(_)) => return "it does not keep up",
+            Err(broadcast::error::RecvError::Closed) => return "the agent stops",
+        };
+        match timeout(CLIENT_TIMEOUT, stream.write_all(&line)).await {
+            Ok(Ok(())) => {}
+            Ok(Err(_)) => return "it closed the connection",
+            Err(_) => return "it does not read",
+        }
+    }
+}
+
+async fn write_serial(
+    config: SerialConfig,
+    mut lines: mpsc::Receiver<Arc<[u8]>>,
+    shutdown: CancellationToken,
+) {
+    let mut reported = false;
+    loop {
+        let result = shutdown
+            .run_until_cancelled(write_open_serial(&config, &mut lines))
+            .await;
+        let Some(Err(error)) = result else { return };
+        if !reported {
+            tracing::warn!(path = config.path, %error, "the serial output fails; trying on");
+            reported = true;
+        }
+        if shutdown
+            .run_until_cancelled(sleep(SERIAL_RETRY))
+            .await
+            .is_none()
+        {
+            return;
+        }
+    }
+}
+
+async fn write_open_serial(
+    config: &SerialConfig,
+    lines: &mut mpsc::Receiver<Arc<[u8]>>,
+) -> std::io::Result<()> {
+    let mut port = tokio_serial::new(&config.path, config.baud).open_native_async()?;
+    while let Some(line) = lines.recv().await {
+        port.write_all(&line).await?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tokio::io::{AsyncBufReadExt, AsyncReadExt, BufReader};
+
+    async fn server() -> (Outputs, SocketAddr, CancellationToken) {
+        let shutdown = CancellationToken::new();
+        let config = OutputConfig {
+            tcp_server: Some("127.0.0.1:0".parse().unwrap()),
+            ..OutputConfig::default()
+        };
+        let outputs = Outputs::open(&config, &shutdown).await.unwrap();
+        let address = outputs.tcp_address.unwrap();
+        (outputs, address, shutdown)
+    }
+
+    /// Sends until so many clients are there to hear it.
+    async fn connected(outputs: &Outputs, clients: usize) {
+        while outputs.clients.as_ref().unwrap().receiver_count() < clients {
+            tokio::task::yield_now().await;
+        }
+    }
+
+    #[tokio::test]
+    async fn every_client_hears_every_line() {
+        let (outputs, address, _shutdown) = server().await;
+        let first = TcpStream::connect(address).await.unwrap();
+        let second = TcpStream::connect(address).await.unwrap();
+        connected(&outputs, 2).await;
+        for line in ["one\r\n", "two\r\n"] {
+            outputs.send(line.into());
+        }
+        for client in [first, second] {
+            let mut lines = BufReader::new(client).lines();
+            assert_eq!(lines.next_line().await.unwrap().unwrap(), "one");
+            assert_eq!(lines.next_line().await.unwrap().unwrap(), "two");
+        }
+    }
+
+    #[tokio::test]
+    async fn a_client_that_does_not_keep_up_is_dropped_and_the_others_are_not() {
+        let (outputs, address, _shutdown) = server().await;
+        let mut slow = TcpStream::connect(address).await.unwrap();
+        connected(&outputs, 1).await;
+        // Without a pause for the client's task, it falls behind at once.
+        for _ in 0..4 * CLIENT_LAG {
+            outputs.send(b"line\r\n".to_vec());
+        }
+        let mut rest = Vec::new();
+        slow.read_to_end(&mut rest).await.unwrap();
+        let mut quick = BufReader::new(TcpStream::connect(address).await.unwrap()).lines();
+        connected(&outputs, 1).await;
+        outputs.send(b"after\r\n".to_vec());
+        assert_eq!(quick.next_line().await.unwrap().unwrap(), "after");
+    }
+
+    #[tokio::test]
+    async fn datagrams_reach_their_address() {
+        let listener = UdpSocket::bind("127.0.0.1:0").await.unwrap();
+        let config = OutputConfig {
+            udp: Some(listener.local_addr().unwrap()),
+            ..OutputConfig::default()
+        };
+        let outputs = Outputs::open(&config, &CancellationToken::new())
+            .await
+            .unwrap();
+        outputs.udp.as_ref().unwrap().0.writable().await.unwrap();
+        outputs.send(b"heading\r\n".to_vec());
+        let mut buffer = [0; 64];
+        let length = listener.recv(&mut buffer).await.unwrap();
+        assert_eq!(&buffer[..length], b"heading\r\n");
+    }
+
+    #[tokio::test]
+    async fn an_address_in_use_is_named() {
+        let (_outputs, address, _shutdown) = server().await;
+        let config = OutputConfig {
+            tcp_server: Some(address),
+            ..OutputConfig::default()
+        };
+        let error = Outputs::open(&config, &CancellationToken::new())
+            .await
+            .unwrap_err();
+        assert!(error.to_string().contains(&address.to_string()));
+    }
+}

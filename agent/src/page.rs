@@ -1,0 +1,210 @@
+//! The local page: one HTML file, the status as JSON, and the hold buttons.
+//!
+//! For the ship's own network, without a login. A foreign web site that an
+//! officer has open must not be able to press a button: a hold needs a header
+//! that no form can send, and names that resolve elsewhere are refused.
+
+use crate::hold::Hold;
+use crate::spool::Spool;
+use crate::status::Status;
+use axum::extract::{Request, State};
+use axum::http::header::{CONTENT_SECURITY_POLICY, HOST, ORIGIN};
+use axum::http::{HeaderMap, StatusCode};
+use axum::middleware::{self, Next};
+use axum::response::{Html, IntoResponse, Response};
+use axum::routing::{get, post};
+use axum::{Json, Router};
+use serde::{Deserialize, Serialize};
+use std::net::IpAddr;
+use std::sync::Arc;
+use tokio::sync::watch;
+
+/// What the page's handlers work with.
+#[derive(Clone, Debug)]
+pub(crate) struct Page {
+    pub(crate) spool: Spool,
+    pub(crate) status: watch::Receiver<Arc<Status>>,
+    pub(crate) hold: watch::Sender<Option<Hold>>,
+}
+
+/// The header that a hold must carry: no page of another site can send it.
+pub(crate) const GUARD_HEADER: &str = "x-binnacle-request";
+
+/// What a hold button sends; `null` ends the hold.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct HoldRequest {
+    /// The hold that is to be.
+    pub(crate) hold: Option<Hold>,
+}
+
+/// All of the page.
+pub(crate) fn router(page: Page) -> Router {
+    Router::new()
+        .route("/", get(show))
+        .route("/api/status", get(status))
+        .route("/api/hold", post(set_hold))
+        .layer(middleware::from_fn(only_from_here))
+        .with_state(page)
+}
+
+async fn show() -> impl IntoResponse {
+    let policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
+                  connect-src 'self'; frame-ancestors 'none'";
+    (
+        [(CONTENT_SECURITY_POLICY, policy)],
+        Html(include_str!("page.html")),
+    )
+}
+
+async fn status(State(page): State<Page>) -> Json<Arc<Status>> {
+    Json(page.status.borrow().clone())
+}
+
+async fn set_hold(
+    State(page): State<Page>,
+    headers: HeaderMap,
+    Json(request): Json<HoldRequest>,
+) -> Response {
+    if headers.get(GUARD_HEADER).is_none_or(|value| value != "1") {
+        return (
+            StatusCode::FORBIDDEN,
+            "the header X-Binnacle-Request: 1 is missing",
+        )
+            .into_response();
+    }
+    if let Err(error) = page.spool.set_hold(request.hold).await {
+        tracing::error!(%error, "a hold cannot be stored");
+        return (
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "the hold cannot be stored",
+        )
+            .into_response();
+    }
+    page.hold.send_replace(request.hold);
+    Json(request).into_response()
+}
+
+/// Refuses requests that a browser was tricked into.
+async fn only_from_here(request: Request, next: Next) -> Response {
+    if let Err(why) = check_origin(request.headers()) {
+        return (StatusCode::FORBIDDEN, why).into_response();
+    }
+    next.run(request).await
+}
+
+fn check_origin(headers: &HeaderMap) -> Result<(), &'static str> {
+    let header = |name| headers.get(name).map(|value| value.to_str().unwrap_or("?"));
+    let host = header(HOST).unwrap_or_default();
+    if !is_local_name(host) {
+        return Err("open this page by the agent's address");
+    }
+    if header(ORIGIN).is_some_and(|origin| origin != format!("http://{host}")) {
+        return Err("not from another site");
+    }
+    Ok(())
+}
+
+/// An address, `localhost`, a name without dots, or one of the local network:
+/// a name on the internet that points here is somebody's trick.
+fn is_local_name(host: &str) -> bool {
+    let name = match host.strip_prefix('[') {
+        Some(rest) => {
+            return rest
+                .split(']')
+                .next()
+                .is_some_and(|a| a.parse::<IpAddr>().is_ok());
+        }
+        None => host.split(':').next().unwrap_or_default(),
+    };
+    name.parse::<IpAddr>().is_ok()
+        || (!name.is_empty() && !name.contains('.'))
+        || name.to_ascii_lowercase().ends_with(".local")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use axum::body::Body;
+    use tempfile::TempDir;
+    use tower::ServiceExt;
+
+    async fn page() -> (TempDir, Page, Router) {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        let page = Page {
+            spool,
+            status: watch::channel(Arc::new(Status::default())).1,
+            hold: watch::Sender::new(None),
+        };
+        let router = router(page.clone());
+        (directory, page, router)
+    }
+
+    fn hold(headers: &[(&str, &str)]) -> Request {
+        let mut request = Request::post("/api/hold")
+            .header("content-type", "application/json")
+            .header("host", "192.168.1.9:8090");
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        request.body(Body::from(r#"{"hold":"berthed"}"#)).unwrap()
+    }
+
+    #[tokio::test]
+    async fn the_button_holds_at_once_and_after_a_restart() {
+        let (_directory, page, router) = page().await;
+        let own = [
+            ("x-binnacle-request", "1"),
+            ("origin", "http://192.168.1.9:8090"),
+        ];
+        let answer = router.oneshot(hold(&own)).await.unwrap();
+        assert_eq!(answer.status(), StatusCode::OK);
+        assert_eq!(*page.hold.borrow(), Some(Hold::Berthed));
+        assert_eq!(page.spool.hold().await.unwrap(), Some(Hold::Berthed));
+    }
+
+    #[tokio::test]
+    async fn another_site_cannot_press_it() {
+        let (_directory, page, router) = page().await;
+        let tricks: [&[(&str, &str)]; 3] = [
+            &[],
+            &[
+                ("x-binnacle-request", "1"),
+                ("origin", "http://evil.example"),
+            ],
+            &[("origin", "null"), ("x-binnacle-request", "1")],
+        ];
+        for headers in tricks {
+            let answer = router.clone().oneshot(hold(headers)).await.unwrap();
+            assert_eq!(answer.status(), StatusCode::FORBIDDEN, "{headers:?}");
+        }
+        assert_eq!(*page.hold.borrow(), None);
+    }
+
+    #[tokio::test]
+    async fn a_name_on_the_internet_is_not_this_page() {
+        let (_directory, _page, router) = page().await;
+        for (host, status) in [
+            ("evil.example:8090", StatusCode::FORBIDDEN),
+            ("127.0.0.1.evil.example", StatusCode::FORBIDDEN),
+            ("localhost:8090", StatusCode::OK),
+            ("[::1]:8090", StatusCode::OK),
+            ("bridge.local", StatusCode::OK),
+            ("10.0.0.4", StatusCode::OK),
+        ] {
+            let request = Request::get("/api/status").header("host", host);
+            let request = request.body(Body::empty()).unwrap();
+            let answer = router.clone().oneshot(request).await.unwrap();
+            assert_eq!(answer.status(), status, "{host}");
+        }
+    }
+
+    #[test]
+    fn the_page_asks_nothing_of_the_outside_world() {
+        let html = include_str!("page.html");
+        for outside in ["http://", "https://", "//cdn", "@import", "<link"] {
+            assert!(!html.contains(outside), "{outside}");
+        }
+    }
+}

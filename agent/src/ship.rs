@@ -1,0 +1,108 @@
+//! The ship as her instruments tell it: roles and sampler, and the latest readings.
+
+use crate::config::RolesConfig;
+use crate::hold::Hold;
+use crate::observation::Observation;
+use crate::roles::{Roles, Signal};
+use crate::sampler::Sampler;
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::messages::Settings;
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// A reading and when the computer heard it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Latest<T> {
+    value: T,
+    heard: Instant,
+}
+
+impl<T: Copy> Latest<T> {
+    /// The reading, unless it is older than `age` by the computer's clock.
+    ///
+    /// Not by the ship's: that one stands still when the receiver fails, and a
+    /// heading must not look alive because of it.
+    pub(crate) fn within(this: Option<Latest<T>>, age: Duration, now: Instant) -> Option<T> {
+        let latest = this?;
+        (now.saturating_duration_since(latest.heard) <= age).then_some(latest.value)
+    }
+}
+
+/// What the instruments said last.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Readings {
+    pub(crate) compass: Option<Latest<CompassHeading>>,
+    pub(crate) gyro: Option<Latest<TrueHeading>>,
+    pub(crate) satellite: Option<Latest<TrueHeading>>,
+    pub(crate) position: Option<Latest<Position>>,
+    pub(crate) sog_kn: Option<Latest<f64>>,
+    pub(crate) rate_of_turn_deg_min: Option<Latest<f64>>,
+    pub(crate) roll_deg: Option<Latest<f64>>,
+}
+
+/// Roles, sampler and readings.
+#[derive(Debug)]
+pub(crate) struct Ship {
+    roles: Roles,
+    /// Makes samples of what the instruments say.
+    pub(crate) sampler: Sampler,
+    /// What the instruments said last.
+    pub(crate) readings: Readings,
+}
+
+impl Ship {
+    /// A ship that has said nothing yet.
+    pub(crate) fn new(
+        roles: &RolesConfig,
+        stale_s: f64,
+        settings: Settings,
+        hold: Option<Hold>,
+    ) -> Ship {
+        Ship {
+            roles: Roles::new(roles, stale_s),
+            sampler: Sampler::new(settings, hold),
+            readings: Readings::default(),
+        }
+    }
+
+    /// The ship's own time, once it is known.
+    pub(crate) fn time(&self) -> Option<Timestamp> {
+        self.roles.now()
+    }
+
+    /// Takes what a source said, heard at `heard`.
+    pub(crate) fn observe(&mut self, seen: &Observation, heard: Instant) {
+        for signal in self.roles.observe(seen).into_iter().flatten() {
+            self.sampler.take(signal);
+            self.readings.take(signal, heard);
+        }
+    }
+
+    /// Takes the time that a recording gives a line.
+    pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) {
+        if let Some(signal) = self.roles.observe_recorded_time(stamp) {
+            self.sampler.take(signal);
+        }
+    }
+}
+
+impl Readings {
+    fn take(&mut self, signal: Signal, heard: Instant) {
+        match signal {
+            Signal::Compass(value) => self.compass = Some(Latest { value, heard }),
+            Signal::Gyro(value) => self.gyro = Some(Latest { value, heard }),
+            Signal::GyroInvalid => self.gyro = None,
+            Signal::Satellite(value) => self.satellite = Some(Latest { value, heard }),
+            Signal::SatelliteInvalid => self.satellite = None,
+            Signal::Position(value) => self.position = Some(Latest { value, heard }),
+            Signal::Speed(value) => self.sog_kn = Some(Latest { value, heard }),
+            Signal::RateOfTurn(value) => {
+                self.rate_of_turn_deg_min = Some(Latest { value, heard });
+            }
+            Signal::Roll(value) => self.roll_deg = Some(Latest { value, heard }),
+            Signal::Time(_) | Signal::Jump(_) => {}
+        }
+    }
+}

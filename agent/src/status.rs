@@ -1,0 +1,209 @@
+//! How everything is, in one value: for the local page and for `status`.
+
+use crate::corrected::{CardRow, Corrected};
+use crate::hold::Hold;
+use crate::spool::Standing;
+use crate::uplink::LinkStatus;
+use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::time::Timestamp;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Everything the page shows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Status {
+    /// The agent's version.
+    pub(crate) agent_version: String,
+    /// Whether an agent is running: the rest is live then, else from the spool.
+    pub(crate) running: bool,
+    pub(crate) vessel_name: Option<String>,
+    pub(crate) compass_name: Option<String>,
+    /// The ship's own time.
+    pub(crate) ship_time: Option<Timestamp>,
+    pub(crate) heading: Corrected,
+    pub(crate) gyro_deg: Option<TrueHeading>,
+    pub(crate) satellite_deg: Option<TrueHeading>,
+    pub(crate) sog_kn: Option<f64>,
+    pub(crate) rate_of_turn_deg_min: Option<f64>,
+    pub(crate) roll_deg: Option<f64>,
+    pub(crate) model: Option<ModelStatus>,
+    /// Deviation on every 15° at the ship's place.
+    pub(crate) card: Vec<CardRow>,
+    pub(crate) hold: Option<Hold>,
+    /// Ten-second windows by outcome since the agent started.
+    pub(crate) windows: BTreeMap<String, u64>,
+    pub(crate) inputs: Vec<InputStatus>,
+    pub(crate) link: LinkStatus,
+    pub(crate) spool: Standing,
+}
+
+/// The model in use.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ModelStatus {
+    pub(crate) version: u32,
+    /// The time of its last sample.
+    pub(crate) data_until: Timestamp,
+    /// Since then, by the ship's time.
+    pub(crate) age_days: Option<f64>,
+}
+
+/// How an input is doing.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct InputStatus {
+    pub(crate) name: String,
+    pub(crate) connected: bool,
+    /// Sentences understood since the agent started.
+    pub(crate) sentences: u64,
+    /// Lines with a wrong checksum.
+    pub(crate) bad_checksums: u64,
+    /// Lines that are not read.
+    pub(crate) unread: u64,
+}
+
+impl Status {
+    /// As text for a terminal.
+    pub(crate) fn text(&self) -> String {
+        let mut out = String::new();
+        self.write_text(&mut out)
+            .expect("a String takes every write");
+        out
+    }
+
+    fn write_text(&self, out: &mut String) -> std::fmt::Result {
+        let running = if self.running {
+            "running"
+        } else {
+            "not running"
+        };
+        writeln!(out, "agent      {} {running}", self.agent_version)?;
+        if let (Some(vessel), Some(compass)) = (&self.vessel_name, &self.compass_name) {
+            writeln!(out, "vessel     {vessel}, {compass}")?;
+        }
+        if let Some(time) = self.ship_time {
+            writeln!(out, "ship time  {time}")?;
+        }
+        self.write_heading(out)?;
+        match &self.model {
+            Some(model) => {
+                let age = model.age_days.map(|d| format!(", {d:.1} days old"));
+                let age = age.unwrap_or_default();
+                writeln!(
+                    out,
+                    "model      version {}, data until {}{age}",
+                    model.version, model.data_until
+                )?;
+            }
+            None => writeln!(out, "model      none")?,
+        }
+        if let Some(hold) = self.hold {
+            writeln!(out, "hold       {hold}: nothing is sampled")?;
+        }
+        self.write_link(out)?;
+        for input in &self.inputs {
+            let state = if input.connected {
+                "connected"
+            } else {
+                "not connected"
+            };
+            writeln!(
+                out,
+                "input      {}: {state}, {} sentences, {} wrong checksums, {} unread",
+                input.name, input.sentences, input.bad_checksums, input.unread
+            )?;
+        }
+        for (outcome, windows) in &self.windows {
+            writeln!(out, "windows    {windows} {outcome}")?;
+        }
+        Ok(())
+    }
+
+    fn write_heading(&self, out: &mut String) -> std::fmt::Result {
+        let heading = &self.heading;
+        if let Some(compass) = heading.compass_deg {
+            writeln!(out, "compass    {compass}")?;
+        }
+        if let (Some(deviation), Some(magnetic)) = (heading.deviation_deg, heading.magnetic_deg) {
+            let band = heading.band95_deg.map(|band| format!(" ± {band:.1}°"));
+            writeln!(
+                out,
+                "magnetic   {magnetic} (deviation {deviation}{})",
+                band.unwrap_or_default()
+            )?;
+        }
+        if let (Some(variation), Some(true_heading)) = (heading.variation_deg, heading.true_deg) {
+            writeln!(out, "true       {true_heading} (variation {variation})")?;
+        }
+        if let Some(problem) = &heading.problem {
+            writeln!(out, "heading    not corrected: {problem}")?;
+        }
+        Ok(())
+    }
+
+    fn write_link(&self, out: &mut String) -> std::fmt::Result {
+        let state = serde_json::to_value(self.link.state).unwrap_or_default();
+        let state = state.as_str().unwrap_or_default().replace('_', " ");
+        write!(out, "link       {state}")?;
+        if let Some(problem) = &self.link.problem {
+            write!(out, ": {problem}")?;
+        }
+        if let Some(contact) = self.link.last_contact {
+            write!(out, ", last answer {contact}")?;
+        }
+        let spool = &self.spool;
+        writeln!(
+            out,
+            "\nspool      {} samples not sealed, {} batches to send, {} acknowledged",
+            spool.pending_samples, spool.waiting_batches, spool.acknowledged_batches
+        )?;
+        if spool.parked_batches > 0 {
+            let because = spool.parked_because.as_deref().unwrap_or("no reason given");
+            writeln!(
+                out,
+                "REFUSED    {} batches were refused by the shore: {because}",
+                spool.parked_batches
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_says_what_is_wrong() {
+        let status = Status {
+            agent_version: "0.1.0".to_owned(),
+            hold: Some(Hold::Berthed),
+            heading: Corrected {
+                problem: Some("there is no model yet".to_owned()),
+                ..Corrected::default()
+            },
+            spool: Standing {
+                parked_batches: 2,
+                parked_because: Some("422 undecodable".to_owned()),
+                ..Standing::default()
+            },
+            ..Status::default()
+        };
+        let text = status.text();
+        for wanted in [
+            "0.1.0 not running",
+            "berthed: nothing is sampled",
+            "not corrected: there is no model yet",
+            "link       not enrolled\n",
+            "2 batches were refused by the shore: 422 undecodable",
+        ] {
+            assert!(text.contains(wanted), "{wanted:?} is not in\n{text}");
+        }
+    }
+
+    #[test]
+    fn the_json_reads_back() {
+        let status = Status::default();
+        let json = serde_json::to_string(&status).unwrap();
+        assert_eq!(serde_json::from_str::<Status>(&json).unwrap(), status);
+    }
+}

@@ -1,0 +1,121 @@
+//! Intervals of constant magnetism, and the fit of each.
+
+use super::logbook::{LogbookEntry, LogbookKind};
+use super::reading::Reading;
+use super::settings::AnalysisSettings;
+use super::{Epoch, SampleReason};
+use crate::fit::{
+    Observation, REJECTED_BELOW, ReferenceCheck, RobustFit, RobustOptions, fit_robust,
+};
+use crate::time::Timestamp;
+
+/// The epochs that the logbook tells of, in order of time and without gaps.
+pub(super) fn epochs(logbook: &[LogbookEntry]) -> Vec<Epoch> {
+    let mut boundaries: Vec<(Timestamp, LogbookKind)> = logbook
+        .iter()
+        .filter(|entry| entry.kind.ends_an_epoch())
+        .map(|entry| (entry.from, entry.kind))
+        .collect();
+    boundaries.sort_unstable();
+    boundaries.dedup_by_key(|(time, _)| *time);
+    let mut epochs = vec![empty_epoch(None, None)];
+    for (time, kind) in boundaries {
+        if let Some(last) = epochs.last_mut() {
+            last.to = Some(time);
+        }
+        epochs.push(empty_epoch(Some(time), Some(kind)));
+    }
+    epochs
+}
+
+fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>) -> Epoch {
+    Epoch {
+        from,
+        to: None,
+        begun_by,
+        data_from: None,
+        data_until: None,
+        references: None,
+        noise: None,
+        model: None,
+        refusal: None,
+    }
+}
+
+/// Fits an epoch's model to its readings and notes in each what became of it.
+pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], settings: &AnalysisSettings) {
+    epoch.data_from = readings.first().map(|r| r.sample.time);
+    epoch.data_until = readings.last().map(|r| r.sample.time);
+    let pairs = readings
+        .iter()
+        .filter_map(|r| r.gyro.zip(r.sample.satellite));
+    let references = ReferenceCheck::new(pairs, settings.reference_constant_sd_deg);
+    epoch.references = Some(references);
+
+    let mut taken = Vec::new();
+    let mut observations = Vec::new();
+    for (index, reading) in readings.iter_mut().enumerate() {
+        let Some(observation) = observe(reading, &references) else {
+            continue;
+        };
+        reading.diagnostic.deviation_deg = Some(observation.deviation.degrees_east());
+        if reading.diagnostic.reason.is_none() {
+            taken.push(index);
+            observations.push(observation);
+        }
+    }
+    let options = RobustOptions {
+        reference_constant_sd_deg: references.constant_sd_deg,
+        ..RobustOptions::default()
+    };
+    match fit_robust(&observations, &options) {
+        Ok(fit) => {
+            note(&fit, &taken, readings);
+            let mut model = fit.model;
+            model.samples_rejected = readings.len() as u64 - model.samples_used;
+            epoch.model = Some(model);
+            epoch.noise = Some(fit.noise);
+        }
+        Err(refusal) => {
+            for index in taken {
+                readings[index].diagnostic.reason = Some(SampleReason::NoModel);
+            }
+            epoch.refusal = Some(refusal);
+        }
+    }
+}
+
+fn observe(reading: &Reading, references: &ReferenceCheck) -> Option<Observation> {
+    let sample = &reading.sample;
+    let (variation, earth) = reading.variation.zip(reading.earth)?;
+    let merged = references.merge(reading.gyro, sample.satellite, sample.position.lat_deg())?;
+    Some(Observation {
+        time: Some(sample.time),
+        position: Some(sample.position),
+        compass: sample.compass,
+        deviation: (merged.heading - variation) - sample.compass,
+        variation,
+        h_nt: earth.h_nt,
+        z_nt: earth.z_nt,
+        gyro_share: merged.gyro_share,
+        sog_kn: sample.sog_kn,
+        windows: sample.windows,
+        weight: 1.0,
+    })
+}
+
+fn note(fit: &RobustFit, taken: &[usize], readings: &mut [Reading]) {
+    for (&index, row) in taken.iter().zip(&fit.rows) {
+        let diagnostic = &mut readings[index].diagnostic;
+        diagnostic.residual_deg = row.residual_deg;
+        diagnostic.predicted_deg = diagnostic
+            .deviation_deg
+            .zip(row.residual_deg)
+            .map(|(measured, residual)| measured - residual);
+        diagnostic.weight = row.weight;
+        diagnostic.used = row.weight >= REJECTED_BELOW;
+        if !diagnostic.used {
+            diagnostic.reason = Some(SampleReason::Outlier);
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! Where the needle points on a magnetic heading, and how that depends on the
+//! parameters.
+
+use crate::model::Parameters;
+use crate::ship::{EarthField, PARAMETERS, compass_rad};
+
+/// The horizontal field at the compass, over λ, with the ship on one magnetic
+/// heading, in a form that never divides by zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Needle {
+    earth: [f64; 3],
+    strength: f64,
+    compass_rad: f64,
+    compass_per_magnetic: f64,
+}
+
+impl Needle {
+    /// The needle of a ship on magnetic heading `magnetic_rad`.
+    pub(crate) fn at(p: &Parameters, magnetic_rad: f64, field: EarthField) -> Needle {
+        let earth = field.in_ship_axes(magnetic_rad);
+        let [hx, hy, _] = earth;
+        let [ux, uy] = p.field_over_lambda(magnetic_rad, field);
+        // A needle with no force at all has no direction, and any small number
+        // keeps the arithmetic finite.
+        let strength = ux.hypot(uy).max(1.0);
+        let half = p.chi11_minus_chi22 / 2.0;
+        let (dux, duy) = (
+            (1.0 + half) * hy - p.chi12 * hx,
+            p.chi21 * hy - (1.0 - half) * hx,
+        );
+        Needle {
+            earth,
+            strength,
+            compass_rad: compass_rad(ux, uy),
+            compass_per_magnetic: (uy * dux - ux * duy) / (strength * strength),
+        }
+    }
+
+    /// The compass heading, radians in (−π, π].
+    pub(crate) fn compass_rad(&self) -> f64 {
+        self.compass_rad
+    }
+
+    /// How fast compass heading changes with magnetic heading: 1 without deviation.
+    pub(crate) fn compass_per_magnetic(&self) -> f64 {
+        self.compass_per_magnetic
+    }
+
+    /// Derivative of deviation, in radians, by each of the parameters at fixed
+    /// magnetic heading: from dζ = −(sin ζ dux + cos ζ duy)/|u|.
+    pub(crate) fn gradient(&self) -> [f64; PARAMETERS] {
+        let [hx, hy, z] = self.earth;
+        let (sin, cos) = self.compass_rad.sin_cos();
+        let (s, c) = (sin / self.strength, cos / self.strength);
+        [s, z * s, c, z * c, (hx * s - hy * c) / 2.0, hy * s, hx * c]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EARTH: EarthField = EarthField {
+        h_nt: 24e3,
+        z_nt: 38e3,
+    };
+
+    #[test]
+    fn the_gradient_is_the_slope_of_the_deviation() {
+        let start = [2000.0, -0.02, -2900.0, 0.01, 0.035, 0.004, -0.003];
+        let step = [1.0, 1e-6, 1.0, 1e-6, 1e-6, 1e-6, 1e-6];
+        for degrees in 0..24 {
+            let magnetic = f64::from(degrees * 15).to_radians();
+            let deviation = |a: &[f64; 7]| {
+                magnetic - Needle::at(&Parameters::from_array(*a), magnetic, EARTH).compass_rad()
+            };
+            let gradient = Needle::at(&Parameters::from_array(start), magnetic, EARTH).gradient();
+            for j in 0..7 {
+                let (mut up, mut down) = (start, start);
+                up[j] += step[j];
+                down[j] -= step[j];
+                let slope = (deviation(&up) - deviation(&down)) / (2.0 * step[j]);
+                assert!(
+                    (slope - gradient[j]).abs() < 1e-6 * gradient[j].abs().max(1e-4),
+                    "{j}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn compass_heading_turns_with_the_ship_at_the_rate_given() {
+        let p = Parameters::from_array([2000.0, -0.02, -2900.0, 0.01, 0.035, 0.004, -0.003]);
+        for degrees in 0..24 {
+            let magnetic = f64::from(degrees * 15 + 3).to_radians();
+            let compass = |m: f64| Needle::at(&p, m, EARTH).compass_rad();
+            let slope = (compass(magnetic + 1e-6) - compass(magnetic - 1e-6)) / 2e-6;
+            let rate = Needle::at(&p, magnetic, EARTH).compass_per_magnetic();
+            assert!((slope - rate).abs() < 1e-6);
+        }
+    }
+}

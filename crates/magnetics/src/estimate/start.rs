@@ -1,0 +1,62 @@
+//! A first fit that outliers cannot lead astray: Huber weights on rows taken
+//! for independent, their spread from the median of the residuals.
+
+use super::row::{Row, Station, UNKNOWNS, Unknowns, row};
+use super::whiten::huber_weight;
+use crate::fit::Observation;
+use nalgebra::{SMatrix, SVector};
+
+/// Enough for any ship whose headings are not ambiguous.
+const ITERATIONS: u32 = 30;
+/// The median of |x| of a Gaussian is this part of its standard deviation.
+const MEDIAN_TO_SD: f64 = 0.674_489_8;
+/// No instrument is better than this; it keeps perfect data from dividing by zero.
+const LEAST_SD_DEG: f64 = 0.02;
+
+/// Unknowns from an iteratively reweighted fit, and the residuals' robust
+/// standard deviation in degrees.
+pub(crate) fn start(
+    observations: &[Observation],
+    stations: &[Station],
+    prior_mean: &Unknowns,
+    prior_information: &SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+) -> (Unknowns, f64) {
+    let mut unknowns = *prior_mean;
+    let mut sd = f64::INFINITY;
+    for _ in 0..ITERATIONS {
+        let rows: Vec<Row> = observations
+            .iter()
+            .zip(stations)
+            .map(|(o, s)| row(o, s, &unknowns))
+            .collect();
+        sd = robust_sd(rows.iter().map(|r| r.residual));
+        let mut information = *prior_information;
+        let mut score = prior_information * (SVector::from(*prior_mean) - SVector::from(unknowns));
+        for (r, s) in rows.iter().zip(stations) {
+            let own_sd = sd * s.white_factor.sqrt();
+            let weight = huber_weight(r.residual / own_sd) / (own_sd * own_sd);
+            let columns = SVector::from(r.columns);
+            information += columns * columns.transpose() * weight;
+            score += columns * (r.residual * weight);
+        }
+        let Some(factor) = information.cholesky() else {
+            break;
+        };
+        let step = factor.solve(&score);
+        for (u, d) in unknowns.iter_mut().zip(step.iter()) {
+            *u += d;
+        }
+        if step.amax() < 1e-4 {
+            break;
+        }
+    }
+    (unknowns, sd)
+}
+
+/// Standard deviation of the bulk of the residuals about zero.
+fn robust_sd(residuals: impl Iterator<Item = f64>) -> f64 {
+    let mut sizes: Vec<f64> = residuals.map(f64::abs).collect();
+    let middle = sizes.len() / 2;
+    let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
+    (*median / MEDIAN_TO_SD).max(LEAST_SD_DEG)
+}

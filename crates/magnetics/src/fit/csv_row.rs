@@ -1,0 +1,523 @@
+//! Rows of a table of headings as users bring them, made into observations.
+//!
+//! Reading the file is the caller's business; which columns there must be, and
+//! what a row says, is decided here.
+
+use super::{GyroSpeedError, Observation, ReferenceCheck, gyro_speed_error_deg};
+use crate::angle::{CompassHeading, Deviation, TrueHeading, Variation};
+use crate::field::{FieldAt, FieldModel};
+use crate::position::Position;
+use crate::time::Timestamp;
+
+/// One row: every column that such a table may have.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CsvRow {
+    /// `time`
+    pub time: Option<Timestamp>,
+    /// `lat`, degrees north.
+    pub lat: Option<f64>,
+    /// `lon`, degrees east.
+    pub lon: Option<f64>,
+    /// `variation_deg`, east positive; in place of time and position.
+    pub variation_deg: Option<f64>,
+    /// `h_nt`, with `variation_deg`.
+    pub h_nt: Option<f64>,
+    /// `z_nt`, with `variation_deg`.
+    pub z_nt: Option<f64>,
+    /// `compass_deg`, as read.
+    pub compass_deg: Option<f64>,
+    /// `gyro_deg`
+    pub gyro_deg: Option<f64>,
+    /// `satellite_deg`
+    pub satellite_deg: Option<f64>,
+    /// `reference_deg`: a true heading of unnamed origin.
+    pub reference_deg: Option<f64>,
+    /// `sog_kn`
+    pub sog_kn: Option<f64>,
+    /// `windows`: settled ten-second windows in the row.
+    pub windows: Option<f64>,
+    /// `weight` beside the other rows; 1 when absent.
+    pub weight: Option<f64>,
+}
+
+/// What is wrong with a table.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CsvRowError {
+    /// The header lacks what no fit can do without.
+    #[error("missing column {0}")]
+    MissingColumn(&'static str),
+    /// A row has nothing where something must stand.
+    #[error("{column} is empty")]
+    Empty {
+        /// Which row, counted from 0.
+        row: usize,
+        /// Its column.
+        column: &'static str,
+    },
+    /// A value is not one that the column may hold.
+    #[error("{column}: {message}")]
+    Invalid {
+        /// Which row, counted from 0.
+        row: usize,
+        /// Its column.
+        column: &'static str,
+        /// What is wrong with it.
+        message: String,
+    },
+}
+
+impl CsvRowError {
+    /// The row that is at fault, counted from 0; none when the header is.
+    pub fn row(&self) -> Option<usize> {
+        match self {
+            CsvRowError::MissingColumn(_) => None,
+            CsvRowError::Empty { row, .. } | CsvRowError::Invalid { row, .. } => Some(*row),
+        }
+    }
+
+    /// The column that is at fault.
+    pub fn column(&self) -> &'static str {
+        match self {
+            CsvRowError::MissingColumn(column)
+            | CsvRowError::Empty { column, .. }
+            | CsvRowError::Invalid { column, .. } => column,
+        }
+    }
+}
+
+/// The rows of a table that have a reference.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CsvObservations {
+    /// One for each row with a reference.
+    pub observations: Vec<Observation>,
+    /// How many rows had none.
+    pub without_reference: u64,
+    /// How gyro and satellite compass compare.
+    pub references: ReferenceCheck,
+}
+
+/// Checks that a header has what a fit needs: `compass_deg`; one of `gyro_deg`,
+/// `satellite_deg` and `reference_deg`; and either `variation_deg`, `h_nt` and
+/// `z_nt` or `time`, `lat` and `lon`.
+///
+/// # Errors
+/// [`CsvRowError::MissingColumn`] with the first that is missing.
+pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<(), CsvRowError> {
+    let header: Vec<&str> = header.into_iter().collect();
+    let has = |name: &str| header.contains(&name);
+    let need = |name: &'static str| {
+        if has(name) {
+            Ok(())
+        } else {
+            Err(CsvRowError::MissingColumn(name))
+        }
+    };
+    need("compass_deg")?;
+    if !["gyro_deg", "satellite_deg", "reference_deg"]
+        .into_iter()
+        .any(has)
+    {
+        return Err(CsvRowError::MissingColumn(
+            "gyro_deg, satellite_deg or reference_deg",
+        ));
+    }
+    if ["variation_deg", "h_nt", "z_nt"].into_iter().any(has) && !(has("lat") && has("lon")) {
+        need("variation_deg")?;
+        need("h_nt")?;
+        return need("z_nt");
+    }
+    need("time")?;
+    need("lat")?;
+    need("lon")
+}
+
+/// Makes observations of rows. Where a row has both a field and a place, the
+/// field as given is used.
+///
+/// # Errors
+/// With the first row and column that are empty or invalid. A row without any
+/// reference heading is not an error: it is counted.
+pub fn observations_from_csv(
+    rows: &[CsvRow],
+    gyro_speed_error: GyroSpeedError,
+    one_constant_sd_deg: f64,
+) -> Result<CsvObservations, CsvRowError> {
+    let mut read = Vec::with_capacity(rows.len());
+    for (index, row) in rows.iter().enumerate() {
+        read.push(Parsed::new(row, index, gyro_speed_error)?);
+    }
+    let pairs = read.iter().filter_map(|p| p.gyro.zip(p.satellite));
+    let references = ReferenceCheck::new(pairs, one_constant_sd_deg);
+    let observations: Vec<Observation> = read
+        .iter()
+        .filter_map(|parsed| parsed.observation(&references))
+        .collect();
+    Ok(CsvObservations {
+        without_reference: (rows.len() - observations.len()) as u64,
+        observations,
+        references,
+    })
+}
+
+/// A row whose values are right by their types.
+struct Parsed {
+    time: Option<Timestamp>,
+    position: Option<Position>,
+    compass: CompassHeading,
+    gyro: Option<TrueHeading>,
+    satellite: Option<TrueHeading>,
+    reference: Option<TrueHeading>,
+    variation: Variation,
+    h_nt: f64,
+    z_nt: f64,
+    sog_kn: Option<f64>,
+    windows: u16,
+    weight: f64,
+}
+
+impl Parsed {
+    fn new(row: &CsvRow, index: usize, speed: GyroSpeedError) -> Result<Parsed, CsvRowError> {
+        let column = Column { row: index };
+        let compass_deg = column.needed("compass_deg", row.compass_deg)?;
+        let sog_kn = column.at_least_zero("sog_kn", row.sog_kn)?;
+        let position = match (row.lat, row.lon) {
+            (Some(lat), Some(lon)) => {
+                // Which of the two is at fault shows when the other is made harmless.
+                let latitude = Position::new(lat, 0.0);
+                latitude.map_err(|e| column.invalid("lat", &e.to_string()))?;
+                Some(Position::new(lat, lon).map_err(|e| column.invalid("lon", &e.to_string()))?)
+            }
+            (Some(_), None) => return Err(column.empty("lon")),
+            (None, Some(_)) => return Err(column.empty("lat")),
+            (None, None) => None,
+        };
+        let (variation, h_nt, z_nt) = column.field(row, position)?;
+        let mut gyro: Option<TrueHeading> = column.heading("gyro_deg", row.gyro_deg)?;
+        if let (GyroSpeedError::Uncorrected, Some(read), Some(sog_kn), Some(place)) =
+            (speed, gyro, sog_kn, position)
+        {
+            let error = gyro_speed_error_deg(read, sog_kn, place.lat_deg());
+            gyro = TrueHeading::new(read.degrees() - error);
+        }
+        let windows = column.at_least_zero("windows", row.windows)?;
+        Ok(Parsed {
+            time: row.time,
+            position,
+            compass: CompassHeading::try_from(compass_deg)
+                .map_err(|e| column.invalid("compass_deg", &e.to_string()))?,
+            gyro,
+            satellite: column.heading("satellite_deg", row.satellite_deg)?,
+            reference: column.heading("reference_deg", row.reference_deg)?,
+            variation,
+            h_nt,
+            z_nt,
+            sog_kn,
+            // Without a count a row is taken for a whole ten-minute mean.
+            windows: windows.map_or(60.0, |n| n.clamp(1.0, 65_535.0)) as u16,
+            weight: column.at_least_zero("weight", row.weight)?.unwrap_or(1.0),
+        })
+    }
+
+    fn observation(&self, references: &ReferenceCheck) -> Option<Observation> {
+        let lat_deg = self.position.map_or(0.0, Position::lat_deg);
+        let (heading, gyro_share) = match references.merge(self.gyro, self.satellite, lat_deg) {
+            Some(merged) => (merged.heading, merged.gyro_share),
+            // An unnamed reference may wander as a gyro does.
+            None => (self.reference?, 1.0),
+        };
+        let deviation: Deviation = (heading - self.variation) - self.compass;
+        Some(Observation {
+            time: self.time,
+            position: self.position,
+            compass: self.compass,
+            deviation,
+            variation: self.variation,
+            h_nt: self.h_nt,
+            z_nt: self.z_nt,
+            gyro_share,
+            sog_kn: self.sog_kn,
+            windows: self.windows,
+            weight: self.weight,
+        })
+    }
+}
+
+/// Names the row in every complaint.
+struct Column {
+    row: usize,
+}
+
+impl Column {
+    fn empty(&self, column: &'static str) -> CsvRowError {
+        CsvRowError::Empty {
+            row: self.row,
+            column,
+        }
+    }
+
+    fn invalid(&self, column: &'static str, message: &str) -> CsvRowError {
+        CsvRowError::Invalid {
+            row: self.row,
+            column,
+            message: message.to_owned(),
+        }
+    }
+
+    fn needed(&self, column: &'static str, value: Option<f64>) -> Result<f64, CsvRowError> {
+        value.ok_or_else(|| self.empty(column))
+    }
+
+    fn heading(
+        &self,
+        column: &'static str,
+        value: Option<f64>,
+    ) -> Result<Option<TrueHeading>, CsvRowError> {
+        value
+            .map(TrueHeading::try_from)
+            .transpose()
+            .map_err(|e| self.invalid(column, &e.to_string()))
+    }
+
+    fn at_least_zero(
+        &self,
+        column: &'static str,
+        value: Option<f64>,
+    ) -> Result<Option<f64>, CsvRowError> {
+        match value {
+            Some(number) if !(number >= 0.0 && number.is_finite()) => {
+                Err(self.invalid(column, &format!("{number} is not a number from 0 up")))
+            }
+            _ => Ok(value),
+        }
+    }
+
+    /// Variation, H and Z: as the row gives them, or from its time and place.
+    fn field(
+        &self,
+        row: &CsvRow,
+        position: Option<Position>,
+    ) -> Result<(Variation, f64, f64), CsvRowError> {
+        if row.variation_deg.is_some() || position.is_none() {
+            let given = self.needed("variation_deg", row.variation_deg)?;
+            let variation = Variation::try_from(given)
+                .map_err(|e| self.invalid("variation_deg", &e.to_string()))?;
+            let h_nt = self.needed("h_nt", row.h_nt)?;
+            if !(h_nt > 0.0 && h_nt <= 1e6) {
+                return Err(self.invalid("h_nt", &format!("{h_nt} nT is no horizontal field")));
+            }
+            let z_nt = self.needed("z_nt", row.z_nt)?;
+            if !(-1e6..=1e6).contains(&z_nt) {
+                return Err(self.invalid("z_nt", &format!("{z_nt} nT is no vertical field")));
+            }
+            return Ok((variation, h_nt, z_nt));
+        }
+        let place = position.ok_or_else(|| self.empty("lat"))?;
+        let time = row.time.ok_or_else(|| self.empty("time"))?;
+        let field = FieldAt::time(FieldModel::Igrf14, time)
+            .and_then(|model| model.at(place, 0.0))
+            .map_err(|e| self.invalid("time", &e.to_string()))?;
+        Ok((field.declination(), field.h_nt(), field.z_nt))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row() -> CsvRow {
+        CsvRow {
+            variation_deg: Some(-3.0),
+            h_nt: Some(24_000.0),
+            z_nt: Some(38_000.0),
+            compass_deg: Some(358.0),
+            gyro_deg: Some(1.0),
+            ..CsvRow::default()
+        }
+    }
+
+    fn read(row: CsvRow) -> Result<CsvObservations, CsvRowError> {
+        observations_from_csv(&[row], GyroSpeedError::Corrected, 0.5)
+    }
+
+    #[test]
+    fn deviation_is_reference_less_variation_less_compass() {
+        let read = read(row()).unwrap();
+        assert!((read.observations[0].deviation.degrees_east() - 6.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_field_comes_from_time_and_place_where_it_is_not_given() {
+        let at_sea = CsvRow {
+            time: Some(Timestamp::parse("2026-06-01T00:00:00Z").unwrap()),
+            lat: Some(50.0),
+            lon: Some(-20.0),
+            compass_deg: Some(10.0),
+            satellite_deg: Some(5.0),
+            ..CsvRow::default()
+        };
+        let observation = read(at_sea).unwrap().observations[0];
+        assert!((15_000.0..25_000.0).contains(&observation.h_nt));
+        assert!(observation.variation.degrees_east() < -3.0);
+    }
+
+    #[test]
+    fn a_row_without_a_reference_is_counted() {
+        let read = read(CsvRow {
+            gyro_deg: None,
+            ..row()
+        })
+        .unwrap();
+        assert_eq!((read.observations.len(), read.without_reference), (0, 1));
+    }
+
+    #[test]
+    #[allow(clippy::too_many_lines)] // a table
+    fn each_fault_names_its_column() {
+        let faults = [
+            (
+                CsvRow {
+                    compass_deg: None,
+                    ..row()
+                },
+                "compass_deg",
+            ),
+            (
+                CsvRow {
+                    compass_deg: Some(361.0),
+                    ..row()
+                },
+                "compass_deg",
+            ),
+            (
+                CsvRow {
+                    compass_deg: Some(f64::NAN),
+                    ..row()
+                },
+                "compass_deg",
+            ),
+            (
+                CsvRow {
+                    h_nt: None,
+                    ..row()
+                },
+                "h_nt",
+            ),
+            (
+                CsvRow {
+                    h_nt: Some(-1.0),
+                    ..row()
+                },
+                "h_nt",
+            ),
+            (
+                CsvRow {
+                    z_nt: Some(f64::NAN),
+                    ..row()
+                },
+                "z_nt",
+            ),
+            (
+                CsvRow {
+                    variation_deg: Some(200.0),
+                    ..row()
+                },
+                "variation_deg",
+            ),
+            (
+                CsvRow {
+                    lat: Some(95.0),
+                    lon: Some(0.0),
+                    ..row()
+                },
+                "lat",
+            ),
+            (
+                CsvRow {
+                    lat: Some(5.0),
+                    lon: Some(999.0),
+                    ..row()
+                },
+                "lon",
+            ),
+            (
+                CsvRow {
+                    lat: Some(5.0),
+                    ..row()
+                },
+                "lon",
+            ),
+            (
+                CsvRow {
+                    gyro_deg: Some(-5.0),
+                    ..row()
+                },
+                "gyro_deg",
+            ),
+            (
+                CsvRow {
+                    weight: Some(-1.0),
+                    ..row()
+                },
+                "weight",
+            ),
+            (
+                CsvRow {
+                    variation_deg: None,
+                    lat: Some(5.0),
+                    lon: Some(5.0),
+                    ..row()
+                },
+                "time",
+            ),
+            (
+                CsvRow {
+                    variation_deg: None,
+                    time: Some(Timestamp::parse("1850-01-01T00:00:00Z").unwrap()),
+                    lat: Some(5.0),
+                    lon: Some(5.0),
+                    ..row()
+                },
+                "time",
+            ),
+        ];
+        for (row, column) in faults {
+            let error = read(row).unwrap_err();
+            assert_eq!((error.column(), error.row()), (column, Some(0)), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_missing_column_is_named() {
+        assert_eq!(
+            check_columns(["time", "lat", "lon", "compass_deg", "gyro_deg"]),
+            Ok(())
+        );
+        assert_eq!(
+            check_columns([
+                "variation_deg",
+                "h_nt",
+                "z_nt",
+                "compass_deg",
+                "reference_deg"
+            ]),
+            Ok(())
+        );
+        for (header, missing) in [
+            (vec!["time", "lat", "lon", "gyro_deg"], "compass_deg"),
+            (vec!["time", "lat", "compass_deg", "gyro_deg"], "lon"),
+            (
+                vec!["variation_deg", "h_nt", "compass_deg", "gyro_deg"],
+                "z_nt",
+            ),
+            (
+                vec!["time", "lat", "lon", "compass_deg"],
+                "gyro_deg, satellite_deg or reference_deg",
+            ),
+        ] {
+            assert_eq!(
+                check_columns(header),
+                Err(CsvRowError::MissingColumn(missing))
+            );
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! The product's fit: exact model, residuals in angle, robust weights, noise
+//! that remembers, and a prior for what headings cannot tell.
+
+use super::{FitError, Observation};
+use crate::deviation::Coefficients;
+use crate::estimate::{NoiseLevels, Options, Prior, estimate};
+use crate::model::{Model, Parameters};
+use crate::ship::EarthField;
+
+/// Fewer samples than this carry no fit of eight unknowns worth having.
+const NEEDED_SAMPLES: u64 = 12;
+/// Sectors of 15° of heading that must hold samples.
+const NEEDED_SECTORS: u32 = 6;
+/// With a wider gap the deviation beyond it would be the prior's alone.
+const ALLOWED_GAP_DEG: f64 = 240.0;
+/// Below this a compass is of no use.
+pub const WEAKEST_H_NT: f64 = 2_000.0;
+/// A row of less weight than this is counted as rejected.
+pub const REJECTED_BELOW: f64 = 0.5;
+
+/// What a robust fit starts from beside the observations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobustOptions {
+    /// What is known of the ship; ships at large when nothing is.
+    pub prior: Prior,
+    /// Standard deviation of the reference's constant error, degrees.
+    pub reference_constant_sd_deg: f64,
+}
+
+impl Default for RobustOptions {
+    fn default() -> RobustOptions {
+        RobustOptions {
+            prior: Prior::population(),
+            reference_constant_sd_deg: 0.5,
+        }
+    }
+}
+
+/// A model with what became of every observation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobustFit {
+    /// The model.
+    pub model: Model,
+    /// How large the estimator found each kind of noise.
+    pub noise: NoiseLevels,
+    /// One for each observation, in the order given.
+    pub rows: Vec<RowOutcome>,
+}
+
+/// What a fit made of one observation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowOutcome {
+    /// Measured less predicted, degrees; none where the row was not looked at.
+    pub residual_deg: Option<f64>,
+    /// Its weight, 0 to 1: 0 where the field is too weak for a compass.
+    pub weight: f64,
+}
+
+/// Fits a model to observations; their order does not matter.
+///
+/// # Errors
+/// When the observations cannot carry a model, with what is missing.
+pub fn fit_robust(
+    observations: &[Observation],
+    options: &RobustOptions,
+) -> Result<RobustFit, FitError> {
+    let usable: Vec<usize> = (0..observations.len())
+        .filter(|&i| observations[i].h_nt >= WEAKEST_H_NT && observations[i].weight > 0.0)
+        .collect();
+    let rows: Vec<Observation> = usable.iter().map(|&i| observations[i]).collect();
+    check_field(observations, &rows)?;
+    check_number(&rows)?;
+    check_headings(&rows)?;
+    let fitted = estimate(
+        &rows,
+        &Options {
+            prior: &options.prior,
+            reference_constant_sd_deg: options.reference_constant_sd_deg,
+        },
+    )
+    .ok_or(FitError::NotConverged)?;
+    check_needle(&fitted.parameters, &rows)?;
+
+    let mut outcomes = vec![
+        RowOutcome {
+            residual_deg: None,
+            weight: 0.0
+        };
+        observations.len()
+    ];
+    for (&index, row) in usable.iter().zip(&fitted.rows) {
+        outcomes[index] = RowOutcome {
+            residual_deg: Some(row.residual_deg),
+            weight: row.weight,
+        };
+    }
+    let used = fitted.rows.iter().filter(|r| r.weight >= REJECTED_BELOW);
+    let squares: f64 = used.clone().map(|r| r.residual_deg.powi(2)).sum();
+    let samples_used = used.count() as u64;
+    let model = Model {
+        parameters_over_lambda: fitted.parameters,
+        constant_deg: fitted.constant_deg,
+        covariance: Some(fitted.covariance),
+        identifiable: Some(fitted.identifiable),
+        rms_deg: Some((squares / samples_used.max(1) as f64).sqrt()),
+        samples_used,
+        samples_rejected: observations.len() as u64 - samples_used,
+    };
+    Ok(RobustFit {
+        model,
+        noise: fitted.levels,
+        rows: outcomes,
+    })
+}
+
+fn check_field(all: &[Observation], usable: &[Observation]) -> Result<(), FitError> {
+    if all.is_empty() || !usable.is_empty() {
+        return Ok(());
+    }
+    Err(FitError::FieldTooWeak {
+        strongest_nt: all.iter().map(|o| o.h_nt).fold(0.0, f64::max),
+        needed_nt: WEAKEST_H_NT,
+    })
+}
+
+fn check_number(rows: &[Observation]) -> Result<(), FitError> {
+    let found = rows.len() as u64;
+    if found >= NEEDED_SAMPLES {
+        return Ok(());
+    }
+    Err(FitError::TooFewSamples {
+        found,
+        needed: NEEDED_SAMPLES,
+    })
+}
+
+pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
+    let mut headings: Vec<f64> = rows.iter().map(|o| o.compass.degrees()).collect();
+    headings.sort_by(f64::total_cmp);
+    let mut sectors = [false; 24];
+    for heading in &headings {
+        sectors[(heading / 15.0) as usize % 24] = true;
+    }
+    let found = sectors.iter().filter(|&&filled| filled).count() as u32;
+    let around = headings.first().map_or(360.0, |first| first + 360.0);
+    let next = headings.iter().skip(1).chain(std::iter::once(&around));
+    let widest_gap_deg = headings
+        .iter()
+        .zip(next)
+        .map(|(a, b)| b - a)
+        .fold(0.0, f64::max);
+    if found >= NEEDED_SECTORS && widest_gap_deg <= ALLOWED_GAP_DEG {
+        return Ok(());
+    }
+    Err(FitError::TooFewHeadings {
+        found,
+        needed: NEEDED_SECTORS,
+        widest_gap_deg,
+        allowed_gap_deg: ALLOWED_GAP_DEG,
+    })
+}
+
+/// One compass heading must stand for one course where the ship is mostly.
+fn check_needle(p: &Parameters, rows: &[Observation]) -> Result<(), FitError> {
+    let mut by_strength: Vec<&Observation> = rows.iter().collect();
+    by_strength.sort_by(|a, b| a.h_nt.total_cmp(&b.h_nt));
+    let usual = by_strength[by_strength.len() / 2];
+    let earth = EarthField {
+        h_nt: usual.h_nt,
+        z_nt: usual.z_nt,
+    };
+    Coefficients::new(p, earth)
+        .and_then(|coefficients| coefficients.check_unambiguous())
+        .map_err(|_| FitError::AmbiguousHeadings { h_nt: usual.h_nt })
+}
