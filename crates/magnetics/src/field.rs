@@ -126,8 +126,8 @@ pub fn field(
 
 /// A model's coefficients for one instant: for many places at that time.
 ///
-/// The field changes by less than a third of a nanotesla a day anywhere, so an
-/// evaluator made for noon serves the day's samples well.
+/// The field changes by less than a nanotesla a day anywhere, so an evaluator
+/// made for noon serves the day's samples well.
 #[derive(Clone, Debug)]
 pub struct FieldAt {
     terms: Terms,

@@ -182,3 +182,33 @@ fn no_field_and_no_number_are_refused() {
         Err(DeviationError::NotFinite)
     );
 }
+
+/// Table 2 of Basterretxea-Iribar, Sotés & Uriarte 2016, with Dakar's vertical
+/// field as it was computed with (docs/science.md, §6). Parameters are printed
+/// to 1e-4 gauss, deviations to a tenth of a degree.
+#[test]
+fn the_papers_parameters_give_the_papers_deviations() {
+    let parameters =
+        Parameters::from_array([2_060.0, -0.0215, -2_930.0, 0.0022, 0.0352, 0.0012, 0.0016]);
+    let file = include_str!("../../data/paper_table2.csv");
+    let mut reader = csv::Reader::from_reader(file.as_bytes());
+    let mut rows = 0;
+    for row in reader.records() {
+        let row = row.unwrap();
+        let number = |index: usize| row[index].parse::<f64>().unwrap();
+        let z_gauss = if &row[1] == "Dakar" { 0.489 } else { number(9) };
+        let earth = EarthField {
+            h_nt: number(8) * 1e5,
+            z_nt: z_gauss * 1e5,
+        };
+        // The table is computed: its true heading, variation and deviation are
+        // exact, its compass column is measured.
+        let compass = number(2) - number(7) - number(3);
+        let (deviation, _) =
+            linearised_at_compass(&parameters, compass.to_radians(), earth).unwrap();
+        let apart = deviation.to_degrees() - number(3);
+        assert!(apart.abs() < 0.06, "{row:?}: {apart}");
+        rows += 1;
+    }
+    assert_eq!(rows, 24);
+}

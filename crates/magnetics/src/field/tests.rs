@@ -224,3 +224,25 @@ fn wmm_agrees_with_an_independent_implementation_at_random_places() {
         assert!((found.z_nt - other.down_nanotesla()).abs() < 1e-6);
     }
 }
+
+#[test]
+fn the_field_moves_less_than_a_nanotesla_a_day() {
+    let mut fastest = 0.0_f64;
+    for lat in (-90..=90).step_by(5) {
+        for lon in (-180..180).step_by(10) {
+            let (lat, lon) = (f64::from(lat), f64::from(lon));
+            for first in [1902.0, 1957.0, 2026.0] {
+                let now = at(FieldModel::Igrf14, lat, lon, 0.0, first);
+                let later = at(FieldModel::Igrf14, lat, lon, 0.0, first + 1.0 / 365.25);
+                for moved in [
+                    later.x_nt - now.x_nt,
+                    later.y_nt - now.y_nt,
+                    later.z_nt - now.z_nt,
+                ] {
+                    fastest = fastest.max(moved.abs());
+                }
+            }
+        }
+    }
+    assert!((0.1..1.0).contains(&fastest), "{fastest}");
+}
