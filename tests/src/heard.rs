@@ -8,7 +8,7 @@ use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
 
-/// An HDG and the THS after it.
+/// An HDG, the THS after it, and the PBINQ that says how good they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Correction {
     /// What the compass reads.
@@ -19,6 +19,10 @@ pub struct Correction {
     pub variation_deg: f64,
     /// The true heading of a THS in mode E.
     pub true_deg: f64,
+    /// The version of the model, by PBINQ.
+    pub model_version: u32,
+    /// The deviation's standard error, degrees, by PBINQ.
+    pub standard_error_deg: f64,
 }
 
 /// Listens until `count` whole corrections were heard.
@@ -34,13 +38,14 @@ pub async fn corrections(
     let listening = async {
         let stream = TcpStream::connect(agent).await?;
         let mut lines = BufReader::new(stream).lines();
-        let mut reading = None;
+        let (mut reading, mut heading) = (None, None);
         while found.len() < count {
             let line = lines.next_line().await?.context("the agent hung up")?;
             let fields = fields_of(&line)?;
-            match fields[0].get(2..) {
-                Some("HDG") => reading = hdg(&fields)?,
-                Some("THS") => found.extend(reading.take().and_then(|r| with_true(r, &fields))),
+            match fields[0] {
+                "IIHDG" => reading = hdg(&fields)?,
+                "IITHS" => heading = ths(&fields),
+                "PBINQ" => found.extend(correction(reading.take(), heading.take(), &fields)),
                 _ => {}
             }
         }
@@ -83,14 +88,26 @@ fn east(degrees: &str, side: &str) -> Result<f64> {
     }
 }
 
-fn with_true(reading: (f64, f64, f64), ths: &[&str]) -> Option<Correction> {
-    let (compass_deg, deviation_deg, variation_deg) = reading;
-    let true_deg = ths.get(1)?.parse().ok()?;
-    (ths.get(2) == Some(&"E")).then_some(Correction {
+/// The heading of mode E.
+fn ths(fields: &[&str]) -> Option<f64> {
+    let heading = fields.get(1)?.parse().ok()?;
+    (fields.get(2) == Some(&"E")).then_some(heading)
+}
+
+/// All three together, when each has something to say.
+fn correction(
+    hdg: Option<(f64, f64, f64)>,
+    ths: Option<f64>,
+    pbinq: &[&str],
+) -> Option<Correction> {
+    let (compass_deg, deviation_deg, variation_deg) = hdg?;
+    Some(Correction {
         compass_deg,
         deviation_deg,
         variation_deg,
-        true_deg,
+        true_deg: ths?,
+        model_version: pbinq.get(2)?.parse().ok()?,
+        standard_error_deg: pbinq.get(4)?.parse().ok()?,
     })
 }
 
@@ -104,9 +121,12 @@ mod tests {
         assert!(fields_of("$IIHDG,101.5,2.0,W,3.5,E*00").is_err());
         let reading = hdg(&fields_of(line).unwrap()).unwrap();
         assert_eq!(reading, Some((101.5, -2.0, 3.5)));
-        let heard = with_true(reading.unwrap(), &["IITHS", "103.0", "E"]);
-        assert_eq!(heard.map(|h| h.true_deg), Some(103.0));
-        assert_eq!(with_true((1.0, 2.0, 3.0), &["IITHS", "", "V"]), None);
+        assert_eq!(ths(&["IITHS", "103.0", "E"]), Some(103.0));
+        assert_eq!(ths(&["IITHS", "", "V"]), None);
+        let quality = ["PBINQ", "A", "3", "1.0", "0.25"];
+        let heard = correction(reading, Some(103.0), &quality).unwrap();
+        assert_eq!((heard.model_version, heard.compass_deg), (3, 101.5));
+        assert_eq!(correction(reading, None, &quality), None);
     }
 
     #[test]

@@ -12,6 +12,7 @@ pub mod ledger;
 pub mod program;
 pub mod ship;
 pub mod shore;
+pub mod voyage;
 
 pub use database::{Database, Engine};
 pub use eventually::eventually;
@@ -19,3 +20,4 @@ pub use feed::{Feed, Pace, Progress};
 pub use program::{Program, output_of};
 pub use ship::Ship;
 pub use shore::Shore;
+pub use voyage::{Truth, Voyage};

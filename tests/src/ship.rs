@@ -3,6 +3,7 @@
 use crate::eventually::eventually;
 use crate::program::{self, Program};
 use anyhow::{Context, Result, ensure};
+use serde_json::Value;
 use std::net::{SocketAddr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -117,6 +118,19 @@ stale_s = 15
             Ok(agent.log().contains("ready").then_some(()))
         })
         .await
+    }
+
+    /// What `status --json` says.
+    ///
+    /// # Errors
+    /// When it fails.
+    pub async fn status(&self) -> Result<Value> {
+        let mut command = program::command("binnacle-agent")?;
+        command
+            .args(["status", "--json", "--config"])
+            .arg(self.config());
+        let answer = program::answer_of(command, "").await?;
+        serde_json::from_str(&answer).with_context(|| answer.clone())
     }
 
     /// The most memory the agent ever had, in kilobytes.

@@ -1,0 +1,106 @@
+//! A simulated voyage on its way into an agent, and the truth about it.
+
+use crate::feed::{Feed, Pace};
+use crate::program;
+use anyhow::{Context, Result, ensure};
+use binnacle_magnetics::time::Timestamp;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use tokio::process::Child;
+
+/// A simulator that sails, and the bridge that says what it sees.
+#[derive(Debug)]
+pub struct Voyage {
+    /// The bridge.
+    pub feed: Feed,
+    simulator: Child,
+    truth: PathBuf,
+}
+
+/// What the simulator says really was, as far as the tests need it.
+#[derive(Debug, Deserialize)]
+pub struct Truth {
+    /// All headings, at the voyage's end.
+    pub at_the_end: Place,
+}
+
+/// The true deviation at a place.
+#[derive(Debug, Deserialize)]
+pub struct Place {
+    /// Degrees north.
+    pub lat: f64,
+    /// Degrees east.
+    pub lon: f64,
+    /// When.
+    pub at: Timestamp,
+    /// Degrees, east positive.
+    pub variation_deg: f64,
+    /// By compass heading, evenly spaced from 0.
+    pub rows: Vec<Row>,
+}
+
+/// The true deviation on a heading.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct Row {
+    /// As the compass shows it.
+    pub compass_deg: f64,
+    /// Degrees, east positive.
+    pub deviation_deg: f64,
+}
+
+impl Voyage {
+    /// Sails a scenario of this package with one ship.
+    ///
+    /// # Errors
+    /// When the simulator cannot be started.
+    pub async fn sail(scenario: &str, seed: u64, folder: &Path, pace: Pace) -> Result<Voyage> {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("scenarios")
+            .join(scenario);
+        let truth = folder.join(format!("{scenario}.truth.json"));
+        let mut command = program::command("binnacle-simulator")?;
+        command.args([
+            "voyage",
+            "--seed",
+            &seed.to_string(),
+            "--out",
+            "/dev/stdout",
+            "--scenario",
+        ]);
+        command.arg(file).arg("--truth").arg(&truth);
+        let mut simulator = command.stdout(Stdio::piped()).spawn()?;
+        let sentences = simulator
+            .stdout
+            .take()
+            .context("standard output was asked for")?;
+        let feed = Feed::start(sentences, pace).await?;
+        Ok(Voyage {
+            feed,
+            simulator,
+            truth,
+        })
+    }
+
+    /// The truth, when the voyage has ended.
+    ///
+    /// # Errors
+    /// When the simulator failed.
+    pub async fn truth(&mut self) -> Result<Truth> {
+        let status = self.simulator.wait().await?;
+        ensure!(status.success(), "the simulator: {status}");
+        let text = std::fs::read_to_string(&self.truth)?;
+        serde_json::from_str(&text).with_context(|| self.truth.display().to_string())
+    }
+}
+
+impl Place {
+    /// The true deviation on a heading, between rows along a line.
+    pub fn deviation_deg(&self, compass_deg: f64) -> f64 {
+        let step = 360.0 / self.rows.len() as f64;
+        let place = compass_deg.rem_euclid(360.0) / step;
+        let row = |index: usize| self.rows[index % self.rows.len()].deviation_deg;
+        let (below, part) = (place.floor() as usize, place.fract());
+        row(below) * (1.0 - part) + row(below + 1) * part
+    }
+}

@@ -1,0 +1,320 @@
+//! The whole way: two ships sail, their agents upload, agents and server are
+//! killed on the way, and in the end nothing is lost, nothing is double, the
+//! models hold the truth, and the autopilot hears it.
+
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
+use anyhow::{Context, Result, ensure};
+use binnacle_magnetics::angle::wrap_180;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_tests::ledger::{Acknowledged, Spool, batch_log};
+use binnacle_tests::voyage::Place;
+use binnacle_tests::{Engine, Pace, Progress, Ship, Shore, Voyage, eventually, heard};
+use binnacle_wire::decode;
+use serde_json::Value;
+use std::path::Path;
+use std::time::Duration;
+use uuid::Uuid;
+
+const START: &str = "2026-10-01T00:00:00Z";
+const DAYS: f64 = 12.0;
+/// Sailed at the end, for the autopilot.
+const LIVE_S: f64 = 600.0;
+/// A few days' sailing may take so long on a busy machine.
+const PATIENCE: Duration = Duration::from_mins(5);
+/// A tenth of a degree in a sentence, and a line between rows of the truth.
+const ROUNDING_DEG: f64 = 0.15;
+
+struct Vessel {
+    id: Uuid,
+    ship: Ship,
+    voyage: Voyage,
+}
+
+/// Who is killed.
+#[derive(Clone, Copy, Debug)]
+enum Victim {
+    Agent(usize),
+    Server,
+}
+
+fn day(day: f64) -> Timestamp {
+    Timestamp::parse(START)
+        .unwrap()
+        .plus_seconds(day * 86_400.0)
+}
+
+/// Where the fast part ends.
+fn fast_end() -> Timestamp {
+    day(DAYS).plus_seconds(-LIVE_S)
+}
+
+/// Eight moments in order, by a generator with a known seed.
+fn kills(seed: u64) -> Vec<(f64, Victim)> {
+    let mut state = seed;
+    let mut next = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / f64::from(1_u32 << 31)
+    };
+    let victims = [
+        Victim::Agent(0),
+        Victim::Server,
+        Victim::Agent(1),
+        Victim::Server,
+        Victim::Agent(1),
+        Victim::Agent(0),
+        Victim::Server,
+        Victim::Agent(0),
+    ];
+    let moment = |(place, victim)| ((place as f64 + 0.5 + next()) * DAYS / 9.0, victim);
+    victims.into_iter().enumerate().map(moment).collect()
+}
+
+async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Result<Vessel> {
+    let (id, code) = shore.create_vessel(scenario).await?;
+    let pace = Pace::FastUntil(fast_end());
+    let voyage = Voyage::sail(&format!("{scenario}.toml"), seed, folder, pace).await?;
+    let mut ship = Ship::new(scenario, folder, voyage.feed.address())?;
+    ship.enrol(&shore.url, &code).await?;
+    ship.start()?;
+    Ok(Vessel {
+        id: id.parse()?,
+        ship,
+        voyage,
+    })
+}
+
+/// Sails to the end of the fast part, with the kills on the way.
+async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()> {
+    for (when, victim) in kills(seed) {
+        let whose = if let Victim::Agent(index) = victim {
+            index
+        } else {
+            0
+        };
+        let moment = day(when);
+        let passed = |progress: &Progress| match progress {
+            Progress::Waiting => false,
+            Progress::At(time) => *time >= moment,
+            Progress::Held(_) | Progress::Ended => true,
+        };
+        vessels[whose].voyage.feed.reached(PATIENCE, passed).await?;
+        match victim {
+            Victim::Agent(index) => vessels[index].ship.kill_and_restart().await?,
+            Victim::Server => shore.kill_and_restart().await?,
+        }
+    }
+    for vessel in vessels {
+        let held = |progress: &Progress| matches!(progress, Progress::Held(_));
+        vessel.voyage.feed.reached(PATIENCE, held).await?;
+        vessel.ship.assert_running()?;
+    }
+    Ok(())
+}
+
+/// Waits until the agent has taken in all that was said and nothing waits.
+async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
+    eventually("the agent has sent all", PATIENCE, async || {
+        let status = vessel.ship.status().await?;
+        let Some(time) = status["ship_time"].as_str() else {
+            return Ok(None);
+        };
+        if Timestamp::parse(time)? < until {
+            return Ok(None);
+        }
+        let spool = Spool::of(&vessel.ship).await?;
+        Ok((spool.waiting == 0).then_some(spool))
+    })
+    .await
+}
+
+/// Compares both ends' records with each other and with what the API gives out.
+async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, spool: &Spool) -> Result<()> {
+    ensure!(
+        spool.in_trouble == 0,
+        "{} batches are in trouble",
+        spool.in_trouble
+    );
+    ensure!(
+        spool.acknowledged.len() > 20,
+        "only {:?}",
+        spool.acknowledged
+    );
+    let mut sent = Vec::new();
+    let mut logged = Vec::new();
+    for (stream, seq, bytes) in batch_log(shore.database(), vessel.id).await? {
+        let batch = decode(&bytes)?;
+        logged.push(Acknowledged {
+            stream,
+            seq,
+            samples: i64::try_from(batch.samples.len())?,
+            crc32: i64::from(crc32fast::hash(&bytes)),
+        });
+        sent.extend(batch.samples);
+    }
+    let aboard = &spool.acknowledged;
+    ensure!(
+        logged == *aboard,
+        "on board {aboard:?}, on shore {logged:?}"
+    );
+    sent.sort_by_key(|sample| sample.time);
+    for pair in sent.windows(2) {
+        let apart = pair[1].time.seconds_since(pair[0].time);
+        let both = 5.0 * f64::from(pair[0].windows) + 5.0 * f64::from(pair[1].windows);
+        ensure!(apart >= both, "these share windows: {pair:?}");
+    }
+    let listed = shore
+        .list(&format!("/vessels/{}/samples", vessel.id))
+        .await?;
+    let mut listed: Vec<Sample> = listed
+        .into_iter()
+        .map(serde_json::from_value)
+        .collect::<Result<_, _>>()?;
+    listed.sort_by_key(|sample| sample.time);
+    ensure!(
+        listed.len() == sent.len(),
+        "{} of {} samples",
+        listed.len(),
+        sent.len()
+    );
+    for (listed, sent) in listed.iter().zip(&sent) {
+        let same = (listed.time, listed.windows) == (sent.time, sent.windows)
+            && apart_deg(listed.compass.degrees(), sent.compass.degrees()) < 1e-6;
+        ensure!(same, "sent {sent:?}, listed {listed:?}");
+    }
+    Ok(())
+}
+
+fn apart_deg(a: f64, b: f64) -> f64 {
+    wrap_180(a - b).abs()
+}
+
+/// The model of all samples, on shore: its version.
+async fn final_model(shore: &Shore, vessel: &Vessel) -> Result<u64> {
+    let samples = shore
+        .list(&format!("/vessels/{}/samples", vessel.id))
+        .await?;
+    let times = samples.iter().filter_map(|sample| sample["time"].as_str());
+    let last = times.max().context("there are samples")?.to_owned();
+    let path = format!("/vessels/{}/model", vessel.id);
+    eventually("a model of all samples", PATIENCE, async || {
+        let Some(model) = shore.find(&path).await? else {
+            return Ok(None);
+        };
+        let until = model["data_until"].as_str().context("data_until")?;
+        let version = model["version"].as_u64().context("version")?;
+        Ok((until >= last.as_str()).then_some(version))
+    })
+    .await
+}
+
+/// The band of the deviation curve at the voyage's end holds the truth on at
+/// least nine headings in ten.
+async fn assert_band_holds_truth(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<()> {
+    let Place { lat, lon, at, .. } = truth;
+    let path = format!("/vessels/{}/deviation", vessel.id);
+    let curve = shore
+        .get(&format!("{path}?lat={lat}&lon={lon}&at={at}&step_deg=10"))
+        .await?;
+    let variation = curve["variation_deg"].as_f64().context("variation_deg")?;
+    ensure!(
+        apart_deg(variation, truth.variation_deg) < 0.02,
+        "{variation}, {truth:?}"
+    );
+    let rows = curve["rows"].as_array().context("rows")?;
+    ensure!(rows.len() == 36, "{} rows", rows.len());
+    let missed: Vec<String> = rows.iter().filter_map(|row| missed(row, truth)).collect();
+    ensure!(missed.len() <= 3, "the band misses the truth: {missed:#?}");
+    Ok(())
+}
+
+fn missed(row: &Value, truth: &Place) -> Option<String> {
+    let field = |name: &str| row[name].as_f64();
+    let error = match (
+        field("compass_deg"),
+        field("deviation_deg"),
+        field("band95_deg"),
+    ) {
+        (Some(compass), Some(deviation), Some(band)) => {
+            let error = deviation - truth.deviation_deg(compass);
+            if error.abs() <= band {
+                return None;
+            }
+            error
+        }
+        _ => f64::NAN,
+    };
+    Some(format!("{row}: {error:+.3} from the truth"))
+}
+
+/// Sails on for ten minutes and listens as an autopilot would.
+async fn assert_autopilot_hears_truth(vessel: &mut Vessel, version: u64) -> Result<()> {
+    eventually("the model is on board", PATIENCE, async || {
+        let status = vessel.ship.status().await?;
+        Ok((status["model"]["version"].as_u64() >= Some(version)).then_some(()))
+    })
+    .await?;
+    vessel.voyage.feed.set_pace(Pace::Live)?;
+    let heard = heard::corrections(vessel.ship.output(), 20, PATIENCE).await?;
+    vessel
+        .voyage
+        .feed
+        .reached(PATIENCE, |progress| *progress == Progress::Ended)
+        .await?;
+    let truth = vessel.voyage.truth().await?.at_the_end;
+    for correction in heard {
+        let deviation = truth.deviation_deg(correction.compass_deg);
+        let error = correction.deviation_deg - deviation;
+        let band = 1.96 * correction.standard_error_deg;
+        ensure!(
+            error.abs() <= band + ROUNDING_DEG,
+            "{correction:?}: the truth is {deviation:.2}"
+        );
+        let variation = correction.variation_deg - truth.variation_deg;
+        ensure!(
+            variation.abs() <= ROUNDING_DEG,
+            "{correction:?}: {}",
+            truth.variation_deg
+        );
+        let sum = correction.compass_deg + correction.deviation_deg + correction.variation_deg;
+        ensure!(
+            apart_deg(sum, correction.true_deg) <= ROUNDING_DEG,
+            "{correction:?}"
+        );
+    }
+    Ok(())
+}
+
+async fn whole_way(engine: Engine) -> Result<()> {
+    let folder = tempfile::tempdir()?;
+    let mut shore = Shore::start(engine, folder.path()).await?;
+    let mut vessels = Vec::new();
+    for (scenario, seed) in [("biscay", 11), ("agulhas", 12)] {
+        vessels.push(set_sail(&shore, scenario, seed, folder.path()).await?);
+    }
+    sail(&mut shore, &mut vessels, 3).await?;
+    for vessel in &mut vessels {
+        let spool = settled(vessel, fast_end()).await?;
+        assert_every_sample_once(&shore, vessel, &spool).await?;
+        let version = final_model(&shore, vessel).await?;
+        assert_autopilot_hears_truth(vessel, version).await?;
+        let truth = vessel.voyage.truth().await?.at_the_end;
+        assert_band_holds_truth(&shore, vessel, &truth).await?;
+        vessel.ship.kill().await?;
+    }
+    shore.assert_well().await?;
+    shore.finish().await
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn nothing_is_lost_and_the_truth_is_found_on_sqlite() {
+    whole_way(Engine::Sqlite).await.unwrap();
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn nothing_is_lost_and_the_truth_is_found_on_postgres() {
+    whole_way(Engine::Postgres).await.unwrap();
+}
