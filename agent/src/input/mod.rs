@@ -23,6 +23,9 @@ mod signalk;
 mod tcp;
 mod udp;
 
+#[cfg(test)]
+mod tests;
+
 pub(crate) use config::InputConfig;
 #[allow(unused_imports)] // until every part is wired
 pub(crate) use decode::is_recorded_time;
