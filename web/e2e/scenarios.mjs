@@ -1,0 +1,200 @@
+/** What a user must be able to do, each in a browser of its own. */
+import assert from 'node:assert/strict';
+
+const phone = { width: 390, height: 844 };
+/** Chromium reports every 4xx answer in the console; these are asked for. */
+const notSignedIn = /status of 401 .*\/api\/v1\/me\b/;
+
+async function signIn(page, { email, password }) {
+  await page.goto('/');
+  await page.getByLabel('E-mail').fill(email);
+  await page.getByLabel('Password').fill(password);
+  await page.getByRole('button', { name: 'Sign in' }).click();
+  await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+}
+
+/** Opens the first vessel of the list that has a model; answers her name. */
+async function openVessel(page) {
+  const row = page
+    .getByRole('row')
+    .filter({ hasText: /\(95 %\)/ })
+    .first();
+  await row.waitFor();
+  const name = await row.getByRole('link').innerText();
+  await row.getByRole('link').click();
+  await page.getByRole('heading', { name, level: 1 }).waitFor();
+  await curve(page).waitFor();
+  return name;
+}
+
+const chart = (page) => page.getByTestId('deviation-chart');
+const curve = (page) => chart(page).locator('svg [aria-label="line"] path').last();
+
+async function fitsItsWidth(page) {
+  const excess = await page.evaluate(
+    () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+  );
+  assert.ok(excess <= 0, `the page is ${excess} px wider than the screen`);
+}
+
+export const scenarios = {
+  'a wrong password is refused in words': {
+    allowedErrors: [notSignedIn, /status of 401 .*\/api\/v1\/session\b/],
+    async run({ page, settings, shoot }) {
+      await page.goto('/');
+      await page.getByLabel('E-mail').fill(settings.email);
+      await page.getByLabel('Password').fill(`${settings.password}-not`);
+      await page.getByRole('button', { name: 'Sign in' }).click();
+      await page.getByRole('alert').filter({ hasText: 'E-mail or password is wrong' }).waitFor();
+      assert.equal(await page.getByLabel('Password').inputValue(), '');
+      await shoot('wrong-password');
+    },
+  },
+
+  'an officer signs in, opens a vessel and sees the curve with its samples': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByText(/^Live$/).waitFor();
+      await shoot('vessels');
+      await openVessel(page);
+
+      const path = await curve(page).getAttribute('d');
+      assert.ok(path.length > 500, 'the curve has points all round');
+      assert.ok(!/NaN/.test(path), 'the curve has no hole');
+      await chart(page).locator('svg [aria-label="area"] path').first().waitFor();
+      const samples = chart(page).locator('svg [aria-label="dot"] circle');
+      await samples.nth(20).waitFor();
+      assert.match(
+        await chart(page).getByRole('img').getAttribute('aria-label'),
+        /° [EW] on \d{3}°/,
+      );
+      assert.match(await page.getByTestId('worst').innerText(), /^\d+\.\d° [EW]$|^0\.0°$/);
+
+      const rows = page.getByTestId('deviation-table').locator('tbody tr');
+      assert.equal(await rows.count(), 24);
+      for (const [index, start] of [
+        [0, '000°'],
+        [12, '180°'],
+        [23, '345°'],
+      ]) {
+        const row = await rows.nth(index).innerText();
+        assert.ok(row.startsWith(start), `row ${index} is ${row}`);
+        assert.match(row, /\d+\.\d°( [EW])?\s+± \d+\.\d°\s+\d{3}\.\d°/);
+      }
+
+      await page.getByTestId('residual-chart').locator('svg circle').first().waitFor();
+      await page.getByTestId('coverage-table').waitFor();
+      await page.getByRole('heading', { name: 'Coefficients' }).waitFor();
+      await page.getByText('accepted', { exact: true }).first().waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessel', { fullPage: true });
+    },
+  },
+
+  'the deviation is shown for another place': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      const before = await curve(page).getAttribute('d');
+      await page.getByRole('button', { name: 'Choose another place' }).click();
+      await page.getByLabel('Latitude').fill('95 N');
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByRole('alert').filter({ hasText: 'Latitude' }).waitFor();
+      await page.getByLabel('Latitude').fill('62 30.5 N');
+      await page.getByLabel('Longitude').fill('005 12 E');
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByText('At 62° 30.5′ N, 005° 12.0′ E', { exact: false }).first().waitFor();
+      assert.notEqual(await curve(page).getAttribute('d'), before);
+    },
+  },
+
+  'an administrator makes an enrolment code': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      await page.getByRole('button', { name: 'Make a code' }).click();
+      const code = await page.getByTestId('enrolment-code').innerText();
+      assert.ok(code.length >= 8, 'the code is shown');
+      await page.getByText(`--code ${code}`).waitFor();
+    },
+  },
+
+  'the keyboard alone reaches a vessel, and back': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await page.goto('/');
+      await page.getByLabel('E-mail').focus();
+      await page.keyboard.type(settings.email);
+      await page.keyboard.press('Tab');
+      await page.keyboard.type(settings.password);
+      await page.keyboard.press('Enter');
+      await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+      const link = page.getByRole('row').getByRole('link').first();
+      await link.waitFor();
+      for (let presses = 0; presses < 30; presses++) {
+        if (await link.evaluate((element) => element === document.activeElement)) break;
+        await page.keyboard.press('Tab');
+      }
+      await page.keyboard.press('Enter');
+      await page.waitForURL(/\/vessels\//);
+      await page.goBack();
+      await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+    },
+  },
+
+  'a phone shows the same, by night too': {
+    viewport: phone,
+    colorScheme: 'dark',
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await fitsItsWidth(page);
+      await shoot('vessels-phone', { fullPage: true });
+      await openVessel(page);
+      await chart(page).locator('svg [aria-label="dot"] circle').first().waitFor();
+      await page.getByTestId('coverage-table').waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessel-phone', { fullPage: true });
+    },
+  },
+
+  'an address of nobody shows nothing': {
+    allowedErrors: [notSignedIn, /status of 404 .*\/api\/v1\/vessels\//],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.goto('/vessels/01900000-0000-7000-8000-000000000000');
+      await page.getByRole('heading', { name: 'Nothing here' }).waitFor();
+    },
+  },
+
+  'losing the server is said, and its return is noticed': {
+    allowedErrors: [notSignedIn, /ERR_INTERNET_DISCONNECTED/],
+    async run({ page, context, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      await context.setOffline(true);
+      await page.getByRole('button', { name: 'Choose another place' }).click();
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByText('The server cannot be reached', { exact: false }).waitFor();
+      await context.setOffline(false);
+      await page.getByRole('button', { name: 'Try again' }).click();
+      await page
+        .getByText('The server cannot be reached', { exact: false })
+        .waitFor({ state: 'detached' });
+    },
+  },
+
+  'signing out ends the session': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.getByRole('button', { name: 'Sign out' }).click();
+      await page.getByRole('button', { name: 'Sign in' }).waitFor();
+      await page.goto('/');
+      await page.getByRole('button', { name: 'Sign in' }).waitFor();
+    },
+  },
+};

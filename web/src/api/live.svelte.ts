@@ -1,0 +1,135 @@
+/**
+ * News from the server as it happens.
+ *
+ * The browser resumes a broken connection by itself, after the last event it
+ * saw. When the server refused the connection it gives up; then a new one is
+ * opened, ever more slowly, and everything counts as news, because events may
+ * have been missed.
+ */
+
+import { findMe } from './client';
+
+export interface News {
+  /** The vessel it is about; none when anything may have changed. */
+  vesselId: string | null;
+  kind: 'batch' | 'model' | 'all';
+}
+
+type Listener = (news: News) => void;
+
+const firstWaitMs = 2_000;
+const longestWaitMs = 60_000;
+
+class LiveState {
+  status = $state<'connecting' | 'live' | 'lost'>('connecting');
+  #source: EventSource | null = null;
+  #listeners = new Set<Listener>();
+  #waitMs = firstWaitMs;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #wasOpened = false;
+
+  start(): void {
+    this.stop();
+    this.status = 'connecting';
+    this.#connect();
+    addEventListener('online', this.#retryNow);
+  }
+
+  stop(): void {
+    removeEventListener('online', this.#retryNow);
+    clearTimeout(this.#timer);
+    this.#source?.close();
+    this.#source = null;
+    this.#wasOpened = false;
+    this.#waitMs = firstWaitMs;
+  }
+
+  listen(listener: Listener): () => void {
+    this.#listeners.add(listener);
+    return () => this.#listeners.delete(listener);
+  }
+
+  #connect(): void {
+    const source = new EventSource('/api/v1/events');
+    this.#source = source;
+    source.onopen = () => {
+      // After the browser's own resume the server repeats what was missed; after
+      // a new connection of ours nobody does.
+      if (this.#wasOpened && this.status === 'lost') this.#tell({ vesselId: null, kind: 'all' });
+      this.status = 'live';
+      this.#wasOpened = true;
+      this.#waitMs = firstWaitMs;
+    };
+    source.onerror = () => {
+      this.status = 'lost';
+      if (source.readyState !== EventSource.CLOSED) return;
+      this.#timer = setTimeout(() => {
+        this.#reconnect();
+      }, this.#waitMs);
+      this.#waitMs = Math.min(this.#waitMs * 2, longestWaitMs);
+    };
+    source.addEventListener('vessel', (event: MessageEvent<string>) => {
+      const news = parseNews(event.data);
+      if (news) this.#tell(news);
+    });
+  }
+
+  #reconnect(): void {
+    this.#source?.close();
+    // A closed stream may mean that the session has ended; asking says so.
+    findMe().then(
+      () => {
+        if (this.#source) this.#connect();
+      },
+      () => {
+        if (!this.#source) return;
+        this.#timer = setTimeout(() => {
+          this.#reconnect();
+        }, this.#waitMs);
+        this.#waitMs = Math.min(this.#waitMs * 2, longestWaitMs);
+      },
+    );
+  }
+
+  #retryNow = (): void => {
+    if (this.status !== 'lost' || this.#source?.readyState !== EventSource.CLOSED) return;
+    clearTimeout(this.#timer);
+    this.#reconnect();
+  };
+
+  #tell(news: News): void {
+    for (const listener of this.#listeners) listener(news);
+  }
+}
+
+export function parseNews(data: string): News | null {
+  try {
+    const value: unknown = JSON.parse(data);
+    if (typeof value !== 'object' || value === null) return null;
+    if (!('vessel_id' in value) || typeof value.vessel_id !== 'string') return null;
+    if (!('kind' in value)) return null;
+    if (value.kind !== 'batch' && value.kind !== 'model') return null;
+    return { vesselId: value.vessel_id, kind: value.kind };
+  } catch {
+    return null;
+  }
+}
+
+export const live = new LiveState();
+
+/** Gathers calls and runs `act` once, `waitMs` after the first of them. */
+export function gathered(act: () => void, waitMs: number): { call: () => void; stop: () => void } {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  return {
+    call: () => {
+      timer ??= setTimeout(() => {
+        timer = undefined;
+        act();
+      }, waitMs);
+    },
+    stop: () => {
+      clearTimeout(timer);
+      timer = undefined;
+    },
+  };
+}

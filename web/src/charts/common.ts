@@ -1,0 +1,31 @@
+/** What the charts share: colours that follow day and night, ticks, spans. */
+
+import { eastWest } from '../format';
+
+/** Style-sheet variables, so that a change of theme needs no new drawing. */
+export const colours = {
+  curve: 'var(--curve)',
+  sample: 'var(--sample)',
+  unused: 'var(--ink-faint)',
+  grid: 'var(--line)',
+  axis: 'var(--line-strong)',
+  surface: 'var(--surface)',
+} as const;
+
+/** `4° E`, `0°`, `2.5° W` */
+export function sideTick(value: number): string {
+  return eastWest(value, Number.isInteger(value) ? 0 : 1);
+}
+
+/**
+ * A range that holds zero, all of `firm` and the middle 98 % of `loose`, at
+ * least `leastDeg` to either side: a stray outlier does not flatten the curve.
+ */
+export function spanned(firm: number[], loose: number[], leastDeg: number): [number, number] {
+  const sorted = [...loose].sort((a, b) => a - b);
+  const at = (share: number) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0;
+  const low = Math.min(-leastDeg, at(0.01), ...firm);
+  const high = Math.max(leastDeg, at(0.99), ...firm);
+  const margin = 0.06 * (high - low);
+  return [low - margin, high + margin];
+}

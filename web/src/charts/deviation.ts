@@ -1,0 +1,141 @@
+/** The deviation curve: band, samples and line against compass heading. */
+
+import * as Plot from '@observablehq/plot';
+import type { DeviationRow } from '../api/types';
+import { compassPoint, eastWest, fineHeading, heading, plusMinus } from '../format';
+import { closed } from '../science/curve';
+import { text } from '../text';
+import { colours, sideTick, spanned } from './common';
+
+export interface Dot {
+  compassDeg: number;
+  deviationDeg: number;
+  used: boolean;
+}
+
+export const deviationHeight = (width: number): number => (width < 520 ? 280 : 380);
+
+export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number): Element {
+  const line = closed(rows);
+  const banded = line.filter((row) => row.band95_deg !== null);
+  const low = (row: DeviationRow) => row.deviation_deg - (row.band95_deg ?? 0);
+  const high = (row: DeviationRow) => row.deviation_deg + (row.band95_deg ?? 0);
+  const narrow = width < 520;
+  return Plot.plot({
+    width,
+    height: deviationHeight(width),
+    marginLeft: 48,
+    marginRight: 14,
+    marginTop: 14,
+    marginBottom: 44,
+    style: { fontSize: '12px', fontVariant: 'tabular-nums' },
+    x: {
+      domain: [0, 360],
+      ticks: [0, 45, 90, 135, 180, 225, 270, 315, 360].filter((d) => !narrow || d % 90 === 0),
+      tickFormat: (d: number) => `${heading(d)}\n${compassPoint(d)}`,
+      label: null,
+      tickSize: 5,
+    },
+    y: {
+      domain: spanned(
+        line.flatMap((row) => [low(row), high(row)]),
+        dots.map((dot) => dot.deviationDeg),
+        1.5,
+      ),
+      nice: true,
+      ticks: narrow ? 5 : 7,
+      tickFormat: sideTick,
+      tickSize: 0,
+      label: null,
+    },
+    marks: [
+      Plot.gridX(
+        [45, 90, 135, 180, 225, 270, 315].filter((d) => !narrow || d % 90 === 0),
+        {
+          stroke: colours.grid,
+          strokeOpacity: 1,
+        },
+      ),
+      Plot.gridY({ stroke: colours.grid, strokeOpacity: 1 }),
+      Plot.ruleY([0], { stroke: colours.axis, strokeWidth: 1 }),
+      Plot.dot(
+        dots.filter((dot) => dot.used),
+        {
+          x: 'compassDeg',
+          y: 'deviationDeg',
+          r: narrow ? 1.8 : 2.2,
+          fill: colours.sample,
+          fillOpacity: 0.45,
+          clip: true,
+          ariaHidden: 'true',
+        },
+      ),
+      Plot.dot(
+        dots.filter((dot) => !dot.used),
+        {
+          x: 'compassDeg',
+          y: 'deviationDeg',
+          r: 2.4,
+          symbol: 'times',
+          stroke: colours.unused,
+          strokeOpacity: 0.8,
+          clip: true,
+          ariaHidden: 'true',
+        },
+      ),
+      Plot.areaY(banded, {
+        x: 'compass_deg',
+        y1: low,
+        y2: high,
+        fill: colours.curve,
+        fillOpacity: 0.18,
+        curve: 'natural',
+      }),
+      Plot.lineY(banded, { x: 'compass_deg', y: low, ...edge }),
+      Plot.lineY(banded, { x: 'compass_deg', y: high, ...edge }),
+      Plot.lineY(line, {
+        x: 'compass_deg',
+        y: 'deviation_deg',
+        stroke: colours.curve,
+        strokeWidth: 2.5,
+        curve: 'natural',
+      }),
+      Plot.ruleX(line, Plot.pointerX({ x: 'compass_deg', stroke: colours.axis })),
+      Plot.dot(
+        line,
+        Plot.pointerX({
+          x: 'compass_deg',
+          y: 'deviation_deg',
+          r: 4.5,
+          fill: colours.curve,
+          stroke: colours.surface,
+          strokeWidth: 2,
+        }),
+      ),
+      Plot.tip(
+        line,
+        Plot.pointerX({
+          x: 'compass_deg',
+          y: 'deviation_deg',
+          title: (row: DeviationRow) =>
+            text.deviation.tip(
+              heading(row.compass_deg),
+              eastWest(row.deviation_deg),
+              plusMinus(row.band95_deg),
+              fineHeading(row.magnetic_deg),
+            ),
+          fill: colours.surface,
+          stroke: colours.axis,
+          fontSize: 12,
+        }),
+      ),
+    ],
+  });
+}
+
+const edge = {
+  stroke: colours.curve,
+  strokeOpacity: 0.45,
+  strokeWidth: 1,
+  curve: 'natural',
+} as const;

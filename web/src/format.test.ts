@@ -1,0 +1,105 @@
+import { describe, expect, test } from 'vitest';
+import * as format from './format';
+
+describe('angles', () => {
+  test('deviation is written with its side, and east is positive', () => {
+    expect(format.eastWest(3.44)).toBe('3.4° E');
+    expect(format.eastWest(-3.44)).toBe('3.4° W');
+  });
+
+  test('what rounds to zero has neither side nor sign', () => {
+    expect(format.eastWest(-0.04)).toBe('0.0°');
+    expect(format.eastWest(0)).toBe('0.0°');
+    expect(format.signed(-0.0004, 3)).toBe('0.000');
+  });
+
+  test('the unknown is a dash and never zero', () => {
+    for (const missing of [null, undefined, NaN]) {
+      expect(format.eastWest(missing)).toBe('–');
+      expect(format.heading(missing)).toBe('–');
+      expect(format.microtesla(missing)).toBe('–');
+      expect(format.count(missing)).toBe('–');
+    }
+    expect(format.time('not a time')).toBe('–');
+  });
+
+  test('headings have three figures and north is 000', () => {
+    expect(format.heading(5)).toBe('005°');
+    expect(format.heading(359.7)).toBe('000°');
+    expect(format.heading(-90)).toBe('270°');
+    expect(format.fineHeading(41.62)).toBe('041.6°');
+    expect(format.fineHeading(359.97)).toBe('000.0°');
+  });
+
+  test('the nearest compass point wraps at north', () => {
+    expect(['N', 'NE', 'S', 'N']).toEqual([0, 45, 180, 355].map(format.compassPoint));
+  });
+});
+
+describe('positions', () => {
+  test('are in degrees and minutes with all four quadrants', () => {
+    expect(format.position({ lat: 54.5, lon: 18.6667 })).toBe('54° 30.0′ N, 018° 40.0′ E');
+    expect(format.position({ lat: -33.9, lon: -70.25 })).toBe('33° 54.0′ S, 070° 15.0′ W');
+  });
+
+  test('sixty minutes carry into the degree', () => {
+    expect(format.latitude(53.9999)).toBe('54° 00.0′ N');
+  });
+
+  test('are read as officers write them', () => {
+    expect(format.parseAngle('54.5', 'lat')).toBe(54.5);
+    expect(format.parseAngle('-54.5', 'lat')).toBe(-54.5);
+    expect(format.parseAngle('−54.5', 'lat')).toBe(-54.5);
+    expect(format.parseAngle('54 30 N', 'lat')).toBe(54.5);
+    expect(format.parseAngle("54°30'S", 'lat')).toBe(-54.5);
+    expect(format.parseAngle('018° 40.2′ W', 'lon')).toBeCloseTo(-18.67, 9);
+    expect(format.parseAngle('018°40\'12"E', 'lon')).toBeCloseTo(18.67, 9);
+  });
+
+  test('what cannot be a position is refused', () => {
+    for (const wrong of [
+      '',
+      'north',
+      '95',
+      '54 61 N',
+      '54.5 E',
+      '-54 S',
+      '*54',
+      ')54',
+      '5 5 5 5',
+    ]) {
+      expect(format.parseAngle(wrong, 'lat'), wrong).toBeNull();
+    }
+    expect(format.parseAngle('181', 'lon')).toBeNull();
+    expect(format.parseAngle('18 N', 'lon')).toBeNull();
+  });
+
+  test('every written position reads back as itself', () => {
+    for (const lat of [-90, -33.9, -0.005, 0, 0.5, 89.995]) {
+      expect(format.parseAngle(format.latitude(lat), 'lat')).toBeCloseTo(lat, 2);
+    }
+  });
+});
+
+describe('times and counts', () => {
+  test('times are UTC whatever the zone of the reader', () => {
+    expect(format.time('2026-11-14T08:30:59Z')).toBe('14 Nov 2026, 08:30 UTC');
+    expect(format.time('2026-11-14T01:30:00+02:00')).toBe('13 Nov 2026, 23:30 UTC');
+  });
+
+  test('ages are rounded down to what still matters', () => {
+    const now = new Date('2026-11-14T12:00:00Z');
+    expect(format.ago('2026-11-14T11:59:30Z', now)).toBe('just now');
+    expect(format.ago('2026-11-14T11:48:00Z', now)).toBe('12 min ago');
+    expect(format.ago('2026-11-14T08:30:00Z', now)).toBe('3 h ago');
+    expect(format.ago('2026-11-09T08:30:00Z', now)).toBe('5 days ago');
+  });
+
+  test('counts, shares and fields are short', () => {
+    expect(format.count(12480)).toBe('12\u202f480');
+    expect(format.percent(1, 1000)).toBe('< 1 %');
+    expect(format.percent(64, 100)).toBe('64 %');
+    expect(format.percent(0, 0)).toBe('–');
+    expect(format.microtesla(-24_130)).toBe('−24.1 µT');
+  });
+});

@@ -1,0 +1,174 @@
+/**
+ * How values are written for people: angles with one decimal and E or W,
+ * headings in three figures, positions in degrees and minutes, times in UTC.
+ * Pure functions; what is unknown is a dash, never a zero.
+ */
+
+export const unknown = '–';
+
+/** East-positive angle as `3.4° W`; what rounds to zero has no side. */
+export function eastWest(degrees: number | null | undefined, digits = 1): string {
+  if (degrees === null || degrees === undefined || !Number.isFinite(degrees)) return unknown;
+  const size = Math.abs(degrees).toFixed(digits);
+  if (Number(size) === 0) return `${size}°`;
+  return `${size}° ${degrees < 0 ? 'W' : 'E'}`;
+}
+
+/** A size without a side: `0.4°`. */
+export function degrees(value: number | null | undefined, digits = 1): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
+  return `${plain(value, digits)}°`;
+}
+
+/** Half the width of an interval: `± 0.4°`. */
+export function plusMinus(value: number | null | undefined, digits = 1): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
+  return `± ${Math.abs(value).toFixed(digits)}°`;
+}
+
+/** A direction in three figures: `045°`; north is `000°`. */
+export function heading(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
+  return `${threeFigures(value, 0)}°`;
+}
+
+/** A direction in three figures and a tenth: `041.6°`. */
+export function fineHeading(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
+  return `${threeFigures(value, 1)}°`;
+}
+
+function threeFigures(value: number, digits: number): string {
+  const wrapped = ((value % 360) + 360) % 360;
+  const rounded = Number(wrapped.toFixed(digits)) % 360;
+  return rounded.toFixed(digits).padStart(digits > 0 ? 4 + digits : 3, '0');
+}
+
+/** A signed number with a true minus sign; never `-0`. */
+export function signed(value: number, digits: number): string {
+  const size = Math.abs(value).toFixed(digits);
+  if (Number(size) === 0) return size;
+  return `${value < 0 ? '−' : '+'}${size}`;
+}
+
+function plain(value: number, digits: number): string {
+  const size = Math.abs(value).toFixed(digits);
+  return value < 0 && Number(size) !== 0 ? `−${size}` : size;
+}
+
+export interface Place {
+  lat: number;
+  lon: number;
+}
+
+/** `54° 30.2′ N, 018° 40.0′ E` */
+export function position(place: Place | null | undefined): string {
+  if (!place) return unknown;
+  return `${latitude(place.lat)}, ${longitude(place.lon)}`;
+}
+
+export function latitude(value: number): string {
+  return `${degreesAndMinutes(value, 2)} ${value < 0 ? 'S' : 'N'}`;
+}
+
+export function longitude(value: number): string {
+  return `${degreesAndMinutes(value, 3)} ${value < 0 ? 'W' : 'E'}`;
+}
+
+function degreesAndMinutes(value: number, figures: number): string {
+  // Tenths of a minute are rounded first, so that 59.96′ carries into the degree.
+  const tenths = Math.round(Math.abs(value) * 600);
+  const whole = Math.floor(tenths / 600);
+  const minutes = ((tenths % 600) / 10).toFixed(1).padStart(4, '0');
+  return `${String(whole).padStart(figures, '0')}° ${minutes}′`;
+}
+
+/** `14 Nov 2026, 08:30 UTC` */
+export function time(value: string | Date | null | undefined): string {
+  const date = toDate(value);
+  if (!date) return unknown;
+  return `${day(date)}, ${clock(date)}`;
+}
+
+/** `14 Nov 2026` */
+export function day(value: string | Date | null | undefined): string {
+  const date = toDate(value);
+  if (!date) return unknown;
+  return `${date.getUTCDate()} ${months[date.getUTCMonth()] ?? ''} ${date.getUTCFullYear()}`;
+}
+
+/** `08:30 UTC` */
+export function clock(value: string | Date | null | undefined): string {
+  const date = toDate(value);
+  if (!date) return unknown;
+  return `${date.toISOString().slice(11, 16)} UTC`;
+}
+
+const months = 'Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec'.split(' ');
+
+function toDate(value: string | Date | null | undefined): Date | null {
+  if (value === null || value === undefined) return null;
+  const date = typeof value === 'string' ? new Date(value) : value;
+  return Number.isNaN(date.getTime()) ? null : date;
+}
+
+/** How long ago, roughly: `just now`, `12 min ago`, `3 h ago`, `5 days ago`. */
+export function ago(value: string | null | undefined, now: Date): string {
+  const date = toDate(value);
+  if (!date) return unknown;
+  const minutes = Math.floor((now.getTime() - date.getTime()) / 60_000);
+  if (minutes < 1) return 'just now';
+  if (minutes < 60) return `${minutes} min ago`;
+  const hours = Math.floor(minutes / 60);
+  if (hours < 48) return `${hours} h ago`;
+  return `${Math.floor(hours / 24)} days ago`;
+}
+
+/** Nanotesla, written for people: `24.1 µT`. */
+export function microtesla(nanotesla: number | null | undefined): string {
+  if (nanotesla === null || nanotesla === undefined || !Number.isFinite(nanotesla)) return unknown;
+  return `${plain(nanotesla / 1000, 1)} µT`;
+}
+
+/** A count with thin spaces between thousands: `12 480`. */
+export function count(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
+  return String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+}
+
+/** `64 %`, and `< 1 %` for what is there but small. */
+export function percent(part: number, whole: number): string {
+  if (whole <= 0) return unknown;
+  const share = (100 * part) / whole;
+  if (share > 0 && share < 1) return '< 1 %';
+  return `${Math.round(share)} %`;
+}
+
+const points = 'N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW'.split(' ');
+
+/** The nearest of sixteen points: 45 is `NE`. */
+export function compassPoint(value: number): string {
+  const wrapped = ((value % 360) + 360) % 360;
+  return points[Math.round(wrapped / 22.5) % 16] ?? '';
+}
+
+/**
+ * Reads a latitude or longitude as officers write it: `54.5`, `-54.5`,
+ * `54 30.2 N`, `54° 30.2′ S`, `018°40'12"E`. `null` when it cannot be one.
+ */
+export function parseAngle(input: string, axis: 'lat' | 'lon'): number | null {
+  const sides = axis === 'lat' ? 'NS' : 'EW';
+  const match =
+    /^\s*([+−-]?)\s*(\d+(?:\.\d+)?)\s*°?\s*(?:(\d+(?:\.\d+)?)\s*[′']?\s*)?(?:(\d+(?:\.\d+)?)\s*[″"]?\s*)?([NSEW]?)\s*$/i.exec(
+      input.replace(',', '.'),
+    );
+  if (!match) return null;
+  const [, sign, whole = '', minutes = '0', seconds = '0', side = ''] = match;
+  if (Number(minutes) >= 60 || Number(seconds) >= 60) return null;
+  if (side !== '' && !sides.includes(side.toUpperCase())) return null;
+  if (side !== '' && sign !== '') return null;
+  const size = Number(whole) + Number(minutes) / 60 + Number(seconds) / 3600;
+  if (size > (axis === 'lat' ? 90 : 180)) return null;
+  const negative = sign === '-' || sign === '−' || 'SW'.includes(side.toUpperCase() || ' ');
+  return negative && size !== 0 ? -size : size;
+}

@@ -1,0 +1,175 @@
+import { describe, expect, test } from 'vitest';
+import type { Coverage, DeviationRow, Model, Sample } from '../api/types';
+import { exactCoefficients } from './coefficients';
+import { coverageTable, gaps } from './coverage';
+import { closed, deviationAt, everyStep, extremes, grade } from './curve';
+import { parameterRows } from './parameters';
+import { byInterval, residualsOf, thinned } from './residuals';
+
+const model: Model = {
+  parameters_over_lambda: {
+    bx_nt: 2060,
+    chi13: -0.0215,
+    by_nt: -2930,
+    chi23: 0.0022,
+    chi11_minus_chi22: 0.0352,
+    chi12: 0.0012,
+    chi21: 0.0016,
+  },
+  constant_deg: 0.5,
+  covariance: null,
+  identifiable: null,
+  rms_deg: 0.4,
+  samples_used: 100,
+  samples_rejected: 2,
+};
+
+const row = (compass_deg: number, deviation_deg: number, band95_deg: number | null = 0.5) =>
+  ({
+    compass_deg,
+    deviation_deg,
+    band95_deg,
+    magnetic_deg: compass_deg + deviation_deg,
+  }) as DeviationRow;
+
+describe('coefficients', () => {
+  test('follow from the parameters and the field at the place', () => {
+    const found = exactCoefficients(model, 24_000, 39_000);
+    expect(found.A).toBeCloseTo(0.5 + 0.0002 * 57.29578, 6);
+    expect(found.B).toBeCloseTo(((2060 - 0.0215 * 39_000) / 24_000) * 57.29578, 4);
+    expect(found.C).toBeCloseTo(((-2930 + 0.0022 * 39_000) / 24_000) * 57.29578, 4);
+    expect(found.D).toBeCloseTo(0.0176 * 57.29578, 6);
+    expect(found.E).toBeCloseTo(0.0014 * 57.29578, 6);
+  });
+
+  test('B changes with magnetic latitude and D does not', () => {
+    const north = exactCoefficients(model, 24_000, 39_000);
+    const south = exactCoefficients(model, 24_000, -39_000);
+    expect(south.B).toBeGreaterThan(north.B);
+    expect(south.D).toBe(north.D);
+  });
+});
+
+describe('parameters', () => {
+  test('have the errors that the covariance gives, in its order', () => {
+    const covariance = Array.from({ length: 8 }, (_, i) =>
+      Array.from({ length: 8 }, (_, j) => (i === j ? (i + 1) ** 2 : 0)),
+    );
+    const rows = parameterRows({ ...model, covariance });
+    expect(rows.map((r) => r.name)[0]).toBe('bx_nt');
+    expect(rows[7]).toMatchObject({ name: 'constant_deg', value: 0.5 });
+    expect(rows[7]?.error95).toBeCloseTo(8 * 1.96, 9);
+  });
+
+  test('without a covariance have no error, not an error of zero', () => {
+    expect(parameterRows(model).every((r) => r.error95 === null)).toBe(true);
+    expect(parameterRows(model).every((r) => r.basis === 'unknown')).toBe(true);
+  });
+});
+
+describe('the curve', () => {
+  const rows = [row(0, -3), row(90, 5, 0.2), row(180, 1), row(270, -6, 1.4)];
+
+  test('its extremes have side and heading', () => {
+    const found = extremes(rows);
+    expect(found?.largest.compass_deg).toBe(270);
+    expect(found?.mostEast.compass_deg).toBe(90);
+    expect([found?.narrowest95, found?.widest95]).toEqual([0.2, 1.4]);
+    expect(extremes([])).toBeNull();
+  });
+
+  test('closes at north, so that 359° lies between the last row and the first', () => {
+    expect(closed(rows).at(-1)?.compass_deg).toBe(360);
+    expect(deviationAt(rows, 315)).toBeCloseTo(-4.5, 9);
+    expect(deviationAt(rows, 45)).toBeCloseTo(1, 9);
+    expect(deviationAt(rows, 0)).toBe(-3);
+    expect(deviationAt([], 45)).toBeNull();
+  });
+
+  test('a card has every fifteenth degree and no 360', () => {
+    const fine = Array.from({ length: 73 }, (_, i) => row(i * 5, 0));
+    expect(everyStep(fine, 15)).toHaveLength(24);
+  });
+
+  test('more than five degrees to either side is large', () => {
+    expect([2.9, -3.1, 5, -5.1].map(grade)).toEqual(['small', 'notable', 'notable', 'large']);
+  });
+});
+
+describe('residuals', () => {
+  const sample = (time: string, residual_deg: number | null, used = true) =>
+    ({ time, residual_deg, used }) as Sample;
+
+  test('are gathered by UTC day, unused ones left out', () => {
+    const { days, intervals } = byInterval(
+      residualsOf([
+        sample('2026-11-01T23:50:00Z', 1),
+        sample('2026-11-02T00:10:00Z', 3),
+        sample('2026-11-02T01:10:00Z', -1),
+        sample('2026-11-02T02:10:00Z', 90, false),
+        sample('2026-11-02T03:10:00Z', null),
+      ]),
+    );
+    expect(days).toBe(1);
+    expect(intervals.map((i) => [i.samples, i.meanDeg])).toEqual([
+      [1, 1],
+      [2, 1],
+    ]);
+    expect(intervals[1]?.rmsDeg).toBeCloseTo(Math.sqrt(5), 9);
+  });
+
+  test('beyond a month are gathered by week', () => {
+    const found = byInterval(
+      residualsOf([sample('2026-09-01T00:00:00Z', 1), sample('2026-11-01T00:00:00Z', 1)]),
+    );
+    expect(found.days).toBe(7);
+    expect(byInterval([]).intervals).toEqual([]);
+  });
+
+  test('are thinned evenly and never repeated', () => {
+    const values = Array.from({ length: 1000 }, (_, i) => i);
+    const few = thinned(values, 300);
+    expect(new Set(few).size).toBe(300);
+    expect(thinned(values, 2000)).toBe(values);
+  });
+});
+
+describe('coverage', () => {
+  const coverage = (cells: [number, number, number][]): Coverage => ({
+    heading_step_deg: 15,
+    magnetic_latitude_step_deg: 10,
+    cells: cells.map(([magnetic_latitude_from_deg, heading_from_deg, samples]) => ({
+      magnetic_latitude_from_deg,
+      heading_from_deg,
+      samples,
+    })),
+  });
+
+  test('runs from north to south with the empty bands between', () => {
+    const table = coverageTable(
+      coverage([
+        [-10, 0, 3],
+        [20, 345, 4],
+        [20, 0, 1],
+      ]),
+    );
+    expect(table.bands.map((band) => [band.fromDeg, band.total])).toEqual([
+      [20, 5],
+      [10, 0],
+      [0, 0],
+      [-10, 3],
+    ]);
+    expect([table.totals[0], table.totals[23], table.most]).toEqual([4, 4, 4]);
+  });
+
+  test('missing headings are joined across north', () => {
+    const filled = Array.from({ length: 24 }, (_, i): [number, number, number] => [0, i * 15, 1]);
+    const holes = new Set([0, 15, 345, 90]);
+    const table = coverageTable(coverage(filled.filter(([, heading]) => !holes.has(heading))));
+    expect(gaps(table)).toEqual([
+      { fromDeg: 90, toDeg: 105 },
+      { fromDeg: 345, toDeg: 30 },
+    ]);
+    expect(gaps(coverageTable(coverage(filled)))).toEqual([]);
+  });
+});

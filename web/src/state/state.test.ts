@@ -1,0 +1,76 @@
+import { describe, expect, test, vi } from 'vitest';
+import { Problem } from '../api/client';
+import { gathered, parseNews } from '../api/live.svelte';
+import { Resource } from './resource.svelte';
+import { parseRoute } from './route.svelte';
+
+describe('addresses', () => {
+  test('name pages, and what names none is not found', () => {
+    expect(parseRoute('/')).toEqual({ page: 'vessels' });
+    expect(parseRoute('/vessels/')).toEqual({ page: 'vessels' });
+    expect(parseRoute('/vessels/abc')).toEqual({ page: 'vessel', id: 'abc' });
+    expect(parseRoute('/vessels/abc/else')).toEqual({ page: 'not-found' });
+    expect(parseRoute('/elsewhere')).toEqual({ page: 'not-found' });
+  });
+});
+
+describe('what was fetched', () => {
+  const refuse = (status: number) => () => Promise.reject(new Problem(status, 'x', 'no'));
+
+  test('stays on the screen when a refresh fails, with the problem beside it', async () => {
+    const resource = new Resource<number>();
+    await resource.load(() => Promise.resolve(1));
+    await resource.load(refuse(500));
+    expect(resource.value).toBe(1);
+    expect(resource.problem?.status).toBe(500);
+    await resource.load(() => Promise.resolve(2));
+    expect(resource.problem).toBeUndefined();
+  });
+
+  test('goes when it is no longer there', async () => {
+    const resource = new Resource<number>();
+    await resource.load(() => Promise.resolve(1));
+    await resource.load(refuse(404));
+    expect(resource.value).toBeUndefined();
+  });
+
+  test('an answer that was overtaken is dropped', async () => {
+    const resource = new Resource<string>();
+    let answer: (value: string) => void = () => undefined;
+    const slow = resource.load(() => new Promise((resolve) => (answer = resolve)));
+    await resource.load(() => Promise.resolve('second'));
+    answer('first');
+    await slow;
+    expect(resource.value).toBe('second');
+    expect(resource.loading).toBe(false);
+  });
+});
+
+describe('news', () => {
+  test('of a vessel is read, and anything else is passed over', () => {
+    expect(parseNews('{"vessel_id":"v","kind":"batch"}')).toEqual({ vesselId: 'v', kind: 'batch' });
+    for (const odd of [
+      '',
+      '[]',
+      'null',
+      '{"vessel_id":1,"kind":"batch"}',
+      '{"vessel_id":"v","kind":"x"}',
+    ]) {
+      expect(parseNews(odd), odd).toBeNull();
+    }
+  });
+
+  test('that comes in bursts is acted on once', () => {
+    vi.useFakeTimers();
+    const act = vi.fn();
+    const refresh = gathered(act, 1000);
+    for (let i = 0; i < 50; i++) refresh.call();
+    vi.advanceTimersByTime(1000);
+    expect(act).toHaveBeenCalledTimes(1);
+    refresh.call();
+    refresh.stop();
+    vi.advanceTimersByTime(5000);
+    expect(act).toHaveBeenCalledTimes(1);
+    vi.useRealTimers();
+  });
+});

@@ -1,0 +1,340 @@
+/**
+ * Every English text that the dashboard shows, in one place. A text with a
+ * value in it is a function; values come in already written by `format.ts`.
+ */
+
+import type { ParameterName } from './api/types';
+
+export const text = {
+  product: 'Binnacle',
+  tagline: 'The magnetic compass, corrected at sea',
+  noMountPoint: 'index.html has no element with the id "app"',
+
+  skip: 'Skip to content',
+  loading: 'Loading…',
+  retry: 'Try again',
+  cancel: 'Cancel',
+  copy: 'Copy',
+  copied: 'Copied',
+  optional: 'optional',
+
+  signIn: {
+    title: 'Sign in',
+    email: 'E-mail',
+    password: 'Password',
+    submit: 'Sign in',
+    busy: 'Signing in…',
+    wrong: 'E-mail or password is wrong.',
+    missing: 'Enter e-mail and password.',
+  },
+  signOut: 'Sign out',
+
+  theme: {
+    label: 'Colours',
+    auto: 'Auto',
+    light: 'Day',
+    dark: 'Night',
+  },
+
+  live: {
+    connecting: 'Connecting',
+    live: 'Live',
+    lost: 'Not live',
+    liveLong: 'Shows new data as it arrives',
+    lostLong: 'The live connection is lost; trying again',
+  },
+
+  problem: {
+    offline: 'The server cannot be reached. Check the connection.',
+    offlineStale: (since: string) =>
+      `The server cannot be reached. What you see is from ${since}; it is refreshed as soon as the connection is back.`,
+    stale: (since: string, detail: string) =>
+      `This could not be refreshed (${detail}). What you see is from ${since}.`,
+    unexpected: (status: number) => `The server answered with an error (${status}).`,
+    unreadable: 'The server answered in a form that this page cannot read.',
+    signedOut: 'Your session has ended. Sign in again.',
+    notFoundTitle: 'Nothing here',
+    notFound: 'There is no such page, or it belongs to another fleet.',
+    toVessels: 'To the vessels',
+    title: 'This could not be shown',
+  },
+
+  vessels: {
+    title: 'Vessels',
+    fleet: (operator: string) => `Fleet of ${operator}`,
+    name: 'Vessel',
+    lastUpload: 'Last upload',
+    position: 'Position',
+    worst: 'Largest deviation',
+    fit: 'Fit',
+    onHeading: (heading: string) => `on ${heading}`,
+    band: (band: string) => `${band} (95 %)`,
+    model: (version: number) => `Model ${version}`,
+    rms: (rms: string) => `residuals ${rms} rms`,
+    noModel: 'No model yet',
+    noUpload: 'nothing uploaded yet',
+    noPosition: 'no position yet',
+    more: 'Show more vessels',
+    shown: (n: number) => (n === 1 ? '1 vessel' : `${n} vessels`),
+    emptyTitle: 'No vessels yet',
+    emptyAdmin:
+      'Add the first vessel; then enrol the agent on board, and its compass begins to be measured.',
+    emptyViewer: 'An administrator of your company adds vessels.',
+    add: 'Add a vessel',
+    addTitle: 'Add a vessel',
+    fieldName: 'Name',
+    fieldImo: 'IMO number',
+    fieldCallSign: 'Call sign',
+    fieldFlag: 'Flag',
+
+    create: 'Add vessel',
+    creating: 'Adding…',
+    nameMissing: 'A vessel needs a name.',
+    grade: {
+      small: 'small',
+      notable: 'notable',
+      large: 'large',
+    },
+    gradeLong: {
+      small: 'Below 3° on every heading',
+      notable: 'Between 3° and 5° on some heading',
+      large: 'Above 5° on some heading: most flags ask for an adjustment',
+    },
+  },
+
+  vessel: {
+    back: 'All vessels',
+    imo: 'IMO',
+    callSign: 'Call sign',
+    flag: 'Flag',
+    compass: 'Compass',
+    role: {
+      standard: 'standard compass',
+      steering: 'steering compass',
+      transmitting: 'transmitting compass',
+    },
+    worst: 'Largest deviation',
+    worstHelp: 'at the last position',
+    rms: 'Residuals',
+    rmsHelp: (used: string, rejected: string) => `rms of ${used} samples; ${rejected} left out`,
+    lastUpload: 'Last upload',
+    lastPosition: 'Last position',
+    field: 'Earth’s field there',
+    fieldHelp: (h: string, z: string) => `horizontal ${h}, vertical ${z}`,
+    variation: 'Variation',
+    modelLine: (version: number, until: string) => `Model ${version}, data until ${until}`,
+    noModelTitle: 'No model yet',
+    noModelLead:
+      'A model needs settled headings all round the compass. This is what is missing now:',
+    noModelHow:
+      'Ordinary sailing brings them in: the agent keeps every stretch in which the ship holds a steady heading at speed, away from the berth.',
+    noCompass: 'This vessel has no compass to show.',
+  },
+
+  deviation: {
+    title: 'Deviation',
+    lead: 'What the compass is off the magnetic heading: magnetic = compass + deviation, east positive.',
+    axisX: 'Compass heading',
+    axisY: 'Deviation',
+    band: '95 % band',
+    curve: 'Deviation',
+    used: 'Sample',
+    unused: 'Left out of the fit',
+    legend: 'Legend',
+    samples: 'Samples',
+    show: {
+      here: 'At this place',
+      measured: 'As measured',
+      none: 'None',
+    },
+    showLong: {
+      here: 'Samples are brought to this place: each stands as far from the curve as it was from the model where it was taken.',
+      measured:
+        'Samples stand at the deviation measured where they were taken, which differs from the deviation here.',
+      none: '',
+    },
+    drawn: (drawn: string, all: string) => `${drawn} of ${all} samples drawn.`,
+    place: 'Place and time',
+    lastPlace: 'Last position',
+    chosenPlace: 'Chosen place',
+    latitude: 'Latitude',
+    longitude: 'Longitude',
+    date: 'Date',
+    latitudeHint: 'such as 54 30 N',
+    longitudeHint: 'such as 018 40 E',
+    apply: 'Show',
+    reset: 'Back to the last position',
+    choose: 'Choose another place',
+    latitudeWrong: 'Latitude: write it as 54 30 N or 54.5.',
+    longitudeWrong: 'Longitude: write it as 018 40 E or 18.67.',
+    dateWrong: 'Date: choose a day.',
+    at: (place: string, day: string) => `At ${place} on ${day}`,
+    variationThere: (variation: string) => `variation ${variation}`,
+    fieldThere: (h: string, z: string) => `field ${h} horizontal, ${z} vertical`,
+    summary: (max: string, on: string, min: string, onMin: string) =>
+      `Deviation against compass heading, from ${min} on ${onMin} to ${max} on ${on}. The table of deviations has the same figures.`,
+    bandSummary: (narrow: string, wide: string) =>
+      narrow === wide ? `Band ${narrow} everywhere.` : `Band from ${narrow} to ${wide}.`,
+    tip: (compass: string, deviation: string, band: string, magnetic: string) =>
+      `Compass ${compass}\n${deviation} ${band}\nMagnetic ${magnetic}`,
+    noBand: 'This model came without errors: no band can be given.',
+    uncertain: (wide: string) =>
+      `The band is ${wide} wide or more on some headings: data from this magnetic latitude are missing.`,
+  },
+
+  table: {
+    title: 'Table of deviations',
+    caption: (place: string) => `Deviation every 15° of compass heading, ${place}`,
+    compass: 'Compass',
+    magnetic: 'Magnetic',
+    point: 'Point',
+    deviation: 'Deviation',
+    band: '95 %',
+    print: 'Print',
+  },
+
+  residuals: {
+    title: 'Residuals over time',
+    lead: 'Measured less predicted deviation. A step or a slope here means that the ship’s magnetism, or a reference, has changed.',
+    axisY: 'Residual',
+    mean: 'Daily mean',
+    meanWeekly: 'Weekly mean',
+    summary: (n: string, rms: string, from: string, to: string) =>
+      `${n} residuals, ${rms} rms, from ${from} to ${to}. The table below has them by day or week.`,
+    table: 'Residuals as a table',
+    caption: 'Residuals by interval, samples used in the fit',
+    from: 'From',
+    samples: 'Samples',
+    meanColumn: 'Mean',
+    rmsColumn: 'rms',
+    none: 'No residuals yet: they need a model.',
+    period: 'Period',
+    days: (n: number) => `${n} days`,
+    truncated: (n: string) => `Only the last ${n} samples of this period are shown.`,
+  },
+
+  coverage: {
+    title: 'Coverage',
+    lead: 'Samples by compass heading and magnetic latitude. Headings fix the curve where the ship has been; different magnetic latitudes fix it elsewhere.',
+    caption: 'Number of samples by compass heading (columns) and magnetic latitude (rows)',
+    band: 'Magnetic latitude',
+    range: (from: string, to: string) => `${from} to ${to}`,
+    total: 'All',
+    summaryAll: (bands: number) =>
+      `All headings are covered; ${bands === 1 ? 'one band' : `${bands} bands`} of magnetic latitude.`,
+    summaryGaps: (gaps: string) => `No samples yet on compass headings ${gaps}.`,
+    none: 'No samples yet.',
+    oneBand:
+      'All samples are from one band of magnetic latitude: permanent and induced magnetism cannot be told apart yet, and the curve at a distant place rests on experience with other ships.',
+    north: (v: string) => `${v} N`,
+    south: (v: string) => `${v} S`,
+  },
+
+  parameters: {
+    title: 'The ship’s magnetism',
+    lead: 'The seven quantities behind the curve, each in proportion to the mean shielding λ, and the constant.',
+    name: 'Quantity',
+    value: 'Value',
+    error: '95 %',
+    basis: 'Known from',
+    fromData: 'the data',
+    fromDataLong: 'This ship’s own samples fix it.',
+    fromPrior: 'the prior',
+    fromPriorHelp:
+      'From the prior: this ship’s samples do not fix it yet, and the value leans on what is usual in ships.',
+    fromPriorLong:
+      'This ship’s samples do not fix it yet; the value leans on what is usual in ships.',
+    unknownBasis: 'not stated',
+    names: {
+      bx_nt: ['P', 'Permanent field, fore and aft', 'forward positive'],
+      chi13: ['c', 'Fore and aft, induced by the vertical field', ''],
+      by_nt: ['Q', 'Permanent field, athwartship', 'starboard positive'],
+      chi23: ['f', 'Athwartship, induced by the vertical field', ''],
+      chi11_minus_chi22: ['a − e', 'Fore-and-aft less athwartship induction', ''],
+      chi12: ['b', 'Fore and aft, induced by the athwartship field', ''],
+      chi21: ['d', 'Athwartship, induced by the fore-and-aft field', ''],
+      constant_deg: ['', 'Constant: alignment, reference and variation offsets', ''],
+    } satisfies Record<ParameterName, [string, string, string]>,
+    summary: (data: number, all: number) =>
+      data === all
+        ? 'All of them are known from this ship’s own data.'
+        : `${data} of ${all} are known from this ship’s own data.`,
+    hash: 'Input',
+    estimator: 'Estimator',
+    created: 'Computed',
+    epoch: 'Epoch',
+    epochOpen: 'now',
+    epochStart: 'the beginning',
+    to: 'to',
+  },
+
+  coefficients: {
+    title: 'Coefficients',
+    lead: 'At the last position. Exact ones give the curve by the exact formula; handbook ones are the five-term approximation that older tables and adjusters use.',
+    name: 'Coefficient',
+    exact: 'Exact',
+    handbook: 'Handbook',
+    meaning: {
+      A: 'the same on all headings (includes alignment, reference and variation offsets)',
+      B: 'fore-and-aft magnetism: greatest on east and west',
+      C: 'athwartship magnetism: greatest on north and south',
+      D: 'soft iron along and across: quadrantal, greatest on intercardinals',
+      E: 'soft iron askew: quadrantal, greatest on cardinals',
+    },
+  },
+
+  agents: {
+    title: 'On board',
+    lead: 'Each installation of the agent reports one compass as one stream.',
+    none: 'No agent has been enrolled for this vessel yet.',
+    stream: 'Stream',
+    version: (v: string) => `agent ${v}`,
+    opened: 'Enrolled',
+    lastUpload: 'Last upload',
+    batches: 'Batches',
+    samples: 'Samples',
+    waiting: 'waiting for the first batch',
+    gap: 'A batch before the latest is missing; the agent sends it again.',
+    tally: 'What became of the ten-second windows',
+    tallyNone: 'No windows reported yet.',
+    windows: 'Windows',
+    share: 'Share',
+    outcome: 'Outcome',
+    reasons: {
+      accepted: 'accepted',
+      hold_berthed: 'refused: alongside (held by the crew)',
+      hold_magnetic_cargo: 'refused: magnetic cargo (held by the crew)',
+      hold_degaussing: 'refused: degaussing (held by the crew)',
+      clock: 'refused: the ship’s clock jumped',
+      no_time: 'refused: no time',
+      no_compass: 'refused: no compass heading',
+      no_reference: 'refused: neither gyro nor satellite compass',
+      no_position: 'refused: no position',
+      no_speed: 'refused: no speed over ground',
+      sparse: 'refused: too few readings',
+      slow: 'refused: too slow',
+      turning: 'refused: turning',
+      settling: 'refused: settling after a turn',
+      swinging: 'refused: heading swinging',
+    } as Record<string, string>,
+    otherReason: (name: string) => `refused: ${name.replaceAll('_', ' ')}`,
+  },
+
+  enrol: {
+    title: 'Enrol an agent',
+    lead: 'Makes a code that one agent on board exchanges for its own key.',
+    compass: 'For the compass',
+    make: 'Make a code',
+    making: 'Making…',
+    shownOnce: 'Shown only now. It works once, until',
+    onBoard: 'On board, type:',
+    another: 'Make another code',
+  },
+
+  document: {
+    vessels: 'Vessels · Binnacle',
+    vessel: (name: string) => `${name} · Binnacle`,
+    signIn: 'Sign in · Binnacle',
+    notFound: 'Nothing here · Binnacle',
+  },
+};
