@@ -1,2 +1,20 @@
 //! The shore server.
-fn main() {}
+
+use anyhow::Result;
+use binnacle_server::command;
+use binnacle_server::config::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+fn main() -> Result<ExitCode> {
+    match Cli::parse().command {
+        Command::Serve(serve) => command::serve(serve),
+        Command::Migrate(database) => command::migrate(&database),
+        Command::Admin(admin) => command::admin(admin),
+        Command::Openapi => command::openapi(),
+        Command::Field(arguments) => command::field(&arguments),
+        Command::Fit(arguments) => command::fit(&arguments),
+        Command::Deviation(arguments) => command::deviation(&arguments),
+        Command::Analyse(arguments) => command::analyse(&arguments),
+    }
+}

@@ -1,0 +1,6 @@
+//! Rebuilds the server when what it embeds has changed.
+
+fn main() {
+    println!("cargo:rerun-if-changed=../web/dist");
+    println!("cargo:rerun-if-changed=../migrations");
+}

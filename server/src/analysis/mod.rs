@@ -1,0 +1,20 @@
+//! From batches to models: the queue, the worker, and what an analysis leaves.
+//!
+//! What always holds:
+//!
+//! - An analysis is a function of its input; the same input is not analysed twice,
+//!   and makes no second model version.
+//! - No transaction is open while an analysis runs. What it found is stored in one
+//!   transaction, and only by the process that still holds the job's lease.
+//! - One job waits for each vessel, however many batches come; a batch that comes
+//!   while one runs makes the next.
+
+mod input;
+mod queue;
+mod store;
+mod worker;
+
+pub use input::{Input, input_hash};
+pub use queue::{count as count_jobs, enqueue};
+pub use store::{chunks, coverage, refusal};
+pub use worker::{Worked, run, step};

@@ -1,0 +1,179 @@
+//! What an analysis leaves in the database.
+
+use crate::db::{Db, Tx, execute, row, rows};
+use crate::error::Result;
+use crate::events::{self, Event, Kind};
+use crate::ids::{CompassId, ModelId, VesselId};
+use crate::models::{self, ModelJson, StoredModel};
+use crate::time::Time;
+use binnacle_magnetics::analyse::{Analysis, SampleDiagnostic};
+use binnacle_magnetics::coverage::Coverage;
+use std::collections::BTreeMap;
+
+/// Samples are kept in rows of so many microseconds: 30 days.
+const CHUNK_MICROS: i64 = 30 * 86_400 * 1_000_000;
+
+/// What one compass's analysis found.
+pub(super) struct Found {
+    pub(super) vessel_id: VesselId,
+    pub(super) compass_id: CompassId,
+    pub(super) input_hash: String,
+    pub(super) analysis: Analysis,
+}
+
+/// The input of the compass's last analysis.
+pub(super) async fn last_hash(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<String>> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT input_hash FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    Ok(found.map(|(hash,)| hash))
+}
+
+/// Why the compass's current epoch has no model.
+pub async fn refusal(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<String>> {
+    let found = row!(
+        db,
+        (Option<String>,),
+        "SELECT refusal FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    Ok(found.and_then(|(refusal,)| refusal))
+}
+
+/// Where a compass's samples lie; empty before the first analysis.
+pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Coverage> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT coverage FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    let Some((text,)) = found else {
+        return Ok(binnacle_magnetics::coverage::coverage([]));
+    };
+    Ok(serde_json::from_str(&text)?)
+}
+
+/// What became of the samples: rows that hold those of a range of time, and some
+/// before and after it. Each is a JSON array.
+pub async fn chunks(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    from: Option<Time>,
+    to: Option<Time>,
+) -> Result<Vec<String>> {
+    let chunk = |time: Time| time.0.micros().div_euclid(CHUNK_MICROS);
+    let found = rows!(
+        db,
+        (String,),
+        "SELECT samples FROM diagnostics
+         WHERE vessel_id = $1 AND compass_id = $2 AND chunk BETWEEN $3 AND $4
+         ORDER BY chunk",
+        vessel,
+        compass,
+        from.map_or(i64::MIN, chunk),
+        to.map_or(i64::MAX, chunk)
+    )?;
+    Ok(found.into_iter().map(|(samples,)| samples).collect())
+}
+
+/// Stores what was found in place of what was found before; a new model is the
+/// compass's next version. Answers with an event if there is one.
+pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
+    let analysis = &found.analysis;
+    let refusal = analysis
+        .current_epoch()
+        .and_then(|epoch| epoch.refusal.as_ref())
+        .map(ToString::to_string);
+    execute!(
+        &mut *tx,
+        "INSERT INTO analyses (vessel_id, compass_id, input_hash, estimator, analysed_at, refusal,
+                               epochs, coverage)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)
+         ON CONFLICT (vessel_id, compass_id) DO UPDATE
+         SET input_hash = excluded.input_hash, estimator = excluded.estimator,
+             analysed_at = excluded.analysed_at, refusal = excluded.refusal,
+             epochs = excluded.epochs, coverage = excluded.coverage",
+        found.vessel_id,
+        found.compass_id,
+        found.input_hash.as_str(),
+        analysis.estimator.as_str(),
+        now,
+        refusal,
+        serde_json::to_string(&analysis.epochs)?,
+        serde_json::to_string(&analysis.coverage)?
+    )?;
+    save_diagnostics(tx, found).await?;
+    let Some(model) = next_model(found, now) else {
+        return Ok(None);
+    };
+    models::insert(tx, &model).await?;
+    let event = events::insert(tx, found.vessel_id, Kind::Model, now).await?;
+    Ok(Some(event))
+}
+
+async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
+    execute!(
+        &mut *tx,
+        "DELETE FROM diagnostics WHERE vessel_id = $1 AND compass_id = $2",
+        found.vessel_id,
+        found.compass_id
+    )?;
+    let mut chunks: BTreeMap<i64, Vec<&SampleDiagnostic>> = BTreeMap::new();
+    for sample in &found.analysis.samples {
+        let chunk = sample.sample.time.micros().div_euclid(CHUNK_MICROS);
+        chunks.entry(chunk).or_default().push(sample);
+    }
+    for (chunk, samples) in chunks {
+        execute!(
+            &mut *tx,
+            "INSERT INTO diagnostics (vessel_id, compass_id, chunk, samples)
+             VALUES ($1, $2, $3, $4)",
+            found.vessel_id,
+            found.compass_id,
+            chunk,
+            serde_json::to_string(&samples)?
+        )?;
+    }
+    Ok(())
+}
+
+/// The current epoch's model as a row; none when it was refused.
+fn next_model(found: &Found, now: Time) -> Option<StoredModel> {
+    let epoch = found.analysis.current_epoch()?;
+    let place = found.analysis.last_place?;
+    Some(StoredModel {
+        vessel_id: found.vessel_id,
+        id: ModelId::new(),
+        compass_id: found.compass_id,
+        version: 0,
+        created_at: now,
+        input_hash: found.input_hash.clone(),
+        estimator: found.analysis.estimator.clone(),
+        epoch_from: epoch.from.map(Time),
+        epoch_to: epoch.to.map(Time),
+        data_from: Time(epoch.data_from?),
+        data_until: Time(epoch.data_until?),
+        place_at: Time(place.time),
+        lat: place.position.lat_deg(),
+        lon: place.position.lon_deg(),
+        variation_deg: place.variation_deg,
+        h_nt: place.h_nt,
+        z_nt: place.z_nt,
+        model: ModelJson(epoch.model.clone()?),
+    })
+}

@@ -1,0 +1,136 @@
+//! Takes jobs from the queue, one after the other.
+
+use super::store::Found;
+use super::{input, queue, store};
+use crate::app::App;
+use crate::compasses;
+use crate::error::{Error, Result};
+use crate::events;
+use crate::ids::{CompassId, VesselId};
+use binnacle_magnetics::analyse::analyse;
+use metrics::{counter, histogram};
+use std::time::{Duration, Instant};
+use tracing::{error, info, warn};
+
+/// How often to look for jobs that nobody was told of.
+const LOOK_EVERY: Duration = Duration::from_secs(1);
+/// How often to forget old events.
+const PRUNE_EVERY: Duration = Duration::from_hours(1);
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Worked {
+    /// A vessel was analysed; so many compasses had news.
+    Analysed(VesselId, usize),
+    /// A job failed, and was put back or given up.
+    Failed(VesselId),
+}
+
+/// Works until the server stops; what was begun is finished.
+pub async fn run(app: App) {
+    let mut pruned = Instant::now();
+    while !app.stopping.is_cancelled() {
+        match step(&app).await {
+            Ok(Some(_)) => continue,
+            Ok(None) => {}
+            Err(error) => error!(
+                error = format!("{error:#}"),
+                "the worker cannot reach its queue"
+            ),
+        }
+        if pruned.elapsed() > PRUNE_EVERY {
+            pruned = Instant::now();
+            if let Err(error) = events::prune(&app.db, app.clock.now().into()).await {
+                warn!(%error, "old events were not removed");
+            }
+        }
+        tokio::select! {
+            () = app.stopping.cancelled() => {}
+            () = app.work.notified() => {}
+            () = tokio::time::sleep(LOOK_EVERY) => {}
+        }
+    }
+}
+
+/// Does one job, if one is due.
+///
+/// # Errors
+/// When the queue cannot be reached; a job that fails is not an error here.
+pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
+    let Some(job) = queue::claim(&app.db, app.clock.now().into()).await? else {
+        return Ok(None);
+    };
+    let vessel = job.vessel_id;
+    let begun = Instant::now();
+    let outcome = match job.attempts {
+        // Its worker died each time: whatever it is, it takes the process with it.
+        ..=queue::MOST_ATTEMPTS => work(app, job).await,
+        _ => Err(Error::Internal(anyhow::anyhow!(
+            "its lease ended too often"
+        ))),
+    };
+    histogram!("binnacle_analysis_seconds").record(begun.elapsed().as_secs_f64());
+    let error = match outcome {
+        Ok(news) => {
+            counter!("binnacle_analyses_total", "result" => "done").increment(1);
+            info!(%vessel, compasses_with_news = news, "vessel analysed");
+            return Ok(Some(Worked::Analysed(vessel, news)));
+        }
+        Err(Error::Internal(error)) => format!("{error:#}"),
+        Err(error) => error.to_string(),
+    };
+    counter!("binnacle_analyses_total", "result" => "failed").increment(1);
+    let dead = queue::fail(&app.db, job, &error, app.clock.now().into()).await?;
+    if dead {
+        error!(%vessel, error, "the analysis failed too often and was given up");
+    } else {
+        warn!(%vessel, error, "the analysis failed and will be tried again");
+    }
+    Ok(Some(Worked::Failed(vessel)))
+}
+
+/// Analyses a vessel's compasses and stores what is new.
+async fn work(app: &App, job: queue::Job) -> Result<usize> {
+    let mut news = Vec::new();
+    for compass in compasses::of_vessel(&app.db, job.vessel_id).await? {
+        news.extend(analyse_compass(app, job.vessel_id, compass.id).await?);
+    }
+    let now = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    if !queue::finish(&mut tx, job).await? {
+        return Err(Error::Internal(anyhow::anyhow!("the lease was lost")));
+    }
+    let mut events = Vec::new();
+    for found in &news {
+        events.extend(store::save(&mut tx, found, now).await?);
+    }
+    tx.commit().await?;
+    for event in events {
+        app.publish(event);
+    }
+    Ok(news.len())
+}
+
+/// What is new about a compass; none when its input is what it was.
+async fn analyse_compass(
+    app: &App,
+    vessel_id: VesselId,
+    compass_id: CompassId,
+) -> Result<Option<Found>> {
+    let stored = input::load(&app.db, vessel_id, compass_id).await?;
+    let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
+    let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<Found>> {
+        let input = stored.decode()?;
+        let input_hash = input::input_hash(&input)?;
+        if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
+            return Ok(None);
+        }
+        Ok(Some(Found {
+            vessel_id,
+            compass_id,
+            input_hash,
+            analysis: analyse(&input.samples, &input.logbook, &input.settings),
+        }))
+    });
+    Ok(found.await??)
+}

@@ -1,0 +1,85 @@
+//! `deviation`: what a model says about every heading at one place.
+
+use super::{BadInput, answer, input, json, table};
+use crate::config::Deviation;
+use crate::deviation::{Row, table as predict};
+use binnacle_magnetics::field::{FieldModel, field};
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::ship::EarthField;
+use serde_json::json;
+use std::process::ExitCode;
+
+/// Prints the rows, as a table or as JSON.
+///
+/// # Errors
+/// When standard output is closed.
+pub fn deviation(arguments: &Deviation) -> anyhow::Result<ExitCode> {
+    answer(find(arguments).map(|rows| {
+        if arguments.json {
+            json(&json!({ "rows": rows }))
+        } else {
+            describe(&rows)
+        }
+    }))
+}
+
+fn find(arguments: &Deviation) -> Result<Vec<Row>, BadInput> {
+    if !(0.1..=360.0).contains(&arguments.step_deg) {
+        let what = format!("{} is outside 0.1 to 360", arguments.step_deg);
+        return Err(BadInput::option("--step-deg", what));
+    }
+    let model: Model = input::json_file(&arguments.model)?;
+    let file = arguments.model.display();
+    model
+        .check()
+        .map_err(|error| BadInput(format!("{file}: {error}")))?;
+    let earth = earth(arguments)?;
+    predict(&model, earth, arguments.step_deg).map_err(|error| BadInput(format!("{file}: {error}")))
+}
+
+fn earth(arguments: &Deviation) -> Result<EarthField, BadInput> {
+    if let (Some(h_nt), Some(z_nt)) = (arguments.h_nt, arguments.z_nt) {
+        if !(h_nt > 0.0 && h_nt <= 1e6) {
+            return Err(BadInput::option(
+                "--h-nt",
+                format!("{h_nt} is outside 0 to 1000000"),
+            ));
+        }
+        if !(-1e6..=1e6).contains(&z_nt) {
+            let what = format!("{z_nt} is outside -1000000 to 1000000");
+            return Err(BadInput::option("--z-nt", what));
+        }
+        return Ok(EarthField { h_nt, z_nt });
+    }
+    let (Some(lat), Some(lon), Some(date)) = (arguments.lat, arguments.lon, &arguments.date) else {
+        return Err(BadInput(
+            "give --lat, --lon and --date, or --h-nt and --z-nt".to_owned(),
+        ));
+    };
+    let found = field(
+        FieldModel::Igrf14,
+        input::position(lat, lon)?,
+        0.0,
+        input::date(date)?,
+    );
+    Ok(found
+        .map_err(|error| BadInput::option("--date", error))?
+        .for_ship())
+}
+
+fn describe(rows: &[Row]) -> String {
+    let rows: Vec<[String; 4]> = rows
+        .iter()
+        .map(|row| {
+            let side = if row.deviation_deg < 0.0 { 'W' } else { 'E' };
+            [
+                format!("{:.1}", row.compass_deg),
+                format!("{:.1}", row.magnetic_deg),
+                format!("{:.1} {side}", row.deviation_deg.abs()),
+                row.band95_deg
+                    .map_or(String::new(), |band| format!("{band:.1}")),
+            ]
+        })
+        .collect();
+    table::render(["compass", "magnetic", "deviation", "95 % ±"], &rows)
+}

@@ -1,0 +1,51 @@
+//! `field`: the earth's field at a place and time.
+
+use super::{BadInput, answer, input, json};
+use crate::config::{Field, FieldModel};
+use binnacle_magnetics::field::{FieldModel as Model, field as evaluate};
+use serde::Serialize;
+use std::process::ExitCode;
+
+#[derive(Serialize)]
+struct Answer {
+    declination_deg: f64,
+    h_nt: f64,
+    z_nt: f64,
+    x_nt: f64,
+    y_nt: f64,
+    inclination_deg: f64,
+    model: &'static str,
+}
+
+/// Prints the field as JSON.
+///
+/// # Errors
+/// When standard output is closed.
+pub fn field(arguments: &Field) -> anyhow::Result<ExitCode> {
+    answer(find(arguments).map(|found| json(&found)))
+}
+
+fn find(arguments: &Field) -> Result<Answer, BadInput> {
+    let position = input::position(arguments.lat, arguments.lon)?;
+    let time = input::date(&arguments.date)?;
+    let model = match arguments.model {
+        FieldModel::Igrf14 => Model::Igrf14,
+        FieldModel::Wmm2025 => Model::Wmm2025,
+    };
+    let field = evaluate(model, position, arguments.altitude_m, time).map_err(|error| {
+        let option = match error {
+            binnacle_magnetics::field::FieldError::DateOutside { .. } => "--date",
+            binnacle_magnetics::field::FieldError::Altitude(_) => "--altitude-m",
+        };
+        BadInput::option(option, error)
+    })?;
+    Ok(Answer {
+        declination_deg: field.declination().degrees_east(),
+        h_nt: field.h_nt(),
+        z_nt: field.z_nt,
+        x_nt: field.x_nt,
+        y_nt: field.y_nt,
+        inclination_deg: field.inclination_deg(),
+        model: model.name(),
+    })
+}

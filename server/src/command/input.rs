@@ -1,0 +1,191 @@
+//! Reading the commands' input: options, JSON files and tables of samples.
+
+use super::BadInput;
+use binnacle_magnetics::fit::{CsvRow, CsvRowError};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use csv::{ReaderBuilder, StringRecord};
+use serde::de::DeserializeOwned;
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+/// No file that a command reads is larger.
+const MAX_FILE_BYTES: u64 = 256 * 1024 * 1024;
+
+/// An RFC 3339 time, a day (its noon, UTC) or a decimal year.
+pub(super) fn date(text: &str) -> Result<Timestamp, BadInput> {
+    let day = || Timestamp::parse(&format!("{text}T12:00:00Z")).ok();
+    Timestamp::parse(text)
+        .ok()
+        .or_else(day)
+        .or_else(|| decimal_year(text))
+        .ok_or_else(|| {
+            BadInput::option(
+                "--date",
+                format!("{text:?} is neither YYYY-MM-DD nor RFC 3339 nor a decimal year"),
+            )
+        })
+}
+
+fn decimal_year(text: &str) -> Option<Timestamp> {
+    let year: f64 = text.parse().ok()?;
+    if !(1.0..9999.0).contains(&year) {
+        return None;
+    }
+    let start = |year: f64| Timestamp::parse(&format!("{year:04.0}-01-01T00:00:00Z")).ok();
+    let (begins, ends) = (start(year.floor())?, start(year.floor() + 1.0)?);
+    Some(begins.plus_seconds(ends.seconds_since(begins) * year.fract()))
+}
+
+/// A position from two options.
+pub(super) fn position(lat: f64, lon: f64) -> Result<Position, BadInput> {
+    Position::new(lat, 0.0).map_err(|error| BadInput::option("--lat", error))?;
+    Position::new(lat, lon).map_err(|error| BadInput::option("--lon", error))
+}
+
+/// A JSON file.
+pub(super) fn json_file<T: DeserializeOwned>(path: &Path) -> Result<T, BadInput> {
+    serde_json::from_str(&text_file(path)?).map_err(|error| {
+        // serde_json's message ends in the place, which stands in front here.
+        let message = error.to_string();
+        let what = message.split(" at line ").next().unwrap_or(&message);
+        BadInput(format!("{}:{}: {what}", path.display(), error.line()))
+    })
+}
+
+/// A text file.
+pub(super) fn text_file(path: &Path) -> Result<String, BadInput> {
+    let failed = |error: &dyn std::fmt::Display| BadInput(format!("{}: {error}", path.display()));
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(|error| failed(&error))?;
+    BufReader::new(file)
+        .take(MAX_FILE_BYTES + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| failed(&error))?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(failed(&"the file is larger than 256 MB"));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
+        let line = valid.split(|byte| *byte == b'\n').count();
+        BadInput(format!("{}:{line}: this is not text", path.display()))
+    })
+}
+
+/// A table of samples, with the line in the file on which each row stands.
+pub(super) struct Table {
+    path: String,
+    /// The rows.
+    pub(super) rows: Vec<CsvRow>,
+    lines: Vec<u64>,
+}
+
+impl Table {
+    /// Reads a CSV file whose first line names the columns.
+    pub(super) fn read(path: &Path) -> Result<Table, BadInput> {
+        let text = text_file(path)?;
+        let path = path.display().to_string();
+        let mut reader = ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_reader(text.as_bytes());
+        let broken = |error: &csv::Error| {
+            let line = error.position().map_or(1, csv::Position::line);
+            let what = match error.kind() {
+                csv::ErrorKind::UnequalLengths {
+                    expected_len, len, ..
+                } => format!("{len} fields, where the first line has {expected_len}"),
+                _ => error.to_string(),
+            };
+            BadInput(format!("{path}:{line}: {what}"))
+        };
+        let header = reader.headers().map_err(|error| broken(&error))?.clone();
+        check_header(&path, &header)?;
+        let (mut rows, mut lines) = (Vec::new(), Vec::new());
+        for record in reader.records() {
+            let record = record.map_err(|error| broken(&error))?;
+            let line = record.position().map_or(0, csv::Position::line);
+            rows.push(
+                row(&header, &record).map_err(|(column, what)| {
+                    BadInput(format!("{path}:{line}: {column}: {what}"))
+                })?,
+            );
+            lines.push(line);
+        }
+        Ok(Table { path, rows, lines })
+    }
+
+    /// A complaint about one of the rows, with its line.
+    pub(super) fn complaint(&self, error: &CsvRowError) -> BadInput {
+        let line = error
+            .row()
+            .and_then(|row| self.lines.get(row))
+            .unwrap_or(&1);
+        BadInput(format!("{}:{line}: {error}", self.path))
+    }
+
+    /// A complaint about a column of one row.
+    pub(super) fn invalid(&self, row: usize, column: &'static str, message: String) -> BadInput {
+        self.complaint(&CsvRowError::Invalid {
+            row,
+            column,
+            message,
+        })
+    }
+}
+
+fn check_header(path: &str, header: &StringRecord) -> Result<(), BadInput> {
+    let names: Vec<&str> = header.iter().collect();
+    for (index, name) in names.iter().enumerate() {
+        if names[..index].contains(name) {
+            return Err(BadInput(format!(
+                "{path}:1: column {name} stands there twice"
+            )));
+        }
+    }
+    binnacle_magnetics::fit::check_columns(names)
+        .map_err(|error| BadInput(format!("{path}:1: {error}")))
+}
+
+/// Reads the columns that are known; others are let be.
+fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, String)> {
+    let mut row = CsvRow::default();
+    for (column, text) in header.iter().zip(record) {
+        let number = match column {
+            "time" => {
+                if !text.is_empty() {
+                    let time = Timestamp::parse(text);
+                    row.time = Some(time.map_err(|error| (column.to_owned(), error.to_string()))?);
+                }
+                continue;
+            }
+            "lat" => &mut row.lat,
+            "lon" => &mut row.lon,
+            "variation_deg" => &mut row.variation_deg,
+            "h_nt" => &mut row.h_nt,
+            "z_nt" => &mut row.z_nt,
+            "compass_deg" => &mut row.compass_deg,
+            "gyro_deg" => &mut row.gyro_deg,
+            "satellite_deg" => &mut row.satellite_deg,
+            "reference_deg" => &mut row.reference_deg,
+            "sog_kn" => &mut row.sog_kn,
+            "windows" => &mut row.windows,
+            "weight" => &mut row.weight,
+            _ => continue,
+        };
+        *number = parse(text).map_err(|what| (column.to_owned(), what))?;
+    }
+    Ok(row)
+}
+
+/// A number, or nothing where nothing stands.
+fn parse(text: &str) -> Result<Option<f64>, String> {
+    if text.is_empty() {
+        return Ok(None);
+    }
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(Some(number)),
+        _ => Err(format!("{text:?} is not a finite number")),
+    }
+}

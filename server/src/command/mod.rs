@@ -1,0 +1,56 @@
+//! The commands.
+//!
+//! What always holds: bad input ends with exit code 2 and one line on standard
+//! error that names the file, the line and the field; nothing is printed on
+//! standard output before all of the input was read and found good.
+
+mod admin;
+mod analyse;
+mod deviation;
+mod field;
+mod fit;
+mod input;
+mod operate;
+mod table;
+
+pub use admin::admin;
+pub use analyse::analyse;
+pub use deviation::deviation;
+pub use field::field;
+pub use fit::fit;
+pub use operate::{migrate, openapi, run, serve};
+
+use serde::Serialize;
+use std::fmt::Display;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// What is wrong with the input, in one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+struct BadInput(String);
+
+impl BadInput {
+    /// Of a command-line option.
+    fn option(option: &str, detail: impl Display) -> BadInput {
+        BadInput(format!("{option}: {detail}"))
+    }
+}
+
+/// Prints a command's answer, or what is wrong with its input.
+fn answer(answer: Result<String, BadInput>) -> anyhow::Result<ExitCode> {
+    match answer {
+        Ok(text) => {
+            writeln!(std::io::stdout().lock(), "{}", text.trim_end())?;
+            Ok(ExitCode::SUCCESS)
+        }
+        Err(error) => {
+            writeln!(std::io::stderr().lock(), "binnacle-server: {error}")?;
+            Ok(ExitCode::from(2))
+        }
+    }
+}
+
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string_pretty(value).expect("numbers, words and lists are JSON")
+}

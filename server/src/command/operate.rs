@@ -1,0 +1,135 @@
+//! `serve`, `migrate` and `openapi`.
+
+use crate::app::App;
+use crate::clock::Clock;
+use crate::config::{Database, Serve};
+use crate::db::Db;
+use crate::{analysis, events, http, operations};
+use anyhow::{Context, Result};
+use std::future::Future;
+use std::io::Write;
+use std::process::ExitCode;
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::task::JoinSet;
+use tracing::{info, warn};
+use tracing_subscriber::EnvFilter;
+
+/// What is under way when the server is told to stop gets so long to finish.
+const GRACE: Duration = Duration::from_secs(20);
+
+/// Serves until told to stop.
+///
+/// # Errors
+/// When the database or the address cannot be had.
+pub fn serve(config: Serve) -> Result<ExitCode> {
+    start_log(config.log_json);
+    block_on(async {
+        let db = Db::connect(&config.database.database_url).await?;
+        db.migrate().await?;
+        let listener = TcpListener::bind(config.listen)
+            .await
+            .with_context(|| format!("cannot listen on {}", config.listen))?;
+        let app = App::new(db, Clock::System, config, operations::install_metrics()?);
+        announce(&listener)?;
+        run(app, listener).await?;
+        Ok(ExitCode::SUCCESS)
+    })
+}
+
+/// Serves an application on a listener until it is told to stop, by a signal or
+/// by its own `stopping`.
+///
+/// # Errors
+/// When the listener fails.
+pub async fn run(app: App, listener: TcpListener) -> Result<()> {
+    let mut parts = JoinSet::new();
+    parts.spawn(events::listen(app.clone()));
+    for _ in 0..app.config.analysis_workers {
+        parts.spawn(analysis::run(app.clone()));
+    }
+    parts.spawn(stop_on_signal(app.clone()));
+    let stopping = app.stopping.clone();
+    let serving = axum::serve(listener, http::router(app.clone()))
+        .with_graceful_shutdown(stopping.clone().cancelled_owned());
+    let deadline = async {
+        stopping.cancelled().await;
+        tokio::time::sleep(GRACE).await;
+    };
+    tokio::select! {
+        served = serving => served?,
+        () = deadline => warn!("requests under way were cut off"),
+    }
+    app.stopping.cancel();
+    let finished = async { while parts.join_next().await.is_some() {} };
+    if tokio::time::timeout(GRACE, finished).await.is_err() {
+        warn!("an analysis under way was cut off; its lease will end");
+    }
+    app.db.close().await;
+    info!("stopped");
+    Ok(())
+}
+
+async fn stop_on_signal(app: App) {
+    let mut terminate =
+        signal(SignalKind::terminate()).expect("the runtime has signals switched on");
+    tokio::select! {
+        () = app.stopping.cancelled() => {}
+        _ = terminate.recv() => {}
+        _ = tokio::signal::ctrl_c() => {}
+    }
+    app.stopping.cancel();
+}
+
+/// Tells whoever started us where to reach us.
+fn announce(listener: &TcpListener) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "listening on http://{}", listener.local_addr()?)?;
+    out.flush()?;
+    Ok(())
+}
+
+/// Brings the schema up to date.
+///
+/// # Errors
+/// When the database cannot be reached or a migration fails.
+pub fn migrate(database: &Database) -> Result<ExitCode> {
+    block_on(async {
+        let db = Db::connect(&database.database_url).await?;
+        db.migrate().await?;
+        db.close().await;
+        Ok(ExitCode::SUCCESS)
+    })
+}
+
+/// Prints the OpenAPI document.
+///
+/// # Errors
+/// When standard output is closed.
+pub fn openapi() -> Result<ExitCode> {
+    let document = http::openapi().to_pretty_json()?;
+    writeln!(std::io::stdout().lock(), "{document}")?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Runs something asynchronous to its end.
+pub(super) fn block_on<T>(work: impl Future<Output = Result<T>>) -> Result<T> {
+    tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()?
+        .block_on(work)
+}
+
+fn start_log(json: bool) {
+    let filter = EnvFilter::try_from_env("BINNACLE_LOG")
+        .unwrap_or_else(|_| EnvFilter::new("info,sqlx=warn,tower_http=warn"));
+    let log = tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr);
+    if json {
+        log.json().init();
+    } else {
+        log.init();
+    }
+}

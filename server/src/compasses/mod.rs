@@ -1,0 +1,157 @@
+//! A vessel's compasses.
+
+mod store;
+
+pub use store::{insert_standard, of_operator, of_vessel};
+
+use crate::access::{Reader, Writer};
+use crate::app::App;
+use crate::db::Db;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Page, Valid, text};
+use crate::idempotency::{self, Key};
+use crate::ids::{CompassId, VesselId};
+use crate::time::Time;
+use crate::vessels;
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list_compasses, create_compass))
+}
+
+/// A magnetic element aboard.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+pub struct Compass {
+    /// The compass's id.
+    pub id: CompassId,
+    /// The vessel it belongs to.
+    #[serde(skip)]
+    pub vessel_id: VesselId,
+    /// Its name.
+    pub name: String,
+    /// What it serves as.
+    pub role: Role,
+    /// When it was entered.
+    pub created_at: Time,
+}
+
+/// What a compass serves as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = CompassRole)]
+pub enum Role {
+    /// The standard compass that every ship must carry.
+    Standard,
+    /// The one at the wheel.
+    Steering,
+    /// An element that sends its heading elsewhere.
+    Transmitting,
+}
+
+/// A compass to be entered.
+#[derive(Deserialize, Serialize, ToSchema)]
+pub struct NewCompass {
+    /// Its name.
+    #[schema(min_length = 1, max_length = 200)]
+    pub name: String,
+    /// What it serves as.
+    pub role: Role,
+}
+
+/// A page of compasses.
+#[derive(Serialize, ToSchema)]
+pub struct CompassList {
+    /// In the order in which they were entered.
+    pub items: Vec<Compass>,
+    /// `after` of the next page.
+    pub next: Option<String>,
+}
+
+/// Which of the vessel's compasses.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct WhichCompass {
+    /// A compass of the vessel's; its first one if not said.
+    pub compass: Option<CompassId>,
+}
+
+/// The compass that was asked for, or the vessel's first.
+///
+/// # Errors
+/// [`Error::NotFound`] when the vessel has no such compass.
+pub async fn find(db: &Db, vessel: VesselId, compass: Option<CompassId>) -> Result<Compass> {
+    of_vessel(db, vessel)
+        .await?
+        .into_iter()
+        .find(|found| compass.is_none_or(|wanted| found.id == wanted))
+        .ok_or(Error::NotFound("compass"))
+}
+
+/// List a vessel's compasses
+#[utoipa::path(get, path = "/vessels/{id}/compasses", tag = "fleet",
+    params(("id" = VesselId, Path), Page),
+    responses((status = 200, body = CompassList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_compasses(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    page: Page,
+) -> Result<Json<CompassList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let after = page.after_id()?.unwrap_or_default();
+    let mut found = of_vessel(&app.db, id).await?;
+    found.retain(|compass| compass.id.0 > after);
+    let listed = page.cut(found, |compass| compass.id.to_string());
+    Ok(Json(CompassList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// Enter a compass
+#[utoipa::path(post, path = "/vessels/{id}/compasses", tag = "fleet",
+    params(("id" = VesselId, Path), Key), request_body = NewCompass,
+    responses((status = 201, body = Compass), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn create_compass(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<VesselId>,
+    key: Key,
+    Valid(new): Valid<NewCompass>,
+) -> Result<(StatusCode, Json<Compass>)> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
+    let request = idempotency::request_hash(&format!("compass of {id}"), &new)?;
+    let compass = Compass {
+        id: CompassId::new(),
+        vessel_id: id,
+        name: text("name", &new.name)?,
+        role: new.role,
+        created_at: app.clock.now().into(),
+    };
+    let mut tx = app.db.begin().await?;
+    let made = key
+        .once(
+            &mut tx,
+            writer.operator,
+            &request,
+            compass.id.0,
+            compass.created_at,
+        )
+        .await?;
+    if made == compass.id.0 {
+        store::insert(&mut tx, &compass).await?;
+    }
+    tx.commit().await?;
+    let compass = find(&app.db, id, Some(CompassId(made))).await?;
+    Ok((StatusCode::CREATED, Json(compass)))
+}

@@ -1,0 +1,248 @@
+//! The command line, and with it every setting: flags, or `BINNACLE_*` variables.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use uuid::Uuid;
+
+/// The shore server: ingest, analysis, API and dashboard; and the science on the
+/// command line.
+#[derive(Debug, Parser)]
+#[command(version, name = "binnacle-server")]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// Everything this program can do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Serve the API and the dashboard, and analyse what arrives
+    Serve(Serve),
+    /// Bring the database's schema up to date
+    Migrate(Database),
+    /// Create operators and users
+    Admin(Admin),
+    /// Print the OpenAPI document
+    Openapi,
+    /// Print the earth's field at a place and time as JSON
+    Field(Field),
+    /// Fit a model to a CSV file
+    Fit(Fit),
+    /// Print the deviation that a model predicts
+    Deviation(Deviation),
+    /// Analyse a CSV file as the server analyses a vessel's uploads
+    Analyse(Analyse),
+}
+
+/// Which database.
+#[derive(Clone, Debug, Args)]
+pub struct Database {
+    /// sqlite://FILE or postgres://USER:PASSWORD@HOST/NAME
+    #[arg(
+        long,
+        global = true,
+        env = "BINNACLE_DATABASE_URL",
+        default_value = "sqlite://binnacle.db",
+        hide_env_values = true
+    )]
+    pub database_url: String,
+}
+
+/// `serve`.
+#[derive(Clone, Debug, Args)]
+pub struct Serve {
+    /// Which database.
+    #[command(flatten)]
+    pub database: Database,
+    /// Address and port to listen on; port 0 for any free one
+    #[arg(long, env = "BINNACLE_LISTEN", default_value = "127.0.0.1:8080")]
+    pub listen: SocketAddr,
+    /// Give cookies only to https, as behind a TLS proxy
+    #[arg(long, env = "BINNACLE_SECURE_COOKIES", default_value_t = false,
+          num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub secure_cookies: bool,
+    /// Hours that a sign-in lasts
+    #[arg(long, env = "BINNACLE_SESSION_HOURS", default_value_t = 72,
+          value_parser = clap::value_parser!(u32).range(1..=8760))]
+    pub session_hours: u32,
+    /// Seconds to wait for more batches before a vessel is analysed
+    #[arg(long, env = "BINNACLE_ANALYSIS_DELAY_S", default_value_t = 5,
+          value_parser = clap::value_parser!(u32).range(0..=86_400))]
+    pub analysis_delay_s: u32,
+    /// Analyses to run at once in this process; 0 leaves them to others
+    #[arg(long, env = "BINNACLE_ANALYSIS_WORKERS", default_value_t = 1,
+          value_parser = clap::value_parser!(u16).range(0..=64))]
+    pub analysis_workers: u16,
+    /// Log as JSON lines
+    #[arg(long, env = "BINNACLE_LOG_JSON", default_value_t = false,
+          num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub log_json: bool,
+}
+
+/// `admin`.
+#[derive(Debug, Args)]
+pub struct Admin {
+    /// Which database.
+    #[command(flatten)]
+    pub database: Database,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: AdminCommand,
+}
+
+/// What `admin` can do.
+#[derive(Debug, Subcommand)]
+pub enum AdminCommand {
+    /// Create something and print it as JSON
+    Create {
+        /// What to create.
+        #[command(subcommand)]
+        what: Create,
+    },
+}
+
+/// What `admin create` can create.
+#[derive(Debug, Subcommand)]
+pub enum Create {
+    /// A company with a fleet
+    Operator {
+        /// Its name
+        #[arg(long)]
+        name: String,
+    },
+    /// Someone who may see, or manage, an operator's fleet
+    User {
+        /// The operator's id
+        #[arg(long)]
+        operator: Uuid,
+        /// Who.
+        #[command(flatten)]
+        person: Person,
+        /// May the user change things?
+        #[arg(long, value_enum)]
+        role: FleetRole,
+    },
+    /// Someone who manages operators
+    PlatformAdmin {
+        /// Who.
+        #[command(flatten)]
+        person: Person,
+    },
+}
+
+/// A person to be created.
+#[derive(Debug, Args)]
+pub struct Person {
+    /// What the person signs in with
+    #[arg(long)]
+    pub email: String,
+    /// The person's name
+    #[arg(long)]
+    pub name: String,
+    /// Read the password from standard input; otherwise one is made and printed
+    #[arg(long)]
+    pub password_stdin: bool,
+}
+
+/// What a user of an operator may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum FleetRole {
+    /// See and change
+    Admin,
+    /// See
+    Viewer,
+}
+
+/// A model of the earth's field.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum FieldModel {
+    /// International Geomagnetic Reference Field, 1900 to 2030
+    #[default]
+    Igrf14,
+    /// World Magnetic Model, 2025 to 2030
+    Wmm2025,
+}
+
+/// `field`.
+#[derive(Debug, Args)]
+pub struct Field {
+    /// Degrees north
+    #[arg(long, allow_negative_numbers = true)]
+    pub lat: f64,
+    /// Degrees east
+    #[arg(long, allow_negative_numbers = true)]
+    pub lon: f64,
+    /// YYYY-MM-DD, RFC 3339 or a decimal year
+    #[arg(long)]
+    pub date: String,
+    /// Metres above the WGS 84 ellipsoid
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub altitude_m: f64,
+    /// Which model
+    #[arg(long, value_enum, default_value_t)]
+    pub model: FieldModel,
+}
+
+/// Which fit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// Equation 11 of Basterretxea-Iribar, Sotés and Uriarte 2016, for comparison
+    Paper,
+    /// The product's
+    #[default]
+    Robust,
+}
+
+/// `fit`.
+#[derive(Debug, Args)]
+pub struct Fit {
+    /// Samples, a line each; columns by the names in the first line
+    pub file: PathBuf,
+    /// Print JSON rather than a table
+    #[arg(long)]
+    pub json: bool,
+    /// Which fit
+    #[arg(long, value_enum, default_value_t)]
+    pub method: Method,
+}
+
+/// `deviation`.
+#[derive(Debug, Args)]
+pub struct Deviation {
+    /// What `fit --json` printed
+    #[arg(long)]
+    pub model: PathBuf,
+    /// Degrees north
+    #[arg(long, allow_negative_numbers = true, requires_all = ["lon", "date"], conflicts_with = "h_nt")]
+    pub lat: Option<f64>,
+    /// Degrees east
+    #[arg(long, allow_negative_numbers = true, requires = "lat")]
+    pub lon: Option<f64>,
+    /// YYYY-MM-DD, RFC 3339 or a decimal year
+    #[arg(long, requires = "lat")]
+    pub date: Option<String>,
+    /// Horizontal field in nT, instead of place and date
+    #[arg(long, requires = "z_nt", required_unless_present = "lat")]
+    pub h_nt: Option<f64>,
+    /// Vertical field in nT, down positive
+    #[arg(long, allow_negative_numbers = true, requires = "h_nt")]
+    pub z_nt: Option<f64>,
+    /// Degrees of compass heading between rows
+    #[arg(long, default_value_t = 15.0)]
+    pub step_deg: f64,
+    /// Print JSON rather than a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// `analyse`.
+#[derive(Debug, Args)]
+pub struct Analyse {
+    /// Samples, as `fit` reads them, with time and place
+    pub file: PathBuf,
+    /// A JSON array of logbook entries
+    #[arg(long)]
+    pub logbook: Option<PathBuf>,
+}

@@ -1,0 +1,59 @@
+//! The dashboard: files embedded when the server was built.
+//!
+//! What always holds: a path that names no file answers with the dashboard's own
+//! page, which knows what to show there; files whose names carry a hash may be
+//! kept for ever, all others are asked for again.
+
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG, IF_NONE_MATCH};
+use axum::http::{HeaderMap, StatusCode, Uri};
+use axum::response::{Html, IntoResponse, Response};
+use rust_embed::{EmbeddedFile, RustEmbed};
+
+#[derive(RustEmbed)]
+#[folder = "../web/dist"]
+#[allow_missing = true]
+struct Files;
+
+const NOT_BUILT: &str = "<!doctype html><html lang=en><meta charset=utf-8><title>Binnacle</title>\
+    <h1>The dashboard is not built in</h1>\
+    <p>Run <code>make web</code>, then build the server again.</p>\
+    <p>The API is there: <a href=/api/docs>read about it</a>.</p></html>";
+
+/// Answers with a file, or with the page that shows everything.
+pub async fn serve(uri: Uri, headers: HeaderMap) -> Response {
+    let path = uri.path().trim_start_matches('/');
+    if let Some(file) = Files::get(path) {
+        return answer(path, &file, &headers);
+    }
+    // A missing asset is an error, not a page: a stale page must not run it.
+    if path.starts_with("assets/") {
+        return (StatusCode::NOT_FOUND, "not found").into_response();
+    }
+    match Files::get("index.html") {
+        Some(page) => answer("index.html", &page, &headers),
+        None => Html(NOT_BUILT).into_response(),
+    }
+}
+
+fn answer(path: &str, file: &EmbeddedFile, request: &HeaderMap) -> Response {
+    let hash = file.metadata.sha256_hash();
+    let [a, b, c, d, e, f, g, h, ..] = hash;
+    let tag = format!("\"{:016x}\"", u64::from_be_bytes([a, b, c, d, e, f, g, h]));
+    let keep = if path.starts_with("assets/") {
+        "public, max-age=31536000, immutable"
+    } else {
+        "no-cache"
+    };
+    let unchanged = request
+        .get(IF_NONE_MATCH)
+        .is_some_and(|known| known.as_bytes() == tag.as_bytes());
+    if unchanged {
+        return (StatusCode::NOT_MODIFIED, [(ETAG, tag)]).into_response();
+    }
+    let headers = [
+        (CONTENT_TYPE, file.metadata.mimetype().to_owned()),
+        (CACHE_CONTROL, keep.to_owned()),
+        (ETAG, tag),
+    ];
+    (headers, file.data.clone().into_owned()).into_response()
+}

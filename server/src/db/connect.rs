@@ -1,0 +1,78 @@
+//! Opening a database by its URL, and bringing its schema up to date.
+
+use super::Db;
+use anyhow::{Context, bail};
+use sqlx::migrate::Migrator;
+use sqlx::postgres::PgPoolOptions;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
+use std::str::FromStr;
+use std::time::Duration;
+
+static PORTABLE: Migrator = sqlx::migrate!("../migrations");
+static POSTGRES_ONLY: Migrator = sqlx::migrate!("../migrations/postgres");
+
+/// How long a connection waits for another process's lock, or for its turn.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+impl Db {
+    /// Opens `sqlite://FILE` (made when missing) or `postgres://…`.
+    ///
+    /// # Errors
+    /// When the URL is of another kind, or the database cannot be reached.
+    pub async fn connect(url: &str) -> anyhow::Result<Db> {
+        match url.split_once(':') {
+            Some(("sqlite", _)) => connect_sqlite(url).await,
+            Some(("postgres" | "postgresql", _)) => connect_postgres(url).await,
+            _ => bail!("the database URL begins neither with sqlite: nor with postgres:"),
+        }
+    }
+
+    /// Applies the migrations that are missing.
+    ///
+    /// # Errors
+    /// When one fails, or one that was applied has been edited since.
+    pub async fn migrate(&self) -> anyhow::Result<()> {
+        match self {
+            Db::Sqlite { writer, .. } => PORTABLE.run(writer).await?,
+            Db::Postgres(pool) => {
+                let all = PORTABLE.iter().chain(POSTGRES_ONLY.iter()).cloned();
+                Migrator::with_migrations(all.collect()).run(pool).await?;
+            }
+        }
+        Ok(())
+    }
+}
+
+async fn connect_sqlite(url: &str) -> anyhow::Result<Db> {
+    let options = SqliteConnectOptions::from_str(url)
+        .with_context(|| format!("{url:?} is not a SQLite URL"))?
+        .create_if_missing(true)
+        .foreign_keys(true)
+        .journal_mode(SqliteJournalMode::Wal)
+        // What was acknowledged survives a power cut, not only a crash.
+        .synchronous(SqliteSynchronous::Full)
+        .busy_timeout(PATIENCE);
+    let writer = SqlitePoolOptions::new()
+        .max_connections(1)
+        .acquire_timeout(PATIENCE)
+        .connect_with(options.clone())
+        .await
+        .with_context(|| format!("cannot open {url}"))?;
+    let readers = SqlitePoolOptions::new()
+        .max_connections(4)
+        .acquire_timeout(PATIENCE)
+        .connect_with(options.pragma("query_only", "ON"))
+        .await
+        .with_context(|| format!("cannot open {url}"))?;
+    Ok(Db::Sqlite { readers, writer })
+}
+
+async fn connect_postgres(url: &str) -> anyhow::Result<Db> {
+    let pool = PgPoolOptions::new()
+        .max_connections(16)
+        .acquire_timeout(PATIENCE)
+        .connect(url)
+        .await
+        .context("cannot connect to PostgreSQL")?;
+    Ok(Db::Postgres(pool))
+}

@@ -1,0 +1,79 @@
+//! Both databases behind one type, and one SQL text for both.
+//!
+//! What always holds: reads go through [`Db`], writes through a [`Tx`], and what
+//! [`Tx::commit`] has returned from is on disk. On SQLite there is one writer at a
+//! time, which takes the write lock before it reads anything, so that no
+//! transaction fails half-way for another's sake.
+//!
+//! The macros take the SQL as a literal and run it on whichever database is
+//! there: [`rows!`], [`row!`] and [`execute!`].
+
+mod connect;
+mod queries;
+
+pub(crate) use queries::{execute, row, rows};
+
+use sqlx::{PgPool, Postgres, Sqlite, SqlitePool, Transaction};
+
+/// A result from the database.
+pub type Result<T> = std::result::Result<T, sqlx::Error>;
+
+/// The database that the URL named.
+#[derive(Clone, Debug)]
+pub enum Db {
+    /// One file.
+    Sqlite {
+        /// Any number of readers.
+        readers: SqlitePool,
+        /// A pool of one: SQLite knows one writer at a time.
+        writer: SqlitePool,
+    },
+    /// A server, which other processes of ours may share.
+    Postgres(PgPool),
+}
+
+/// A transaction; rolled back unless committed.
+pub enum Tx {
+    /// On SQLite.
+    Sqlite(Transaction<'static, Sqlite>),
+    /// On PostgreSQL.
+    Postgres(Transaction<'static, Postgres>),
+}
+
+impl Db {
+    /// Begins a transaction that may write.
+    pub async fn begin(&self) -> Result<Tx> {
+        match self {
+            Db::Sqlite { writer, .. } => {
+                Ok(Tx::Sqlite(writer.begin_with("BEGIN IMMEDIATE").await?))
+            }
+            Db::Postgres(pool) => Ok(Tx::Postgres(pool.begin().await?)),
+        }
+    }
+
+    /// Whether the database answers.
+    pub async fn ping(&self) -> Result<()> {
+        row!(self, (i64,), "SELECT CAST(1 AS BIGINT)").map(drop)
+    }
+
+    /// Closes every connection once it is idle.
+    pub async fn close(&self) {
+        match self {
+            Db::Sqlite { readers, writer } => {
+                readers.close().await;
+                writer.close().await;
+            }
+            Db::Postgres(pool) => pool.close().await,
+        }
+    }
+}
+
+impl Tx {
+    /// Makes everything durable, and visible to others, at once.
+    pub async fn commit(self) -> Result<()> {
+        match self {
+            Tx::Sqlite(tx) => tx.commit().await,
+            Tx::Postgres(tx) => tx.commit().await,
+        }
+    }
+}

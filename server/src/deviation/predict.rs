@@ -1,0 +1,99 @@
+//! What a model says about every heading at one place.
+
+use binnacle_magnetics::angle::CompassHeading;
+use binnacle_magnetics::deviation::DeviationError;
+use binnacle_magnetics::handbook::Handbook;
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::ship::EarthField;
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// Deviation on one compass heading.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = DeviationRow)]
+pub struct Row {
+    /// Compass heading.
+    pub compass_deg: f64,
+    /// The magnetic heading then.
+    pub magnetic_deg: f64,
+    /// Deviation, degrees, east positive.
+    pub deviation_deg: f64,
+    /// Half the width of the 95 % band, degrees; none without a covariance.
+    pub band95_deg: Option<f64>,
+}
+
+/// The heading with the greatest deviation.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[schema(as = WorstHeading)]
+pub struct Worst {
+    /// Compass heading.
+    pub compass_deg: f64,
+    /// Deviation, degrees, east positive.
+    pub deviation_deg: f64,
+    /// Half the width of the 95 % band, degrees.
+    pub band95_deg: Option<f64>,
+}
+
+/// What an adjuster would find who swung the ship: the approximate coefficients of
+/// the handbooks, degrees.
+#[derive(ToSchema)]
+#[schema(as = HandbookCoefficients)]
+#[allow(
+    dead_code,
+    non_snake_case,
+    reason = "describes binnacle_magnetics::handbook::Handbook"
+)]
+pub struct HandbookSchema {
+    /// Constant; includes alignment, reference and variation offsets.
+    A: f64,
+    /// Of the sine of the heading.
+    B: f64,
+    /// Of the cosine of the heading.
+    C: f64,
+    /// Of the sine of twice the heading.
+    D: f64,
+    /// Of the cosine of twice the heading.
+    E: f64,
+}
+
+/// Deviation on compass headings from 0, each `step_deg`.
+///
+/// # Errors
+/// When headings are ambiguous there.
+pub fn table(model: &Model, earth: EarthField, step_deg: f64) -> Result<Vec<Row>, DeviationError> {
+    // A step that fills the circle but for rounding does not count 360 again.
+    let rows = (360.0 / step_deg - 1e-9).ceil() as usize;
+    (0..rows)
+        .map(|index| row(model, earth, index as f64 * step_deg))
+        .collect()
+}
+
+fn row(model: &Model, earth: EarthField, compass_deg: f64) -> Result<Row, DeviationError> {
+    let compass = CompassHeading::new(compass_deg).ok_or(DeviationError::NotFinite)?;
+    let predicted = model.deviation(compass, earth)?;
+    Ok(Row {
+        compass_deg,
+        magnetic_deg: (compass + predicted.deviation).degrees(),
+        deviation_deg: predicted.deviation.degrees_east(),
+        band95_deg: predicted.band95_deg,
+    })
+}
+
+/// The heading with the greatest deviation, to 5°; none where headings are
+/// ambiguous.
+pub fn worst(model: &Model, earth: EarthField) -> Option<Worst> {
+    let rows = table(model, earth, 5.0).ok()?;
+    let worst = rows
+        .iter()
+        .max_by(|x, y| x.deviation_deg.abs().total_cmp(&y.deviation_deg.abs()))?;
+    Some(Worst {
+        compass_deg: worst.compass_deg,
+        deviation_deg: worst.deviation_deg,
+        band95_deg: worst.band95_deg,
+    })
+}
+
+/// The handbook's coefficients; none where headings are ambiguous.
+pub fn handbook(model: &Model, earth: EarthField) -> Option<Handbook> {
+    model.handbook(earth).ok()
+}

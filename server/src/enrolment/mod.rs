@@ -1,0 +1,197 @@
+//! How an agent comes to belong to a compass: a one-time code, exchanged for a
+//! token.
+//!
+//! What always holds: a code works once, before it expires, and opens exactly one
+//! installation; code and token are stored only as hashes.
+
+mod store;
+
+pub use store::{find_agent, open_stream};
+
+use crate::access::{Reader, Writer};
+use crate::app::App;
+use crate::compasses;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Page, Valid, text};
+use crate::ids::{CompassId, VesselId};
+use crate::time::Time;
+use crate::{secret, vessels};
+use axum::extract::State;
+use axum::http::StatusCode;
+use binnacle_wire::messages::{EnrolAnswer, EnrolRequest};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+const DEFAULT_VALID_FOR_S: u32 = 7 * 86_400;
+const LONGEST_VALID_FOR_S: u32 = 90 * 86_400;
+
+/// The routes that people use.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(list_agents, create_code))
+}
+
+/// The route that agents use.
+pub fn agent_router() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(enrol))
+}
+
+/// A stream: one compass as one installation of the agent reports it.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct AgentStream {
+    /// The stream's id.
+    pub stream: Uuid,
+    /// The compass.
+    pub compass_id: CompassId,
+    /// Its name.
+    pub compass_name: String,
+    /// The agent's version when it was enrolled.
+    pub agent_version: String,
+    /// When the stream was opened.
+    pub opened_at: Time,
+    /// When its last batch came.
+    pub last_upload_at: Option<Time>,
+    /// Every batch up to this one is here.
+    pub contiguous_seq: i64,
+    /// Batches here.
+    pub batches: i64,
+    /// Samples in them.
+    pub samples: i64,
+    /// Ten-second windows by outcome: `accepted`, or why they were refused.
+    pub tally: BTreeMap<String, u64>,
+}
+
+/// A page of streams.
+#[derive(Serialize, ToSchema)]
+pub struct AgentStreamList {
+    /// In the order in which they were opened.
+    pub items: Vec<AgentStream>,
+    /// `after` of the next page.
+    pub next: Option<String>,
+}
+
+/// An enrolment code to be made.
+#[derive(Default, Deserialize, ToSchema)]
+#[serde(default)]
+pub struct NewCode {
+    /// The compass that the agent will report; the vessel's first if not said.
+    pub compass_id: Option<CompassId>,
+    /// How long the code is valid, seconds; a week if not said.
+    #[schema(minimum = 1, maximum = 7_776_000)]
+    pub valid_for_s: Option<u32>,
+}
+
+/// An enrolment code.
+#[derive(Serialize, ToSchema)]
+pub struct EnrolmentCode {
+    /// To be typed on board; works once and is never shown again.
+    pub code: String,
+    /// When it stops working.
+    pub expires_at: Time,
+}
+
+/// A one-time code, to be exchanged for a token.
+#[derive(ToSchema)]
+#[schema(as = EnrolRequest)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::EnrolRequest")]
+struct EnrolRequestSchema {
+    /// The code the operator was shown.
+    code: String,
+    /// The agent's own version.
+    agent_version: String,
+}
+
+/// Everything the agent needs to send.
+#[derive(ToSchema)]
+#[schema(as = EnrolAnswer)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::EnrolAnswer")]
+struct EnrolAnswerSchema {
+    /// Bearer token; shown this once.
+    token: String,
+    /// A new stream, opened for this installation.
+    stream: Uuid,
+    vessel_name: String,
+    compass_name: String,
+    /// The shore's clock.
+    server_time: Time,
+}
+
+/// List the streams of a vessel's agents
+#[utoipa::path(get, path = "/vessels/{id}/agents", tag = "fleet",
+    params(("id" = VesselId, Path), Page),
+    responses((status = 200, body = AgentStreamList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_agents(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    page: Page,
+) -> Result<Json<AgentStreamList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let found = store::list_streams(&app.db, id, page.after_id()?, page.fetch()).await?;
+    let listed = page.cut(found, |row| row.stream.to_string());
+    let items: Result<Vec<AgentStream>> = listed
+        .items
+        .into_iter()
+        .map(store::StreamRow::read)
+        .collect();
+    Ok(Json(AgentStreamList {
+        items: items?,
+        next: listed.next,
+    }))
+}
+
+/// Make an enrolment code
+#[utoipa::path(post, path = "/vessels/{id}/agents", tag = "fleet",
+    params(("id" = VesselId, Path)), request_body = NewCode,
+    responses((status = 201, body = EnrolmentCode), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn create_code(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<VesselId>,
+    Valid(new): Valid<NewCode>,
+) -> Result<(StatusCode, Json<EnrolmentCode>)> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
+    let compass = compasses::find(&app.db, id, new.compass_id).await?;
+    let valid_for_s = new.valid_for_s.unwrap_or(DEFAULT_VALID_FOR_S);
+    if !(1..=LONGEST_VALID_FOR_S).contains(&valid_for_s) {
+        return Err(Error::Invalid {
+            field: "valid_for_s",
+            detail: format!("{valid_for_s} is outside 1 to {LONGEST_VALID_FOR_S}"),
+        });
+    }
+    let now = app.clock.now();
+    let expires_at = Time(now.plus_seconds(f64::from(valid_for_s)));
+    let code = secret::new_code();
+    store::insert_code(&app.db, &code, &compass, now.into(), expires_at).await?;
+    Ok((
+        StatusCode::CREATED,
+        Json(EnrolmentCode { code, expires_at }),
+    ))
+}
+
+/// Exchange a one-time code for a token and a stream
+#[utoipa::path(post, path = "/agents/enrol", tag = "agents", security(()),
+    request_body = EnrolRequestSchema,
+    responses((status = 200, body = EnrolAnswerSchema), (status = 404, body = Problem),
+              (status = 410, body = Problem)))]
+async fn enrol(
+    State(app): State<App>,
+    Valid(request): Valid<EnrolRequest>,
+) -> Result<Json<EnrolAnswer>> {
+    let version = text("agent_version", &request.agent_version)?;
+    let now = app.clock.now();
+    let enrolled = store::enrol(&app.db, &request.code, &version, now.into()).await?;
+    Ok(Json(EnrolAnswer {
+        token: enrolled.token,
+        stream: enrolled.stream,
+        vessel_name: enrolled.vessel_name,
+        compass_name: enrolled.compass_name,
+        server_time: now,
+    }))
+}

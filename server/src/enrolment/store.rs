@@ -1,0 +1,196 @@
+//! Codes, agents and their streams in the database.
+
+use super::AgentStream;
+use crate::access::Agent;
+use crate::compasses::Compass;
+use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::error::{self, Error};
+use crate::ids::{AgentId, CompassId, VesselId};
+use crate::secret;
+use crate::time::Time;
+use binnacle_wire::batch::StreamId;
+use uuid::Uuid;
+
+pub(super) async fn insert_code(
+    db: &Db,
+    code: &str,
+    compass: &Compass,
+    now: Time,
+    expires_at: Time,
+) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "INSERT INTO enrolment_codes (code_hash, vessel_id, compass_id, created_at, expires_at)
+         VALUES ($1, $2, $3, $4, $5)",
+        secret::hash(&secret::normal_code(code)),
+        compass.vessel_id,
+        compass.id,
+        now,
+        expires_at
+    )?;
+    tx.commit().await
+}
+
+/// What an enrolment made.
+pub(super) struct Enrolled {
+    pub(super) token: String,
+    pub(super) stream: StreamId,
+    pub(super) vessel_name: String,
+    pub(super) compass_name: String,
+}
+
+#[derive(sqlx::FromRow)]
+struct Code {
+    vessel_id: VesselId,
+    compass_id: CompassId,
+    expires_at: Time,
+    vessel_name: String,
+    compass_name: String,
+}
+
+/// Uses up a code: a new agent with a first stream.
+pub(super) async fn enrol(
+    db: &Db,
+    code: &str,
+    agent_version: &str,
+    now: Time,
+) -> error::Result<Enrolled> {
+    let code_hash = secret::hash(&secret::normal_code(code));
+    let mut tx = db.begin().await?;
+    let found = row!(
+        in &mut tx,
+        Code,
+        "SELECT e.vessel_id, e.compass_id, e.expires_at, v.name AS vessel_name,
+                c.name AS compass_name
+         FROM enrolment_codes e
+         JOIN vessels v ON v.id = e.vessel_id
+         JOIN compasses c ON c.vessel_id = e.vessel_id AND c.id = e.compass_id
+         WHERE e.code_hash = $1
+         ORDER BY e.code_hash",
+        code_hash.as_slice()
+    )?
+    .ok_or(Error::NotFound("enrolment code"))?;
+    if found.expires_at <= now {
+        return Err(Error::Gone("this enrolment code has expired"));
+    }
+    // Of two that come at once, the database lets one through.
+    let used = execute!(
+        &mut tx,
+        "UPDATE enrolment_codes SET used_at = $2 WHERE code_hash = $1 AND used_at IS NULL",
+        code_hash.as_slice(),
+        now
+    )?;
+    if used == 0 {
+        return Err(Error::Gone("this enrolment code was used before"));
+    }
+    let token = secret::new_vessel_token(found.vessel_id.0);
+    let agent = Agent {
+        vessel_id: found.vessel_id,
+        agent_id: AgentId::new(),
+        compass_id: found.compass_id,
+    };
+    execute!(
+        &mut tx,
+        "INSERT INTO agents (vessel_id, id, compass_id, token_hash, agent_version, enrolled_at)
+         VALUES ($1, $2, $3, $4, $5, $6)",
+        agent.vessel_id,
+        agent.agent_id,
+        agent.compass_id,
+        secret::hash(&token),
+        agent_version,
+        now
+    )?;
+    let stream = open_stream(&mut tx, agent, now).await?;
+    tx.commit().await?;
+    Ok(Enrolled {
+        token,
+        stream,
+        vessel_name: found.vessel_name,
+        compass_name: found.compass_name,
+    })
+}
+
+/// Opens a new, empty stream for an agent.
+pub async fn open_stream(tx: &mut Tx, agent: Agent, now: Time) -> Result<StreamId> {
+    let stream = StreamId(Uuid::now_v7());
+    execute!(
+        tx,
+        "INSERT INTO streams (vessel_id, id, agent_id, compass_id, opened_at,
+                              contiguous_seq, batches, samples, tally)
+         VALUES ($1, $2, $3, $4, $5, 0, 0, 0, '{}')",
+        agent.vessel_id,
+        stream.0,
+        agent.agent_id,
+        agent.compass_id,
+        now
+    )?;
+    Ok(stream)
+}
+
+/// The agent that a token belongs to.
+pub async fn find_agent(db: &Db, vessel: VesselId, token_hash: &[u8]) -> Result<Option<Agent>> {
+    row!(
+        db,
+        Agent,
+        "SELECT vessel_id, id AS agent_id, compass_id FROM agents
+         WHERE vessel_id = $1 AND token_hash = $2
+         ORDER BY id",
+        vessel,
+        token_hash
+    )
+}
+
+#[derive(sqlx::FromRow)]
+pub(super) struct StreamRow {
+    pub(super) stream: Uuid,
+    compass_id: CompassId,
+    compass_name: String,
+    agent_version: String,
+    opened_at: Time,
+    last_upload_at: Option<Time>,
+    contiguous_seq: i64,
+    batches: i64,
+    samples: i64,
+    tally: String,
+}
+
+impl StreamRow {
+    pub(super) fn read(self) -> error::Result<AgentStream> {
+        Ok(AgentStream {
+            tally: serde_json::from_str(&self.tally)?,
+            stream: self.stream,
+            compass_id: self.compass_id,
+            compass_name: self.compass_name,
+            agent_version: self.agent_version,
+            opened_at: self.opened_at,
+            last_upload_at: self.last_upload_at,
+            contiguous_seq: self.contiguous_seq,
+            batches: self.batches,
+            samples: self.samples,
+        })
+    }
+}
+
+pub(super) async fn list_streams(
+    db: &Db,
+    vessel: VesselId,
+    after: Option<Uuid>,
+    limit: i64,
+) -> Result<Vec<StreamRow>> {
+    rows!(
+        db,
+        StreamRow,
+        "SELECT s.id AS stream, s.compass_id, c.name AS compass_name, a.agent_version,
+                s.opened_at, s.last_upload_at, s.contiguous_seq, s.batches, s.samples, s.tally
+         FROM streams s
+         JOIN compasses c ON c.vessel_id = s.vessel_id AND c.id = s.compass_id
+         JOIN agents a ON a.vessel_id = s.vessel_id AND a.id = s.agent_id
+         WHERE s.vessel_id = $1 AND s.id > $2
+         ORDER BY s.id
+         LIMIT $3",
+        vessel,
+        after.unwrap_or_default(),
+        limit
+    )
+}

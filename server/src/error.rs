@@ -1,0 +1,219 @@
+//! The one error of the API: a status and an RFC 9457 problem document.
+//!
+//! What always holds: what went wrong inside is logged here, once, and never sent.
+
+use axum::Json;
+use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use tracing::error;
+use utoipa::ToSchema;
+
+/// What a handler may answer instead of what was asked.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// It does not exist, or belongs to someone else: nobody is told which.
+    #[error("{0} not found")]
+    NotFound(&'static str),
+    /// The compass has no model yet, for the reason given.
+    #[error("{0}")]
+    NoModelYet(String),
+    /// No valid session or token came with the request.
+    #[error("sign in, or send a valid token")]
+    Unauthenticated,
+    /// E-mail and password do not belong together.
+    #[error("e-mail or password is wrong")]
+    WrongPassword,
+    /// The caller may see it, but not do this.
+    #[error("{0}")]
+    Forbidden(&'static str),
+    /// Not to be read at all.
+    #[error("{0}")]
+    BadRequest(String),
+    /// Read, but it cannot be.
+    #[error("{field}: {detail}")]
+    Invalid {
+        /// The field at fault, as the request calls it.
+        field: &'static str,
+        /// What is wrong with it.
+        detail: String,
+    },
+    /// Other bytes are stored under this stream and number.
+    #[error(
+        "batch {0} of this stream is stored with other bytes; open a new stream and number anew"
+    )]
+    StreamForked(u64),
+    /// The key was used for another request.
+    #[error("this idempotency key was used for another request")]
+    KeyReused,
+    /// It was there, but can be used no more.
+    #[error("{0}")]
+    Gone(&'static str),
+    /// The body is larger than is taken here.
+    #[error("the body is larger than {0} bytes")]
+    TooLarge(usize),
+    /// Not the media type that is taken here.
+    #[error("{0}")]
+    UnsupportedMediaType(String),
+    /// Too many wrong passwords.
+    #[error("too many failed attempts; try again in {retry_after_s} s")]
+    Throttled {
+        /// Seconds to wait.
+        retry_after_s: u64,
+    },
+    /// Something went wrong here.
+    #[error("something went wrong here; it has been logged")]
+    Internal(anyhow::Error),
+}
+
+/// A result whose error can be sent.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// An error as it is sent (RFC 9457).
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Problem {
+    /// Names the kind of problem; ends in a word that programs may act on.
+    #[serde(rename = "type")]
+    pub kind: String,
+    /// The kind in a few words.
+    pub title: String,
+    /// The HTTP status.
+    pub status: u16,
+    /// What is wrong this time.
+    pub detail: String,
+}
+
+impl Error {
+    fn kind(&self) -> (StatusCode, &'static str, &'static str) {
+        match self {
+            Error::NotFound(_) => (StatusCode::NOT_FOUND, "not-found", "Not found"),
+            Error::NoModelYet(_) => (StatusCode::NOT_FOUND, "no-model-yet", "No model yet"),
+            Error::Unauthenticated => {
+                (StatusCode::UNAUTHORIZED, "unauthenticated", "Not signed in")
+            }
+            Error::WrongPassword => (
+                StatusCode::UNAUTHORIZED,
+                "wrong-password",
+                "E-mail or password is wrong",
+            ),
+            Error::Forbidden(_) => (StatusCode::FORBIDDEN, "forbidden", "Not allowed"),
+            Error::BadRequest(_) => (StatusCode::BAD_REQUEST, "bad-request", "Cannot be read"),
+            Error::Invalid { .. } => (
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "invalid",
+                "A value is not valid",
+            ),
+            Error::StreamForked(_) => (
+                StatusCode::CONFLICT,
+                "stream-forked",
+                "The stream has forked",
+            ),
+            Error::KeyReused => (
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "idempotency-key-reused",
+                "Idempotency key used before",
+            ),
+            Error::Gone(_) => (StatusCode::GONE, "gone", "No longer valid"),
+            Error::TooLarge(_) => (StatusCode::PAYLOAD_TOO_LARGE, "too-large", "Body too large"),
+            Error::UnsupportedMediaType(_) => (
+                StatusCode::UNSUPPORTED_MEDIA_TYPE,
+                "unsupported-media-type",
+                "Unsupported media type",
+            ),
+            Error::Throttled { .. } => (
+                StatusCode::TOO_MANY_REQUESTS,
+                "throttled",
+                "Too many attempts",
+            ),
+            Error::Internal(_) => (
+                StatusCode::INTERNAL_SERVER_ERROR,
+                "internal",
+                "Internal error",
+            ),
+        }
+    }
+}
+
+impl IntoResponse for Error {
+    fn into_response(self) -> Response {
+        let (status, kind, title) = self.kind();
+        if let Error::Internal(cause) = &self {
+            error!(error = format!("{cause:#}"), "a request failed");
+        }
+        let problem = Problem {
+            kind: format!("/problems/{kind}"),
+            title: title.to_owned(),
+            status: status.as_u16(),
+            detail: self.to_string(),
+        };
+        let mut response = (status, Json(problem)).into_response();
+        let headers = response.headers_mut();
+        headers.insert(
+            header::CONTENT_TYPE,
+            HeaderValue::from_static("application/problem+json"),
+        );
+        if let Error::Throttled { retry_after_s } = self {
+            headers.insert(header::RETRY_AFTER, HeaderValue::from(retry_after_s));
+        }
+        response
+    }
+}
+
+impl From<sqlx::Error> for Error {
+    fn from(error: sqlx::Error) -> Error {
+        Error::Internal(error.into())
+    }
+}
+
+impl From<serde_json::Error> for Error {
+    /// Only for JSON of our own; a request's goes through [`JsonRejection`].
+    fn from(error: serde_json::Error) -> Error {
+        Error::Internal(error.into())
+    }
+}
+
+impl From<anyhow::Error> for Error {
+    fn from(error: anyhow::Error) -> Error {
+        Error::Internal(error)
+    }
+}
+
+impl From<tokio::task::JoinError> for Error {
+    fn from(error: tokio::task::JoinError) -> Error {
+        Error::Internal(error.into())
+    }
+}
+
+impl From<JsonRejection> for Error {
+    fn from(rejection: JsonRejection) -> Error {
+        match rejection {
+            JsonRejection::JsonDataError(error) => Error::Invalid {
+                field: "body",
+                detail: error.body_text(),
+            },
+            JsonRejection::MissingJsonContentType(error) => {
+                Error::UnsupportedMediaType(error.body_text())
+            }
+            JsonRejection::BytesRejection(error)
+                if error.status() == StatusCode::PAYLOAD_TOO_LARGE =>
+            {
+                Error::TooLarge(crate::http::MAX_JSON_BYTES)
+            }
+            other => Error::BadRequest(other.body_text()),
+        }
+    }
+}
+
+impl From<QueryRejection> for Error {
+    fn from(rejection: QueryRejection) -> Error {
+        Error::BadRequest(rejection.body_text())
+    }
+}
+
+impl From<PathRejection> for Error {
+    /// A path that does not parse names nothing that exists.
+    fn from(_: PathRejection) -> Error {
+        Error::NotFound("page")
+    }
+}

@@ -1,0 +1,165 @@
+//! Live events: what dashboards are told as it happens.
+//!
+//! What always holds: an event is stored in the transaction that makes it true,
+//! and reaches the dashboards of every server process on the same database: on
+//! PostgreSQL through LISTEN and NOTIFY, on SQLite (one process) directly. A
+//! dashboard that comes back with the last id it saw gets what it missed, some of
+//! it perhaps twice.
+
+mod live;
+mod store;
+
+pub use live::{Live, listen};
+pub use store::{insert, prune};
+
+use crate::access::Reader;
+use crate::app::App;
+use crate::error::{Problem, Result};
+use crate::ids::{EventId, OperatorId, VesselId};
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::sse::{Event as Sent, KeepAlive, Sse};
+use futures_util::stream::{self, Stream};
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::time::Duration;
+use tokio::sync::broadcast::Receiver;
+use tokio::sync::broadcast::error::RecvError;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(follow_events))
+}
+
+/// What happened to a vessel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = EventKind)]
+pub enum Kind {
+    /// A batch came.
+    Batch,
+    /// A compass has a new model.
+    Model,
+}
+
+/// An event, with those who may know of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::FromRow)]
+pub struct Event {
+    /// Its id, by which a dashboard resumes.
+    pub id: EventId,
+    /// Whose vessel.
+    pub operator_id: OperatorId,
+    /// Which vessel.
+    pub vessel_id: VesselId,
+    /// What happened.
+    pub kind: Kind,
+}
+
+/// The data of an event.
+#[derive(Serialize, ToSchema)]
+pub struct VesselEvent {
+    /// Which vessel.
+    pub vessel_id: VesselId,
+    /// What happened.
+    pub kind: Kind,
+}
+
+/// A client is to come back after so long, to be looked at anew.
+const LONGEST_STREAM: Duration = Duration::from_mins(30);
+
+/// Follow the fleet live
+///
+/// Server-sent events named `vessel`, whose data is a `VesselEvent`. With
+/// `Last-Event-ID`, what was missed within the last day comes first.
+#[utoipa::path(get, path = "/events", tag = "fleet",
+    params(("Last-Event-ID" = Option<Uuid>, Header, description = "The last event seen")),
+    responses((status = 200, content_type = "text/event-stream", body = VesselEvent),
+              (status = 401, body = Problem)))]
+async fn follow_events(
+    State(app): State<App>,
+    reader: Reader,
+    headers: HeaderMap,
+) -> Result<Sse<impl Stream<Item = std::result::Result<Sent, Infallible>>>> {
+    let last = headers
+        .get("last-event-id")
+        .and_then(|value| value.to_str().ok())
+        .and_then(|text| Uuid::parse_str(text).ok())
+        .map(EventId);
+    // Listening begins before the look back, so that nothing falls in between.
+    let receiver = app.live.follow();
+    let missed = match last {
+        Some(last) => store::since(&app.db, reader.operator, last).await?,
+        None => Vec::new(),
+    };
+    let follower = Follower {
+        ends: tokio::time::Instant::now() + LONGEST_STREAM,
+        app,
+        operator: reader.operator,
+        receiver,
+        pending: missed.into(),
+        last,
+    };
+    let stream = stream::unfold(follower, Follower::next);
+    Ok(Sse::new(stream).keep_alive(KeepAlive::new().interval(Duration::from_secs(15))))
+}
+
+struct Follower {
+    app: App,
+    operator: OperatorId,
+    receiver: Receiver<Event>,
+    pending: VecDeque<Event>,
+    last: Option<EventId>,
+    ends: tokio::time::Instant,
+}
+
+impl Follower {
+    async fn next(mut self) -> Option<(std::result::Result<Sent, Infallible>, Follower)> {
+        loop {
+            if let Some(event) = self.pending.pop_front() {
+                self.last = Some(event.id);
+                return Some((Ok(event.to_sent()), self));
+            }
+            let received = tokio::select! {
+                () = self.app.stopping.cancelled() => return None,
+                () = tokio::time::sleep_until(self.ends) => return None,
+                received = self.receiver.recv() => received,
+            };
+            match received {
+                Ok(event) if event.operator_id == self.operator => self.pending.push_back(event),
+                Ok(_) => {}
+                Err(RecvError::Closed) => return None,
+                Err(RecvError::Lagged(_)) => self.catch_up().await?,
+            }
+        }
+    }
+
+    /// Too slow for the live channel: reads what was missed from the database.
+    async fn catch_up(&mut self) -> Option<()> {
+        let Some(last) = self.last else {
+            return Some(());
+        };
+        let missed = store::since(&self.app.db, self.operator, last).await.ok()?;
+        self.pending.extend(missed);
+        Some(())
+    }
+}
+
+impl Event {
+    fn to_sent(self) -> Sent {
+        let data = VesselEvent {
+            vessel_id: self.vessel_id,
+            kind: self.kind,
+        };
+        Sent::default()
+            .event("vessel")
+            .id(self.id.to_string())
+            .json_data(data)
+            .expect("an id and a word are JSON")
+    }
+}

@@ -1,0 +1,91 @@
+//! Reading a request so that whatever is wrong with it becomes one of our errors.
+
+use crate::error::{Error, Result};
+use axum::extract::{FromRequest, FromRequestParts};
+use axum::http::request::Parts;
+use binnacle_magnetics::time::Timestamp;
+use serde::de::DeserializeOwned;
+
+pub use axum::Json;
+
+/// Longest name or note that is taken, in characters.
+const MAX_TEXT: usize = 200;
+
+/// A JSON body.
+#[derive(FromRequest)]
+#[from_request(via(axum::Json), rejection(Error))]
+pub struct Valid<T>(pub T);
+
+/// The query string.
+pub struct Params<T>(pub T);
+
+impl<S: Send + Sync, T: DeserializeOwned> FromRequestParts<S> for Params<T> {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Params<T>> {
+        let query = axum::extract::Query::from_request_parts(parts, state).await?;
+        Ok(Params(query.0))
+    }
+}
+
+/// The ids in a path. One that does not parse names nothing that exists.
+pub struct Id<T>(pub T);
+
+impl<S: Send + Sync, T: DeserializeOwned + Send> FromRequestParts<S> for Id<T> {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Id<T>> {
+        let path = axum::extract::Path::from_request_parts(parts, state).await?;
+        Ok(Id(path.0))
+    }
+}
+
+/// A name, trimmed: neither empty nor long, and on one line.
+///
+/// # Errors
+/// When it is not.
+pub fn text(field: &'static str, value: &str) -> Result<String> {
+    let value = value.trim();
+    let detail = if value.is_empty() {
+        "is empty"
+    } else if value.chars().count() > MAX_TEXT {
+        "is longer than 200 characters"
+    } else if value.chars().any(char::is_control) {
+        "has control characters"
+    } else {
+        return Ok(value.to_owned());
+    };
+    Err(Error::Invalid {
+        field,
+        detail: detail.to_owned(),
+    })
+}
+
+/// A time in a query string.
+///
+/// # Errors
+/// When it is not RFC 3339.
+pub fn time(field: &'static str, value: Option<&str>) -> Result<Option<Timestamp>> {
+    value
+        .map(|text| {
+            Timestamp::parse(text).map_err(|error| Error::Invalid {
+                field,
+                detail: error.to_string(),
+            })
+        })
+        .transpose()
+}
+
+/// A number of a query string within its range; NaN is in none.
+///
+/// # Errors
+/// When it is outside.
+pub fn degrees(field: &'static str, value: f64, low: f64, high: f64) -> Result<f64> {
+    if (low..=high).contains(&value) {
+        return Ok(value);
+    }
+    Err(Error::Invalid {
+        field,
+        detail: format!("{value} is outside {low} to {high}"),
+    })
+}

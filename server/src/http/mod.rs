@@ -1,0 +1,12 @@
+//! Everything between the socket and the handlers: routes, limits, headers, and
+//! the small types that read a request.
+
+mod docs;
+mod headers;
+mod json;
+mod page;
+mod routes;
+
+pub use json::{Id, Json, Params, Valid, degrees, text, time};
+pub use page::{Listed, Page};
+pub use routes::{MAX_JSON_BYTES, openapi, router};

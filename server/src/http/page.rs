@@ -1,0 +1,87 @@
+//! Lists in pages: `?limit=&after=`, where `after` is the `next` of the page before.
+
+use crate::error::{Error, Result};
+use axum::extract::FromRequestParts;
+use axum::http::request::Parts;
+use serde::Deserialize;
+use utoipa::IntoParams;
+use uuid::Uuid;
+
+/// Which part of a list.
+#[derive(Clone, Debug, Default, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Page {
+    /// How many at most; 100 if not said.
+    #[param(minimum = 1, maximum = 10_000)]
+    limit: Option<u32>,
+    /// `next` of the page before.
+    after: Option<String>,
+}
+
+/// A page that was cut from what was found.
+pub struct Listed<T> {
+    /// What is on it.
+    pub items: Vec<T>,
+    /// `after` of the next page.
+    pub next: Option<String>,
+}
+
+const DEFAULT_LIMIT: u32 = 100;
+const MAX_LIMIT: u32 = 10_000;
+
+impl Page {
+    /// The id after which the page begins.
+    ///
+    /// # Errors
+    /// When the cursor is not one of ours.
+    pub fn after_id(&self) -> Result<Option<Uuid>> {
+        let Some(after) = &self.after else {
+            return Ok(None);
+        };
+        let id = Uuid::parse_str(after).map_err(|_| bad_cursor(after))?;
+        Ok(Some(id))
+    }
+
+    /// The number after which the page begins.
+    ///
+    /// # Errors
+    /// When the cursor is not one of ours.
+    pub fn after_number(&self) -> Result<Option<i64>> {
+        let Some(after) = &self.after else {
+            return Ok(None);
+        };
+        let number = after.parse().map_err(|_| bad_cursor(after))?;
+        Ok(Some(number))
+    }
+
+    /// How many items a page holds.
+    pub fn limit(&self) -> usize {
+        self.limit.unwrap_or(DEFAULT_LIMIT).clamp(1, MAX_LIMIT) as usize
+    }
+
+    /// How many to fetch: one more than fits, to know whether there is a next page.
+    pub fn fetch(&self) -> i64 {
+        self.limit() as i64 + 1
+    }
+
+    /// Cuts what [`Page::fetch`] brought down to a page.
+    pub fn cut<T>(&self, mut items: Vec<T>, cursor: impl Fn(&T) -> String) -> Listed<T> {
+        let more = items.len() > self.limit();
+        items.truncate(self.limit());
+        let next = items.last().filter(|_| more).map(cursor);
+        Listed { items, next }
+    }
+}
+
+fn bad_cursor(after: &str) -> Error {
+    Error::BadRequest(format!("after: {after:?} is not a cursor of this list"))
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Page {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Page> {
+        let query = axum::extract::Query::from_request_parts(parts, state).await?;
+        Ok(query.0)
+    }
+}

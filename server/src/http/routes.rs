@@ -1,0 +1,128 @@
+//! Every route, the document that describes them, and what surrounds them.
+
+use super::headers;
+use crate::app::App;
+use crate::{
+    compasses, dashboard, deviation, enrolment, error, events, models, operations, samples,
+    session, settings, streams, tokens, vessels,
+};
+use axum::Router;
+use axum::extract::DefaultBodyLimit;
+use axum::http::StatusCode;
+use axum::routing::get;
+use std::time::Duration;
+use tower_http::catch_panic::CatchPanicLayer;
+use tower_http::compression::CompressionLayer;
+use tower_http::timeout::TimeoutLayer;
+use tower_http::trace::TraceLayer;
+use utoipa::OpenApi;
+use utoipa::openapi::security::{ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityScheme};
+use utoipa_axum::router::OpenApiRouter;
+
+/// Largest JSON body.
+pub const MAX_JSON_BYTES: usize = 64 * 1024;
+/// A batch over a satellite link may take its time; nothing takes longer.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+#[derive(OpenApi)]
+#[openapi(
+    info(
+        title = "Binnacle",
+        description = "Magnetic compass deviation of a fleet. Errors are RFC 9457 problem \
+            documents; lists page by cursor; times are RFC 3339 UTC; deviation and variation are \
+            east-positive degrees; fields are nanotesla. Absence and refusal look the same (404) \
+            across operators.",
+    ),
+    components(schemas(error::Problem)),
+    security(("session" = []), ("token" = [])),
+    modifiers(&Security),
+    tags(
+        (name = "session", description = "Signing in; API tokens"),
+        (name = "agents", description = "What the agents aboard talk to"),
+        (name = "fleet", description = "Vessels, compasses, models"),
+        (name = "operations", description = "Health and metrics"),
+    )
+)]
+struct Document;
+
+struct Security;
+
+impl utoipa::Modify for Security {
+    fn modify(&self, document: &mut utoipa::openapi::OpenApi) {
+        let components = document.components.get_or_insert_default();
+        components.add_security_scheme(
+            "session",
+            SecurityScheme::ApiKey(ApiKey::Cookie(ApiKeyValue::new(session::COOKIE))),
+        );
+        components.add_security_scheme(
+            "token",
+            SecurityScheme::Http(Http::new(HttpAuthScheme::Bearer)),
+        );
+    }
+}
+
+/// What ships talk to: no headers but the needed, they cross the satellite link.
+fn for_agents() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .merge(enrolment::agent_router())
+        .merge(streams::router())
+}
+
+fn for_people() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .merge(session::router())
+        .merge(tokens::router())
+        .merge(vessels::router())
+        .merge(compasses::router())
+        .merge(enrolment::router())
+        .merge(settings::router())
+        .merge(models::router())
+        .merge(deviation::router())
+        .merge(samples::router())
+        .merge(events::router())
+}
+
+/// The OpenAPI document.
+pub fn openapi() -> utoipa::openapi::OpenApi {
+    parts().1
+}
+
+fn parts() -> (Router<App>, utoipa::openapi::OpenApi) {
+    let (people, described) = OpenApiRouter::with_openapi(Document::openapi())
+        .nest("/api/v1", for_people())
+        .merge(operations::router())
+        .split_for_parts();
+    let (agents, more) = OpenApiRouter::new()
+        .nest("/api/v1", for_agents())
+        .split_for_parts();
+    let mut document = described;
+    document.merge(more);
+    let people = people
+        .route("/api/openapi.json", get(super::docs::document))
+        .route("/api/docs", get(super::docs::page))
+        .route("/api/{*rest}", get(no_such_route).fallback(no_such_route))
+        .fallback_service(get(dashboard::serve))
+        .layer(CompressionLayer::new())
+        .layer(axum::middleware::from_fn(headers::add));
+    let router = Router::new().merge(agents).merge(people);
+    (router, document)
+}
+
+async fn no_such_route() -> error::Error {
+    error::Error::NotFound("page")
+}
+
+/// The whole server.
+pub fn router(app: App) -> Router {
+    parts()
+        .0
+        .layer(DefaultBodyLimit::max(MAX_JSON_BYTES))
+        .layer(TimeoutLayer::with_status_code(
+            StatusCode::REQUEST_TIMEOUT,
+            PATIENCE,
+        ))
+        .layer(CatchPanicLayer::new())
+        .layer(axum::middleware::from_fn(operations::measure))
+        .layer(TraceLayer::new_for_http())
+        .with_state(app)
+}

@@ -1,0 +1,119 @@
+//! `Idempotency-Key`: a create request that is sent again creates nothing more.
+//!
+//! What always holds: the key and what it made are stored in one transaction, so
+//! that either both exist or neither. A key is the operator's own and is forgotten
+//! after a day.
+
+use crate::db::{Tx, execute, row};
+use crate::error::{Error, Result};
+use crate::ids::OperatorId;
+use crate::secret;
+use crate::time::Time;
+use axum::extract::FromRequestParts;
+use axum::http::request::Parts;
+use serde::Serialize;
+use utoipa::openapi::path::{Parameter, ParameterBuilder, ParameterIn};
+use utoipa::openapi::{ObjectBuilder, Required, Type};
+use uuid::Uuid;
+
+const HEADER: &str = "Idempotency-Key";
+const MAX_BYTES: usize = 255;
+const KEPT_FOR_S: f64 = 86_400.0;
+
+/// The request's key, if it has one.
+pub struct Key(Option<String>);
+
+impl Key {
+    /// The id to create under: `wanted`, or the one that the same request created
+    /// before under this key.
+    ///
+    /// # Errors
+    /// When the key was used for another request.
+    pub async fn once(
+        &self,
+        tx: &mut Tx,
+        operator: OperatorId,
+        request_hash: &[u8],
+        wanted: Uuid,
+        now: Time,
+    ) -> Result<Uuid> {
+        let Some(key) = &self.0 else {
+            return Ok(wanted);
+        };
+        let key_hash = secret::hash(key);
+        let outdated = Time(now.0.plus_seconds(-KEPT_FOR_S));
+        execute!(
+            &mut *tx,
+            "DELETE FROM idempotency_keys WHERE operator_id = $1 AND created_at < $2",
+            operator,
+            outdated
+        )?;
+        execute!(
+            &mut *tx,
+            "INSERT INTO idempotency_keys (operator_id, key_hash, request_hash, resource_id, created_at)
+             VALUES ($1, $2, $3, $4, $5)
+             ON CONFLICT (operator_id, key_hash) DO NOTHING",
+            operator,
+            key_hash.as_slice(),
+            request_hash,
+            wanted,
+            now
+        )?;
+        let (made_for, id) = row!(
+            in &mut *tx,
+            (Vec<u8>, Uuid),
+            "SELECT request_hash, resource_id FROM idempotency_keys
+             WHERE operator_id = $1 AND key_hash = $2
+             ORDER BY key_hash",
+            operator,
+            key_hash.as_slice()
+        )?
+        .ok_or_else(|| anyhow::anyhow!("an idempotency key vanished"))?;
+        if made_for != request_hash {
+            return Err(Error::KeyReused);
+        }
+        Ok(id)
+    }
+}
+
+/// What tells one request from another: what it creates and its content.
+///
+/// # Errors
+/// When the content cannot be written as JSON.
+pub fn request_hash(what: &str, content: &impl Serialize) -> Result<Vec<u8>> {
+    let content = serde_json::to_string(content)?;
+    Ok(secret::hash(&format!("{what} {content}")))
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Key {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Key> {
+        let Some(value) = parts.headers.get(HEADER) else {
+            return Ok(Key(None));
+        };
+        let key = value.to_str().unwrap_or_default();
+        if key.is_empty() || key.len() > MAX_BYTES {
+            return Err(Error::BadRequest(format!(
+                "{HEADER} is not 1 to {MAX_BYTES} visible characters"
+            )));
+        }
+        Ok(Key(Some(key.to_owned())))
+    }
+}
+
+impl utoipa::IntoParams for Key {
+    fn into_params(_: impl Fn() -> Option<ParameterIn>) -> Vec<Parameter> {
+        vec![
+            ParameterBuilder::new()
+                .name(HEADER)
+                .parameter_in(ParameterIn::Header)
+                .required(Required::False)
+                .description(Some(
+                    "The same key with the same request again creates nothing more",
+                ))
+                .schema(Some(ObjectBuilder::new().schema_type(Type::String)))
+                .build(),
+        ]
+    }
+}

@@ -1,0 +1,58 @@
+//! Ids: UUIDs of version 7, a type for each thing they name.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+macro_rules! id {
+    ($name:ident, $doc:literal) => {
+        #[doc = $doc]
+        #[derive(
+            Clone,
+            Copy,
+            Debug,
+            PartialEq,
+            Eq,
+            Hash,
+            PartialOrd,
+            Ord,
+            Serialize,
+            Deserialize,
+            sqlx::Type,
+            ToSchema,
+        )]
+        #[serde(transparent)]
+        #[sqlx(transparent)]
+        pub struct $name(pub Uuid);
+
+        impl $name {
+            /// A new one; later ones sort after earlier ones.
+            pub fn new() -> Self {
+                Self(Uuid::now_v7())
+            }
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+    };
+}
+
+id!(OperatorId, "A company with a fleet.");
+id!(UserId, "A person who signs in.");
+id!(TokenId, "An API token.");
+id!(VesselId, "A ship.");
+id!(CompassId, "A magnetic element aboard.");
+id!(AgentId, "An installation of the agent.");
+id!(ModelId, "A version of a compass's model.");
+id!(JobId, "A piece of work in the queue.");
+id!(EventId, "Something a dashboard is told.");

@@ -1,0 +1,46 @@
+//! The shore server: ingest, analysis, API, dashboard host, and the science on
+//! the command line.
+//!
+//! One folder or file for each thing it can do; in reading order:
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a function that asks the database errs when that does; others say more"
+)]
+#![allow(
+    clippy::cast_possible_wrap,
+    reason = "counts go into BIGINT and are far from its end"
+)]
+
+pub mod app;
+pub mod clock;
+pub mod config;
+pub mod db;
+pub mod error;
+pub mod ids;
+pub mod time;
+
+pub mod access;
+pub mod idempotency;
+pub mod secret;
+pub mod session;
+pub mod tokens;
+
+pub mod compasses;
+pub mod settings;
+pub mod vessels;
+
+pub mod enrolment;
+pub mod streams;
+
+pub mod analysis;
+pub mod deviation;
+pub mod events;
+pub mod models;
+pub mod samples;
+
+pub mod dashboard;
+pub mod http;
+pub mod operations;
+
+pub mod command;

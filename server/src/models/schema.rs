@@ -1,0 +1,80 @@
+//! How the OpenAPI document describes a model; the model itself is the science
+//! crate's.
+
+use binnacle_magnetics::model::Model;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A fitted model, as `fit --json` prints it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct ModelJson(pub Model);
+
+impl TryFrom<String> for ModelJson {
+    type Error = serde_json::Error;
+
+    fn try_from(text: String) -> Result<ModelJson, serde_json::Error> {
+        serde_json::from_str(&text)
+    }
+}
+
+/// A fitted model.
+#[derive(ToSchema)]
+#[schema(as = Model)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::model::Model")]
+pub struct ModelSchema {
+    parameters_over_lambda: ParametersSchema,
+    /// What is added to the exact deviation: alignment, reference and variation
+    /// offsets, degrees, east positive.
+    constant_deg: f64,
+    /// 8 × 8: the parameters in their order, the constant last.
+    #[schema(required)]
+    covariance: Option<Vec<Vec<f64>>>,
+    #[schema(required)]
+    identifiable: Option<IdentifiableSchema>,
+    /// Root mean square of the residuals, degrees.
+    #[schema(required)]
+    rms_deg: Option<f64>,
+    /// Samples that carried weight.
+    samples_used: u64,
+    /// Samples that were left out or held to be outliers.
+    samples_rejected: u64,
+}
+
+/// Poisson's parameters over the shielding factor.
+#[derive(ToSchema)]
+#[schema(as = ParametersOverLambda)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::model::Parameters")]
+pub struct ParametersSchema {
+    /// Fore-and-aft permanent field, nT, forward positive.
+    bx_nt: f64,
+    /// Fore-and-aft field from the vertical earth field.
+    chi13: f64,
+    /// Athwartship permanent field, nT, starboard positive.
+    by_nt: f64,
+    /// Athwartship field from the vertical earth field.
+    chi23: f64,
+    /// Twice the exact coefficient D.
+    chi11_minus_chi22: f64,
+    chi12: f64,
+    chi21: f64,
+}
+
+/// Which parameters the data determine; what is false rests on the prior.
+#[derive(ToSchema)]
+#[schema(as = Identifiable)]
+#[allow(
+    dead_code,
+    clippy::struct_excessive_bools,
+    reason = "describes binnacle_magnetics::model::Identifiable"
+)]
+pub struct IdentifiableSchema {
+    bx_nt: bool,
+    chi13: bool,
+    by_nt: bool,
+    chi23: bool,
+    chi11_minus_chi22: bool,
+    chi12: bool,
+    chi21: bool,
+    constant_deg: bool,
+}

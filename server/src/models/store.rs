@@ -1,0 +1,129 @@
+//! Model versions in the database.
+
+use super::ModelJson;
+use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::ids::{CompassId, ModelId, OperatorId, VesselId};
+use crate::time::Time;
+
+/// A row of `models`.
+#[derive(Clone, Debug, sqlx::FromRow)]
+#[allow(missing_docs, reason = "they are the columns")]
+pub struct StoredModel {
+    pub vessel_id: VesselId,
+    pub id: ModelId,
+    pub compass_id: CompassId,
+    pub version: i64,
+    pub created_at: Time,
+    pub input_hash: String,
+    pub estimator: String,
+    pub epoch_from: Option<Time>,
+    pub epoch_to: Option<Time>,
+    pub data_from: Time,
+    pub data_until: Time,
+    pub place_at: Time,
+    pub lat: f64,
+    pub lon: f64,
+    pub variation_deg: f64,
+    pub h_nt: f64,
+    pub z_nt: f64,
+    #[sqlx(try_from = "String")]
+    pub model: ModelJson,
+}
+
+/// The current model of a compass.
+pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<StoredModel>> {
+    row!(
+        db,
+        StoredModel,
+        "SELECT * FROM models
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY version DESC
+         LIMIT 1",
+        vessel,
+        compass
+    )
+}
+
+/// The current models of a vessel's compasses.
+pub async fn current_of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<StoredModel>> {
+    rows!(
+        db,
+        StoredModel,
+        "SELECT m.* FROM models m
+         WHERE m.vessel_id = $1
+           AND m.version = (SELECT MAX(n.version) FROM models n
+                            WHERE n.vessel_id = m.vessel_id AND n.compass_id = m.compass_id)
+         ORDER BY m.compass_id",
+        vessel
+    )
+}
+
+/// The current models of a whole fleet.
+pub async fn current_of_operator(db: &Db, operator: OperatorId) -> Result<Vec<StoredModel>> {
+    rows!(
+        db,
+        StoredModel,
+        "SELECT m.* FROM models m
+         JOIN vessels v ON v.id = m.vessel_id
+         WHERE v.operator_id = $1
+           AND m.version = (SELECT MAX(n.version) FROM models n
+                            WHERE n.vessel_id = m.vessel_id AND n.compass_id = m.compass_id)
+         ORDER BY m.vessel_id, m.compass_id",
+        operator
+    )
+}
+
+/// A compass's models, the newest first, from before a version.
+pub(super) async fn list(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    before: Option<i64>,
+    limit: i64,
+) -> Result<Vec<StoredModel>> {
+    rows!(
+        db,
+        StoredModel,
+        "SELECT * FROM models
+         WHERE vessel_id = $1 AND compass_id = $2 AND version < $3
+         ORDER BY version DESC
+         LIMIT $4",
+        vessel,
+        compass,
+        before.unwrap_or(i64::MAX),
+        limit
+    )
+}
+
+/// Stores a model as the compass's next version, whatever its `version` says.
+pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
+    let text = serde_json::to_string(&model.model)
+        .map_err(|error| sqlx::Error::Encode(Box::new(error)))?;
+    execute!(
+        tx,
+        "INSERT INTO models (vessel_id, id, compass_id, version, created_at, input_hash, estimator,
+                             epoch_from, epoch_to, data_from, data_until,
+                             place_at, lat, lon, variation_deg, h_nt, z_nt, model)
+         SELECT $1, $2, $3, COALESCE(MAX(version), 0) + 1, $4, $5, $6, $7, $8, $9, $10,
+                $11, $12, $13, $14, $15, $16, $17
+         FROM models WHERE vessel_id = $1 AND compass_id = $3",
+        model.vessel_id,
+        model.id,
+        model.compass_id,
+        model.created_at,
+        model.input_hash.as_str(),
+        model.estimator.as_str(),
+        model.epoch_from,
+        model.epoch_to,
+        model.data_from,
+        model.data_until,
+        model.place_at,
+        model.lat,
+        model.lon,
+        model.variation_deg,
+        model.h_nt,
+        model.z_nt,
+        text
+    )?;
+    Ok(())
+}

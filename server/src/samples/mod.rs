@@ -1,0 +1,270 @@
+//! A compass's samples and what became of each in the last analysis.
+
+mod export;
+
+use crate::access::Reader;
+use crate::analysis;
+use crate::app::App;
+use crate::compasses::{self, WhichCompass};
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Page, Params, time};
+use crate::ids::{CompassId, VesselId};
+use crate::time::Time;
+use crate::vessels;
+use axum::extract::State;
+use axum::response::Response;
+use binnacle_magnetics::analyse::SampleDiagnostic;
+use binnacle_magnetics::coverage::Coverage;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_samples))
+        .routes(routes!(samples_csv))
+        .routes(routes!(samples_ndjson))
+        .routes(routes!(find_coverage))
+}
+
+/// Which samples.
+#[derive(Clone, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Range {
+    /// The first instant, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    from: Option<String>,
+    /// The instant after the last, RFC 3339.
+    #[param(value_type = Option<String>, format = DateTime)]
+    to: Option<String>,
+    /// A compass of the vessel's; its first one if not said.
+    compass: Option<CompassId>,
+}
+
+/// A sample and what became of it.
+#[derive(Serialize, ToSchema)]
+#[schema(as = Sample)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_magnetics::analyse::SampleDiagnostic"
+)]
+struct SampleSchema {
+    /// The middle of the stretch.
+    time: Time,
+    /// Degrees north.
+    lat: f64,
+    /// Degrees east.
+    lon: f64,
+    /// Mean raw compass heading.
+    compass_deg: f64,
+    /// Mean gyro heading, as the gyro gave it.
+    #[schema(required)]
+    gyro_deg: Option<f64>,
+    /// Mean satellite-compass heading.
+    #[schema(required)]
+    satellite_deg: Option<f64>,
+    /// Speed over ground, knots.
+    #[schema(required)]
+    sog_kn: Option<f64>,
+    /// Mean rate of turn, degrees a minute, starboard positive.
+    #[schema(required)]
+    rate_of_turn_deg_min: Option<f64>,
+    /// Standard deviation of compass less reference among the windows, degrees.
+    #[schema(required)]
+    spread_deg: Option<f64>,
+    /// How many settled ten-second windows the means are of.
+    windows: u16,
+    /// The earth's variation, degrees, east positive.
+    #[schema(required)]
+    variation_deg: Option<f64>,
+    /// Horizontal field, nT.
+    #[schema(required)]
+    h_nt: Option<f64>,
+    /// Vertical field, nT, down positive.
+    #[schema(required)]
+    z_nt: Option<f64>,
+    /// Reference less variation less compass, degrees.
+    #[schema(required)]
+    deviation_deg: Option<f64>,
+    /// The model's deviation on this heading, here, degrees.
+    #[schema(required)]
+    predicted_deg: Option<f64>,
+    /// Measured less predicted, degrees.
+    #[schema(required)]
+    residual_deg: Option<f64>,
+    /// Robust weight, 0 to 1.
+    weight: f64,
+    /// Whether it carried weight in a model.
+    used: bool,
+    /// Why it was left out or doubted.
+    #[schema(required, value_type = Option<SampleReasonSchema>)]
+    reason: Option<SampleReasonSchema>,
+}
+
+/// Why a sample was left out, or counted for less.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = SampleReason)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_magnetics::analyse::SampleReason"
+)]
+enum SampleReasonSchema {
+    NoReference,
+    OutsideFieldModel,
+    FieldTooWeak,
+    MagneticCargo,
+    Outlier,
+    NoModel,
+}
+
+/// A page of samples.
+#[derive(Serialize, ToSchema)]
+struct SampleList {
+    /// In order of time.
+    #[schema(value_type = Vec<SampleSchema>)]
+    items: Vec<SampleDiagnostic>,
+    /// `after` of the next page.
+    next: Option<String>,
+}
+
+/// Where a compass's samples lie.
+#[derive(ToSchema)]
+#[schema(as = Coverage)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::coverage::Coverage")]
+struct CoverageSchema {
+    /// Width of a heading sector, degrees.
+    heading_step_deg: u16,
+    /// Width of a band of magnetic latitude, degrees.
+    magnetic_latitude_step_deg: i16,
+    /// The bands that hold samples, from south to north.
+    bands: Vec<CoverageBandSchema>,
+    /// The cells that hold samples, by band and then by heading.
+    cells: Vec<CoverageCellSchema>,
+}
+
+/// The range of fields in one band of magnetic latitude.
+#[derive(ToSchema)]
+#[schema(as = CoverageBand)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_magnetics::coverage::CoverageBand"
+)]
+struct CoverageBandSchema {
+    /// The band's southern edge, degrees of magnetic latitude.
+    magnetic_latitude_from_deg: i16,
+    h_nt_from: f64,
+    h_nt_to: f64,
+    z_nt_from: f64,
+    z_nt_to: f64,
+    samples: u64,
+}
+
+/// One sector of heading within one band.
+#[derive(ToSchema)]
+#[schema(as = CoverageCell)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_magnetics::coverage::CoverageCell"
+)]
+struct CoverageCellSchema {
+    /// The sector's first compass heading, degrees.
+    heading_from_deg: u16,
+    /// The band's southern edge, degrees of magnetic latitude.
+    magnetic_latitude_from_deg: i16,
+    samples: u64,
+}
+
+/// List a compass's samples
+#[utoipa::path(get, path = "/vessels/{id}/samples", tag = "fleet",
+    params(("id" = VesselId, Path), Range, Page),
+    responses((status = 200, body = SampleList), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn list_samples(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+    page: Page,
+) -> Result<Json<SampleList>> {
+    let after = page.after_number()?;
+    let mut samples = find(&app, reader, id, &range).await?;
+    samples.retain(|found| after.is_none_or(|after| found.sample.time.micros() > after));
+    let listed = page.cut(samples, |found| found.sample.time.micros().to_string());
+    Ok(Json(SampleList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// A compass's samples as CSV, as `fit` reads it
+#[utoipa::path(get, path = "/vessels/{id}/samples.csv", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, content_type = "text/csv", body = String), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn samples_csv(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Response> {
+    export::csv(&find(&app, reader, id, &range).await?)
+}
+
+/// A compass's samples as lines of JSON
+#[utoipa::path(get, path = "/vessels/{id}/samples.ndjson", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, content_type = "application/x-ndjson", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn samples_ndjson(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Response> {
+    export::ndjson(&find(&app, reader, id, &range).await?)
+}
+
+/// Where a compass's samples lie, by heading and magnetic latitude
+#[utoipa::path(get, path = "/vessels/{id}/coverage", tag = "fleet",
+    params(("id" = VesselId, Path), WhichCompass),
+    responses((status = 200, body = CoverageSchema), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_coverage(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(which): Params<WhichCompass>,
+) -> Result<Json<Coverage>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let compass = compasses::find(&app.db, id, which.compass).await?;
+    Ok(Json(analysis::coverage(&app.db, id, compass.id).await?))
+}
+
+async fn find(
+    app: &App,
+    reader: Reader,
+    id: VesselId,
+    range: &Range,
+) -> Result<Vec<SampleDiagnostic>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
+    let compass = compasses::find(&app.db, id, range.compass).await?;
+    let from = time("from", range.from.as_deref())?.map(Time);
+    let to = time("to", range.to.as_deref())?.map(Time);
+    let chunks = analysis::chunks(&app.db, id, compass.id, from, to).await?;
+    let parsed = tokio::task::spawn_blocking(move || {
+        let mut samples: Vec<SampleDiagnostic> = Vec::new();
+        for chunk in &chunks {
+            samples.extend(serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)?);
+        }
+        samples.retain(|found| {
+            let at = Time(found.sample.time);
+            from.is_none_or(|from| at >= from) && to.is_none_or(|to| at < to)
+        });
+        Ok::<_, Error>(samples)
+    });
+    parsed.await?
+}

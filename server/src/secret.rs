@@ -1,0 +1,169 @@
+//! Passwords and tokens: made here, compared here, stored only as hashes.
+//!
+//! What always holds: a password's hash is Argon2id with a salt of its own; a
+//! token has at least 128 random bits, so that a plain SHA-256 of it is enough.
+
+use argon2::Argon2;
+use argon2::password_hash::phc::PasswordHash;
+use argon2::password_hash::{PasswordHasher, PasswordVerifier};
+use rand::{RngExt, rng};
+use sha2::{Digest, Sha256};
+use uuid::Uuid;
+
+/// SHA-256 of a token, a code or a key, as it is stored.
+pub fn hash(secret: &str) -> Vec<u8> {
+    Sha256::digest(secret.as_bytes()).to_vec()
+}
+
+/// A new token of 256 random bits.
+pub fn new_token() -> String {
+    base64url(&rng().random::<[u8; 32]>())
+}
+
+/// A new token that names the vessel it belongs to: 128 bits of the vessel's id
+/// and 128 random ones. Short, because it crosses the satellite link with every
+/// batch.
+pub fn new_vessel_token(vessel: Uuid) -> String {
+    let mut bytes = [0; 32];
+    bytes[..16].copy_from_slice(vessel.as_bytes());
+    bytes[16..].copy_from_slice(&rng().random::<[u8; 16]>());
+    base64url(&bytes)
+}
+
+/// The vessel that such a token names, whether or not the token is valid.
+pub fn vessel_of_token(token: &str) -> Option<Uuid> {
+    let bytes = from_base64url(token)?;
+    Some(Uuid::from_bytes(bytes.get(..16)?.try_into().ok()?))
+}
+
+/// A new one-time code for people to read out: 80 random bits in the letters of
+/// Crockford's base 32, which lacks I, L, O and U.
+pub fn new_code() -> String {
+    const LETTERS: &[u8; 32] = b"0123456789ABCDEFGHJKMNPQRSTVWXYZ";
+    let letters: String = rng()
+        .random::<[u8; 16]>()
+        .iter()
+        .map(|byte| char::from(LETTERS[usize::from(byte % 32)]))
+        .collect();
+    format!(
+        "{}-{}-{}-{}",
+        &letters[..4],
+        &letters[4..8],
+        &letters[8..12],
+        &letters[12..]
+    )
+}
+
+/// A code as typed: without regard to case, spaces and hyphens.
+pub fn normal_code(typed: &str) -> String {
+    typed
+        .chars()
+        .filter(char::is_ascii_alphanumeric)
+        .map(|letter| letter.to_ascii_uppercase())
+        .collect()
+}
+
+/// A new password for people to copy: 96 random bits.
+pub fn new_password() -> String {
+    base64url(&rng().random::<[u8; 12]>())
+}
+
+/// Hashes a password; takes tens of milliseconds, so not for an async thread.
+///
+/// # Errors
+/// When the machine has no randomness or too little memory.
+pub fn hash_password(password: &str) -> anyhow::Result<String> {
+    let hash = Argon2::default().hash_password(password.as_bytes())?;
+    Ok(hash.to_string())
+}
+
+/// Whether a password belongs to a stored hash; takes as long when there is no
+/// hash to compare with, so that timing does not tell which e-mails exist.
+pub fn password_matches(password: &str, stored: Option<&str>) -> bool {
+    let Some(stored) = stored else {
+        let _ = Argon2::default().hash_password(password.as_bytes());
+        return false;
+    };
+    PasswordHash::new(stored).is_ok_and(|hash| {
+        Argon2::default()
+            .verify_password(password.as_bytes(), &hash)
+            .is_ok()
+    })
+}
+
+const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
+/// RFC 4648 section 5, without padding.
+fn base64url(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(bytes.len() * 4 / 3 + 2);
+    for chunk in bytes.chunks(3) {
+        let word = chunk
+            .iter()
+            .chain([0, 0].iter())
+            .take(3)
+            .fold(0_u32, |word, byte| word << 8 | u32::from(*byte));
+        for digit in 0..=chunk.len() {
+            text.push(char::from(DIGITS[(word >> (18 - 6 * digit)) as usize & 63]));
+        }
+    }
+    text
+}
+
+fn from_base64url(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(text.len() * 3 / 4);
+    let (mut word, mut bits) = (0_u32, 0_u32);
+    for letter in text.bytes() {
+        let digit = DIGITS.iter().position(|known| *known == letter)?;
+        word = word << 6 | u32::try_from(digit).ok()?;
+        bits += 6;
+        if bits >= 8 {
+            bits -= 8;
+            bytes.push((word >> bits) as u8);
+            word &= (1 << bits) - 1;
+        }
+    }
+    Some(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vessel_token_names_its_vessel() {
+        let vessel = Uuid::now_v7();
+        let token = new_vessel_token(vessel);
+        assert_eq!(token.len(), 43);
+        assert_eq!(vessel_of_token(&token), Some(vessel));
+        assert_ne!(token, new_vessel_token(vessel));
+        assert_eq!(vessel_of_token("short"), None);
+        assert_eq!(vessel_of_token(&"é".repeat(43)), None);
+    }
+
+    #[test]
+    fn base64url_gives_the_examples_of_rfc_4648() {
+        for (plain, coded) in [("", ""), ("f", "Zg"), ("fo", "Zm8"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(base64url(plain.as_bytes()), coded);
+            assert_eq!(from_base64url(coded).unwrap(), plain.as_bytes());
+        }
+    }
+
+    #[test]
+    fn a_code_may_be_typed_in_lower_case_without_hyphens() {
+        let code = new_code();
+        assert_eq!(code.len(), 19);
+        assert_eq!(
+            normal_code(&code.to_lowercase().replace('-', " ")),
+            normal_code(&code)
+        );
+    }
+
+    #[test]
+    fn a_password_matches_only_its_own_hash() {
+        let stored = hash_password("correct horse").unwrap();
+        assert!(stored.starts_with("$argon2id$"));
+        assert!(password_matches("correct horse", Some(&stored)));
+        assert!(!password_matches("wrong horse", Some(&stored)));
+        assert!(!password_matches("correct horse", None));
+    }
+}

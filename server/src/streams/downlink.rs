@@ -1,0 +1,93 @@
+//! What goes back to the ship: only what it does not have.
+
+use crate::access::Agent;
+use crate::app::App;
+use crate::db::row;
+use crate::error::{Error, Result};
+use crate::models::{self, ModelSchema};
+use crate::settings::{self, AgentSettings};
+use crate::time::Time;
+use binnacle_wire::messages::{Downlink, ModelDownlink};
+use serde::Deserialize;
+use utoipa::{IntoParams, ToSchema};
+use uuid::Uuid;
+
+/// What the agent has.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct Has {
+    /// The model version it uses.
+    model: Option<Uuid>,
+    /// The settings it uses.
+    settings: Option<u32>,
+}
+
+/// The acknowledgement, and what the agent does not have.
+#[derive(ToSchema)]
+#[schema(as = Downlink)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::Downlink")]
+pub(super) struct DownlinkSchema {
+    /// Every batch up to this one is durable; 0 for none.
+    contiguous_seq: u64,
+    /// The current model, when the agent has another one or none.
+    #[schema(required = false)]
+    model: Option<ModelDownlinkSchema>,
+    /// The current settings, when the agent has others.
+    #[schema(required = false)]
+    settings: Option<AgentSettings>,
+    /// The shore's clock.
+    server_time: Time,
+}
+
+/// A model as it is sent to the bridge.
+#[derive(ToSchema)]
+#[schema(as = ModelDownlink)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::ModelDownlink")]
+pub(super) struct ModelDownlinkSchema {
+    id: Uuid,
+    /// Counts the compass's models from 1.
+    version: u32,
+    /// The time of the last sample in it.
+    data_until: Time,
+    model: ModelSchema,
+}
+
+/// A stream just opened.
+#[derive(ToSchema)]
+#[schema(as = OpenStreamAnswer)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_wire::messages::OpenStreamAnswer"
+)]
+pub(super) struct OpenStreamSchema {
+    stream: Uuid,
+}
+
+pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> Result<Downlink> {
+    let (contiguous_seq,) = row!(
+        &app.db,
+        (i64,),
+        "SELECT contiguous_seq FROM streams
+         WHERE vessel_id = $1 AND id = $2 AND agent_id = $3
+         ORDER BY id",
+        agent.vessel_id,
+        stream,
+        agent.agent_id
+    )?
+    .ok_or(Error::NotFound("stream"))?;
+    let current = models::current(&app.db, agent.vessel_id, agent.compass_id).await?;
+    let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
+    Ok(Downlink {
+        contiguous_seq: contiguous_seq as u64,
+        model: current
+            .filter(|model| Some(model.id.0) != has.model)
+            .map(|model| ModelDownlink {
+                id: model.id.0,
+                version: model.version as u32,
+                data_until: model.data_until.0,
+                model: model.model.0,
+            }),
+        settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
+        server_time: app.clock.now(),
+    })
+}

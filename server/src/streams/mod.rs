@@ -1,0 +1,136 @@
+//! Ingest: batches in, acknowledgement and downlink out.
+//!
+//! What always holds:
+//!
+//! - A batch is acknowledged only when it and the job to analyse it are on disk,
+//!   in one transaction.
+//! - The same batch again changes nothing; other bytes under the same number are
+//!   refused and change nothing.
+//! - `contiguous_seq` covers only batches that are here, all from 1 on.
+//! - An agent reaches its own streams and nothing else.
+
+mod downlink;
+mod store;
+
+use crate::access::Agent;
+use crate::app::App;
+use crate::enrolment;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Params};
+use crate::{analysis, events};
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{DefaultBodyLimit, State};
+use axum::http::StatusCode;
+use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::codec::MAX_BYTES;
+use binnacle_wire::messages::{Downlink, OpenStreamAnswer};
+use downlink::{DownlinkSchema, Has, OpenStreamSchema};
+use metrics::counter;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(put_batch))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
+        .routes(routes!(open_stream))
+        .routes(routes!(downlink))
+}
+
+/// Open a new stream for the same compass
+#[utoipa::path(post, path = "/streams", tag = "agents", security(("token" = [])),
+    responses((status = 201, body = OpenStreamSchema), (status = 401, body = Problem)))]
+async fn open_stream(
+    State(app): State<App>,
+    agent: Agent,
+) -> Result<(StatusCode, Json<OpenStreamAnswer>)> {
+    let mut tx = app.db.begin().await?;
+    let stream = enrolment::open_stream(&mut tx, agent, app.clock.now().into()).await?;
+    tx.commit().await?;
+    Ok((StatusCode::CREATED, Json(OpenStreamAnswer { stream })))
+}
+
+/// Send a batch
+///
+/// Answers when the batch is durable. The same batch again is answered alike.
+#[utoipa::path(put, path = "/streams/{stream}/batches/{seq}", tag = "agents",
+    security(("token" = [])),
+    params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), Has),
+    request_body(content = Vec<u8>, content_type = "application/octet-stream",
+                 description = "The frame, as crates/wire/FORMAT.md has it"),
+    responses((status = 200, body = DownlinkSchema), (status = 400, body = Problem),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Other bytes are stored under this number", body = Problem),
+              (status = 413, body = Problem), (status = 422, body = Problem)))]
+async fn put_batch(
+    State(app): State<App>,
+    agent: Agent,
+    Id((stream, seq)): Id<(Uuid, u64)>,
+    Params(has): Params<Has>,
+    body: std::result::Result<Bytes, BytesRejection>,
+) -> Result<Json<Downlink>> {
+    let bytes = body.map_err(|rejection| too_large(&rejection))?;
+    let batch = read(&bytes, StreamId(stream), seq)?;
+    let now = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    let stored = store::insert(&mut tx, agent, &batch, &bytes, now).await?;
+    let event = if stored {
+        if !batch.samples.is_empty() {
+            let delay_s = f64::from(app.config.analysis_delay_s);
+            analysis::enqueue(&mut tx, agent.vessel_id, now, delay_s).await?;
+        }
+        Some(events::insert(&mut tx, agent.vessel_id, events::Kind::Batch, now).await?)
+    } else {
+        None
+    };
+    tx.commit().await?;
+    if let Some(event) = event {
+        app.publish(event);
+    }
+    let result = if stored { "stored" } else { "repeated" };
+    counter!("binnacle_batches_total", "result" => result).increment(1);
+    Ok(Json(downlink::answer(&app, agent, stream, has).await?))
+}
+
+/// Ask for what the shore has
+#[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
+    params(("stream" = Uuid, Path), Has),
+    responses((status = 200, body = DownlinkSchema), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn downlink(
+    State(app): State<App>,
+    agent: Agent,
+    Id(stream): Id<Uuid>,
+    Params(has): Params<Has>,
+) -> Result<Json<Downlink>> {
+    Ok(Json(downlink::answer(&app, agent, stream, has).await?))
+}
+
+/// Reads a frame and makes sure that it is the one that the path names.
+fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
+    let batch =
+        binnacle_wire::decode(bytes).map_err(|error| Error::BadRequest(error.to_string()))?;
+    if batch.stream != stream {
+        return Err(Error::Invalid {
+            field: "stream",
+            detail: format!("the frame is of stream {}", batch.stream),
+        });
+    }
+    if batch.seq != seq || i64::try_from(seq).is_err() {
+        return Err(Error::Invalid {
+            field: "seq",
+            detail: format!("the frame is number {}", batch.seq),
+        });
+    }
+    Ok(batch)
+}
+
+fn too_large(rejection: &BytesRejection) -> Error {
+    if rejection.status() == StatusCode::PAYLOAD_TOO_LARGE {
+        return Error::TooLarge(MAX_BYTES);
+    }
+    Error::BadRequest(rejection.body_text())
+}

@@ -1,0 +1,153 @@
+//! Batches in the database.
+
+use crate::access::Agent;
+use crate::db::{Result as DbResult, Tx, execute, row};
+use crate::error::{Error, Result};
+use crate::ids::VesselId;
+use crate::time::Time;
+use binnacle_wire::batch::Batch;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use uuid::Uuid;
+
+#[derive(sqlx::FromRow)]
+struct Progress {
+    contiguous_seq: i64,
+    tally: String,
+}
+
+/// Stores a batch; `false` when the same bytes are there already.
+pub(super) async fn insert(
+    tx: &mut Tx,
+    agent: Agent,
+    batch: &Batch,
+    bytes: &[u8],
+    now: Time,
+) -> Result<bool> {
+    // Taking the stream's row first puts batches of one stream in line.
+    let progress = row!(
+        in &mut *tx,
+        Progress,
+        "UPDATE streams SET last_upload_at = $4
+         WHERE vessel_id = $1 AND id = $2 AND agent_id = $3
+         RETURNING contiguous_seq, tally",
+        agent.vessel_id,
+        batch.stream.0,
+        agent.agent_id,
+        now
+    )?
+    .ok_or(Error::NotFound("stream"))?;
+    let seq = i64::try_from(batch.seq).map_err(|_| Error::NotFound("batch"))?;
+    let hash = Sha256::digest(bytes).to_vec();
+    let known = row!(
+        in &mut *tx,
+        (Vec<u8>,),
+        "SELECT sha256 FROM batches WHERE vessel_id = $1 AND stream = $2 AND seq = $3
+         ORDER BY seq",
+        agent.vessel_id,
+        batch.stream.0,
+        seq
+    )?;
+    if let Some((known,)) = known {
+        return if known == hash {
+            Ok(false)
+        } else {
+            Err(Error::StreamForked(batch.seq))
+        };
+    }
+    let first = batch.samples.first().map(|sample| Time(sample.time));
+    let last = batch.samples.last().map(|sample| Time(sample.time));
+    execute!(
+        &mut *tx,
+        "INSERT INTO batches (vessel_id, stream, seq, bytes, sha256, samples,
+                              first_sample_at, last_sample_at, received_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
+        agent.vessel_id,
+        batch.stream.0,
+        seq,
+        bytes,
+        hash,
+        batch.samples.len() as i64,
+        first,
+        last,
+        now
+    )?;
+    advance(tx, agent.vessel_id, batch, progress).await?;
+    note_on_vessel(tx, agent.vessel_id, batch, now).await?;
+    Ok(true)
+}
+
+/// Brings the stream's sums up to date with a batch just stored.
+async fn advance(tx: &mut Tx, vessel: VesselId, batch: &Batch, progress: Progress) -> Result<()> {
+    let mut tally: BTreeMap<String, u64> = serde_json::from_str(&progress.tally)?;
+    for (outcome, windows) in &batch.tally {
+        let sum = tally.entry(outcome.clone()).or_default();
+        *sum = sum.saturating_add(*windows);
+    }
+    let contiguous = contiguous_seq(tx, vessel, batch.stream.0, progress.contiguous_seq).await?;
+    execute!(
+        &mut *tx,
+        "UPDATE streams
+         SET contiguous_seq = $3, batches = batches + 1, samples = samples + $4, tally = $5
+         WHERE vessel_id = $1 AND id = $2",
+        vessel,
+        batch.stream.0,
+        contiguous,
+        batch.samples.len() as i64,
+        serde_json::to_string(&tally)?
+    )?;
+    Ok(())
+}
+
+/// The last batch before the first gap, given one up to which there is none.
+async fn contiguous_seq(tx: &mut Tx, vessel: VesselId, stream: Uuid, known: i64) -> DbResult<i64> {
+    let next = row!(
+        in &mut *tx,
+        (i64,),
+        "SELECT seq FROM batches WHERE vessel_id = $1 AND stream = $2 AND seq = $3 ORDER BY seq",
+        vessel,
+        stream,
+        known + 1
+    )?;
+    if next.is_none() {
+        return Ok(known);
+    }
+    let last = row!(
+        in &mut *tx,
+        (i64,),
+        "SELECT b.seq FROM batches b
+         WHERE b.vessel_id = $1 AND b.stream = $2 AND b.seq > $3
+           AND NOT EXISTS (SELECT 1 FROM batches n
+                           WHERE n.vessel_id = b.vessel_id AND n.stream = b.stream
+                             AND n.seq = b.seq + 1)
+         ORDER BY b.seq
+         LIMIT 1",
+        vessel,
+        stream,
+        known
+    )?;
+    Ok(last.map_or(known, |(seq,)| seq))
+}
+
+async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time) -> DbResult<()> {
+    execute!(
+        &mut *tx,
+        "UPDATE vessels SET last_upload_at = $2 WHERE id = $1",
+        vessel,
+        now
+    )?;
+    let Some(last) = batch.samples.last() else {
+        return Ok(());
+    };
+    // A late batch does not move the ship back.
+    execute!(
+        &mut *tx,
+        "UPDATE vessels SET last_sample_at = $2, last_lat = $3, last_lon = $4
+         WHERE id = $1 AND (last_sample_at IS NULL OR last_sample_at < $2)",
+        vessel,
+        Time(last.time),
+        last.position.lat_deg(),
+        last.position.lon_deg()
+    )?;
+    Ok(())
+}

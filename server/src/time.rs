@@ -1,0 +1,51 @@
+//! An instant as it goes into both databases and into JSON.
+
+use binnacle_magnetics::time::Timestamp;
+use serde::{Deserialize, Serialize};
+use sqlx::encode::IsNull;
+use sqlx::error::BoxDynError;
+use sqlx::{Database, Decode, Encode, Type};
+use utoipa::ToSchema;
+
+/// BIGINT microseconds in the database, RFC 3339 in JSON.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema)]
+#[serde(transparent)]
+#[schema(value_type = String, format = DateTime, example = "2026-11-21T07:00:00Z")]
+pub struct Time(pub Timestamp);
+
+impl From<Timestamp> for Time {
+    fn from(time: Timestamp) -> Time {
+        Time(time)
+    }
+}
+
+impl<DB: Database> Type<DB> for Time
+where
+    i64: Type<DB>,
+{
+    fn type_info() -> DB::TypeInfo {
+        i64::type_info()
+    }
+
+    fn compatible(info: &DB::TypeInfo) -> bool {
+        i64::compatible(info)
+    }
+}
+
+impl<'q, DB: Database> Encode<'q, DB> for Time
+where
+    i64: Encode<'q, DB>,
+{
+    fn encode_by_ref(&self, buffer: &mut DB::ArgumentBuffer) -> Result<IsNull, BoxDynError> {
+        self.0.micros().encode_by_ref(buffer)
+    }
+}
+
+impl<'r, DB: Database> Decode<'r, DB> for Time
+where
+    i64: Decode<'r, DB>,
+{
+    fn decode(value: DB::ValueRef<'r>) -> Result<Time, BoxDynError> {
+        Ok(Time(Timestamp::from_micros(i64::decode(value)?)?))
+    }
+}

@@ -1,0 +1,158 @@
+//! API tokens: for programs that act for a user.
+//!
+//! What always holds: a token is shown once and stored as a hash; it may do no
+//! more than its user, and only read unless its scope is `write`.
+
+mod store;
+
+pub use store::caller;
+
+use crate::access::Caller;
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Listed, Page, Valid};
+use crate::ids::TokenId;
+use crate::secret;
+use crate::time::Time;
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// What an API token begins with; an agent's token has no prefix.
+pub const PREFIX: &str = "bna_";
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_tokens, create_token))
+        .routes(routes!(delete_token))
+}
+
+/// What a token may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = TokenScope)]
+pub enum Scope {
+    /// What its user may see.
+    Read,
+    /// What its user may do.
+    Write,
+}
+
+/// A token, without its secret.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+pub struct Token {
+    /// The token's id.
+    pub id: TokenId,
+    /// What it is for, in the user's words.
+    pub name: String,
+    /// What it may do.
+    pub scope: Scope,
+    /// When it ends.
+    pub expires_at: Time,
+    /// When it was made.
+    pub created_at: Time,
+    /// When it was last used, to the hour.
+    pub last_used_at: Option<Time>,
+}
+
+/// A token to be made.
+#[derive(Deserialize, ToSchema)]
+pub struct NewToken {
+    /// What it is for.
+    #[schema(min_length = 1, max_length = 200)]
+    pub name: String,
+    /// What it may do.
+    pub scope: Scope,
+    /// When it ends; a year from now if not said.
+    pub expires_at: Option<Time>,
+}
+
+/// A token just made.
+#[derive(Serialize, ToSchema)]
+pub struct MadeToken {
+    /// The token.
+    #[serde(flatten)]
+    pub about: Token,
+    /// The secret, to be sent as `Authorization: Bearer …`; never shown again.
+    pub token: String,
+}
+
+/// A page of tokens.
+#[derive(Serialize, ToSchema)]
+pub struct TokenList {
+    /// In the order in which they were made.
+    pub items: Vec<Token>,
+    /// `after` of the next page.
+    pub next: Option<String>,
+}
+
+/// List your API tokens
+#[utoipa::path(get, path = "/tokens", tag = "session", params(Page),
+    responses((status = 200, body = TokenList), (status = 401, body = Problem)))]
+async fn list_tokens(
+    State(app): State<App>,
+    caller: Caller,
+    page: Page,
+) -> Result<Json<TokenList>> {
+    let found = store::list(&app.db, caller.user.user_id, page.after_id()?, page.fetch()).await?;
+    let Listed { items, next } = page.cut(found, |token| token.id.to_string());
+    Ok(Json(TokenList { items, next }))
+}
+
+/// Make an API token
+#[utoipa::path(post, path = "/tokens", tag = "session", request_body = NewToken,
+    responses((status = 201, body = MadeToken), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn create_token(
+    State(app): State<App>,
+    caller: Caller,
+    Valid(new): Valid<NewToken>,
+) -> Result<(StatusCode, Json<MadeToken>)> {
+    if caller.session.is_none() {
+        return Err(Error::Forbidden("a token cannot make tokens; sign in"));
+    }
+    let name = crate::http::text("name", &new.name)?;
+    let now = app.clock.now();
+    let expires_at = new
+        .expires_at
+        .unwrap_or(Time(now.plus_seconds(365.0 * 86_400.0)));
+    if expires_at.0 <= now {
+        return Err(Error::Invalid {
+            field: "expires_at",
+            detail: format!("{} is over", expires_at.0),
+        });
+    }
+    let token = format!("{PREFIX}{}", secret::new_token());
+    let about = Token {
+        id: TokenId::new(),
+        name,
+        scope: new.scope,
+        expires_at,
+        created_at: now.into(),
+        last_used_at: None,
+    };
+    store::insert(&app.db, caller.user.user_id, &about, &secret::hash(&token)).await?;
+    Ok((StatusCode::CREATED, Json(MadeToken { about, token })))
+}
+
+/// Revoke an API token
+#[utoipa::path(delete, path = "/tokens/{id}", tag = "session", params(("id" = TokenId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem)))]
+async fn delete_token(
+    State(app): State<App>,
+    caller: Caller,
+    Id(id): Id<TokenId>,
+) -> Result<StatusCode> {
+    if caller.read_only {
+        return Err(Error::Forbidden("this token may only read"));
+    }
+    if !store::delete(&app.db, caller.user.user_id, id).await? {
+        return Err(Error::NotFound("token"));
+    }
+    Ok(StatusCode::NO_CONTENT)
+}

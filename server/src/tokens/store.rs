@@ -1,0 +1,115 @@
+//! API tokens in the database.
+
+use super::{PREFIX, Scope, Token};
+use crate::access::Caller;
+use crate::db::{Db, Result, execute, row, rows};
+use crate::ids::{TokenId, UserId};
+use crate::secret;
+use crate::session::User;
+use crate::time::Time;
+
+/// How old `last_used_at` may be before a use is noted: reading is not to write.
+const USE_NOTED_EVERY_S: f64 = 3600.0;
+
+#[derive(sqlx::FromRow)]
+struct Holder {
+    #[sqlx(flatten)]
+    user: User,
+    token_id: TokenId,
+    scope: Scope,
+    last_used_at: Option<Time>,
+}
+
+/// The user that a valid token stands for.
+pub async fn caller(db: &Db, token: &str, now: Time) -> Result<Option<Caller>> {
+    if !token.starts_with(PREFIX) {
+        return Ok(None);
+    }
+    let holder = row!(
+        db,
+        Holder,
+        "SELECT u.id AS user_id, u.email, u.name, u.role, u.operator_id, o.name AS operator_name,
+                t.id AS token_id, t.scope, t.last_used_at
+         FROM api_tokens t
+         JOIN users u ON u.id = t.user_id
+         LEFT JOIN operators o ON o.id = u.operator_id
+         WHERE t.token_hash = $1 AND t.expires_at > $2
+         ORDER BY t.id",
+        secret::hash(token),
+        now
+    )?;
+    let Some(holder) = holder else {
+        return Ok(None);
+    };
+    let noted = holder
+        .last_used_at
+        .is_some_and(|at| now.0.seconds_since(at.0) < USE_NOTED_EVERY_S);
+    if !noted {
+        note_use(db, holder.token_id, now).await?;
+    }
+    Ok(Some(Caller {
+        user: holder.user,
+        read_only: holder.scope == Scope::Read,
+        session: None,
+    }))
+}
+
+async fn note_use(db: &Db, id: TokenId, now: Time) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "UPDATE api_tokens SET last_used_at = $2 WHERE id = $1",
+        id,
+        now
+    )?;
+    tx.commit().await
+}
+
+pub(super) async fn list(
+    db: &Db,
+    user: UserId,
+    after: Option<uuid::Uuid>,
+    limit: i64,
+) -> Result<Vec<Token>> {
+    rows!(
+        db,
+        Token,
+        "SELECT id, name, scope, expires_at, created_at, last_used_at
+         FROM api_tokens
+         WHERE user_id = $1 AND id > $2
+         ORDER BY id
+         LIMIT $3",
+        user,
+        after.unwrap_or_default(),
+        limit
+    )
+}
+
+pub(super) async fn insert(db: &Db, user: UserId, token: &Token, hash: &[u8]) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "INSERT INTO api_tokens (id, user_id, token_hash, name, scope, created_at, expires_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7)",
+        token.id,
+        user,
+        hash,
+        token.name.as_str(),
+        token.scope,
+        token.created_at,
+        token.expires_at
+    )?;
+    tx.commit().await
+}
+
+pub(super) async fn delete(db: &Db, user: UserId, id: TokenId) -> Result<bool> {
+    let mut tx = db.begin().await?;
+    let deleted = execute!(
+        &mut tx,
+        "DELETE FROM api_tokens WHERE user_id = $1 AND id = $2",
+        user,
+        id
+    )?;
+    tx.commit().await?;
+    Ok(deleted > 0)
+}

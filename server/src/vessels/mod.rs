@@ -1,0 +1,223 @@
+//! The fleet.
+//!
+//! What always holds: a vessel is found only together with the operator who asks.
+
+mod imo;
+mod store;
+
+pub use store::{find_row, must_be_in_fleet};
+
+use crate::access::{Reader, Writer};
+use crate::app::App;
+use crate::compasses::{self, Compass};
+use crate::deviation::Worst;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Page, Valid, text};
+use crate::idempotency::{self, Key};
+use crate::ids::{OperatorId, VesselId};
+use crate::models::{self, ModelSummary, StoredModel};
+use crate::time::Time;
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_vessels, create_vessel))
+        .routes(routes!(find_vessel))
+}
+
+/// A vessel, and how its compass stands.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Vessel {
+    /// The vessel's id.
+    pub id: VesselId,
+    /// Its name.
+    pub name: String,
+    /// Its IMO number, seven digits.
+    pub imo_number: Option<String>,
+    /// Its call sign.
+    pub call_sign: Option<String>,
+    /// Its flag state.
+    pub flag: Option<String>,
+    /// When it was entered here.
+    pub created_at: Time,
+    /// When its last batch came.
+    pub last_upload_at: Option<Time>,
+    /// Where its latest sample was taken.
+    pub last_position: Option<LastPosition>,
+    /// Its compasses, in the order in which they were entered.
+    pub compasses: Vec<Compass>,
+    /// The current model of its first compass that has one.
+    pub model: Option<ModelSummary>,
+    /// The heading with the greatest deviation by that model, at the last position.
+    pub worst: Option<Worst>,
+    /// Alerts that nobody has acknowledged.
+    pub open_alerts: u32,
+}
+
+/// Where a vessel was last known to be.
+#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+pub struct LastPosition {
+    /// Degrees north.
+    pub lat: f64,
+    /// Degrees east.
+    pub lon: f64,
+    /// When.
+    pub at: Time,
+}
+
+/// A vessel to be entered.
+#[derive(Deserialize, Serialize, ToSchema)]
+pub struct NewVessel {
+    /// Its name.
+    #[schema(min_length = 1, max_length = 200)]
+    pub name: String,
+    /// Its IMO number, with its check digit.
+    #[schema(pattern = "^[0-9]{7}$", example = "9074729")]
+    pub imo_number: Option<String>,
+    /// Its call sign.
+    pub call_sign: Option<String>,
+    /// Its flag state.
+    pub flag: Option<String>,
+}
+
+/// A page of vessels.
+#[derive(Serialize, ToSchema)]
+pub struct VesselList {
+    /// In the order in which they were entered.
+    pub items: Vec<Vessel>,
+    /// `after` of the next page.
+    pub next: Option<String>,
+}
+
+/// List the fleet
+#[utoipa::path(get, path = "/vessels", tag = "fleet", params(Page),
+    responses((status = 200, body = VesselList), (status = 401, body = Problem)))]
+async fn list_vessels(
+    State(app): State<App>,
+    reader: Reader,
+    page: Page,
+) -> Result<Json<VesselList>> {
+    let found = store::list(&app.db, reader.operator, page.after_id()?, page.fetch()).await?;
+    let listed = page.cut(found, |row| row.id.to_string());
+    let compasses = compasses::of_operator(&app.db, reader.operator).await?;
+    let models = models::current_of_operator(&app.db, reader.operator).await?;
+    let items = listed
+        .items
+        .into_iter()
+        .map(|row| row.with(&compasses, &models))
+        .collect();
+    Ok(Json(VesselList {
+        items,
+        next: listed.next,
+    }))
+}
+
+/// Enter a vessel
+///
+/// It comes with one compass, its standard compass.
+#[utoipa::path(post, path = "/vessels", tag = "fleet", params(Key), request_body = NewVessel,
+    responses((status = 201, body = Vessel), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn create_vessel(
+    State(app): State<App>,
+    writer: Writer,
+    key: Key,
+    Valid(new): Valid<NewVessel>,
+) -> Result<(StatusCode, Json<Vessel>)> {
+    let request = idempotency::request_hash("vessel", &new)?;
+    let new = new.checked()?;
+    let now = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    let wanted = VesselId::new();
+    let id = key
+        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .await?;
+    if id == wanted.0 {
+        store::insert(&mut tx, writer.operator, wanted, &new, now).await?;
+        compasses::insert_standard(&mut tx, wanted, now).await?;
+    }
+    tx.commit().await?;
+    let vessel = assemble(&app, writer.operator, VesselId(id)).await?;
+    Ok((StatusCode::CREATED, Json(vessel)))
+}
+
+/// Find a vessel
+#[utoipa::path(get, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
+    responses((status = 200, body = Vessel), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_vessel(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+) -> Result<Json<Vessel>> {
+    Ok(Json(assemble(&app, reader.operator, id).await?))
+}
+
+async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vessel> {
+    let row = must_be_in_fleet(&app.db, operator, id).await?;
+    let compasses = compasses::of_vessel(&app.db, id).await?;
+    let models = models::current_of_vessel(&app.db, id).await?;
+    Ok(row.with(&compasses, &models))
+}
+
+impl NewVessel {
+    fn checked(self) -> Result<NewVessel> {
+        let optional = |field, value: Option<String>| {
+            value
+                .filter(|value| !value.trim().is_empty())
+                .map(|value| text(field, &value))
+                .transpose()
+        };
+        let imo_number = optional("imo_number", self.imo_number)?;
+        if let Some(number) = &imo_number
+            && !imo::is_valid(number)
+        {
+            return Err(Error::Invalid {
+                field: "imo_number",
+                detail: format!("{number} is not an IMO number: seven digits, the last a check"),
+            });
+        }
+        Ok(NewVessel {
+            name: text("name", &self.name)?,
+            imo_number,
+            call_sign: optional("call_sign", self.call_sign)?,
+            flag: optional("flag", self.flag)?,
+        })
+    }
+}
+
+impl store::Row {
+    /// Puts a vessel together from all compasses and current models at hand.
+    fn with(self, compasses: &[Compass], models: &[StoredModel]) -> Vessel {
+        let compasses: Vec<Compass> = compasses
+            .iter()
+            .filter(|compass| compass.vessel_id == self.id)
+            .cloned()
+            .collect();
+        let model = compasses.iter().find_map(|compass| {
+            models
+                .iter()
+                .find(|model| model.vessel_id == self.id && model.compass_id == compass.id)
+        });
+        Vessel {
+            last_position: self.last_position(),
+            id: self.id,
+            name: self.name,
+            imo_number: self.imo_number,
+            call_sign: self.call_sign,
+            flag: self.flag,
+            created_at: self.created_at,
+            last_upload_at: self.last_upload_at,
+            model: model.map(StoredModel::summary),
+            worst: model.and_then(StoredModel::worst),
+            compasses,
+            open_alerts: 0,
+        }
+    }
+}

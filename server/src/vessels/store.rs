@@ -1,0 +1,112 @@
+//! Vessels in the database.
+
+use super::{LastPosition, NewVessel};
+use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::error::{self, Error};
+use crate::ids::{OperatorId, VesselId};
+use crate::time::Time;
+use uuid::Uuid;
+
+/// A vessel's own columns.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub struct Row {
+    /// The vessel's id.
+    pub id: VesselId,
+    /// Its name.
+    pub name: String,
+    /// Its IMO number.
+    pub imo_number: Option<String>,
+    /// Its call sign.
+    pub call_sign: Option<String>,
+    /// Its flag state.
+    pub flag: Option<String>,
+    /// When it was entered.
+    pub created_at: Time,
+    /// When its last batch came.
+    pub last_upload_at: Option<Time>,
+    /// When its latest sample was taken.
+    pub last_sample_at: Option<Time>,
+    /// Where, degrees north.
+    pub last_lat: Option<f64>,
+    /// Where, degrees east.
+    pub last_lon: Option<f64>,
+}
+
+impl Row {
+    /// Where its latest sample was taken.
+    pub fn last_position(&self) -> Option<LastPosition> {
+        Some(LastPosition {
+            lat: self.last_lat?,
+            lon: self.last_lon?,
+            at: self.last_sample_at?,
+        })
+    }
+}
+
+pub(super) async fn list(
+    db: &Db,
+    operator: OperatorId,
+    after: Option<Uuid>,
+    limit: i64,
+) -> Result<Vec<Row>> {
+    rows!(
+        db,
+        Row,
+        "SELECT id, name, imo_number, call_sign, flag, created_at, last_upload_at,
+                last_sample_at, last_lat, last_lon
+         FROM vessels
+         WHERE operator_id = $1 AND id > $2
+         ORDER BY id
+         LIMIT $3",
+        operator,
+        after.unwrap_or_default(),
+        limit
+    )
+}
+
+/// A vessel of the operator's; of nobody else's.
+pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Option<Row>> {
+    row!(
+        db,
+        Row,
+        "SELECT id, name, imo_number, call_sign, flag, created_at, last_upload_at,
+                last_sample_at, last_lat, last_lon
+         FROM vessels
+         WHERE id = $2 AND operator_id = $1
+         ORDER BY id",
+        operator,
+        id
+    )
+}
+
+/// The same, or the answer that it does not exist.
+///
+/// # Errors
+/// [`Error::NotFound`] when it does not exist or is another operator's.
+pub async fn must_be_in_fleet(db: &Db, operator: OperatorId, id: VesselId) -> error::Result<Row> {
+    find_row(db, operator, id)
+        .await?
+        .ok_or(Error::NotFound("vessel"))
+}
+
+pub(super) async fn insert(
+    tx: &mut Tx,
+    operator: OperatorId,
+    id: VesselId,
+    new: &NewVessel,
+    now: Time,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO vessels (id, operator_id, name, imo_number, call_sign, flag, created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7)",
+        id,
+        operator,
+        new.name.as_str(),
+        new.imo_number.as_deref(),
+        new.call_sign.as_deref(),
+        new.flag.as_deref(),
+        now
+    )?;
+    Ok(())
+}
