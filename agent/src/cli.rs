@@ -3,9 +3,10 @@
 //! Exit code 2 and one line for what the one who typed it got wrong, 1 for
 //! everything else that fails.
 
-use crate::config::{Config, ConfigError};
+use crate::config::{Config, ConfigError, RolesConfig, SilenceConfig};
 use crate::hold::Hold;
 use crate::page::{GUARD_HEADER, HoldRequest};
+use crate::replay;
 use crate::run::{self, offline_status};
 use crate::spool::{Identity, Spool};
 use crate::status::Status;
@@ -14,7 +15,7 @@ use anyhow::Context;
 use clap::{Parser, Subcommand, ValueEnum};
 use std::io::Write;
 use std::net::SocketAddr;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
@@ -67,6 +68,20 @@ enum Command {
         config: PathBuf,
         /// Why, or `off`.
         hold: HoldArgument,
+    },
+    /// Puts recorded sentences through the same sampler: samples as CSV, a tally
+    /// as JSON on standard error.
+    Replay {
+        /// Recordings in the order of their times: plain sentences, lines of an
+        /// RFC 3339 time and a sentence, or TAG blocks with times.
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        /// Roles and silence are taken from here; talkers' usual roles without it.
+        #[arg(long)]
+        config: Option<PathBuf>,
+        /// Where the samples go, instead of standard output.
+        #[arg(long)]
+        csv: Option<PathBuf>,
     },
 }
 
@@ -137,11 +152,14 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 config,
             } => enrol(&load(&config)?, &server, &code).await,
             Command::Hold { config, hold } => set_hold(&load(&config)?, hold).await,
+            Command::Replay { files, config, csv } => {
+                tokio::task::block_in_place(|| replay(&files, config.as_deref(), csv.as_deref()))
+            }
         }
     })
 }
 
-fn load(path: &std::path::Path) -> Result<Config, BadInput> {
+fn load(path: &Path) -> Result<Config, BadInput> {
     Ok(Config::load(path)?)
 }
 
@@ -166,6 +184,27 @@ fn stop_on_signals(shutdown: &CancellationToken) -> anyhow::Result<()> {
         tokio::signal::ctrl_c().await.ok();
         shutdown.cancel();
     });
+    Ok(())
+}
+
+fn replay(files: &[PathBuf], config: Option<&Path>, csv: Option<&Path>) -> anyhow::Result<()> {
+    let (roles, silence) = match config {
+        Some(path) => {
+            let config = load(path)?;
+            (config.roles, config.silence)
+        }
+        None => (RolesConfig::usual(), SilenceConfig::default()),
+    };
+    let replayed =
+        replay::replay(files, &roles, silence.stale_s.0).map_err(|e| BadInput(format!("{e:#}")))?;
+    let table = replayed.csv()?;
+    match csv {
+        Some(path) => {
+            replay::write_whole(path, &table).map_err(|e| BadInput(format!("{e:#}")))?;
+        }
+        None => std::io::stdout().write_all(&table)?,
+    }
+    writeln!(std::io::stderr(), "{}", replayed.report())?;
     Ok(())
 }
 

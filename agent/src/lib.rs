@@ -3,8 +3,6 @@
 //!
 //! A library only so that tests can reach it; the program is `main.rs`.
 
-#![allow(dead_code)] // the inputs that make observations come next
-
 pub mod cli;
 mod run;
 
@@ -28,5 +26,7 @@ mod sentences;
 
 mod page;
 mod status;
+
+mod replay;
 
 mod clock;

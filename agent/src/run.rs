@@ -17,7 +17,7 @@ use crate::sampler::Tally;
 use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
 use crate::spool::{Pending, Seal, Spool};
-use crate::status::{InputStatus, ModelStatus, Status};
+use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{Backoff, LinkState, LinkStatus, Shore, Tell, Uplink};
 use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
@@ -337,26 +337,12 @@ impl Agent {
         status.model = self.model_status();
         status.hold = *self.hold.borrow();
         status.windows = self.windows.by_name();
-        status.inputs = self
-            .inputs
-            .iter()
-            .map(|(name, stats)| input_status(name, stats))
+        let inputs = self.inputs.iter();
+        status.inputs = inputs
+            .map(|(name, stats)| InputReport::new(name, stats.status()))
             .collect();
         status.link = self.link.borrow().clone();
         status
-    }
-}
-
-fn input_status(name: &str, stats: &InputStats) -> InputStatus {
-    let counts = stats.status();
-    let bad_checksums = counts.rejected.get("wrong checksum").copied().unwrap_or(0);
-    let rejected: u64 = counts.rejected.values().sum();
-    InputStatus {
-        name: name.to_owned(),
-        connected: counts.connected,
-        sentences: counts.sentences.values().sum(),
-        bad_checksums,
-        unread: rejected - bad_checksums,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::corrected::{CardRow, Corrected};
 use crate::hold::Hold;
+use crate::input::InputStatus;
 use crate::spool::Standing;
 use crate::uplink::LinkStatus;
 use binnacle_magnetics::angle::TrueHeading;
@@ -33,7 +34,7 @@ pub(crate) struct Status {
     pub(crate) hold: Option<Hold>,
     /// Ten-second windows by outcome since the agent started.
     pub(crate) windows: BTreeMap<String, u64>,
-    pub(crate) inputs: Vec<InputStatus>,
+    pub(crate) inputs: Vec<InputReport>,
     pub(crate) link: LinkStatus,
     pub(crate) spool: Standing,
 }
@@ -48,17 +49,62 @@ pub(crate) struct ModelStatus {
     pub(crate) age_days: Option<f64>,
 }
 
-/// How an input is doing.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct InputStatus {
+/// How an input is doing; counts are since the agent started.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InputReport {
     pub(crate) name: String,
     pub(crate) connected: bool,
-    /// Sentences understood since the agent started.
-    pub(crate) sentences: u64,
-    /// Lines with a wrong checksum.
-    pub(crate) bad_checksums: u64,
-    /// Lines that are not read.
-    pub(crate) unread: u64,
+    /// Why it is not connected.
+    pub(crate) problem: Option<String>,
+    pub(crate) last_heard_s_ago: Option<f64>,
+    /// Sentences and values that were understood, by kind.
+    pub(crate) sentences: BTreeMap<String, u64>,
+    /// Lines that were not used, by reason.
+    pub(crate) rejected: BTreeMap<String, u64>,
+    /// Observations for which there was no room.
+    pub(crate) dropped: u64,
+}
+
+impl InputReport {
+    /// An input's counts under its name.
+    pub(crate) fn new(name: &str, status: InputStatus) -> InputReport {
+        let owned = |counts: BTreeMap<&'static str, u64>| {
+            let owned = counts.into_iter();
+            owned
+                .map(|(name, count)| (name.to_owned(), count))
+                .collect()
+        };
+        InputReport {
+            name: name.to_owned(),
+            connected: status.connected,
+            problem: status.problem,
+            last_heard_s_ago: status.last_heard_s_ago,
+            sentences: owned(status.sentences),
+            rejected: owned(status.rejected),
+            dropped: status.dropped,
+        }
+    }
+
+    fn write_text(&self, out: &mut String) -> std::fmt::Result {
+        let state = match (&self.problem, self.connected) {
+            (_, true) => "connected",
+            (Some(problem), false) => problem,
+            (None, false) => "not connected",
+        };
+        let sentences: u64 = self.sentences.values().sum();
+        write!(
+            out,
+            "input      {}: {state}, {sentences} sentences",
+            self.name
+        )?;
+        for (reason, lines) in &self.rejected {
+            write!(out, ", {lines} {reason}")?;
+        }
+        if self.dropped > 0 {
+            write!(out, ", {} dropped", self.dropped)?;
+        }
+        writeln!(out)
+    }
 }
 
 impl Status {
@@ -101,16 +147,7 @@ impl Status {
         }
         self.write_link(out)?;
         for input in &self.inputs {
-            let state = if input.connected {
-                "connected"
-            } else {
-                "not connected"
-            };
-            writeln!(
-                out,
-                "input      {}: {state}, {} sentences, {} wrong checksums, {} unread",
-                input.name, input.sentences, input.bad_checksums, input.unread
-            )?;
+            input.write_text(out)?;
         }
         for (outcome, windows) in &self.windows {
             writeln!(out, "windows    {windows} {outcome}")?;

@@ -75,6 +75,24 @@ impl RolesConfig {
         .flatten()
     }
 
+    /// The same roles for sources whose input has no name.
+    pub(crate) fn of_any_input(&self) -> RolesConfig {
+        let mut roles = self.clone();
+        for sources in [
+            &mut roles.compass,
+            &mut roles.gyro,
+            &mut roles.satellite,
+            &mut roles.position,
+            &mut roles.rate_of_turn,
+            &mut roles.roll,
+        ] {
+            for source in sources {
+                source.input = None;
+            }
+        }
+        roles
+    }
+
     fn none() -> RolesConfig {
         RolesConfig {
             compass: Vec::new(),

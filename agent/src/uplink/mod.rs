@@ -186,11 +186,6 @@ impl Uplink {
     }
 
     fn take_effect(&self, downlink: Downlink) {
-        self.tell.link.send_replace(LinkStatus {
-            state: LinkState::Up,
-            problem: None,
-            last_contact: Some(downlink.server_time),
-        });
         if let Some(model) = downlink.model {
             tracing::info!(version = model.version, "a new model is in effect");
             self.tell.model.send_replace(Some(model));
@@ -199,6 +194,11 @@ impl Uplink {
             tracing::info!(version = settings.version, "new settings are in effect");
             self.tell.settings.send_replace(settings);
         }
+        self.tell.link.send_replace(LinkStatus {
+            state: LinkState::Up,
+            problem: None,
+            last_contact: Some(downlink.server_time),
+        });
     }
 
     async fn fail(

@@ -1,0 +1,151 @@
+//! Recorded sentences through the same roles and sampler as live ones.
+//!
+//! Nothing is written before everything was read: a table that is there is whole.
+
+use crate::config::RolesConfig;
+use crate::input;
+use crate::observation::Reading;
+use crate::sampler::Tally;
+use crate::ship::Ship;
+use anyhow::Context;
+use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::messages::Settings;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use tokio::time::Instant;
+
+/// What recordings came to.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Replayed {
+    /// In the order in which they were finished.
+    pub(crate) samples: Vec<Sample>,
+    /// Ten-second windows by outcome.
+    pub(crate) windows: Tally,
+    /// Sentences that were read.
+    pub(crate) sentences: binnacle_nmea::Tally,
+}
+
+/// The tally as it is printed.
+#[derive(Debug, Serialize)]
+struct Report {
+    samples: usize,
+    windows: BTreeMap<String, u64>,
+    sentences: BTreeMap<&'static str, u64>,
+    rejected: BTreeMap<&'static str, u64>,
+}
+
+/// Reads recordings one after another, as one voyage. Inputs have no names in a
+/// recording: sources are told apart by talker and sentence.
+///
+/// # Errors
+/// When a file cannot be read, or has no sentence in it.
+pub(crate) fn replay(
+    files: &[PathBuf],
+    roles: &RolesConfig,
+    stale_s: f64,
+) -> anyhow::Result<Replayed> {
+    let mut ship = Ship::new(&roles.of_any_input(), stale_s, Settings::default(), None);
+    let mut replayed = Replayed::default();
+    let heard = Instant::now();
+    for file in files {
+        let read = input::replay(file, |observations| {
+            for observation in observations {
+                match observation.reading {
+                    Reading::Time(at) if input::is_recorded_time(observation) => {
+                        ship.observe_recorded_time(at);
+                    }
+                    _ => ship.observe(observation, heard),
+                }
+            }
+            replayed.samples.extend(ship.sampler.take_samples());
+        });
+        let read = read.with_context(|| file.display().to_string())?;
+        anyhow::ensure!(
+            read.total_read() > 0,
+            "{}: none of its {} lines is a sentence with a right checksum",
+            file.display(),
+            read.total_rejected()
+        );
+        replayed.sentences.add(&read);
+    }
+    ship.sampler.finish();
+    replayed.samples.extend(ship.sampler.take_samples());
+    replayed.windows = ship.sampler.take_tally();
+    Ok(replayed)
+}
+
+impl Replayed {
+    /// The tally as one line of JSON.
+    pub(crate) fn report(&self) -> String {
+        let report = Report {
+            samples: self.samples.len(),
+            windows: self.windows.by_name(),
+            sentences: self.sentences.sentences().collect(),
+            rejected: self.sentences.rejected().collect(),
+        };
+        serde_json::to_string(&report).expect("counts and names are always JSON")
+    }
+
+    /// The samples as the table that `fit` reads.
+    pub(crate) fn csv(&self) -> anyhow::Result<Vec<u8>> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        table.write_record([
+            "time",
+            "lat",
+            "lon",
+            "compass_deg",
+            "gyro_deg",
+            "satellite_deg",
+            "sog_kn",
+            "rate_of_turn_deg_min",
+            "spread_deg",
+            "windows",
+        ])?;
+        for sample in &self.samples {
+            table.write_record(record(sample))?;
+        }
+        Ok(table.into_inner()?)
+    }
+}
+
+fn record(sample: &Sample) -> [String; 10] {
+    let heading = |heading: Option<TrueHeading>| number(heading.map(TrueHeading::degrees), 3);
+    [
+        sample.time.to_string(),
+        number(Some(sample.position.lat_deg()), 5),
+        number(Some(sample.position.lon_deg()), 5),
+        number(Some(sample.compass.degrees()), 3),
+        heading(sample.gyro),
+        heading(sample.satellite),
+        number(sample.sog_kn, 2),
+        number(sample.rate_of_turn_deg_min, 2),
+        number(sample.spread_deg, 3),
+        sample.windows.to_string(),
+    ]
+}
+
+/// An empty field is unknown, never zero.
+fn number(value: Option<f64>, decimals: usize) -> String {
+    value
+        .map(|value| format!("{value:.decimals$}"))
+        .unwrap_or_default()
+}
+
+/// Writes a file beside its place and then puts it there, so that what is there
+/// is whole.
+pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    let partial = PathBuf::from(partial);
+    let write = || -> std::io::Result<()> {
+        let mut file = fs::File::create(&partial)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&partial, path)
+    };
+    write().with_context(|| path.display().to_string())
+}

@@ -1,0 +1,204 @@
+//! The commands as a user types them.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests may panic too")]
+
+mod common;
+
+use common::agent::{Agent, command};
+use common::bridge::{self, Bridge};
+use common::shore::Shore;
+use serde_json::Value;
+use std::fmt::Write;
+use std::net::SocketAddr;
+use std::path::Path;
+use tempfile::TempDir;
+
+fn nowhere() -> SocketAddr {
+    "127.0.0.1:9".parse().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+/// A recording of so many seconds.
+fn record(path: &Path, seconds: i64) {
+    let bytes: Vec<u8> = (0..seconds).flat_map(bridge::second).collect();
+    std::fs::write(path, bytes).unwrap();
+}
+
+#[tokio::test]
+async fn a_recording_becomes_a_table_and_a_tally() {
+    let folder = TempDir::new().unwrap();
+    let (log, csv) = (
+        folder.path().join("log.nmea"),
+        folder.path().join("out.csv"),
+    );
+    record(&log, 7200);
+    let done = command()
+        .arg("replay")
+        .arg(&log)
+        .arg("--csv")
+        .arg(&csv)
+        .output()
+        .await
+        .unwrap();
+    assert!(done.status.success(), "{done:?}");
+    let table = std::fs::read_to_string(&csv).unwrap();
+    let mut rows = table.lines();
+    assert_eq!(
+        rows.next().unwrap(),
+        "time,lat,lon,compass_deg,gyro_deg,satellite_deg,sog_kn,rate_of_turn_deg_min,spread_deg,windows"
+    );
+    assert_eq!(
+        rows.next().unwrap(),
+        "2026-09-01T00:08:10Z,43.50000,-3.00000,42.000,45.000,,12.00,0.00,0.000,60"
+    );
+    let tally: Value = serde_json::from_slice(&done.stderr).unwrap();
+    assert_eq!(tally["samples"], rows.count() + 1);
+    assert_eq!(tally["sentences"]["RMC"], 7200);
+    assert!(tally["windows"]["accepted"].as_u64() > Some(600));
+    assert!(tally["windows"]["settling"].as_u64() > Some(30));
+
+    let plain = command().arg("replay").arg(&log).output().await.unwrap();
+    assert_eq!(
+        text(&plain.stdout),
+        table,
+        "without --csv it goes to standard output"
+    );
+}
+
+#[tokio::test]
+async fn a_recording_without_receivers_runs_by_its_own_times() {
+    let folder = TempDir::new().unwrap();
+    let log = folder.path().join("log.txt");
+    let mut lines = String::new();
+    for offset in 0..1200 {
+        let said = text(&bridge::second(offset));
+        for sentence in said.lines().filter(|l| !l.contains("RMC")) {
+            let (minute, second) = (offset / 60, offset % 60);
+            writeln!(lines, "2026-09-01T00:{minute:02}:{second:02}Z\t{sentence}").unwrap();
+        }
+    }
+    std::fs::write(&log, lines).unwrap();
+    let done = command().arg("replay").arg(&log).output().await.unwrap();
+    let tally: Value = serde_json::from_slice(&done.stderr).unwrap();
+    assert_eq!(tally["windows"]["no_position"], 119);
+}
+
+#[tokio::test]
+async fn noise_is_no_recording_and_leaves_no_table() {
+    let folder = TempDir::new().unwrap();
+    let (log, csv) = (
+        folder.path().join("noise.bin"),
+        folder.path().join("out.csv"),
+    );
+    let noise: Vec<u8> = (0..100_000_u64)
+        .map(|i| ((i * i * 31) >> 7) as u8)
+        .collect();
+    std::fs::write(&log, noise).unwrap();
+    let done = command()
+        .arg("replay")
+        .arg(&log)
+        .arg("--csv")
+        .arg(&csv)
+        .output()
+        .await
+        .unwrap();
+    let said = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(2));
+    assert!(
+        said.contains("noise.bin") && said.lines().count() == 1,
+        "{said}"
+    );
+    assert!(!csv.exists());
+    let missing = command()
+        .arg("replay")
+        .arg("none.nmea")
+        .output()
+        .await
+        .unwrap();
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(text(&missing.stderr).contains("none.nmea"));
+}
+
+#[tokio::test]
+async fn a_wrong_configuration_is_one_line_and_exit_code_2() {
+    let agent = Agent::new(nowhere());
+    let good = std::fs::read_to_string(agent.config()).unwrap();
+    std::fs::write(
+        agent.config(),
+        good.replace("stale_s = 3", "stale_s = \"3\""),
+    )
+    .unwrap();
+    for arguments in [&["run"][..], &["status"], &["hold", "off"]] {
+        let done = agent.call(arguments).await;
+        let said = text(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{said}");
+        assert!(said.contains("agent.toml:19: stale_s: "), "{said}");
+        assert_eq!(said.lines().count(), 1, "{said}");
+    }
+}
+
+#[tokio::test]
+async fn a_wrong_code_is_refused_and_nothing_is_kept() {
+    let shore = Shore::start(None, None).await;
+    let agent = Agent::new(nowhere());
+    let done = agent
+        .call(&["enrol", "--server", &shore.url, "--code", "WRONG"])
+        .await;
+    assert_eq!(done.status.code(), Some(2), "{done:?}");
+    assert!(text(&done.stderr).contains("No such code"));
+    let status = agent.call(&["status"]).await;
+    assert!(text(&status.stdout).contains("not enrolled"));
+    agent.enrol(&shore.url).await;
+    let status = agent.call(&["status"]).await;
+    assert!(text(&status.stdout).contains("Txori, Standard compass"));
+}
+
+#[tokio::test]
+async fn a_hold_reaches_the_running_agent_and_outlasts_it() {
+    let bridge = Bridge::new(0).await;
+    let agent = Agent::new(bridge.address);
+    let running = agent.run().await;
+    let done = agent.call(&["hold", "magnetic-cargo"]).await;
+    assert_eq!(text(&done.stdout), "on hold: magnetic-cargo\n");
+    let shown = common::fetch(running.page, "/api/status").await;
+    let shown: Value = serde_json::from_str(&shown).unwrap();
+    assert_eq!(shown["running"], true);
+    assert!(
+        common::fetch(running.page, "/")
+            .await
+            .contains("Magnetic cargo")
+    );
+    running.kill().await;
+    let status = agent.call(&["status", "--json"]).await;
+    let status: Value = serde_json::from_slice(&status.stdout).unwrap();
+    assert_eq!(
+        (&status["running"], &status["hold"]),
+        (&false.into(), &"magnetic-cargo".into())
+    );
+    agent.call(&["hold", "off"]).await;
+    let status = agent.call(&["status"]).await;
+    assert!(!text(&status.stdout).contains("hold"));
+}
+
+#[tokio::test]
+async fn what_has_settled_is_kept_when_the_agent_is_told_to_stop() {
+    let bridge = Bridge::new(600).await;
+    bridge.sail();
+    let agent = Agent::new(bridge.address);
+    let running = agent.run().await;
+    loop {
+        let status = common::fetch(running.page, "/api/status").await;
+        let status: Value = serde_json::from_str(&status).unwrap();
+        if status["ship_time"] == "2026-09-01T00:09:59Z" {
+            break;
+        }
+    }
+    let (code, log) = running.terminate().await;
+    assert_eq!(code, Some(0), "{log}");
+    let status = agent.call(&["status", "--json"]).await;
+    let status: Value = serde_json::from_slice(&status.stdout).unwrap();
+    assert_eq!(status["spool"]["pending_samples"], 1);
+}

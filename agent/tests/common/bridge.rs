@@ -1,0 +1,106 @@
+//! The instruments of a ship that steers four courses in turn, an hour each,
+//! whose compass reads 3° less than the gyro.
+
+use binnacle_nmea::sentence::{Hdg, Position, Rmc, Rot, Ths, ThsMode};
+use binnacle_nmea::time::from_unix_micros;
+use binnacle_nmea::{Data, Sentence, write};
+use std::net::SocketAddr;
+use tokio::io::AsyncWriteExt;
+use tokio::net::TcpListener;
+use tokio::sync::watch;
+
+/// 2026-09-01T00:00:00Z.
+pub(crate) const START_S: i64 = 1_788_220_800;
+/// What the compass reads less than the gyro.
+pub(crate) const LEAD_DEG: f64 = 3.0;
+
+/// Everything the instruments say in one second.
+pub(crate) fn second(offset_s: i64) -> Vec<u8> {
+    let mut out = Vec::with_capacity(256);
+    let heading = heading_deg(offset_s);
+    let (date, time) = from_unix_micros((START_S + offset_s) * 1_000_000).unwrap();
+    let mut say = |talker: &[u8; 2], data: Data| {
+        let talker = *talker;
+        write(&Sentence { talker, data }, &mut out);
+    };
+    say(
+        b"GP",
+        Data::Rmc(Some(Rmc {
+            time: Some(time),
+            date: Some(date),
+            position: Some(Position {
+                lat_deg_north: 43.5,
+                lon_deg_east: -3.0,
+            }),
+            sog_kn: Some(12.0),
+            ..Rmc::default()
+        })),
+    );
+    say(
+        b"HC",
+        Data::Hdg(Hdg {
+            reading_deg: Some(heading - LEAD_DEG),
+            ..Hdg::default()
+        }),
+    );
+    say(
+        b"HE",
+        Data::Ths(Ths {
+            heading_deg_true: Some(heading),
+            mode: ThsMode::Autonomous,
+        }),
+    );
+    say(
+        b"TI",
+        Data::Rot(Rot {
+            rate_deg_min_starboard: Some(0.0),
+        }),
+    );
+    out
+}
+
+/// The course at a time; it changes at once at the full hour.
+pub(crate) fn heading_deg(offset_s: i64) -> f64 {
+    45.0 + 90.0 * (offset_s / 3600 % 4) as f64
+}
+
+/// A TCP server that plays the voyage as fast as it is read. A new connection
+/// goes on where the last one was. It begins when it is told to.
+pub(crate) struct Bridge {
+    pub(crate) address: SocketAddr,
+    begin: watch::Sender<bool>,
+}
+
+impl Bridge {
+    /// Lets the voyage begin.
+    pub(crate) fn sail(&self) {
+        self.begin.send_replace(true);
+    }
+
+    /// Will play `seconds`, and be silent then without hanging up.
+    pub(crate) async fn new(seconds: i64) -> Bridge {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let address = listener.local_addr().unwrap();
+        let begin = watch::Sender::new(false);
+        let mut begun = begin.subscribe();
+        let mut next = 0;
+        tokio::spawn(async move {
+            loop {
+                let (mut stream, _) = listener.accept().await.unwrap();
+                begun.wait_for(|begun| *begun).await.unwrap();
+                loop {
+                    if next >= seconds {
+                        std::future::pending::<()>().await;
+                    }
+                    let until = seconds.min(next + 60);
+                    let minute: Vec<u8> = (next..until).flat_map(second).collect();
+                    if stream.write_all(&minute).await.is_err() {
+                        break;
+                    }
+                    next = until;
+                }
+            }
+        });
+        Bridge { address, begin }
+    }
+}
