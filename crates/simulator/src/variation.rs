@@ -1,0 +1,111 @@
+//! The earth's field as the ship really meets it: the charted field, with what
+//! the chart leaves out.
+//!
+//! The crust (0.2°, correlated over 60 miles), the day (0.12°), magnetic storms
+//! and local anomalies. None of this is in the truth that a model is compared
+//! with: to a compass's user it is noise.
+
+use crate::earth::{EarthField, field_at};
+use crate::poisson::Field;
+use crate::process::Wander;
+use crate::random::Random;
+use crate::rhumb;
+use crate::scenario::{Anomaly, Scenario, Storm};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+
+const CRUST_DEG: f64 = 0.2;
+const CRUST_NM: f64 = 60.0;
+const DAY_DEG: f64 = 0.12;
+/// How long the field keeps its direction in a storm.
+const STORM_S: f64 = 900.0;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Surroundings {
+    start: Timestamp,
+    storms: Vec<Storm>,
+    anomalies: Vec<Anomaly>,
+    crust: Wander,
+    storm: Wander,
+    random: Random,
+    /// What the chart says, for the truth.
+    pub(crate) charted: EarthField,
+    /// Variation that the needle obeys, degrees.
+    pub(crate) variation_deg: f64,
+    /// Field that the needle obeys.
+    pub(crate) field: Field,
+}
+
+impl Surroundings {
+    pub(crate) fn new(
+        scenario: &Scenario,
+        ship: &str,
+        seed: u64,
+        start: Timestamp,
+        position: Position,
+    ) -> Surroundings {
+        let mut random = Random::new(seed, ship, "surroundings");
+        let charted = field_at(position, start);
+        Surroundings {
+            start,
+            storms: scenario.storms.clone(),
+            anomalies: scenario.anomalies.clone(),
+            crust: Wander::new(CRUST_DEG, CRUST_NM, &mut random),
+            storm: Wander::new(1.0, STORM_S, &mut random),
+            random,
+            charted,
+            variation_deg: charted.variation_deg(),
+            field: Field { h_nt: charted.h_nt(), z_nt: charted.down_nt },
+        }
+    }
+
+    /// Looks again; once a minute.
+    pub(crate) fn step(
+        &mut self,
+        elapsed_s: f64,
+        run_nm: f64,
+        position: Position,
+        time: Timestamp,
+    ) {
+        self.charted = field_at(position, time);
+        let mut north = self.charted.north_nt;
+        let mut east = self.charted.east_nt;
+        let mut down = self.charted.down_nt;
+        for anomaly in &self.anomalies {
+            let distance = rhumb::leg(anomaly.position, position).distance_nm;
+            let share = (-(distance / anomaly.radius_nm).powi(2)).exp();
+            north += share * anomaly.field_nt[0];
+            east += share * anomaly.field_nt[1];
+            down += share * anomaly.field_nt[2];
+        }
+        let storm = self.storm.step(elapsed_s, &mut self.random);
+        east += storm * self.storm_nt(time);
+        let crust = self.crust.step(run_nm, &mut self.random);
+        let noise_deg = crust + DAY_DEG * solar_angle(position, time).sin();
+        self.variation_deg = east.atan2(north).to_degrees() + noise_deg;
+        self.field = Field { h_nt: north.hypot(east), z_nt: down };
+    }
+
+    /// Storms come up in two hours and die away over their last third.
+    fn storm_nt(&self, time: Timestamp) -> f64 {
+        let hours = time.seconds_since(self.start) / 3600.0;
+        let latitude = self.charted.magnetic_latitude_deg().abs();
+        let auroral = 1.0 + 3.0 * (-((latitude - 67.0) / 9.0).powi(2)).exp();
+        let strength = |storm: &Storm| {
+            let since = hours - storm.day * 24.0;
+            if !(0.0..storm.hours).contains(&since) {
+                return 0.0;
+            }
+            let rise = (since / 2.0).min(1.0);
+            let fall = ((storm.hours - since) / (storm.hours / 3.0)).min(1.0);
+            storm.strength_nt * rise * fall
+        };
+        auroral * self.storms.iter().map(strength).sum::<f64>()
+    }
+}
+
+/// The sun's hour angle, radians.
+fn solar_angle(position: Position, time: Timestamp) -> f64 {
+    let day = time.micros().rem_euclid(86_400_000_000) as f64 / 86_400e6;
+    std::f64::consts::TAU * (day + position.lon_deg() / 360.0)
+}
