@@ -1,2 +1,30 @@
-//! Ships, voyages and instruments that speak NMEA.
-fn main() {}
+//! The fleet and voyage simulator.
+
+mod cli;
+mod clock;
+mod line;
+mod voyage;
+
+use clap::Parser;
+use std::io::Write;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    rustls::crypto::ring::default_provider()
+        .install_default()
+        .expect("no other provider has been installed before");
+    let command = cli::Cli::parse().command;
+    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    let ended = runtime
+        .map_err(anyhow::Error::from)
+        .and_then(|runtime| runtime.block_on(cli::run(command)));
+    match ended {
+        Ok(code) => code,
+        Err(error) => {
+            // A closed standard error leaves nobody to tell.
+            writeln!(std::io::stderr(), "binnacle-simulator: {error:#}").ok();
+            let blames_input = error.is::<cli::BadInput>();
+            ExitCode::from(if blames_input { 2 } else { 1 })
+        }
+    }
+}

@@ -74,10 +74,6 @@ impl Swing {
         }
     }
 
-    pub(crate) fn value(&self) -> f64 {
-        self.re
-    }
-
     /// Sets it swinging further, by this standard deviation.
     pub(crate) fn kick(&mut self, sd: f64, random: &mut Random) {
         self.re += sd * random.gaussian();

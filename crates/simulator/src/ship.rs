@@ -14,6 +14,7 @@ use crate::satellite::Satellite;
 use crate::scenario::{Event, Scenario, ShipPlan};
 use crate::variation::Surroundings;
 use binnacle_magnetics::angle::wrap_180;
+use binnacle_magnetics::field::FieldError;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 
@@ -85,9 +86,17 @@ struct Berth {
 
 impl Ship {
     /// A ship of the scenario at the start of her voyage.
-    pub fn new(scenario: &Scenario, plan: &ShipPlan, seed: u64, start: Timestamp) -> Ship {
+    ///
+    /// # Errors
+    /// When the earth's field is not known for that time.
+    pub fn new(
+        scenario: &Scenario,
+        plan: &ShipPlan,
+        seed: u64,
+        start: Timestamp,
+    ) -> Result<Ship, FieldError> {
         let motion = Motion::new(plan, seed);
-        let surroundings = Surroundings::new(scenario, &plan.name, seed, start, motion.position);
+        let surroundings = Surroundings::new(scenario, &plan.name, seed, start, motion.position)?;
         let mut passage = Passage::new(plan, seed);
         let order = passage.step(0.0, motion.position);
         let mut ship = Ship {
@@ -107,7 +116,7 @@ impl Ship {
             satellite: plan.satellite.map(|satellite| Satellite::new(plan, satellite, seed)),
         };
         ship.step_slow(0.0);
-        ship
+        Ok(ship)
     }
 
     /// The ship's plan.
@@ -147,14 +156,14 @@ impl Ship {
 
     /// Variation by the chart here and now, degrees east.
     pub fn charted_variation_deg(&self) -> f64 {
-        self.surroundings.charted.variation_deg()
+        self.surroundings.charted.declination().degrees_east()
     }
 
     /// The field by the chart here and now.
     pub fn charted_field(&self) -> Field {
         Field {
             h_nt: self.surroundings.charted.h_nt(),
-            z_nt: self.surroundings.charted.down_nt,
+            z_nt: self.surroundings.charted.z_nt,
         }
     }
 

@@ -5,12 +5,13 @@
 //! and local anomalies. None of this is in the truth that a model is compared
 //! with: to a compass's user it is noise.
 
-use crate::earth::{EarthField, field_at};
+use crate::earth::Chart;
 use crate::poisson::Field;
 use crate::process::Wander;
 use crate::random::Random;
 use crate::rhumb;
 use crate::scenario::{Anomaly, Scenario, Storm};
+use binnacle_magnetics::field::{self, FieldError};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 
@@ -28,8 +29,9 @@ pub(crate) struct Surroundings {
     crust: Wander,
     storm: Wander,
     random: Random,
+    chart: Chart,
     /// What the chart says, for the truth.
-    pub(crate) charted: EarthField,
+    pub(crate) charted: field::Field,
     /// Variation that the needle obeys, degrees.
     pub(crate) variation_deg: f64,
     /// Field that the needle obeys.
@@ -43,20 +45,22 @@ impl Surroundings {
         seed: u64,
         start: Timestamp,
         position: Position,
-    ) -> Surroundings {
+    ) -> Result<Surroundings, FieldError> {
         let mut random = Random::new(seed, ship, "surroundings");
-        let charted = field_at(position, start);
-        Surroundings {
+        let mut chart = Chart::new(start)?;
+        let charted = chart.field(position, start);
+        Ok(Surroundings {
             start,
             storms: scenario.storms.clone(),
             anomalies: scenario.anomalies.clone(),
             crust: Wander::new(CRUST_DEG, CRUST_NM, &mut random),
             storm: Wander::new(1.0, STORM_S, &mut random),
             random,
+            chart,
             charted,
-            variation_deg: charted.variation_deg(),
-            field: Field { h_nt: charted.h_nt(), z_nt: charted.down_nt },
-        }
+            variation_deg: charted.declination().degrees_east(),
+            field: Field { h_nt: charted.h_nt(), z_nt: charted.z_nt },
+        })
     }
 
     /// Looks again; once a minute.
@@ -67,10 +71,10 @@ impl Surroundings {
         position: Position,
         time: Timestamp,
     ) {
-        self.charted = field_at(position, time);
-        let mut north = self.charted.north_nt;
-        let mut east = self.charted.east_nt;
-        let mut down = self.charted.down_nt;
+        self.charted = self.chart.field(position, time);
+        let mut north = self.charted.x_nt;
+        let mut east = self.charted.y_nt;
+        let mut down = self.charted.z_nt;
         for anomaly in &self.anomalies {
             let distance = rhumb::leg(anomaly.position, position).distance_nm;
             let share = (-(distance / anomaly.radius_nm).powi(2)).exp();

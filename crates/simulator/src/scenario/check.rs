@@ -6,7 +6,7 @@ use super::{
     Anomaly, Event, GyroPlan, LineFaults, RoutePoint, SatellitePlan, Scenario, ScenarioError,
     ShipPlan, Storm, Timing,
 };
-use crate::earth::field_at;
+use crate::earth::Chart;
 use crate::poisson::{Field, Magnetism};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
@@ -102,14 +102,10 @@ fn start(source: &Source<'_>, raw: &RawScenario) -> Checked<Timestamp> {
     };
     let start = Timestamp::parse(text.get_ref())
         .map_err(|error| source.error(text.span(), "start", error.to_string()))?;
-    if (1900.0..2029.0).contains(&start.decimal_year()) {
-        return Ok(start);
+    match Chart::new(start) {
+        Ok(_) => Ok(start),
+        Err(error) => Err(source.error(text.span(), "start", error.to_string())),
     }
-    Err(source.error(
-        text.span(),
-        "start",
-        "the earth's field is known for the years 1900 to 2029 only",
-    ))
 }
 
 fn route(
@@ -297,9 +293,10 @@ fn can_be_steered_by(
     route: &[RoutePoint],
     start: Timestamp,
 ) -> Checked<()> {
+    let mut chart = Chart::new(start).expect("the start was checked when it was read");
     for point in route {
-        let earth = field_at(point.position, start);
-        let here = Field { h_nt: earth.h_nt(), z_nt: earth.down_nt };
+        let earth = chart.field(point.position, start);
+        let here = Field { h_nt: earth.h_nt(), z_nt: earth.z_nt };
         let force = magnetism.least_directive_force(here);
         if force < LEAST_DIRECTIVE_FORCE {
             let (lat, lon) = (point.position.lat_deg(), point.position.lon_deg());

@@ -1,0 +1,11 @@
+//! The wall clock: the one place that reads it.
+
+use binnacle_magnetics::time::Timestamp;
+
+/// Now.
+#[allow(clippy::disallowed_methods, reason = "this is the one clock function")]
+pub(crate) fn now() -> Timestamp {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    let micros = since.map_or(0, |since| since.as_micros() as i64);
+    Timestamp::from_micros(micros).expect("a computer's clock is between the years 1 and 9999")
+}
