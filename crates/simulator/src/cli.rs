@@ -3,6 +3,7 @@
 //! Exit code 2 and one line for what the one who typed it got wrong, 1 for
 //! everything else that fails and for a fleet whose models do not hold.
 
+use crate::fleet;
 use crate::voyage;
 use anyhow::Result;
 use binnacle_magnetics::time::Timestamp;
@@ -24,6 +25,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// One ship's sentences to a file, a TCP client or UDP.
     Voyage(VoyageArgs),
+    /// All ships with real agents against a real server; their models against the truth.
+    Fleet(FleetArgs),
 }
 
 /// `voyage`
@@ -61,6 +64,47 @@ pub(crate) struct VoyageArgs {
     pub(crate) truth: Option<PathBuf>,
 }
 
+/// `fleet`
+#[derive(Debug, Args)]
+pub(crate) struct FleetArgs {
+    /// Ships, routes and events.
+    #[arg(long)]
+    pub(crate) scenario: PathBuf,
+    /// Chance begins here; the scenario's own by default.
+    #[arg(long)]
+    pub(crate) seed: Option<u64>,
+    /// Where the shore is, as http://127.0.0.1:8080.
+    #[arg(long, required_unless_present = "serve_only")]
+    pub(crate) server: Option<String>,
+    /// An administrator of the operator; the password comes from BINNACLE_PASSWORD.
+    #[arg(long, required_unless_present = "serve_only")]
+    pub(crate) email: Option<String>,
+    /// Read the password from standard input.
+    #[arg(long)]
+    pub(crate) password_stdin: bool,
+    /// The program `binnacle-agent`.
+    #[arg(long, required_unless_present = "serve_only")]
+    pub(crate) agent: Option<PathBuf>,
+    /// A folder of its own for every agent is made in this one.
+    #[arg(long, required_unless_present = "serve_only")]
+    pub(crate) work_dir: Option<PathBuf>,
+    /// How long the past is.
+    #[arg(long, default_value_t = 60.0)]
+    pub(crate) days: f64,
+    /// When the past ends (RFC 3339); now by default.
+    #[arg(long, value_parser = Timestamp::parse)]
+    pub(crate) until: Option<Timestamp>,
+    /// Sail on in real time afterwards.
+    #[arg(long)]
+    pub(crate) live: bool,
+    /// Write the comparison, or with --serve-only the truth, to this file as JSON.
+    #[arg(long)]
+    pub(crate) report: Option<PathBuf>,
+    /// Only serve the sentences, say where as JSON, and keep the lines open.
+    #[arg(long)]
+    pub(crate) serve_only: bool,
+}
+
 /// What the one who typed it got wrong.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
@@ -75,6 +119,7 @@ impl BadInput {
 pub(crate) async fn run(command: Command) -> Result<ExitCode> {
     match command {
         Command::Voyage(args) => voyage::run(&args).await,
+        Command::Fleet(args) => fleet::run(&args).await,
     }
 }
 
@@ -92,8 +137,15 @@ pub(crate) fn choose_ship<'a>(
         return Ok(&scenario.ships[0]);
     };
     scenario.ship(name).ok_or_else(|| {
-        let names: Vec<&str> = scenario.ships.iter().map(|ship| ship.name.as_str()).collect();
-        BadInput(format!("--ship: there is no {name:?}; there are {}", names.join(", ")))
+        let names: Vec<&str> = scenario
+            .ships
+            .iter()
+            .map(|ship| ship.name.as_str())
+            .collect();
+        BadInput(format!(
+            "--ship: there is no {name:?}; there are {}",
+            names.join(", ")
+        ))
     })
 }
 
@@ -102,5 +154,7 @@ pub(crate) fn check_days(days: f64) -> Result<f64, BadInput> {
     if (0.001..=3650.0).contains(&days) {
         return Ok(days);
     }
-    Err(BadInput(format!("--days: {days} is not within 0.001 to 3650")))
+    Err(BadInput(format!(
+        "--days: {days} is not within 0.001 to 3650"
+    )))
 }

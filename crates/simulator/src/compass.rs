@@ -65,15 +65,17 @@ impl Compass {
 
     /// What the compass shows after `dt` seconds, degrees, not wrapped.
     pub(crate) fn read(&mut self, dt: f64, on: &Exposure<'_>) -> f64 {
-        let settled = on.magnetism.deviation_deg(on.field, on.magnetic_deg, on.roll_deg);
+        let settled = on
+            .magnetism
+            .deviation_deg(on.field, on.magnetic_deg, on.roll_deg);
         let deviation = match self.deviation_deg {
             Some(shown) => shown + wrap_180(settled - shown) * (1.0 - (-dt / CARD_S).exp()),
             None => settled,
         };
         self.deviation_deg = Some(deviation);
         let decay = (-dt / GAUSSIAN_S).exp();
-        self.gaussian_deg = decay * self.gaussian_deg
-            + self.gaussian_gain_s * on.turned_deg * (1.0 - decay) / dt;
+        self.gaussian_deg =
+            decay * self.gaussian_deg + self.gaussian_gain_s * on.turned_deg * (1.0 - decay) / dt;
         let swing = self.swing.step(dt, &mut self.random) * (0.6 + 0.4 * on.sea);
         let wander = self.wander.step(dt, &mut self.random);
         // The card goes with the ship in a turn: the reading falls behind.

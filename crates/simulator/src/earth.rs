@@ -23,10 +23,10 @@ impl Chart {
 
     /// The field at a place. Beyond the model's last day its last chart serves.
     pub(crate) fn field(&mut self, position: Position, time: Timestamp) -> Field {
-        if time.seconds_since(self.drawn) > DAY_S {
-            if let Ok(newer) = Chart::new(time) {
-                *self = newer;
-            }
+        if time.seconds_since(self.drawn) > DAY_S
+            && let Ok(newer) = Chart::new(time)
+        {
+            *self = newer;
         }
         self.field
             .at(position, 0.0)

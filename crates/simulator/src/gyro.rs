@@ -37,7 +37,12 @@ impl Gyro {
         let faults = plan.events.iter();
         Gyro {
             plan: plan.gyro,
-            schuler: Swing::new(plan.gyro.schuler_deg, SCHULER_S, SCHULER_DECAY_S, &mut random),
+            schuler: Swing::new(
+                plan.gyro.schuler_deg,
+                SCHULER_S,
+                SCHULER_DECAY_S,
+                &mut random,
+            ),
             slow: Wander::new(plan.gyro.slow_deg, SLOW_S, &mut random),
             settling_deg: 0.0,
             faults: faults
@@ -52,7 +57,8 @@ impl Gyro {
     pub(crate) fn turned(&mut self, turn: Turned) {
         let size = (turn.by_deg.abs() / 90.0).min(1.0);
         if turn.by_deg.abs() > KICKING_TURN_DEG {
-            self.schuler.kick(self.plan.schuler_deg * size, &mut self.random);
+            self.schuler
+                .kick(self.plan.schuler_deg * size, &mut self.random);
         }
         self.settling_deg += SETTLING_DEG * size * self.random.gaussian();
     }
@@ -77,9 +83,12 @@ impl Gyro {
 
     fn fault_deg(&self, day: f64) -> f64 {
         let at = |event: &Event| match event {
-            Event::GyroFault { from_day, to_day, offset_deg, drift_deg_per_h }
-                if (*from_day..*to_day).contains(&day) =>
-            {
+            Event::GyroFault {
+                from_day,
+                to_day,
+                offset_deg,
+                drift_deg_per_h,
+            } if (*from_day..*to_day).contains(&day) => {
                 offset_deg + drift_deg_per_h * (day - from_day) * 24.0
             }
             _ => 0.0,
@@ -93,5 +102,8 @@ impl Gyro {
 /// equator at 902.5 kn).
 fn speed_error_deg(motion: &Motion, cos_latitude: f64) -> f64 {
     let northward_kn = motion.sog_kn * motion.cog_deg.to_radians().cos();
-    (northward_kn / (902.5 * cos_latitude)).clamp(-1.0, 1.0).asin().to_degrees()
+    (northward_kn / (902.5 * cos_latitude))
+        .clamp(-1.0, 1.0)
+        .asin()
+        .to_degrees()
 }

@@ -27,14 +27,21 @@ pub(crate) struct TcpLine {
 impl TcpLine {
     pub(crate) fn listen(address: SocketAddr) -> Result<TcpLine> {
         let listen = || {
-            let socket = if address.is_ipv4() { TcpSocket::new_v4() } else { TcpSocket::new_v6() }?;
+            let socket = if address.is_ipv4() {
+                TcpSocket::new_v4()
+            } else {
+                TcpSocket::new_v6()
+            }?;
             socket.set_reuseaddr(true)?;
             socket.set_send_buffer_size(SEND_BUFFER_BYTES)?;
             socket.bind(address)?;
             socket.listen(16)
         };
         let listener = listen().with_context(|| format!("cannot listen at {address}"))?;
-        Ok(TcpLine { listener, client: None })
+        Ok(TcpLine {
+            listener,
+            client: None,
+        })
     }
 
     pub(crate) fn address(&self) -> Result<SocketAddr> {
@@ -44,14 +51,12 @@ impl TcpLine {
     /// Waits for a client and sends. What was on its way to a client that went
     /// away is lost.
     pub(crate) async fn send(&mut self, bytes: &[u8]) -> Result<()> {
-        let client = match &mut self.client {
-            Some(client) => client,
-            None => {
-                let (client, _) = self.listener.accept().await?;
-                self.client.insert(client)
-            }
-        };
-        if client.write_all(bytes).await.is_err() {
+        if self.client.is_none() {
+            self.client = Some(self.listener.accept().await?.0);
+        }
+        if let Some(client) = &mut self.client
+            && client.write_all(bytes).await.is_err()
+        {
             self.client = None;
         }
         Ok(())
@@ -81,7 +86,10 @@ pub(crate) async fn send_datagrams(
 ) -> Result<()> {
     while !bytes.is_empty() {
         let most = &bytes[..bytes.len().min(DATAGRAM_BYTES)];
-        let end = most.iter().rposition(|&byte| byte == b'\n').map_or(most.len(), |at| at + 1);
+        let end = most
+            .iter()
+            .rposition(|&byte| byte == b'\n')
+            .map_or(most.len(), |at| at + 1);
         // An absent listener shows as an error of the datagram before: on a ship
         // nobody minds.
         let _ = socket.send_to(&bytes[..end], to).await;

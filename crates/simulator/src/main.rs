@@ -2,6 +2,7 @@
 
 mod cli;
 mod clock;
+mod fleet;
 mod line;
 mod voyage;
 
@@ -14,7 +15,9 @@ fn main() -> ExitCode {
         .install_default()
         .expect("no other provider has been installed before");
     let command = cli::Cli::parse().command;
-    let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build();
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build();
     let ended = runtime
         .map_err(anyhow::Error::from)
         .and_then(|runtime| runtime.block_on(cli::run(command)));

@@ -96,7 +96,10 @@ impl Motion {
                 self.lie_alongside(heading_deg, dt);
                 None
             }
-            Order::Steer { course_deg, speed_kn } => {
+            Order::Steer {
+                course_deg,
+                speed_kn,
+            } => {
                 let turned = self.turn(dt, course_deg);
                 self.sway(dt, self.sea);
                 self.make_way(dt, speed_kn);

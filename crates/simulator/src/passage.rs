@@ -32,7 +32,11 @@ enum Phase {
     /// To the target.
     Passage,
     /// Under way off the port until there is a berth.
-    Waiting { left_s: f64, leg_s: f64, course_deg: f64 },
+    Waiting {
+        left_s: f64,
+        leg_s: f64,
+        course_deg: f64,
+    },
     /// In port.
     Alongside { left_s: f64, heading_deg: f64 },
 }
@@ -134,7 +138,11 @@ impl Passage {
                     } else {
                         wrap_360(leg.course_deg + self.alteration.0)
                     },
-                    speed_kn: if into_port { APPROACH_KN } else { self.speed_kn },
+                    speed_kn: if into_port {
+                        APPROACH_KN
+                    } else {
+                        self.speed_kn
+                    },
                 }
             }
         }
@@ -177,7 +185,11 @@ impl Passage {
         } else if self.target == 0 {
             self.outbound = true;
         }
-        self.target = if self.outbound { self.target + 1 } else { self.target - 1 };
+        self.target = if self.outbound {
+            self.target + 1
+        } else {
+            self.target - 1
+        };
     }
 
     /// Masters keep clear of the fairway and come back before they are far off.
@@ -187,9 +199,16 @@ impl Passage {
         let turn = self.random.sign() * self.random.between(50.0, 150.0);
         let back = leg.course_deg + self.random.between(-40.0, 40.0);
         let next_leg_s = self.random.between(1500.0, 4500.0);
-        if let Phase::Waiting { leg_s, course_deg, .. } = &mut self.phase {
+        if let Phase::Waiting {
+            leg_s, course_deg, ..
+        } = &mut self.phase
+        {
             *leg_s = next_leg_s;
-            *course_deg = wrap_360(if leg.distance_nm > within { back } else { *course_deg + turn });
+            *course_deg = wrap_360(if leg.distance_nm > within {
+                back
+            } else {
+                *course_deg + turn
+            });
         }
     }
 

@@ -17,8 +17,8 @@ pub(crate) fn hchdg(out: &mut Vec<u8>, compass_deg: f64) {
 }
 
 /// `$HETHS` or `$GPTHS`: a heading in mode A; without one, mode V.
-pub(crate) fn ths(out: &mut Vec<u8>, head: &[u8; 7], heading_deg: Option<f64>) {
-    sentence(out, head, |out| {
+pub(crate) fn ths(out: &mut Vec<u8>, head: [u8; 7], heading_deg: Option<f64>) {
+    sentence(out, &head, |out| {
         if let Some(degrees) = heading_deg {
             heading(out, degrees);
         }
@@ -160,7 +160,7 @@ mod tests {
     #[test]
     fn headings_have_five_characters_and_never_reach_360() {
         let text = |degrees| written(|out| hchdg(out, degrees));
-        assert_eq!(text(5.04), "$HCHDG,005.0,,,,*45\r\n");
+        assert_eq!(text(5.04), "$HCHDG,005.0,,,,*47\r\n");
         assert!(text(359.96).starts_with("$HCHDG,000.0,"));
         assert!(text(-0.3).starts_with("$HCHDG,359.7,"));
         assert!(text(725.0).starts_with("$HCHDG,005.0,"));
@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn a_lost_satellite_compass_gives_no_heading() {
-        let lost = written(|out| ths(out, b"$GPTHS,", None));
+        let lost = written(|out| ths(out, *b"$GPTHS,", None));
         assert_eq!(lost, "$GPTHS,,V*0E\r\n");
     }
 

@@ -110,10 +110,15 @@ impl Ship {
             motion,
             surroundings,
             magnetism: plan.magnetism,
-            berth: Berth { steel: None, random: Random::new(seed, &plan.name, "berth") },
+            berth: Berth {
+                steel: None,
+                random: Random::new(seed, &plan.name, "berth"),
+            },
             compass: Compass::new(plan, seed),
             gyro: Gyro::new(plan, seed),
-            satellite: plan.satellite.map(|satellite| Satellite::new(plan, satellite, seed)),
+            satellite: plan
+                .satellite
+                .map(|satellite| Satellite::new(plan, satellite, seed)),
         };
         ship.step_slow(0.0);
         Ok(ship)
@@ -179,7 +184,9 @@ impl Ship {
     /// What the compass would show now without any noise, degrees, not wrapped.
     pub fn quiet_compass_deg(&self) -> f64 {
         let magnetic = self.motion.heading_deg - self.charted_variation_deg();
-        let deviation = self.magnetism.deviation_deg(self.charted_field(), magnetic, 0.0);
+        let deviation = self
+            .magnetism
+            .deviation_deg(self.charted_field(), magnetic, 0.0);
         magnetic - deviation + self.plan.alignment_deg
     }
 
@@ -216,7 +223,10 @@ impl Ship {
                 sea: motion.sea,
             },
         );
-        let satellite = self.satellite.as_mut().map(|s| s.read(dt, motion.heading_deg));
+        let satellite = self
+            .satellite
+            .as_mut()
+            .map(|s| s.read(dt, motion.heading_deg));
         Reading {
             time: self.start.plus_seconds(self.elapsed_s),
             position: motion.position,
@@ -242,7 +252,8 @@ impl Ship {
         self.order = self.passage.step(elapsed_s, self.motion.position);
         self.motion.step_slow(elapsed_s);
         let run_nm = std::mem::take(&mut self.run_nm);
-        self.surroundings.step(elapsed_s, run_nm, self.motion.position, time);
+        self.surroundings
+            .step(elapsed_s, run_nm, self.motion.position, time);
         self.magnetism = magnetism_at(&self.plan, day);
         self.gyro.step_slow(elapsed_s, day, &self.motion);
         self.berth.step(self.passage.is_alongside());
@@ -267,15 +278,27 @@ impl Berth {
 
 /// A ship's magnetism so many days from the start, by her events.
 pub fn magnetism_at(plan: &ShipPlan, day: f64) -> Magnetism {
-    plan.events.iter().fold(plan.magnetism, |now, event| match event {
-        Event::Lightning { day: struck, b_nt, returning, return_days } if day >= *struck => {
-            let gone = returning * (1.0 - (-(day - struck) / return_days).exp());
-            let jump = Magnetism { b_nt: *b_nt, chi: [[0.0; 3]; 3] };
-            now.plus(&jump, 1.0 - gone)
-        }
-        Event::Cargo { from_day, to_day, magnetism } if (*from_day..*to_day).contains(&day) => {
-            now.plus(magnetism, 1.0)
-        }
-        _ => now,
-    })
+    plan.events
+        .iter()
+        .fold(plan.magnetism, |now, event| match event {
+            Event::Lightning {
+                day: struck,
+                b_nt,
+                returning,
+                return_days,
+            } if day >= *struck => {
+                let gone = returning * (1.0 - (-(day - struck) / return_days).exp());
+                let jump = Magnetism {
+                    b_nt: *b_nt,
+                    chi: [[0.0; 3]; 3],
+                };
+                now.plus(&jump, 1.0 - gone)
+            }
+            Event::Cargo {
+                from_day,
+                to_day,
+                magnetism,
+            } if (*from_day..*to_day).contains(&day) => now.plus(magnetism, 1.0),
+            _ => now,
+        })
 }

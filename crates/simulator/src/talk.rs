@@ -92,12 +92,14 @@ impl Talker {
             self.say(out, |out| sentences::herot(out, reading.rate_deg_min));
         }
         self.say(out, |out| sentences::hchdg(out, reading.compass_deg));
-        self.say(out, |out| sentences::ths(out, b"$HETHS,", Some(reading.gyro_deg)));
+        self.say(out, |out| {
+            sentences::ths(out, *b"$HETHS,", Some(reading.gyro_deg));
+        });
         match reading.satellite {
             SatelliteReading::Absent => {}
-            SatelliteReading::Lost => self.say(out, |out| sentences::ths(out, b"$GPTHS,", None)),
+            SatelliteReading::Lost => self.say(out, |out| sentences::ths(out, *b"$GPTHS,", None)),
             SatelliteReading::Heading(degrees) => {
-                self.say(out, |out| sentences::ths(out, b"$GPTHS,", Some(degrees)));
+                self.say(out, |out| sentences::ths(out, *b"$GPTHS,", Some(degrees)));
             }
         }
         if due(self.since_roll_s, ROLL_EVERY_S) {
@@ -146,12 +148,20 @@ impl Talker {
         let length = self.random.between(3.0, 90.0) as usize;
         for _ in 0..length {
             let byte = (self.random.unit() * 256.0) as u8;
-            out.push(if matches!(byte, b'\r' | b'\n') { b'?' } else { byte });
+            out.push(if matches!(byte, b'\r' | b'\n') {
+                b'?'
+            } else {
+                byte
+            });
         }
         out.extend_from_slice(b"\r\n");
     }
 }
 
 fn until_next(rate: f64, random: &mut Random) -> f64 {
-    if rate > 0.0 { random.waiting(1.0 / rate) } else { f64::INFINITY }
+    if rate > 0.0 {
+        random.waiting(1.0 / rate)
+    } else {
+        f64::INFINITY
+    }
 }

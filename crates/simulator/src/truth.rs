@@ -112,7 +112,10 @@ pub struct Row {
 impl Log {
     /// An empty log of a voyage about to begin.
     pub fn new(ship: &Ship) -> Log {
-        Log { hours: Vec::new(), next_hour: ship.start() }
+        Log {
+            hours: Vec::new(),
+            next_hour: ship.start(),
+        }
     }
 
     /// Notes the ship's state when another hour has passed.
@@ -171,7 +174,10 @@ pub fn place(ship: &Ship) -> Place {
         rows: (0..360 / STEP_DEG)
             .map(|step| {
                 let compass_deg = f64::from(step * STEP_DEG);
-                Row { compass_deg, deviation_deg: ship.deviation_deg(compass_deg) }
+                Row {
+                    compass_deg,
+                    deviation_deg: ship.deviation_deg(compass_deg),
+                }
             })
             .collect(),
     }
@@ -184,7 +190,9 @@ fn epochs(ship: &Ship) -> Vec<Epoch> {
     for event in &plan.events {
         match event {
             Event::Lightning { day, .. } => days.push(*day),
-            Event::Cargo { from_day, to_day, .. } => days.extend([*from_day, *to_day]),
+            Event::Cargo {
+                from_day, to_day, ..
+            } => days.extend([*from_day, *to_day]),
             Event::GyroFault { .. } => {}
         }
     }
@@ -224,7 +232,12 @@ fn over_lambda(magnetism: &Magnetism) -> OverLambda {
 fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
     let at = |day: f64| ship.start().plus_seconds(day * 86_400.0);
     let own = ship.plan().events.iter().map(|event| match event {
-        Event::Lightning { day, b_nt, returning, return_days } => Happening {
+        Event::Lightning {
+            day,
+            b_nt,
+            returning,
+            return_days,
+        } => Happening {
             kind: "lightning",
             from: at(*day),
             to: None,
@@ -232,13 +245,22 @@ fn happenings(scenario: &Scenario, ship: &Ship) -> Vec<Happening> {
                 "b_nt": b_nt, "returning": returning, "return_days": return_days
             }),
         },
-        Event::Cargo { from_day, to_day, magnetism } => Happening {
+        Event::Cargo {
+            from_day,
+            to_day,
+            magnetism,
+        } => Happening {
             kind: "cargo",
             from: at(*from_day),
             to: Some(at(*to_day)),
             detail: serde_json::json!({ "b_nt": magnetism.b_nt, "chi": magnetism.chi }),
         },
-        Event::GyroFault { from_day, to_day, offset_deg, drift_deg_per_h } => Happening {
+        Event::GyroFault {
+            from_day,
+            to_day,
+            offset_deg,
+            drift_deg_per_h,
+        } => Happening {
             kind: "gyro_fault",
             from: at(*from_day),
             to: Some(at(*to_day)),

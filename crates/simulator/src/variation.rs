@@ -59,7 +59,10 @@ impl Surroundings {
             chart,
             charted,
             variation_deg: charted.declination().degrees_east(),
-            field: Field { h_nt: charted.h_nt(), z_nt: charted.z_nt },
+            field: Field {
+                h_nt: charted.h_nt(),
+                z_nt: charted.z_nt,
+            },
         })
     }
 
@@ -87,7 +90,10 @@ impl Surroundings {
         let crust = self.crust.step(run_nm, &mut self.random);
         let noise_deg = crust + DAY_DEG * solar_angle(position, time).sin();
         self.variation_deg = east.atan2(north).to_degrees() + noise_deg;
-        self.field = Field { h_nt: north.hypot(east), z_nt: down };
+        self.field = Field {
+            h_nt: north.hypot(east),
+            z_nt: down,
+        };
     }
 
     /// Storms come up in two hours and die away over their last third.

@@ -95,7 +95,9 @@ fn open(args: &VoyageArgs, partial: Option<&Path>) -> Result<Sink> {
 
 /// A file gets its name when it is whole; devices and pipes have theirs.
 fn partial_path(out: &Path) -> PathBuf {
-    let is_device = std::fs::metadata(out).is_ok_and(|found| !found.is_file());
+    // What /dev/stdout stands for may be a file, but one without a name.
+    let is_device =
+        out.starts_with("/dev") || std::fs::metadata(out).is_ok_and(|found| !found.is_file());
     if is_device {
         return out.to_owned();
     }

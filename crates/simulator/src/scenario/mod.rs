@@ -6,7 +6,10 @@
 
 mod check;
 mod error;
+mod event;
 mod raw;
+mod ship;
+mod values;
 
 pub use error::ScenarioError;
 

@@ -1,0 +1,268 @@
+//! `fleet`: many ships with real agents against a real server.
+//!
+//! The past is sailed as fast as the agents take it; then the server's models
+//! are compared with the truth; then, if asked, the ships sail on in real time.
+//! Whatever way this ends, every agent that was started has been stopped.
+
+mod agent;
+mod config;
+mod progress;
+mod sailing;
+mod shore;
+mod verdict;
+
+use crate::cli::{self, BadInput, FleetArgs};
+use crate::clock;
+use crate::voyage::write_whole;
+use agent::Agents;
+use anyhow::{Context, Result};
+use binnacle_magnetics::time::Timestamp;
+use binnacle_simulator::scenario::Scenario;
+use progress::Progress;
+use sailing::Sailing;
+use shore::Shore;
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::task::JoinSet;
+use verdict::Verdict;
+
+/// As shells have it for a program that a signal ended.
+const STOPPED: u8 = 130;
+/// Ships catch up with the clock if the past ended no longer ago than this;
+/// otherwise they sail on from where they are.
+const CATCH_UP_S: f64 = 86_400.0;
+
+/// What all parts need to know of the run.
+struct Run<'a> {
+    args: &'a FleetArgs,
+    scenario: Scenario,
+    seed: u64,
+    from: Timestamp,
+    until: Timestamp,
+}
+
+pub(crate) async fn run(args: &FleetArgs) -> Result<ExitCode> {
+    let scenario = cli::read_scenario(&args.scenario)?;
+    let days = cli::check_days(args.days)?;
+    let until = args.until.unwrap_or_else(|| whole_second(clock::now()));
+    let run = Run {
+        seed: args.seed.unwrap_or(scenario.seed),
+        from: until.plus_seconds(-days * 86_400.0),
+        until,
+        scenario,
+        args,
+    };
+    let fleet = run.launch()?;
+    let mut agents = Agents::default();
+    let mut verdict = None;
+    let ended = tokio::select! {
+        ended = run.sail(fleet, &mut agents, &mut verdict) => ended,
+        stopped = stop_asked() => stopped,
+    };
+    agents.stop().await;
+    ended?;
+    Ok(match verdict {
+        Some(true) => ExitCode::SUCCESS,
+        Some(false) => ExitCode::FAILURE,
+        None if args.serve_only => ExitCode::SUCCESS,
+        None => ExitCode::from(STOPPED),
+    })
+}
+
+impl Run<'_> {
+    /// Every ship at her berth, listening for a client.
+    fn launch(&self) -> Result<Vec<Sailing>> {
+        let ships = self.scenario.ships.iter();
+        ships
+            .map(|plan| Sailing::new(&self.scenario, plan, self.seed, self.from))
+            .collect()
+    }
+
+    async fn sail(
+        &self,
+        fleet: Vec<Sailing>,
+        agents: &mut Agents,
+        verdict: &mut Option<bool>,
+    ) -> Result<()> {
+        let progress = Arc::new(Progress::new(fleet.len(), self.from, self.until));
+        if self.args.serve_only {
+            return self.serve(fleet, &progress).await;
+        }
+        let shore = self.sign_in().await?;
+        let mut vessels = Vec::new();
+        for ship in &fleet {
+            let folder = self.work_dir()?.join(config::slug(ship.name()));
+            let program = self.args.agent.as_deref().context("--agent is required")?;
+            vessels.push(agent::install(&shore, ship, program, &folder).await?);
+        }
+        for vessel in &vessels {
+            agents.start(vessel)?;
+        }
+        let ids: Vec<String> = vessels.iter().map(|vessel| vessel.id.clone()).collect();
+        let past = async {
+            let fleet = self
+                .sail_past(fleet, &progress, progress.show(&shore, &ids))
+                .await?;
+            self.write_truths(&fleet)?;
+            let judged = verdict::judge(self, &shore, &vessels, &fleet).await?;
+            self.write_report(&judged)?;
+            *verdict = Some(judged.holds());
+            if self.args.live {
+                self.sail_live(fleet).await?;
+            }
+            Ok(())
+        };
+        tokio::select! {
+            ended = past => ended,
+            failed = agents.failed() => Err(failed),
+        }
+    }
+
+    /// Serves the sentences for agents that somebody else runs.
+    async fn serve(&self, fleet: Vec<Sailing>, progress: &Arc<Progress>) -> Result<()> {
+        let ships = fleet
+            .iter()
+            .map(|ship| Ok(serde_json::json!({"name": ship.name(), "address": ship.address()?})))
+            .collect::<Result<Vec<_>>>()?;
+        say(&serde_json::json!({"from": self.from, "until": self.until, "ships": ships}))?;
+        let fleet = self
+            .sail_past(fleet, progress, std::future::pending())
+            .await?;
+        if let Some(path) = &self.args.report {
+            let truths: Vec<_> = fleet.iter().map(|ship| ship.truth(self)).collect();
+            write_whole(path, &serde_json::to_vec(&truths)?)?;
+        }
+        say(&serde_json::json!({"sailed": true}))?;
+        if self.args.live {
+            return self.sail_live(fleet).await;
+        }
+        // The lines stay open until somebody has had enough.
+        std::future::pending::<()>().await;
+        drop(fleet);
+        Ok(())
+    }
+
+    /// Sails all ships to the end of the past, each at her agent's pace.
+    async fn sail_past(
+        &self,
+        fleet: Vec<Sailing>,
+        progress: &Arc<Progress>,
+        shown: impl Future<Output = ()>,
+    ) -> Result<Vec<Sailing>> {
+        let mut tasks = JoinSet::new();
+        for (index, mut ship) in fleet.into_iter().enumerate() {
+            let (until, progress) = (self.until, Arc::clone(progress));
+            tasks.spawn(async move {
+                ship.sail_to(until, |time| progress.note(index, time))
+                    .await?;
+                anyhow::Ok((index, ship))
+            });
+        }
+        let all = async {
+            let mut arrived = Vec::new();
+            while let Some(task) = tasks.join_next().await {
+                arrived.push(task??);
+            }
+            anyhow::Ok(arrived)
+        };
+        let mut arrived = tokio::select! {
+            arrived = all => arrived?,
+            () = shown => unreachable!("progress is shown for ever"),
+        };
+        progress.finish();
+        arrived.sort_by_key(|(index, _)| *index);
+        Ok(arrived.into_iter().map(|(_, ship)| ship).collect())
+    }
+
+    async fn sail_live(&self, fleet: Vec<Sailing>) -> Result<()> {
+        let behind_s = clock::now().seconds_since(self.until);
+        let shift_s = if (0.0..CATCH_UP_S).contains(&behind_s) {
+            0.0
+        } else {
+            behind_s
+        };
+        writeln!(std::io::stderr(), "sailing on in real time; Ctrl-C ends it")?;
+        let mut tasks = JoinSet::new();
+        for mut ship in fleet {
+            tasks.spawn(async move { ship.sail_live(shift_s).await });
+        }
+        while let Some(task) = tasks.join_next().await {
+            task??;
+        }
+        Ok(())
+    }
+
+    async fn sign_in(&self) -> Result<Shore> {
+        let server = self
+            .args
+            .server
+            .as_deref()
+            .context("--server is required")?;
+        let email = self.args.email.as_deref().context("--email is required")?;
+        let password = if self.args.password_stdin {
+            let mut text = String::new();
+            std::io::stdin().read_to_string(&mut text)?;
+            text.trim_end_matches(['\r', '\n']).to_owned()
+        } else {
+            std::env::var("BINNACLE_PASSWORD").map_err(|_| {
+                BadInput("a password is needed: --password-stdin or BINNACLE_PASSWORD".to_owned())
+            })?
+        };
+        Shore::sign_in(server, email, &password).await
+    }
+
+    fn work_dir(&self) -> Result<&Path> {
+        self.args
+            .work_dir
+            .as_deref()
+            .context("--work-dir is required")
+    }
+
+    fn write_truths(&self, fleet: &[Sailing]) -> Result<()> {
+        for ship in fleet {
+            let path = self
+                .work_dir()?
+                .join(config::slug(ship.name()))
+                .join("truth.json");
+            write_whole(&path, &serde_json::to_vec(&ship.truth(self))?)?;
+        }
+        Ok(())
+    }
+
+    fn write_report(&self, verdict: &Verdict) -> Result<()> {
+        let mut out = std::io::stdout().lock();
+        out.write_all(verdict.table().as_bytes())?;
+        out.flush()?;
+        match &self.args.report {
+            Some(path) => write_whole(path, &serde_json::to_vec_pretty(verdict)?),
+            None => Ok(()),
+        }
+    }
+}
+
+fn say(line: &serde_json::Value) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{line}")?;
+    out.flush()?;
+    Ok(())
+}
+
+fn whole_second(time: Timestamp) -> Timestamp {
+    time.plus_seconds(-(time.micros().rem_euclid(1_000_000) as f64) * 1e-6)
+}
+
+/// Ends when somebody wants the program to end.
+async fn stop_asked() -> Result<()> {
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let mut terminate = signal(SignalKind::terminate())?;
+    let mut hangup = signal(SignalKind::hangup())?;
+    tokio::select! {
+        _ = interrupt.recv() => {}
+        _ = terminate.recv() => {}
+        _ = hangup.recv() => {}
+    }
+    Ok(())
+}

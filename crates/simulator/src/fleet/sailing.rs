@@ -1,0 +1,105 @@
+//! A ship with her line: what goes out, and how fast.
+
+use super::Run;
+use crate::cli::BadInput;
+use crate::clock;
+use crate::line::TcpLine;
+use anyhow::Result;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_simulator::scenario::{Scenario, ShipPlan};
+use binnacle_simulator::ship::Ship;
+use binnacle_simulator::talk::Talker;
+use binnacle_simulator::truth::{Log, Place, Truth, place};
+use std::net::{Ipv4Addr, SocketAddr};
+use std::time::Duration;
+
+const BUFFER_BYTES: usize = 64 * 1024;
+const LIVE_INTERVAL_S: f64 = 1.0;
+
+pub(super) struct Sailing {
+    talker: Talker,
+    log: Log,
+    line: TcpLine,
+    buffer: Vec<u8>,
+}
+
+impl Sailing {
+    pub(super) fn new(
+        scenario: &Scenario,
+        plan: &ShipPlan,
+        seed: u64,
+        from: Timestamp,
+    ) -> Result<Sailing> {
+        let ship = Ship::new(scenario, plan, seed, from).map_err(BadInput::new)?;
+        Ok(Sailing {
+            log: Log::new(&ship),
+            talker: Talker::new(scenario, ship, seed),
+            line: TcpLine::listen(SocketAddr::from((Ipv4Addr::LOCALHOST, 0)))?,
+            buffer: Vec::with_capacity(BUFFER_BYTES + 1024),
+        })
+    }
+
+    pub(super) fn name(&self) -> &str {
+        &self.plan().name
+    }
+
+    pub(super) fn plan(&self) -> &ShipPlan {
+        self.talker.ship().plan()
+    }
+
+    pub(super) fn address(&self) -> Result<SocketAddr> {
+        self.line.address()
+    }
+
+    pub(super) fn truth(&self, run: &Run<'_>) -> Truth {
+        self.log.truth(&run.scenario, run.seed, self.talker.ship())
+    }
+
+    /// The true curve where she is now.
+    pub(super) fn place(&self) -> Place {
+        place(self.talker.ship())
+    }
+
+    /// Sails as fast as the client takes it; stands still while there is none.
+    pub(super) async fn sail_to(
+        &mut self,
+        until: Timestamp,
+        note: impl Fn(Timestamp),
+    ) -> Result<()> {
+        while self.talker.next_time() <= until {
+            self.talker.speak(&mut self.buffer);
+            self.log.note(self.talker.ship());
+            if self.buffer.len() >= BUFFER_BYTES {
+                self.flush().await?;
+                note(self.talker.ship().time());
+            }
+        }
+        self.flush().await?;
+        note(until);
+        Ok(())
+    }
+
+    /// Sails by the wall clock less `shift_s`, once she has caught up with it.
+    pub(super) async fn sail_live(&mut self, shift_s: f64) -> Result<()> {
+        let now = || clock::now().plus_seconds(-shift_s);
+        while now().seconds_since(self.talker.next_time()) > 60.0 {
+            self.sail_to(now(), |_| {}).await?;
+        }
+        self.talker.set_interval(LIVE_INTERVAL_S);
+        loop {
+            let early_s = self.talker.next_time().seconds_since(now());
+            if early_s > 0.0 {
+                tokio::time::sleep(Duration::from_secs_f64(early_s)).await;
+            }
+            self.talker.speak(&mut self.buffer);
+            self.line.send_live(&self.buffer).await;
+            self.buffer.clear();
+        }
+    }
+
+    async fn flush(&mut self) -> Result<()> {
+        self.line.send(&self.buffer).await?;
+        self.buffer.clear();
+        Ok(())
+    }
+}

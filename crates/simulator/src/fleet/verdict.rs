@@ -1,0 +1,300 @@
+//! Whether the server's models hold what is true.
+//!
+//! A model holds when its 95 % band at the ship's own place contains the true
+//! deviation on nine headings of ten. The truth is what the compass's user sees:
+//! true heading less variation less compass reading, lubber line included,
+//! noise left out.
+
+use super::Run;
+use super::agent::Vessel;
+use super::sailing::Sailing;
+use super::shore::{Predicted, Shore, Uploads};
+use anyhow::{Result, bail};
+use binnacle_magnetics::angle::wrap_180;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_simulator::truth::Place;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::time::{Duration, Instant};
+
+const LEAST_SHARE: f64 = 0.9;
+const ASK_EVERY: Duration = Duration::from_secs(1);
+/// The shore gets so long to catch up after anything last moved.
+const PATIENCE: Duration = Duration::from_mins(3);
+/// When all is quiet for so long, a model of older data is what there will be.
+const QUIET: Duration = Duration::from_secs(30);
+/// Sentences come once a minute in port.
+const SLACK_S: f64 = 150.0;
+
+/// The whole comparison.
+#[derive(Debug, Serialize)]
+pub(super) struct Verdict {
+    scenario: String,
+    seed: u64,
+    from: Timestamp,
+    until: Timestamp,
+    holds: bool,
+    vessels: Vec<Judged>,
+}
+
+/// One vessel's comparison.
+#[derive(Debug, Serialize)]
+struct Judged {
+    name: String,
+    vessel_id: String,
+    batches: u64,
+    samples: u64,
+    model_version: Option<u64>,
+    lat: f64,
+    lon: f64,
+    at: Timestamp,
+    headings: usize,
+    in_band: usize,
+    holds: bool,
+    worst_error_deg: Option<f64>,
+    mean_band_deg: Option<f64>,
+    rows: Vec<Compared>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Compared {
+    compass_deg: f64,
+    true_deviation_deg: f64,
+    deviation_deg: f64,
+    band95_deg: Option<f64>,
+    in_band: bool,
+}
+
+/// Waits for the shore and compares every vessel.
+pub(super) async fn judge(
+    run: &Run<'_>,
+    shore: &Shore,
+    vessels: &[Vessel],
+    fleet: &[Sailing],
+) -> Result<Verdict> {
+    let mut judged = Vec::new();
+    for vessel in vessels {
+        wait_for(shore, vessel, run.until).await?;
+    }
+    for (vessel, ship) in vessels.iter().zip(fleet) {
+        judged.push(compare(shore, vessel, &ship.place()).await?);
+    }
+    Ok(Verdict {
+        scenario: run.scenario.name.clone(),
+        seed: run.seed,
+        from: run.from,
+        until: run.until,
+        holds: judged.iter().all(|vessel| vessel.holds),
+        vessels: judged,
+    })
+}
+
+/// Waits until the agent has sent what it sealed and the model knows of it.
+async fn wait_for(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<()> {
+    writeln!(
+        std::io::stderr(),
+        "waiting for the model of {}",
+        vessel.name
+    )?;
+    let mut last = None;
+    let mut moved = Instant::now();
+    loop {
+        let standing = standing(shore, vessel, until).await?;
+        if standing.settled {
+            return Ok(());
+        }
+        if last.as_ref() != Some(&standing) {
+            moved = Instant::now();
+        }
+        if standing.sent && moved.elapsed() > QUIET {
+            return Ok(());
+        }
+        if moved.elapsed() > PATIENCE {
+            bail!(
+                "{}: nothing has moved for {} s: {standing:?}",
+                vessel.name,
+                PATIENCE.as_secs()
+            );
+        }
+        last = Some(standing);
+        tokio::time::sleep(ASK_EVERY).await;
+    }
+}
+
+/// How far a vessel's data have come.
+#[derive(Debug, PartialEq, Eq)]
+struct Standing {
+    ship_time: Option<Timestamp>,
+    waiting_batches: Option<u64>,
+    uploads: Uploads,
+    model: Option<(u64, Timestamp)>,
+    /// Everything that was sealed is on shore.
+    sent: bool,
+    /// And the model knows all of it.
+    settled: bool,
+}
+
+async fn standing(shore: &Shore, vessel: &Vessel, until: Timestamp) -> Result<Standing> {
+    // The agent may just be starting again.
+    let status = shore.agent_status(vessel.page).await.unwrap_or_default();
+    let ship_time = status["ship_time"]
+        .as_str()
+        .and_then(|time| Timestamp::parse(time).ok());
+    let waiting_batches = status["spool"]["waiting_batches"].as_u64();
+    if let Some(parked) = status["spool"]["parked_batches"]
+        .as_u64()
+        .filter(|&parked| parked > 0)
+    {
+        let because = status["spool"]["parked_because"]
+            .as_str()
+            .unwrap_or("no reason given");
+        bail!(
+            "{}: the shore refused {parked} batches: {because}",
+            vessel.name
+        );
+    }
+    let on_shore = shore.vessel(&vessel.id).await?;
+    let uploads = shore.uploads(&vessel.id).await?;
+    let model = on_shore
+        .model
+        .map(|model| (model.version, model.data_until));
+    let read_all = ship_time.is_some_and(|time| until.seconds_since(time) < SLACK_S);
+    let sent = read_all && waiting_batches == Some(0);
+    let newest = on_shore.last_position.map(|position| position.at);
+    let knows_all = match (&model, newest) {
+        (Some((_, data_until)), Some(newest)) => *data_until >= newest,
+        _ => false,
+    };
+    Ok(Standing {
+        ship_time,
+        waiting_batches,
+        uploads,
+        model,
+        sent,
+        settled: sent && knows_all,
+    })
+}
+
+async fn compare(shore: &Shore, vessel: &Vessel, truth: &Place) -> Result<Judged> {
+    let rows = shore
+        .deviation(&vessel.id, truth)
+        .await?
+        .unwrap_or_default();
+    let uploads = shore.uploads(&vessel.id).await?;
+    let version = shore
+        .vessel(&vessel.id)
+        .await?
+        .model
+        .map(|model| model.version);
+    let compared: Vec<Compared> = truth
+        .rows
+        .iter()
+        .filter_map(|truth| {
+            let predicted = rows
+                .iter()
+                .find(|row| wrap_180(row.compass_deg - truth.compass_deg).abs() < 0.01)?;
+            Some(compare_row(predicted, truth.deviation_deg))
+        })
+        .collect();
+    let errors = compared
+        .iter()
+        .map(|row| row.deviation_deg - row.true_deviation_deg);
+    let worst = errors.map(|error| wrap_180(error).abs()).reduce(f64::max);
+    let bands: Vec<f64> = compared.iter().filter_map(|row| row.band95_deg).collect();
+    let mean = bands.iter().sum::<f64>() / bands.len() as f64;
+    let in_band = compared.iter().filter(|row| row.in_band).count();
+    let headings = truth.rows.len();
+    Ok(Judged {
+        name: vessel.name.clone(),
+        vessel_id: vessel.id.clone(),
+        batches: uploads.batches,
+        samples: uploads.samples,
+        model_version: version,
+        lat: truth.lat,
+        lon: truth.lon,
+        at: truth.at,
+        headings,
+        in_band,
+        holds: in_band as f64 >= LEAST_SHARE * headings as f64,
+        worst_error_deg: worst,
+        mean_band_deg: (!bands.is_empty()).then_some(mean),
+        rows: compared,
+    })
+}
+
+fn compare_row(predicted: &Predicted, true_deviation_deg: f64) -> Compared {
+    let error = wrap_180(predicted.deviation_deg - true_deviation_deg).abs();
+    Compared {
+        compass_deg: predicted.compass_deg,
+        true_deviation_deg,
+        deviation_deg: predicted.deviation_deg,
+        band95_deg: predicted.band95_deg,
+        in_band: predicted.band95_deg.is_some_and(|band| error <= band),
+    }
+}
+
+impl Verdict {
+    pub(super) fn holds(&self) -> bool {
+        self.holds
+    }
+
+    /// For people.
+    pub(super) fn table(&self) -> String {
+        let mut text = String::new();
+        self.write_table(&mut text)
+            .expect("a string takes every write");
+        text
+    }
+
+    fn write_table(&self, out: &mut String) -> std::fmt::Result {
+        let degrees = |value: Option<f64>| value.map_or("–".to_owned(), |v| format!("{v:.2}°"));
+        writeln!(
+            out,
+            "\n{:<22} {:>8} {:>8} {:>12} {:>12} {:>10}",
+            "vessel", "samples", "uploads", "in the band", "worst error", "mean band"
+        )?;
+        for vessel in &self.vessels {
+            writeln!(
+                out,
+                "{:<22} {:>8} {:>8} {:>12} {:>12} {:>10}{}",
+                vessel.name,
+                vessel.samples,
+                vessel.batches,
+                format!("{} of {}", vessel.in_band, vessel.headings),
+                degrees(vessel.worst_error_deg),
+                degrees(vessel.mean_band_deg),
+                match (vessel.model_version, vessel.holds) {
+                    (None, _) => "  no model",
+                    (_, false) => "  FAILS",
+                    (_, true) => "",
+                },
+            )?;
+        }
+        let good = self.vessels.iter().filter(|vessel| vessel.holds).count();
+        let all = self.vessels.len();
+        let word = if self.holds { "holds" } else { "DOES NOT HOLD" };
+        writeln!(
+            out,
+            "\nThe 95 % band {word}: it contains the truth on at least 90 % of headings for \
+             {good} of {all} vessels, each at her own place.\n"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_truth_outside_the_band_or_without_one_is_not_held() {
+        let predicted = |band95_deg| Predicted {
+            compass_deg: 90.0,
+            deviation_deg: 2.0,
+            band95_deg,
+        };
+        assert!(compare_row(&predicted(Some(0.5)), 2.4).in_band);
+        assert!(!compare_row(&predicted(Some(0.5)), 2.6).in_band);
+        assert!(!compare_row(&predicted(None), 2.0).in_band);
+    }
+}
