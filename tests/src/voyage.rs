@@ -65,7 +65,7 @@ impl Voyage {
             "--seed",
             &seed.to_string(),
             "--out",
-            "/dev/stdout",
+            "/proc/self/fd/1",
             "--scenario",
         ]);
         command.arg(file).arg("--truth").arg(&truth);

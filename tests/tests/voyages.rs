@@ -50,6 +50,12 @@ fn fast_end() -> Timestamp {
     day(DAYS).plus_seconds(-LIVE_S)
 }
 
+/// One seed of the kills in `make test`, many in `make soak`.
+fn seeds() -> std::ops::Range<u64> {
+    let soak = std::env::var_os("BINNACLE_SOAK").is_some();
+    3..if soak { 23 } else { 4 }
+}
+
 /// Eight moments in order, by a generator with a known seed.
 fn kills(seed: u64) -> Vec<(f64, Victim)> {
     let mut state = seed;
@@ -289,13 +295,22 @@ async fn assert_autopilot_hears_truth(vessel: &mut Vessel, version: u64) -> Resu
 }
 
 async fn whole_way(engine: Engine) -> Result<()> {
+    for seed in seeds() {
+        with_kills(engine, seed)
+            .await
+            .with_context(|| format!("with the kills of seed {seed}"))?;
+    }
+    Ok(())
+}
+
+async fn with_kills(engine: Engine, seed: u64) -> Result<()> {
     let folder = tempfile::tempdir()?;
     let mut shore = Shore::start(engine, folder.path()).await?;
     let mut vessels = Vec::new();
     for (scenario, seed) in [("biscay", 11), ("agulhas", 12)] {
         vessels.push(set_sail(&shore, scenario, seed, folder.path()).await?);
     }
-    sail(&mut shore, &mut vessels, 3).await?;
+    sail(&mut shore, &mut vessels, seed).await?;
     for vessel in &mut vessels {
         let spool = settled(vessel, fast_end()).await?;
         assert_every_sample_once(&shore, vessel, &spool).await?;
