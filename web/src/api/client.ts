@@ -105,7 +105,7 @@ export async function listSamples(id: string, from: string, most: number, compas
       from,
       compass,
       after,
-      limit: 5000,
+      limit: 10_000,
     });
     items = items.concat(page.items);
     if (items.length > most) {

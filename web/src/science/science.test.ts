@@ -24,13 +24,12 @@ const model: Model = {
   samples_rejected: 2,
 };
 
-const row = (compass_deg: number, deviation_deg: number, band95_deg: number | null = 0.5) =>
-  ({
-    compass_deg,
-    deviation_deg,
-    band95_deg,
-    magnetic_deg: compass_deg + deviation_deg,
-  }) as DeviationRow;
+const row = (compass_deg: number, deviation_deg: number, band95_deg: number | null = 0.5) => ({
+  compass_deg,
+  deviation_deg,
+  band95_deg,
+  magnetic_deg: compass_deg + deviation_deg,
+});
 
 describe('coefficients', () => {
   test('follow from the parameters and the field at the place', () => {
