@@ -1,25 +1,28 @@
 /**
- * The calls that the dashboard makes. Every failure is a `Problem`; an answer is
- * only what was asked for.
+ * The calls that the dashboard makes, typed by the server's own document. Every
+ * failure is a `Problem`; an answer is only what was asked for.
  */
 
+import createClient from 'openapi-fetch';
 import { text } from '../text';
-import type * as api from './types';
+import { Problem, readProblem } from './problem';
+import type { paths } from './schema';
+import type { NewVessel, Sample } from './types';
 
-/** What the server refused, or `offline` when it could not be reached. */
-export class Problem extends Error {
-  constructor(
-    readonly status: number,
-    readonly kind: string,
-    detail: string,
-  ) {
-    super(detail);
-  }
-
-  get offline(): boolean {
-    return this.status === 0;
-  }
+/** A place and a time at which to show the deviation. */
+export interface Place {
+  lat: number;
+  lon: number;
+  at: string;
 }
+
+/** The server's longest page. */
+const longestPage = 10_000;
+
+const client = createClient<paths>({
+  // The server takes changes only from pages that can set a header.
+  headers: { 'X-Binnacle-Request': '1' },
+});
 
 let onSignedOut: () => void = () => undefined;
 
@@ -28,91 +31,110 @@ export function whenSignedOut(tell: () => void): void {
   onSignedOut = tell;
 }
 
-export interface Place {
-  lat: number;
-  lon: number;
-  at: string;
+/** The data of an answer; a problem is thrown. */
+async function answer<T>(
+  call: Promise<{ data?: T; error?: unknown; response: Response }>,
+): Promise<T> {
+  const { data, error, response } = await call.catch((reason: unknown) => {
+    // `fetch` rejects with a TypeError when there was no answer at all.
+    if (reason instanceof TypeError) throw new Problem(0, 'offline', text.problem.offline);
+    throw reason;
+  });
+  if (response.ok) return data as T;
+  const problem = readProblem(response.status, error);
+  if (problem.status === 401 && problem.kind !== 'wrong-password') onSignedOut();
+  throw problem;
 }
 
 export const signIn = (email: string, password: string) =>
-  post<api.Me>('/session', { email, password });
-export const signOut = () => call<undefined>('DELETE', '/session');
-export const findMe = () => get<api.Me>('/me');
-export const listVessels = (after?: string) =>
-  get<api.Page<api.Vessel>>('/vessels', { after, limit: 100 });
-export const findVessel = (id: string) => get<api.Vessel>(`/vessels/${id}`);
-export const createVessel = (vessel: api.NewVessel) => post<api.Vessel>('/vessels', vessel);
+  answer(client.POST('/api/v1/session', { body: { email, password } }));
+
+export const signOut = () => answer(client.DELETE('/api/v1/session'));
+
+export const findMe = () => answer(client.GET('/api/v1/me'));
+
+export const listVessels = () =>
+  everyPage((after) =>
+    answer(client.GET('/api/v1/vessels', { params: { query: page(longestPage, after) } })),
+  );
+
+export const createVessel = (body: NewVessel) => answer(client.POST('/api/v1/vessels', { body }));
+
+export const findVessel = (id: string) =>
+  answer(client.GET('/api/v1/vessels/{id}', { params: { path: { id } } }));
+
 export const findModel = (id: string, compass?: string) =>
-  get<api.ModelVersion>(`/vessels/${id}/model`, { compass });
+  answer(
+    client.GET('/api/v1/vessels/{id}/model', {
+      params: { path: { id }, query: which(compass) },
+    }),
+  );
+
 export const findDeviation = (id: string, compass?: string, place?: Place) =>
-  get<api.DeviationTable>(`/vessels/${id}/deviation`, { compass, step_deg: 5, ...place });
+  answer(
+    client.GET('/api/v1/vessels/{id}/deviation', {
+      params: { path: { id }, query: { ...which(compass), ...place, step_deg: 5 } },
+    }),
+  );
+
 export const findCoverage = (id: string, compass?: string) =>
-  get<api.Coverage>(`/vessels/${id}/coverage`, { compass });
+  answer(
+    client.GET('/api/v1/vessels/{id}/coverage', {
+      params: { path: { id }, query: which(compass) },
+    }),
+  );
+
 export const listAgents = (id: string) =>
-  get<api.Page<api.AgentStream>>(`/vessels/${id}/agents`, { limit: 100 });
-export const createEnrolmentCode = (id: string, compass?: string) =>
-  post<api.EnrolmentCode>(`/vessels/${id}/agents`, compass ? { compass_id: compass } : {});
+  everyPage((after) =>
+    answer(
+      client.GET('/api/v1/vessels/{id}/agents', {
+        params: { path: { id }, query: page(longestPage, after) },
+      }),
+    ),
+  );
 
-type Query = Record<string, string | number | undefined>;
+export const createEnrolmentCode = (id: string, compass_id: string) =>
+  answer(
+    client.POST('/api/v1/vessels/{id}/agents', {
+      params: { path: { id } },
+      body: { compass_id, valid_for_s: null },
+    }),
+  );
 
-function get<T>(path: string, query: Query = {}): Promise<T> {
-  const words = new URLSearchParams();
-  for (const [name, value] of Object.entries(query)) {
-    if (value !== undefined) words.set(name, String(value));
-  }
-  return call<T>('GET', words.size > 0 ? `${path}?${words}` : path);
+/** Samples since `from` in order of time; when there are more than `most`, the latest. */
+export async function listSamples(
+  id: string,
+  from: string,
+  most: number,
+  compass?: string,
+): Promise<{ items: Sample[]; truncated: boolean }> {
+  const all = await everyPage((after) =>
+    answer(
+      client.GET('/api/v1/vessels/{id}/samples', {
+        params: { path: { id }, query: { ...which(compass), ...page(longestPage, after), from } },
+      }),
+    ),
+  );
+  return { items: all.slice(-most), truncated: all.length > most };
 }
 
-function post<T>(path: string, body: unknown): Promise<T> {
-  return call<T>('POST', path, body);
-}
-
-async function call<T>(method: string, path: string, body?: unknown): Promise<T> {
-  const headers: Record<string, string> = { 'X-Binnacle-Request': '1' };
-  const init: RequestInit = { method, headers };
-  if (body !== undefined) {
-    headers['Content-Type'] = 'application/json';
-    init.body = JSON.stringify(body);
-  }
-  const response = await fetch(`/api/v1${path}`, init).catch(() => {
-    throw new Problem(0, 'offline', text.problem.offline);
-  });
-  if (!response.ok) throw await readProblem(response);
-  if (response.status === 204) return undefined as T;
-  return (await response.json()) as T;
-}
-
-async function readProblem(response: Response): Promise<Problem> {
-  const body: unknown = await response.json().catch(() => null);
-  const about = typeof body === 'object' && body !== null ? body : {};
-  const kind = 'type' in about && typeof about.type === 'string' ? about.type : '';
-  const detail =
-    'detail' in about && typeof about.detail === 'string'
-      ? about.detail
-      : text.problem.unexpected(response.status);
-  const problem = new Problem(response.status, kind.split('/').at(-1) ?? '', detail);
-  if (problem.status === 401 && problem.kind !== 'wrong-password') onSignedOut();
-  return problem;
-}
-
-/** Samples of a period in order of time, at most `most` of them: the latest ones. */
-export async function listSamples(id: string, from: string, most: number, compass?: string) {
-  let items: api.Sample[] = [];
+async function everyPage<T>(
+  find: (after?: string) => Promise<{ items: T[]; next?: string | null }>,
+): Promise<T[]> {
+  let items: T[] = [];
   let after: string | undefined;
-  let truncated = false;
   do {
-    const page = await get<api.Page<api.Sample>>(`/vessels/${id}/samples`, {
-      from,
-      compass,
-      after,
-      limit: 10_000,
-    });
-    items = items.concat(page.items);
-    if (items.length > most) {
-      items = items.slice(-most);
-      truncated = true;
-    }
-    after = page.next ?? undefined;
+    const found = await find(after);
+    items = items.concat(found.items);
+    after = found.next ?? undefined;
   } while (after !== undefined);
-  return { items, truncated };
+  return items;
+}
+
+function page(limit: number, after?: string): { limit: number; after?: string } {
+  return after === undefined ? { limit } : { limit, after };
+}
+
+function which(compass?: string): { compass?: string } {
+  return compass === undefined ? {} : { compass };
 }

@@ -17,7 +17,7 @@ export const deviationHeight = (width: number): number => (width < 520 ? 280 : 3
 
 export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number): Element {
   const line = closed(rows);
-  const banded = line.filter((row) => row.band95_deg !== null);
+  const banded = line.filter((row) => typeof row.band95_deg === 'number');
   const low = (row: DeviationRow) => row.deviation_deg - (row.band95_deg ?? 0);
   const high = (row: DeviationRow) => row.deviation_deg + (row.band95_deg ?? 0);
   const narrow = width < 520;

@@ -15,7 +15,7 @@ export function extremes(rows: DeviationRow[]): Extremes | null {
   if (!first) return null;
   const pick = (better: (a: DeviationRow, b: DeviationRow) => boolean) =>
     rows.reduce((best, row) => (better(row, best) ? row : best), first);
-  const bands = rows.flatMap((row) => (row.band95_deg === null ? [] : [row.band95_deg]));
+  const bands = rows.flatMap((row) => (typeof row.band95_deg === 'number' ? [row.band95_deg] : []));
   return {
     largest: pick((a, b) => Math.abs(a.deviation_deg) > Math.abs(b.deviation_deg)),
     mostEast: pick((a, b) => a.deviation_deg > b.deviation_deg),

@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import type { Coverage, DeviationRow, Model, Sample } from '../api/types';
+import type { Coverage, Model, Sample } from '../api/types';
 import { exactCoefficients } from './coefficients';
 import { coverageTable, gaps } from './coverage';
 import { closed, deviationAt, everyStep, extremes, grade } from './curve';
@@ -137,6 +137,7 @@ describe('coverage', () => {
   const coverage = (cells: [number, number, number][]): Coverage => ({
     heading_step_deg: 15,
     magnetic_latitude_step_deg: 10,
+    bands: [],
     cells: cells.map(([magnetic_latitude_from_deg, heading_from_deg, samples]) => ({
       magnetic_latitude_from_deg,
       heading_from_deg,

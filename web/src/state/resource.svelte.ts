@@ -5,8 +5,7 @@
  * so; an answer that a later question overtook is dropped.
  */
 
-import { Problem } from '../api/client';
-import { text } from '../text';
+import { asProblem, type Problem } from '../api/problem';
 
 export class Resource<T> {
   value = $state.raw<T | undefined>();
@@ -41,10 +40,4 @@ export class Resource<T> {
     this.problem = undefined;
     this.loading = false;
   }
-}
-
-export function asProblem(error: unknown): Problem {
-  if (error instanceof Problem) return error;
-  console.error(error);
-  return new Problem(-1, 'unreadable', text.problem.unreadable);
 }

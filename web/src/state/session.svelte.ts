@@ -1,6 +1,7 @@
 /** Who is signed in. `unknown` until the server has been asked. */
 
-import { findMe, Problem, signIn, signOut, whenSignedOut } from '../api/client';
+import { findMe, signIn, signOut, whenSignedOut } from '../api/client';
+import { Problem } from '../api/problem';
 import type { Me } from '../api/types';
 
 type Session =

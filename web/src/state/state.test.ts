@@ -1,6 +1,6 @@
 import { describe, expect, test, vi } from 'vitest';
-import { Problem } from '../api/client';
 import { gathered, parseNews } from '../api/live.svelte';
+import { Problem } from '../api/problem';
 import { Resource } from './resource.svelte';
 import { parseRoute } from './route.svelte';
 

@@ -1,0 +1,37 @@
+/** What went wrong with a call, as RFC 9457 problem documents say it. */
+
+import { text } from '../text';
+
+/** What the server refused, or `offline` when it could not be reached. */
+export class Problem extends Error {
+  constructor(
+    readonly status: number,
+    /** The last word of the problem's type, such as `no-model-yet`. */
+    readonly kind: string,
+    detail: string,
+  ) {
+    super(detail);
+  }
+
+  get offline(): boolean {
+    return this.status === 0;
+  }
+}
+
+/** Reads a refusal. A proxy in between may answer with something else: then only the status counts. */
+export function readProblem(status: number, body: unknown): Problem {
+  const about = typeof body === 'object' && body !== null ? body : {};
+  const type = 'type' in about && typeof about.type === 'string' ? about.type : '';
+  const detail =
+    'detail' in about && typeof about.detail === 'string' && about.detail !== ''
+      ? about.detail
+      : text.problem.unexpected(status);
+  return new Problem(status, type.split('/').at(-1) ?? '', detail);
+}
+
+/** Any error as a problem: what is not one is a fault of ours, and is logged. */
+export function asProblem(error: unknown): Problem {
+  if (error instanceof Problem) return error;
+  console.error(error);
+  return new Problem(-1, 'unreadable', text.problem.unreadable);
+}
