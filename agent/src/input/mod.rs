@@ -27,11 +27,8 @@ mod udp;
 mod tests;
 
 pub(crate) use config::InputConfig;
-#[allow(unused_imports)] // until every part is wired
 pub(crate) use decode::is_recorded_time;
-#[allow(unused_imports)] // until every part is wired
 pub(crate) use file::replay;
-#[allow(unused_imports)] // until every part is wired
 pub(crate) use stats::{InputStats, InputStatus};
 
 use crate::observation::Observation;

@@ -1,4 +1,4 @@
-//! Prints fields, each with the comma before it.
+//! Prints fields, each with the comma before it unless it says otherwise.
 //!
 //! Numbers are rounded to the decimals that [`crate::fields`] keeps; what is not
 //! finite, or too large to be read back, is printed as an empty field.
@@ -126,7 +126,8 @@ fn decimal(out: &mut Vec<u8>, scaled: u64, decimals: usize, least: usize, width:
     }
 }
 
-fn digits(out: &mut Vec<u8>, mut value: u64, width: usize) {
+/// A whole number of at least `width` digits, without a comma.
+pub(crate) fn digits(out: &mut Vec<u8>, mut value: u64, width: usize) {
     let mut reversed = [b'0'; 20];
     let mut count = 0;
     while value > 0 || count < width {

@@ -3,6 +3,7 @@
 
 use crate::checksum;
 use crate::parse::parse;
+use crate::print;
 use crate::rejected::Rejected;
 use crate::sentence::Sentence;
 
@@ -53,7 +54,8 @@ pub fn parse_tagged(line: &[u8]) -> Result<Tagged<'_>, Rejected> {
     })
 }
 
-/// Appends a TAG block, checksum included, for a sentence to follow.
+/// Appends a TAG block, checksum included, for a sentence to follow. Clocks are
+/// given to the millisecond; before 1970 there are none.
 pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
     out.push(b'\\');
     let start = out.len();
@@ -65,21 +67,24 @@ pub fn write_tag(tag: &Tag<'_>, out: &mut Vec<u8>) {
         if tag.source.is_some() {
             out.push(b',');
         }
-        let (seconds, millis) = (
-            micros.div_euclid(1_000_000),
-            micros.rem_euclid(1_000_000) / 1000,
-        );
-        // Whole seconds are what every reader knows.
-        let text = if millis == 0 {
-            format!("c:{seconds}")
-        } else {
-            format!("c:{seconds}{millis:03}")
-        };
-        out.extend_from_slice(text.as_bytes());
+        out.extend_from_slice(b"c:");
+        print::digits(out, clock(micros.max(0)), 1);
     }
     let sum = checksum::of(&out[start..]);
     checksum::append(sum, out);
     out.push(b'\\');
+}
+
+/// Whole seconds, which every reader knows, or else milliseconds, where those
+/// cannot be taken for seconds.
+fn clock(micros: i64) -> u64 {
+    let millis = micros / 1000;
+    let number = if millis % 1000 == 0 || millis < FIRST_MILLISECONDS {
+        millis / 1000
+    } else {
+        millis
+    };
+    number.unsigned_abs()
 }
 
 fn read_block<'a>(block: &'a [u8], tag: &mut Tag<'a>) -> Result<(), Rejected> {
