@@ -39,9 +39,6 @@ impl Tally {
                 return;
             }
         };
-        if std::env::var("SHOW").is_ok() {
-            println!("{seed} {} {:?}", voyage.observations.len(), fitted.noise);
-        }
         let mut without = fitted.model.clone();
         without.covariance.as_mut().unwrap()[7][7] -= 0.25;
         let Truth {
@@ -88,22 +85,6 @@ impl Tally {
     }
 }
 
-/// Not for every run: prints the table in `docs/science.md`.
-#[test]
-#[ignore = "minutes long; run with --ignored --nocapture"]
-fn table_of_coverage() {
-    let ships: u64 = std::env::var("SHIPS").map_or(100, |n| n.parse().unwrap());
-    for days in [10.0, 60.0] {
-        for variety in [Variety::Rich, Variety::Medium, Variety::Poor] {
-            let mut tally = Tally::default();
-            for seed in 0..ships {
-                tally.add(seed, variety, days, &Faults::USUAL);
-            }
-            tally.print(&format!("{variety:?} {days} days"));
-        }
-    }
-}
-
 /// A small fleet of each kind, sixty days at sea.
 #[test]
 fn the_band_holds_the_truth_on_nine_headings_in_ten() {
@@ -120,5 +101,203 @@ fn the_band_holds_the_truth_on_nine_headings_in_ten() {
         // Honest, and narrow beside the reference's own constant.
         let error = (tally.shape_squares / f64::from(tally.headings)).sqrt();
         assert!(error < 0.4, "{variety:?}: {error}");
+    }
+}
+
+#[test]
+fn one_wild_reading_in_thirty_does_no_harm() {
+    let mut tally = Tally::default();
+    for seed in 2000..2003 {
+        tally.add(
+            seed,
+            Variety::Medium,
+            60.0,
+            &Faults {
+                outliers: 0.015,
+                ..Faults::USUAL
+            },
+        );
+    }
+    assert_eq!((tally.refused, tally.passed), (0, tally.ships));
+}
+
+#[test]
+fn a_ship_of_one_sea_says_what_she_cannot_know() {
+    for seed in 3000..3004 {
+        let mut voyage = sail(seed, Variety::Poor, 60.0, &Faults::USUAL);
+        let home = voyage.observations[0].z_nt / voyage.observations[0].h_nt;
+        voyage
+            .observations
+            .retain(|o| (o.z_nt / o.h_nt / home - 1.0).abs() < 0.04);
+        let model = fit_robust(&voyage.observations, &RobustOptions::default())
+            .unwrap()
+            .model;
+        let told = model.identifiable.unwrap();
+        assert!(
+            !(told.bx_nt || told.chi13 || told.by_nt || told.chi23),
+            "{told:?}"
+        );
+        assert!(told.chi11_minus_chi22, "{told:?}");
+
+        // At home the band is narrow; off the Cape it is wide, and holds.
+        let Truth { h_nt, z_nt, .. } = voyage.truth;
+        let (_, at_home) = predicted(&model, 90.0, h_nt, z_nt);
+        let (_, far_away) = predicted(&model, 90.0, 12_000.0, -25_000.0);
+        assert!(far_away > 2.0 * at_home, "{far_away} and {at_home}");
+        for compass in [0.0, 90.0, 180.0, 270.0] {
+            let (deviation, se) = predicted(&model, compass, 12_000.0, -25_000.0);
+            let truth = true_deviation(&voyage.truth, compass, 12_000.0, -25_000.0);
+            assert!(
+                wrap_180(deviation - truth).abs() < 3.5 * se,
+                "{seed} {compass}"
+            );
+        }
+    }
+}
+
+#[test]
+fn both_hemispheres_tell_all_seven() {
+    let voyage = sail(4000, Variety::Rich, 60.0, &Faults::USUAL);
+    let model = fit_robust(&voyage.observations, &RobustOptions::default())
+        .unwrap()
+        .model;
+    let told = model.identifiable.unwrap();
+    assert!(
+        told.bx_nt && told.chi13 && told.by_nt && told.chi23,
+        "{told:?}"
+    );
+    assert!(
+        told.chi11_minus_chi22 && told.chi12 && told.chi21,
+        "{told:?}"
+    );
+    assert!(!told.constant_deg);
+}
+
+#[test]
+fn a_year_of_drift_is_followed() {
+    let mut tally = Tally::default();
+    for seed in 5000..5002 {
+        tally.add(
+            seed,
+            Variety::Medium,
+            200.0,
+            &Faults {
+                drift_nt: 150.0,
+                ..Faults::USUAL
+            },
+        );
+    }
+    assert_eq!((tally.refused, tally.passed), (0, tally.ships));
+}
+
+/// Not for every run: prints the table in `docs/science.md`.
+#[test]
+#[ignore = "minutes long; run with --ignored --nocapture"]
+fn table_of_coverage() {
+    let ships: u64 = std::env::var("SHIPS").map_or(100, |n| n.parse().unwrap());
+    for days in [10.0, 60.0] {
+        for variety in [Variety::Rich, Variety::Medium, Variety::Poor] {
+            let mut tally = Tally::default();
+            for seed in 0..ships {
+                tally.add(seed, variety, days, &Faults::USUAL);
+            }
+            tally.print(&format!("{variety:?} {days} days"));
+        }
+    }
+}
+
+/// Not for every run: what happens when ships or instruments are not as usual.
+#[test]
+#[ignore = "minutes long; run with --ignored --nocapture"]
+fn table_of_the_unusual() {
+    let ships: u64 = std::env::var("SHIPS").map_or(30, |n| n.parse().unwrap());
+    let usual = Faults::USUAL;
+    let quiet = Faults {
+        slow_gyro_deg: 0.05,
+        schuler_deg: 0.1,
+        variation_deg: 0.05,
+        swing_deg: 0.05,
+        ..usual
+    };
+    let cases = [
+        (
+            "ship twice as magnetic",
+            60.0,
+            Faults { ship: 2.0, ..usual },
+        ),
+        (
+            "gyro swings 0.8",
+            60.0,
+            Faults {
+                schuler_deg: 0.8,
+                ..usual
+            },
+        ),
+        (
+            "gyro wanders 0.8",
+            60.0,
+            Faults {
+                slow_gyro_deg: 0.8,
+                ..usual
+            },
+        ),
+        (
+            "gyro constant 0.5",
+            60.0,
+            Faults {
+                gyro_constant_deg: 0.5,
+                ..usual
+            },
+        ),
+        (
+            "speed error left 0.3",
+            60.0,
+            Faults {
+                speed_error: 0.3,
+                ..usual
+            },
+        ),
+        ("quiet instruments", 60.0, quiet),
+        (
+            "outliers 3 %",
+            60.0,
+            Faults {
+                outliers: 0.03,
+                ..usual
+            },
+        ),
+        (
+            "six storms a month",
+            60.0,
+            Faults {
+                storms_per_month: 6.0,
+                ..usual
+            },
+        ),
+        ("no drift, 200 days", 200.0, usual),
+        (
+            "drift 150 nT, 200 days",
+            200.0,
+            Faults {
+                drift_nt: 150.0,
+                ..usual
+            },
+        ),
+        (
+            "drift 300 nT, 200 days",
+            200.0,
+            Faults {
+                drift_nt: 300.0,
+                ..usual
+            },
+        ),
+    ];
+    for (name, days, faults) in cases {
+        let mut tally = Tally::default();
+        for seed in 0..ships {
+            let variety = [Variety::Rich, Variety::Medium, Variety::Poor][seed as usize % 3];
+            tally.add(seed + 5000, variety, days, &faults);
+        }
+        tally.print(name);
     }
 }

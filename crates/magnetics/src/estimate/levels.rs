@@ -16,8 +16,6 @@ const LOG_SD: [f64; 6] = [0.7, 0.6, 0.5, 0.7, 0.5, 0.5];
 const TRIAL: f64 = 0.3;
 /// And moved at most so far in a sweep.
 const LARGEST_MOVE: f64 = 0.9;
-/// Every level in turn, so many times.
-const SWEEPS: usize = 3;
 /// Rows of one stretch when there are too many for all to be looked at.
 const STRETCH: usize = 1000;
 /// Stretches that are looked at then.
@@ -30,13 +28,15 @@ pub(crate) struct Pull {
     pub(crate) score: SVector<f64, UNKNOWNS>,
 }
 
-/// The levels that make the rows likeliest, sought from `levels`.
+/// The levels that make the rows likeliest, sought from `levels` by moving each
+/// in turn, `sweeps` times.
 pub(crate) fn fit_levels(
     stations: &[Station],
     rows: &[Row],
     pull: &Pull,
     typical: &NoiseLevels,
     levels: &NoiseLevels,
+    sweeps: u32,
 ) -> NoiseLevels {
     let stretches = stretches(rows.len());
     let typical = typical.to_array().map(f64::ln);
@@ -68,7 +68,7 @@ pub(crate) fn fit_levels(
     };
     let mut logs = levels.to_array().map(f64::ln);
     let mut best = objective(&logs);
-    for _ in 0..SWEEPS {
+    for _ in 0..sweeps {
         for k in 0..6 {
             // A level of zero (its logarithm is not finite) stays zero.
             if logs[k].is_finite() {

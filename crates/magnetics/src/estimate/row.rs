@@ -163,11 +163,13 @@ pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns) -> Ro
     let (predicted, needle) = predict(o, unknowns);
     let gradient = needle.gradient();
     let scale = scales();
+    // The heading of the row moves with the parameters too.
+    let follows = 1.0 + (1.0 - FUSION_WEIGHT) * (1.0 - needle.compass_per_magnetic());
     let mut columns = [0.0; UNKNOWNS];
     for j in 0..PARAMETERS {
-        columns[j] = gradient[j].to_degrees() * scale[j];
+        columns[j] = gradient[j].to_degrees() * scale[j] * follows;
     }
-    columns[CONSTANT] = needle.compass_per_magnetic() * scale[CONSTANT];
+    columns[CONSTANT] = needle.compass_per_magnetic() * scale[CONSTANT] * follows;
     columns[CONSTANT + 1..].copy_from_slice(&station.nuisance);
     let mut residual = wrap_180(o.deviation.degrees_east() - predicted);
     for j in CONSTANT + 1..UNKNOWNS {

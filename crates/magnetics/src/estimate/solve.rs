@@ -16,10 +16,10 @@ use nalgebra::{SMatrix, SVector};
 
 /// Gauss–Newton steps at most; three suffice near the solution.
 const ITERATIONS: u32 = 12;
-/// Rounds of noise levels and parameters in turn.
-const ROUNDS: u32 = 2;
-/// A step below this, in population standard deviations, ends the iteration.
-const SETTLED: f64 = 1e-4;
+/// Rounds of noise levels and parameters in turn: how often each level is moved,
+/// and the step, in population standard deviations, below which the parameters
+/// have settled.
+const ROUNDS: [(u32, f64); 2] = [(3, 0.01), (1, 5e-4)];
 /// Days whose scores are held against what the noise model says of them.
 const BLOCK_S: f64 = 4.0 * 86_400.0;
 /// For judging what the data alone say, the population is taken this much wider.
@@ -148,22 +148,22 @@ impl<'a> Problem<'a> {
         // every row.
         let mut levels = *typical;
         levels.white_deg = (sd / 2.0).clamp(0.02, 10.0);
-        for _ in 0..ROUNDS {
+        for (sweeps, settled) in ROUNDS {
+            let rows = self.rows(&unknowns);
             let pull = self.pull(&unknowns);
-            levels = fit_levels(
-                &self.stations,
-                &self.rows(&unknowns),
-                &pull,
-                typical,
-                &levels,
-            );
-            unknowns = self.descend(unknowns, &levels)?;
+            levels = fit_levels(&self.stations, &rows, &pull, typical, &levels, sweeps);
+            unknowns = self.descend(unknowns, &levels, settled)?;
         }
         Some((unknowns, levels))
     }
 
     /// Gauss–Newton from `unknowns` until it settles.
-    fn descend(&self, mut unknowns: Unknowns, levels: &NoiseLevels) -> Option<Unknowns> {
+    fn descend(
+        &self,
+        mut unknowns: Unknowns,
+        levels: &NoiseLevels,
+        settled: f64,
+    ) -> Option<Unknowns> {
         for _ in 0..ITERATIONS {
             let pass = whiten(&self.stations, &self.rows(&unknowns), levels, |_, _| ());
             let pull = self.pull(&unknowns);
@@ -176,7 +176,7 @@ impl<'a> Problem<'a> {
             if !unknowns.iter().all(|u| u.is_finite()) {
                 return None;
             }
-            if step.amax() < SETTLED {
+            if step.amax() < settled {
                 return Some(unknowns);
             }
         }
@@ -297,11 +297,13 @@ fn identifiable(information: &Matrix) -> Identifiable {
     alone[(CONSTANT, CONSTANT)] += 1e12;
     let by_data = alone.cholesky().map(|factor| factor.inverse());
     let told = |j: usize| by_data.is_some_and(|covariance| covariance[(j, j)].sqrt() < DATA_DRIVEN);
+    // What is permanent is known only when what the dip induces is.
+    let (fore_and_aft, athwart) = (told(0) && told(1), told(2) && told(3));
     Identifiable {
-        bx_nt: told(0),
-        chi13: told(1),
-        by_nt: told(2),
-        chi23: told(3),
+        bx_nt: fore_and_aft,
+        chi13: fore_and_aft,
+        by_nt: athwart,
+        chi23: athwart,
         chi11_minus_chi22: told(4),
         chi12: told(5),
         chi21: told(6),

@@ -8,6 +8,10 @@ use nalgebra::{SMatrix, SVector};
 
 /// Enough for any ship whose headings are not ambiguous.
 const ITERATIONS: u32 = 30;
+/// A step below this, in population standard deviations, is no step.
+const SETTLED: f64 = 3e-3;
+/// More rows do not make the start better.
+const ENOUGH: usize = 4000;
 /// The median of |x| of a Gaussian is this part of its standard deviation.
 const MEDIAN_TO_SD: f64 = 0.674_489_8;
 /// No instrument is better than this; it keeps perfect data from dividing by zero.
@@ -23,16 +27,20 @@ pub(crate) fn start(
 ) -> (Unknowns, f64) {
     let mut unknowns = *prior_mean;
     let mut sd = f64::INFINITY;
+    // Every n-th row is as good a start as all of them.
+    let every = observations.len().div_ceil(ENOUGH).max(1);
+    let stations: Vec<&Station> = stations.iter().step_by(every).collect();
     for _ in 0..ITERATIONS {
         let rows: Vec<Row> = observations
             .iter()
-            .zip(stations)
+            .step_by(every)
+            .zip(&stations)
             .map(|(o, s)| row(o, s, &unknowns))
             .collect();
         sd = robust_sd(rows.iter().map(|r| r.residual));
         let mut information = *prior_information;
         let mut score = prior_information * (SVector::from(*prior_mean) - SVector::from(unknowns));
-        for (r, s) in rows.iter().zip(stations) {
+        for (r, s) in rows.iter().zip(&stations) {
             let own_sd = sd * s.white_factor.sqrt();
             let weight = huber_weight(r.residual / own_sd) / (own_sd * own_sd);
             let columns = SVector::from(r.columns);
@@ -46,7 +54,7 @@ pub(crate) fn start(
         for (u, d) in unknowns.iter_mut().zip(step.iter()) {
             *u += d;
         }
-        if step.amax() < 1e-4 {
+        if step.amax() < SETTLED {
             break;
         }
     }

@@ -49,6 +49,7 @@ pub(crate) struct Truth {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faults {
     pub(crate) ship: f64,
+    pub(crate) gyro_constant_deg: f64,
     pub(crate) schuler_deg: f64,
     pub(crate) slow_gyro_deg: f64,
     pub(crate) variation_deg: f64,
@@ -56,11 +57,14 @@ pub(crate) struct Faults {
     pub(crate) outliers: f64,
     pub(crate) speed_error: f64,
     pub(crate) storms_per_month: f64,
+    /// Random walk of bx and by, standard deviation in thirty days.
+    pub(crate) drift_nt: f64,
 }
 
 impl Faults {
     pub(crate) const USUAL: Faults = Faults {
         ship: 1.0,
+        gyro_constant_deg: 0.35,
         schuler_deg: 0.35,
         slow_gyro_deg: 0.3,
         variation_deg: 0.2,
@@ -68,6 +72,7 @@ impl Faults {
         outliers: 0.003,
         speed_error: 0.1,
         storms_per_month: 0.5,
+        drift_nt: 0.0,
     };
 }
 
@@ -79,24 +84,14 @@ pub(crate) fn gauss(rng: &mut ChaCha8Rng) -> f64 {
 
 /// Declination in degrees, H and Z in nT, of the tilted dipole of 2025.
 pub(crate) fn dipole(lat_deg: f64, lon_deg: f64) -> (f64, f64, f64) {
-    let (g10, g11, h11) = (-29350.0, -1410.0, 4545.0);
-    let (st, ct) = lat_deg.to_radians().cos_sin();
-    let (sp, cp) = lon_deg.to_radians().sin_cos();
-    let equatorial = g11 * cp + h11 * sp;
-    let x = -(g10 * st) * 1.0 + equatorial * ct;
-    let y = g11 * sp - h11 * cp;
-    let z = -2.0 * (g10 * ct + equatorial * st);
+    let (g10, g11, h11) = (-29_350.0, -1410.0, 4545.0);
+    let (sin_lat, cos_lat) = lat_deg.to_radians().sin_cos();
+    let (sin_lon, cos_lon) = lon_deg.to_radians().sin_cos();
+    let equatorial = g11 * cos_lon + h11 * sin_lon;
+    let x = -g10 * cos_lat + equatorial * sin_lat;
+    let y = g11 * sin_lon - h11 * cos_lon;
+    let z = -2.0 * (g10 * sin_lat + equatorial * cos_lat);
     (y.atan2(x).to_degrees(), x.hypot(y), z)
-}
-
-trait CosSin {
-    fn cos_sin(self) -> (f64, f64);
-}
-impl CosSin for f64 {
-    /// Sine and cosine of the colatitude.
-    fn cos_sin(self) -> (f64, f64) {
-        (self.cos(), self.sin())
-    }
 }
 
 /// Exact deviation by compass heading, degrees (closed form).
@@ -114,27 +109,15 @@ pub(crate) fn deviation_by_compass(p: &[f64; 7], compass_deg: f64, h: f64, z: f6
     ((k3 / k1.hypot(k2)).asin() + k2.atan2(k1)).to_degrees()
 }
 
-pub(crate) fn array(p: &Parameters) -> [f64; 7] {
-    [
-        p.bx_nt,
-        p.chi13,
-        p.by_nt,
-        p.chi23,
-        p.chi11_minus_chi22,
-        p.chi12,
-        p.chi21,
-    ]
-}
-
 /// The true deviation as the compass's user sees it.
 pub(crate) fn true_deviation(truth: &Truth, compass_deg: f64, h: f64, z: f64) -> f64 {
     let needle = compass_deg + truth.alignment_deg;
-    wrap_180(deviation_by_compass(&array(&truth.parameters), needle, h, z) + truth.alignment_deg)
+    wrap_180(deviation_by_compass(&truth.parameters.to_array(), needle, h, z) + truth.alignment_deg)
 }
 
 /// The model's deviation and its standard error, both in degrees.
 pub(crate) fn predicted(model: &Model, compass_deg: f64, h: f64, z: f64) -> (f64, f64) {
-    let p = array(&model.parameters_over_lambda);
+    let p = model.parameters_over_lambda.to_array();
     let centre = deviation_by_compass(&p, compass_deg, h, z);
     let steps = [1.0, 1e-5, 1.0, 1e-5, 1e-5, 1e-5, 1e-5];
     let mut gradient = [1.0; 8];
@@ -154,133 +137,32 @@ pub(crate) fn predicted(model: &Model, compass_deg: f64, h: f64, z: f64) -> (f64
 }
 
 /// A ship's passage of `days`, one observation every ten minutes at sea.
-#[allow(clippy::too_many_lines)] // one minute after another
 pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> Voyage {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
-    let p = sd.map(|s| s * faults.ship * gauss(&mut rng));
-    let parameters = Parameters {
-        bx_nt: p[0],
-        chi13: p[1],
-        by_nt: p[2],
-        chi23: p[3],
-        chi11_minus_chi22: p[4],
-        chi12: p[5],
-        chi21: p[6],
-    };
-    let alignment_deg = 0.5 * gauss(&mut rng);
-    let gyro_constant_deg = 0.35 * gauss(&mut rng);
-    let speed_error = faults.speed_error * gauss(&mut rng);
-    let ports = ports(variety, &mut rng);
-    let (mut lat, mut lon) = ports[0];
-    let mut bound_for = 1;
-    let mut course: f64 = 0.0;
-    let mut leg_minutes = 0.0;
-    let mut berth_minutes: f64 = 0.0;
-    let mut turning = 0;
-    let speed_kn = 12.0 + 4.0 * rng.random::<f64>();
-    // Gyro: swing, its rate, slow error; compass swing; variation error.
-    let (mut swing, mut rate) = (faults.schuler_deg * gauss(&mut rng), 0.0);
-    let mut slow = faults.slow_gyro_deg * gauss(&mut rng);
-    let mut compass_swing = 0.0;
-    let mut crust = faults.variation_deg * gauss(&mut rng);
-    let mut storm_left = 0.0;
-    let mut storm = 0.0;
-    let omega = TAU / 84.4;
+    let mut truth = Truth::of_any_ship(faults, &mut rng);
+    let mut passage = Passage::new(variety, &mut rng);
+    let mut errors = Errors::new(faults, &mut rng);
     let start = Timestamp::parse("2026-09-01T00:00:00Z").unwrap();
-    let mut sums = (0, 0.0, 0.0);
+    let mut mean = Mean::default();
     let mut observations = Vec::new();
     for minute in 0..(days * 1440.0) as i64 {
-        let mut kick = 0.0;
-        if berth_minutes > 0.0 {
-            berth_minutes -= 1.0;
-        } else {
-            if leg_minutes <= 0.0 {
-                let (to_lat, to_lon) = ports[bound_for];
-                let east = wrap_180(to_lon - lon) * lat.to_radians().cos();
-                let north = to_lat - lat;
-                if east.hypot(north) < 2.0 {
-                    bound_for = (bound_for + 1) % ports.len();
-                    berth_minutes = 720.0 + 1440.0 * rng.random::<f64>();
-                }
-                let wanted = east.atan2(north).to_degrees() + 30.0 * gauss(&mut rng);
-                let near = if variety == Variety::Poor {
-                    150.0
-                } else {
-                    360.0
-                };
-                leg_minutes = (near * (0.8 * gauss(&mut rng)).exp()).clamp(20.0, 2000.0);
-                let turn = wrap_180(wanted - course);
-                if turn.abs() > 20.0 {
-                    kick = faults.schuler_deg * 1.2 * gauss(&mut rng);
-                }
-                course = wanted.rem_euclid(360.0);
-                turning = 6;
-                sums = (0, 0.0, 0.0);
-            }
-            leg_minutes -= 1.0;
-            lat += speed_kn / 3600.0 * course.to_radians().cos();
-            lon = wrap_180(
-                lon + speed_kn / 3600.0 * course.to_radians().sin() / lat.to_radians().cos(),
-            );
+        let turned = passage.minute(&mut rng);
+        if minute % 60 == 0 {
+            let hourly = faults.drift_nt / 720.0_f64.sqrt();
+            truth.parameters.bx_nt += hourly * gauss(&mut rng);
+            truth.parameters.by_nt += hourly * gauss(&mut rng);
         }
-        // Minute steps of each process.
-        rate += kick * omega - (omega * omega * swing + 2.0 * 0.2 * omega * rate)
-            + faults.schuler_deg * omega * (4.0f64 * 0.2 * omega * 0.3).sqrt() * gauss(&mut rng);
-        swing += rate;
-        step(&mut slow, 1.0 / 4320.0, faults.slow_gyro_deg, &mut rng);
-        step(&mut compass_swing, 1.0 / 20.0, faults.swing_deg, &mut rng);
-        let underway = berth_minutes <= 0.0;
-        if underway {
-            step(
-                &mut crust,
-                speed_kn / 60.0 / 60.0,
-                faults.variation_deg,
-                &mut rng,
-            );
-        }
-        if storm_left > 0.0 {
-            storm_left -= 1.0;
-            step(&mut storm, 1.0 / 60.0, 1.0, &mut rng);
-        } else {
-            storm = 0.0;
-            if rng.random::<f64>() < faults.storms_per_month / 43_200.0 {
-                storm_left = 240.0 + 600.0 * rng.random::<f64>();
-            }
-        }
-        if !underway {
-            sums = (0, 0.0, 0.0);
+        errors.minute(faults, &passage, turned, &mut rng);
+        if passage.berth_minutes > 0.0 || passage.turning_minutes > 0.0 {
+            mean = Mean::default();
             continue;
         }
-        if turning > 0 {
-            turning -= 1;
+        let (variation, h_nt, z_nt) = dipole(passage.lat, passage.lon);
+        let (compass, gyro) =
+            errors.read(&truth, &passage, minute, (variation, h_nt, z_nt), &mut rng);
+        let Some((mut compass, mut gyro)) = mean.add(passage.course, compass, gyro) else {
             continue;
-        }
-        let (variation, h, z) = dipole(lat, lon);
-        let yaw = 1.0 * gauss(&mut rng);
-        let true_heading = course + yaw;
-        let daily = 0.12 * (TAU * (minute as f64 / 1440.0 + lon / 360.0)).sin();
-        let scale = 24_000.0 / h;
-        let magnetic = true_heading - variation - (crust + daily + storm) * scale;
-        let compass =
-            needle(&p, magnetic, h, z) - alignment_deg + compass_swing + 0.35 * gauss(&mut rng);
-        let north_speed = speed_error
-            * (speed_kn * course.to_radians().cos() / (902.5 * lat.to_radians().cos()))
-                .to_degrees();
-        let gyro = true_heading
-            + gyro_constant_deg
-            + (swing + slow) / lat.to_radians().cos()
-            + north_speed
-            + 0.15 * gauss(&mut rng);
-        sums.0 += 1;
-        sums.1 += wrap_180(compass - course);
-        sums.2 += wrap_180(gyro - course);
-        if sums.0 < 10 {
-            continue;
-        }
-        let mut compass = course + sums.1 / 10.0;
-        let mut gyro = course + sums.2 / 10.0;
-        sums = (0, 0.0, 0.0);
+        };
         if rng.random::<f64>() < faults.outliers {
             gyro += 10.0 * gauss(&mut rng);
         }
@@ -289,28 +171,212 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
         }
         observations.push(Observation {
             time: Some(start.plus_seconds(60.0 * minute as f64)),
-            position: Some(Position::new(lat, lon).unwrap()),
+            position: Some(Position::new(passage.lat, passage.lon).unwrap()),
             compass: CompassHeading::new(compass).unwrap(),
             deviation: Deviation::new(gyro - variation - compass).unwrap(),
             variation: Variation::new(variation).unwrap(),
-            h_nt: h,
-            z_nt: z,
+            h_nt,
+            z_nt,
             gyro_share: 1.0,
-            sog_kn: Some(speed_kn),
+            sog_kn: Some(passage.speed_kn),
             windows: 55,
             weight: 1.0,
         });
     }
-    let (_, h_nt, z_nt) = dipole(lat, lon);
+    let (_, h_nt, z_nt) = dipole(passage.lat, passage.lon);
     Voyage {
         observations,
         truth: Truth {
-            parameters,
-            alignment_deg,
-            gyro_constant_deg,
             h_nt,
             z_nt,
+            ..truth
         },
+    }
+}
+
+impl Truth {
+    fn of_any_ship(faults: &Faults, rng: &mut ChaCha8Rng) -> Truth {
+        let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
+        Truth {
+            parameters: Parameters::from_array(sd.map(|s| s * faults.ship * gauss(rng))),
+            alignment_deg: 0.5 * gauss(rng),
+            gyro_constant_deg: faults.gyro_constant_deg * gauss(rng),
+            h_nt: 0.0,
+            z_nt: 0.0,
+        }
+    }
+}
+
+/// Where the ship is and what she does.
+struct Passage {
+    variety: Variety,
+    ports: Vec<(f64, f64)>,
+    bound_for: usize,
+    lat: f64,
+    lon: f64,
+    speed_kn: f64,
+    course: f64,
+    leg_minutes: f64,
+    berth_minutes: f64,
+    turning_minutes: f64,
+}
+
+impl Passage {
+    fn new(variety: Variety, rng: &mut ChaCha8Rng) -> Passage {
+        let ports = ports(variety, rng);
+        Passage {
+            variety,
+            bound_for: 1,
+            lat: ports[0].0,
+            lon: ports[0].1,
+            ports,
+            speed_kn: 12.0 + 4.0 * rng.random::<f64>(),
+            course: 0.0,
+            leg_minutes: 0.0,
+            berth_minutes: 0.0,
+            turning_minutes: 0.0,
+        }
+    }
+
+    /// One minute on; by how much she turned to a new leg.
+    fn minute(&mut self, rng: &mut ChaCha8Rng) -> f64 {
+        if self.berth_minutes > 0.0 {
+            self.berth_minutes -= 1.0;
+            return 0.0;
+        }
+        self.turning_minutes -= 1.0;
+        self.leg_minutes -= 1.0;
+        let course = self.course.to_radians();
+        self.lat += self.speed_kn / 3600.0 * course.cos();
+        let east = self.speed_kn / 3600.0 * course.sin() / self.lat.to_radians().cos();
+        self.lon = wrap_180(self.lon + east);
+        if self.leg_minutes > 0.0 {
+            return 0.0;
+        }
+        let (to_lat, to_lon) = self.ports[self.bound_for];
+        let east = wrap_180(to_lon - self.lon) * self.lat.to_radians().cos();
+        let north = to_lat - self.lat;
+        if east.hypot(north) < 2.0 {
+            self.bound_for = (self.bound_for + 1) % self.ports.len();
+            self.berth_minutes = 720.0 + 1440.0 * rng.random::<f64>();
+        }
+        let wanted = east.atan2(north).to_degrees() + 30.0 * gauss(rng);
+        let usual = if self.variety == Variety::Poor {
+            150.0
+        } else {
+            360.0
+        };
+        self.leg_minutes = (usual * (0.8 * gauss(rng)).exp()).clamp(20.0, 2000.0);
+        let turn = wrap_180(wanted - self.course);
+        self.course = wanted.rem_euclid(360.0);
+        self.turning_minutes = 6.0;
+        turn
+    }
+}
+
+/// Everything that goes wrong, stepped by the minute.
+struct Errors {
+    swing: f64,
+    rate: f64,
+    slow: f64,
+    compass_swing: f64,
+    crust: f64,
+    storm: f64,
+    storm_minutes: f64,
+    speed_error: f64,
+}
+
+impl Errors {
+    fn new(faults: &Faults, rng: &mut ChaCha8Rng) -> Errors {
+        Errors {
+            swing: faults.schuler_deg * gauss(rng),
+            rate: 0.0,
+            slow: faults.slow_gyro_deg * gauss(rng),
+            compass_swing: 0.0,
+            crust: faults.variation_deg * gauss(rng),
+            storm: 0.0,
+            storm_minutes: 0.0,
+            speed_error: faults.speed_error * gauss(rng),
+        }
+    }
+
+    fn minute(&mut self, faults: &Faults, on: &Passage, turned: f64, rng: &mut ChaCha8Rng) {
+        let omega = TAU / 84.4;
+        let kick = if turned.abs() > 20.0 {
+            1.2 * faults.schuler_deg * gauss(rng)
+        } else {
+            0.0
+        };
+        let noise = faults.schuler_deg * omega * (4.0_f64 * 0.2 * omega * 0.3).sqrt();
+        self.rate += kick * omega - (omega * omega * self.swing + 0.4 * omega * self.rate)
+            + noise * gauss(rng);
+        self.swing += self.rate;
+        step(&mut self.slow, 1.0 / 4320.0, faults.slow_gyro_deg, rng);
+        step(&mut self.compass_swing, 1.0 / 20.0, faults.swing_deg, rng);
+        if on.berth_minutes <= 0.0 {
+            step(
+                &mut self.crust,
+                on.speed_kn / 3600.0,
+                faults.variation_deg,
+                rng,
+            );
+        }
+        if self.storm_minutes > 0.0 {
+            self.storm_minutes -= 1.0;
+            step(&mut self.storm, 1.0 / 60.0, 1.0, rng);
+            return;
+        }
+        self.storm = 0.0;
+        if rng.random::<f64>() < faults.storms_per_month / 43_200.0 {
+            self.storm_minutes = 240.0 + 600.0 * rng.random::<f64>();
+        }
+    }
+
+    /// What compass and gyro show in the field (variation, H, Z) of the models.
+    fn read(
+        &self,
+        truth: &Truth,
+        on: &Passage,
+        minute: i64,
+        (variation, h, z): (f64, f64, f64),
+        rng: &mut ChaCha8Rng,
+    ) -> (f64, f64) {
+        let true_heading = on.course + gauss(rng);
+        let daily = 0.12 * (TAU * (minute as f64 / 1440.0 + on.lon / 360.0)).sin();
+        let magnetic = true_heading - variation - (self.crust + daily + self.storm) * 24_000.0 / h;
+        let compass = needle(&truth.parameters, magnetic, h, z) - truth.alignment_deg
+            + self.compass_swing
+            + 0.35 * gauss(rng);
+        let cos_lat = on.lat.to_radians().cos();
+        let northerly = on.speed_kn * on.course.to_radians().cos() / (902.5 * cos_lat);
+        let gyro = true_heading
+            + truth.gyro_constant_deg
+            + (self.swing + self.slow) / cos_lat
+            + self.speed_error * northerly.to_degrees()
+            + 0.15 * gauss(rng);
+        (compass, gyro)
+    }
+}
+
+/// The mean of ten readings on one course.
+#[derive(Default)]
+struct Mean {
+    count: u32,
+    compass: f64,
+    gyro: f64,
+}
+
+impl Mean {
+    fn add(&mut self, course: f64, compass: f64, gyro: f64) -> Option<(f64, f64)> {
+        self.count += 1;
+        self.compass += wrap_180(compass - course) / 10.0;
+        self.gyro += wrap_180(gyro - course) / 10.0;
+        if self.count < 10 {
+            return None;
+        }
+        let mean = (course + self.compass, course + self.gyro);
+        *self = Mean::default();
+        Some(mean)
     }
 }
 
@@ -320,18 +386,14 @@ fn step(x: &mut f64, share: f64, sd: f64, rng: &mut ChaCha8Rng) {
     *x = *x * keep + sd * (1.0 - keep * keep).sqrt() * gauss(rng);
 }
 
-/// Where the needle settles on a magnetic heading, by bisection on the closed form.
-fn needle(p: &[f64; 7], magnetic_deg: f64, h: f64, z: f64) -> f64 {
-    let (mut low, mut high) = (magnetic_deg - 90.0, magnetic_deg + 90.0);
-    for _ in 0..45 {
-        let middle = f64::midpoint(low, high);
-        if middle + deviation_by_compass(p, middle, h, z) < magnetic_deg {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    f64::midpoint(low, high)
+/// Where the needle settles on a magnetic heading: Poisson's equations over λ.
+fn needle(p: &Parameters, magnetic_deg: f64, h: f64, z: f64) -> f64 {
+    let (sin, cos) = magnetic_deg.to_radians().sin_cos();
+    let (forward, starboard) = (h * cos, -h * sin);
+    let half = p.chi11_minus_chi22 / 2.0;
+    let x = (1.0 + half) * forward + p.chi12 * starboard + p.chi13 * z + p.bx_nt;
+    let y = p.chi21 * forward + (1.0 - half) * starboard + p.chi23 * z + p.by_nt;
+    (-y).atan2(x).to_degrees()
 }
 
 fn ports(variety: Variety, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {

@@ -1,0 +1,22 @@
+//! How long a fit takes: sixty days, and a year, of ten-minute samples.
+
+#![allow(missing_docs)] // divan's attribute makes public items
+
+#[path = "../tests/voyages/mod.rs"]
+#[allow(dead_code)]
+mod voyages;
+
+use binnacle_magnetics::fit::{RobustOptions, fit_robust};
+use divan::Bencher;
+use voyages::{Faults, Variety, sail};
+
+fn main() {
+    divan::main();
+}
+
+/// 60 days are some 7,500 samples; 415 days some 52,000.
+#[divan::bench(args = [60, 415], sample_count = 10, sample_size = 1)]
+fn robust_fit(bencher: Bencher<'_, '_>, days: u32) {
+    let voyage = sail(3, Variety::Medium, f64::from(days), &Faults::USUAL);
+    bencher.bench_local(|| fit_robust(&voyage.observations, &RobustOptions::default()));
+}
