@@ -160,7 +160,10 @@ fn execute(command: Command) -> anyhow::Result<()> {
 }
 
 fn load(path: &Path) -> Result<Config, BadInput> {
-    Ok(Config::load(path)?)
+    let config = Config::load(path)?;
+    // A certificate that cannot be used is found now, not at the first upload.
+    Shore::new(config.uplink.pinned_ca.as_deref()).map_err(|e| BadInput(format!("{e:#}")))?;
+    Ok(config)
 }
 
 #[cfg(unix)]

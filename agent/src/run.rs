@@ -46,7 +46,7 @@ const MOST_UNSTORED: usize = 20_000;
 
 /// Runs until `shutdown`; everything settled is in the spool then.
 pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::Result<()> {
-    let spool = Spool::open(&config.data_dir).await?;
+    let (spool, _alone) = Spool::open_for_agent(&config.data_dir).await?;
     let agent = Agent::start(config, spool.clone(), &shutdown).await?;
     agent.run(shutdown).await;
     spool.set_page(None).await.ok();

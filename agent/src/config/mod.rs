@@ -301,6 +301,18 @@ stale_s = 15
     }
 
     #[test]
+    fn the_example_loads_and_shows_the_defaults() {
+        let example = parse(include_str!("../../agent.example.toml"));
+        let example = example.map_err(|w| w.problem).unwrap();
+        let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
+        assert_eq!(example.uplink.poll_s, bare.uplink.poll_s);
+        assert_eq!(example.uplink.retry_min_s, bare.uplink.retry_min_s);
+        assert_eq!(example.uplink.retry_max_s, bare.uplink.retry_max_s);
+        assert_eq!(example.silence.stale_s, bare.silence.stale_s);
+        assert_eq!(example.output.interval_s, bare.output.interval_s);
+    }
+
+    #[test]
     fn only_the_data_directory_is_needed() {
         let config = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
         assert!(config.roles.compass[0].matches_talker(*b"HC"));

@@ -15,6 +15,7 @@
 //!   ten minutes that the sampler is still in.
 
 mod batches;
+mod repair;
 mod seal;
 
 pub(crate) use batches::{SealedBatch, Standing};
@@ -77,15 +78,7 @@ impl Spool {
         let path = directory.join("spool.db");
         create_private(directory, &path)
             .with_context(|| format!("{}: cannot create the spool", path.display()))?;
-        let options = SqliteConnectOptions::new()
-            .filename(&path)
-            .journal_mode(SqliteJournalMode::Wal)
-            .synchronous(SqliteSynchronous::Full)
-            .busy_timeout(Duration::from_secs(20));
-        let opened = SqlitePoolOptions::new()
-            .max_connections(1)
-            .connect_with(options)
-            .await;
+        let opened = connect(&path).await;
         let pool = opened.with_context(|| format!("{}: cannot open the spool", path.display()))?;
         sqlx::raw_sql(include_str!("schema.sql"))
             .execute(&pool)
@@ -168,6 +161,18 @@ impl Spool {
         let mut connection = self.pool.acquire().await?;
         get(&mut connection, name).await
     }
+}
+
+async fn connect(path: &Path) -> sqlx::Result<SqlitePool> {
+    let options = SqliteConnectOptions::new()
+        .filename(path)
+        .journal_mode(SqliteJournalMode::Wal)
+        .synchronous(SqliteSynchronous::Full)
+        .busy_timeout(Duration::from_secs(20));
+    SqlitePoolOptions::new()
+        .max_connections(1)
+        .connect_with(options)
+        .await
 }
 
 /// A value by name. One that does not read is reported and counts as absent:

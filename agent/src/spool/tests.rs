@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use tempfile::TempDir;
 use uuid::Uuid;
 
-fn sample(minute: i64) -> Sample {
+pub(super) fn sample(minute: i64) -> Sample {
     Sample {
         time: Timestamp::from_micros((1_700_000_000 + minute * 60) * 1_000_000).unwrap(),
         position: Position::new(43.0, -3.0).unwrap(),
@@ -22,7 +22,7 @@ fn sample(minute: i64) -> Sample {
     }
 }
 
-fn identity(stream: u128) -> Identity {
+pub(super) fn identity(stream: u128) -> Identity {
     Identity {
         server: "http://127.0.0.1:1".to_owned(),
         token: "secret-token".to_owned(),
@@ -41,7 +41,7 @@ fn downlink(contiguous_seq: u64) -> Downlink {
     }
 }
 
-fn accepted(windows: u64) -> BTreeMap<String, u64> {
+pub(super) fn accepted(windows: u64) -> BTreeMap<String, u64> {
     BTreeMap::from([("accepted".to_owned(), windows)])
 }
 
