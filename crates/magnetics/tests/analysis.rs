@@ -259,3 +259,145 @@ fn a_wild_gyro_reading_is_doubted_and_named() {
         4
     );
 }
+
+#[test]
+fn after_a_repair_what_was_learnt_before_still_counts() {
+    // A year in both hemispheres, then a few hours in one place.
+    let samples: Vec<Sample> = voyage()
+        .into_iter()
+        .filter(|s| s.time < time(9000))
+        .collect();
+    let few: Vec<Sample> = (0..60_i32)
+        .map(|i| sample(9000 + 10 * i64::from(i), 30.0, f64::from(i * 47 % 360)))
+        .collect();
+    let all: Vec<Sample> = samples.iter().chain(&few).copied().collect();
+    let repair = LogbookEntry {
+        from: time(9000),
+        to: None,
+        kind: LogbookKind::Repair,
+        note: String::new(),
+    };
+    let moved = LogbookEntry {
+        kind: LogbookKind::CompassMoved,
+        ..repair.clone()
+    };
+    let chi13_sd = |entry: &LogbookEntry| {
+        let analysis = analyse(
+            &all,
+            std::slice::from_ref(entry),
+            &AnalysisSettings::default(),
+        );
+        analysis.epochs[1]
+            .model
+            .as_ref()
+            .unwrap()
+            .covariance
+            .unwrap()[1][1]
+            .sqrt()
+    };
+    assert!(chi13_sd(&repair) < 0.6 * chi13_sd(&moved));
+}
+
+/// The voyage with a satellite compass beside the gyro.
+fn with_satellite() -> Vec<Sample> {
+    voyage()
+        .iter()
+        .map(|s| Sample {
+            satellite: s.gyro,
+            ..*s
+        })
+        .collect()
+}
+
+#[test]
+fn a_gyro_fault_is_not_put_down_to_the_compass() {
+    let sound = run(&with_satellite());
+    let mut faulty = with_satellite();
+    for sample in &mut faulty[600..] {
+        let gyro = sample.gyro.unwrap().degrees();
+        sample.gyro = TrueHeading::new(gyro + 5.0);
+    }
+    let found = run(&faulty);
+    let parameters = |analysis: &Analysis| {
+        analysis.epochs[0]
+            .model
+            .as_ref()
+            .unwrap()
+            .parameters_over_lambda
+            .to_array()
+    };
+    let within = [30.0, 1e-3, 30.0, 1e-3, 1e-3, 1e-3, 1e-3];
+    for ((a, b), within) in parameters(&sound)
+        .iter()
+        .zip(parameters(&found))
+        .zip(within)
+    {
+        assert!((a - b).abs() < within, "{a} and {b}");
+    }
+    let constant = found.epochs[0].model.as_ref().unwrap().constant_deg;
+    assert!(constant.abs() < 0.1, "{constant}");
+}
+
+#[test]
+fn two_references_narrow_the_constant_and_their_quarrel_widens_it() {
+    let sd = |samples: &[Sample]| {
+        let model = run(samples).epochs[0].model.clone().unwrap();
+        let covariance = model.covariance.unwrap();
+        // A and the constant together.
+        let a = [5, 6].map(|j| if j == 6 { 0.5_f64 } else { -0.5 }.to_degrees());
+        let mut variance =
+            covariance[7][7] + 2.0 * (a[0] * covariance[5][7] + a[1] * covariance[6][7]);
+        for (i, x) in [5, 6].into_iter().zip(a) {
+            for (j, y) in [5, 6].into_iter().zip(a) {
+                variance += x * covariance[i][j] * y;
+            }
+        }
+        variance.sqrt()
+    };
+    let (one, two) = (sd(&voyage()), sd(&with_satellite()));
+    let quarrel: Vec<Sample> = with_satellite()
+        .iter()
+        .map(|s| Sample {
+            satellite: s
+                .satellite
+                .and_then(|h| TrueHeading::new(h.degrees() + 2.0)),
+            ..*s
+        })
+        .collect();
+    assert!(two < 0.85 * one, "{two} {one}");
+    assert!(sd(&quarrel) > 0.95, "{}", sd(&quarrel));
+}
+
+#[test]
+fn a_very_magnetic_ship_is_fitted_all_the_same() {
+    // Some twenty-five degrees of deviation at home, more in the south.
+    let ship = Parameters {
+        bx_nt: 6500.0,
+        by_nt: -5500.0,
+        chi13: -0.05,
+        ..SHIP
+    };
+    let samples: Vec<Sample> = (0..1000_i32)
+        .map(|i| {
+            let minutes = 10 * i64::from(i);
+            let position = Position::new(50.0 - 0.05 * f64::from(i), -15.0).unwrap();
+            let earth = field(FieldModel::Igrf14, position, 0.0, time(minutes)).unwrap();
+            let magnetic = f64::from(i / 5 * 47 % 360);
+            let needle = ship.linearised_at_magnetic(magnetic.to_radians(), earth.for_ship());
+            Sample {
+                time: time(minutes),
+                position,
+                compass: CompassHeading::new(magnetic - needle.deviation_rad.to_degrees()).unwrap(),
+                gyro: TrueHeading::new(magnetic + earth.declination().degrees_east()),
+                ..sample(minutes, 0.0, 0.0)
+            }
+        })
+        .collect();
+    let analysis = run(&samples);
+    let model = analysis.epochs[0].model.as_ref().unwrap();
+    assert!(
+        (model.parameters_over_lambda.bx_nt - 6500.0).abs() < 60.0,
+        "{model:?}"
+    );
+    assert!(model.rms_deg.unwrap() < 0.1);
+}

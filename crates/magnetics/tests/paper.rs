@@ -5,7 +5,7 @@
 
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
 use binnacle_magnetics::deviation::Coefficients;
-use binnacle_magnetics::fit::{FitError, Observation, fit_paper};
+use binnacle_magnetics::fit::{FitError, Observation, RobustOptions, fit_paper, fit_robust};
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::ship::EarthField;
 
@@ -120,4 +120,22 @@ fn seven_rows_are_too_few() {
             needed: 8
         })
     );
+}
+
+#[test]
+fn the_products_fit_agrees_with_the_papers_where_the_data_do() {
+    // Rows without times, and deviations rounded to a tenth of a degree.
+    let rows = with_the_slips();
+    let model = fit_robust(&rows, &RobustOptions::default()).unwrap().model;
+    assert_eq!((model.samples_used, model.samples_rejected), (24, 0));
+    assert!(model.rms_deg.unwrap() < 0.1, "{:?}", model.rms_deg);
+    for row in &rows {
+        let earth = EarthField {
+            h_nt: row.h_nt,
+            z_nt: row.z_nt,
+        };
+        let predicted = model.deviation(row.compass, earth).unwrap();
+        let off = predicted.deviation.degrees_east() - row.deviation.degrees_east();
+        assert!(off.abs() < 0.2, "{off} on {}", row.compass);
+    }
 }

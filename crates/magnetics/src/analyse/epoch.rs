@@ -4,9 +4,11 @@ use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
 use super::settings::AnalysisSettings;
 use super::{Epoch, SampleReason};
+use crate::estimate::Prior;
 use crate::fit::{
     Observation, REJECTED_BELOW, ReferenceCheck, RobustFit, RobustOptions, fit_robust,
 };
+use crate::model::Model;
 use crate::time::Timestamp;
 
 /// The epochs that the logbook tells of, in order of time and without gaps.
@@ -42,8 +44,24 @@ fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>) -> Epoch 
     }
 }
 
-/// Fits an epoch's model to its readings and notes in each what became of it.
-pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], settings: &AnalysisSettings) {
+/// What the epoch before tells of this one: nothing after correctors or the
+/// compass itself were moved, for then everything may be another.
+fn prior(epoch: &Epoch, before: Option<&Model>) -> Prior {
+    let upset = match epoch.begun_by {
+        Some(LogbookKind::Repair | LogbookKind::Degaussing) => before.and_then(Prior::after_upset),
+        _ => None,
+    };
+    upset.unwrap_or_else(Prior::population)
+}
+
+/// Fits an epoch's model to its readings and notes in each what became of it;
+/// `before` is the model of the epoch before.
+pub(super) fn fit_epoch(
+    epoch: &mut Epoch,
+    before: Option<&Model>,
+    readings: &mut [Reading],
+    settings: &AnalysisSettings,
+) {
     epoch.data_from = readings.first().map(|r| r.sample.time);
     epoch.data_until = readings.last().map(|r| r.sample.time);
     let pairs = readings
@@ -65,8 +83,8 @@ pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], settings: &
         }
     }
     let options = RobustOptions {
+        prior: prior(epoch, before),
         reference_constant_sd_deg: references.constant_sd_deg,
-        ..RobustOptions::default()
     };
     match fit_robust(&observations, &options) {
         Ok(fit) => {

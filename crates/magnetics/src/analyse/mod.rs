@@ -148,10 +148,12 @@ pub fn analyse(
 ) -> Analysis {
     let mut readings = readings(samples, logbook, settings);
     let mut epochs = epochs(logbook);
+    let mut before: Option<Model> = None;
     for epoch in &mut epochs {
         let begin = readings.partition_point(|r| epoch.from.is_some_and(|t| r.sample.time < t));
         let end = readings.partition_point(|r| epoch.to.is_none_or(|t| r.sample.time < t));
-        fit_epoch(epoch, &mut readings[begin..end], settings);
+        fit_epoch(epoch, before.as_ref(), &mut readings[begin..end], settings);
+        before = epoch.model.clone();
     }
     let with_deviation = readings
         .iter()

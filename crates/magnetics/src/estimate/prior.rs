@@ -13,6 +13,10 @@ pub(crate) const POPULATION_SD: [f64; PARAMETERS] =
 /// prior leaves the sum of A and the constant to the data.
 pub(crate) const ALIGNMENT_SD_DEG: f64 = 3.0;
 
+/// How far the induced parts may move when the permanent ones are upset, as a
+/// part of the population's standard deviations.
+const INDUCED_UPSET: f64 = 0.4;
+
 /// A model known beforehand: of the same ship's epoch before, say.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
@@ -25,7 +29,7 @@ pub struct Prior {
 
 impl Prior {
     /// Ships at large.
-    pub(crate) fn population() -> Prior {
+    pub fn population() -> Prior {
         let mut covariance = [[0.0; 8]; 8];
         for (j, sd) in POPULATION_SD.iter().enumerate() {
             covariance[j][j] = sd * sd;
@@ -35,6 +39,25 @@ impl Prior {
             mean: [0.0; 8],
             covariance,
         }
+    }
+
+    /// A ship whose permanent magnetism was upset after `model` was fitted: bx
+    /// and by may be anything, what the iron's shape induces is much as it was.
+    /// None when the model has no covariance.
+    pub fn after_upset(model: &crate::model::Model) -> Option<Prior> {
+        let mut covariance = model.covariance?;
+        let mut mean = [0.0; 8];
+        mean[..PARAMETERS].copy_from_slice(&model.parameters_over_lambda.to_array());
+        mean[PARAMETERS] = model.constant_deg;
+        for (j, sd) in POPULATION_SD.iter().enumerate() {
+            let upset = if matches!(j, 0 | 2) {
+                *sd
+            } else {
+                INDUCED_UPSET * sd
+            };
+            covariance[j][j] += upset * upset;
+        }
+        Some(Prior { mean, covariance })
     }
 
     /// Mean and information in units of the population's standard deviations;

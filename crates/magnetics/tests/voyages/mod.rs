@@ -208,7 +208,7 @@ impl Truth {
 }
 
 /// Where the ship is and what she does.
-struct Passage {
+pub(crate) struct Passage {
     variety: Variety,
     ports: Vec<(f64, f64)>,
     bound_for: usize,
@@ -222,7 +222,7 @@ struct Passage {
 }
 
 impl Passage {
-    fn new(variety: Variety, rng: &mut ChaCha8Rng) -> Passage {
+    pub(crate) fn new(variety: Variety, rng: &mut ChaCha8Rng) -> Passage {
         let ports = ports(variety, rng);
         Passage {
             variety,
@@ -239,7 +239,7 @@ impl Passage {
     }
 
     /// One minute on; by how much she turned to a new leg.
-    fn minute(&mut self, rng: &mut ChaCha8Rng) -> f64 {
+    pub(crate) fn minute(&mut self, rng: &mut ChaCha8Rng) -> f64 {
         if self.berth_minutes > 0.0 {
             self.berth_minutes -= 1.0;
             return 0.0;
@@ -275,8 +275,8 @@ impl Passage {
 }
 
 /// Everything that goes wrong, stepped by the minute.
-struct Errors {
-    swing: f64,
+pub(crate) struct Errors {
+    pub(crate) swing: f64,
     rate: f64,
     slow: f64,
     compass_swing: f64,
@@ -287,7 +287,7 @@ struct Errors {
 }
 
 impl Errors {
-    fn new(faults: &Faults, rng: &mut ChaCha8Rng) -> Errors {
+    pub(crate) fn new(faults: &Faults, rng: &mut ChaCha8Rng) -> Errors {
         Errors {
             swing: faults.schuler_deg * gauss(rng),
             rate: 0.0,
@@ -300,7 +300,13 @@ impl Errors {
         }
     }
 
-    fn minute(&mut self, faults: &Faults, on: &Passage, turned: f64, rng: &mut ChaCha8Rng) {
+    pub(crate) fn minute(
+        &mut self,
+        faults: &Faults,
+        on: &Passage,
+        turned: f64,
+        rng: &mut ChaCha8Rng,
+    ) {
         let omega = TAU / 84.4;
         let kick = if turned.abs() > 20.0 {
             1.2 * faults.schuler_deg * gauss(rng)
