@@ -74,7 +74,6 @@ export const text = {
     noModel: 'No model yet',
     noUpload: 'nothing uploaded yet',
     noPosition: 'no position yet',
-    more: 'Show more vessels',
     shown: (n: number) => (n === 1 ? '1 vessel' : `${n} vessels`),
     emptyTitle: 'No vessels yet',
     emptyAdmin:
@@ -108,18 +107,11 @@ export const text = {
     callSign: 'Call sign',
     flag: 'Flag',
     compass: 'Compass',
-    role: {
-      standard: 'standard compass',
-      steering: 'steering compass',
-      transmitting: 'transmitting compass',
-    },
     worst: 'Largest deviation',
-    worstHelp: 'at the last position',
     rms: 'Residuals',
     rmsHelp: (used: string, rejected: string) => `rms of ${used} samples; ${rejected} left out`,
     lastUpload: 'Last upload',
     lastPosition: 'Last position',
-    field: 'Earth’s field there',
     fieldHelp: (h: string, z: string) => `horizontal ${h}, vertical ${z}`,
     variation: 'Variation',
     modelLine: (version: number, until: string) => `Model ${version}, data until ${until}`,
@@ -128,7 +120,6 @@ export const text = {
       'A model needs settled headings all round the compass. This is what is missing now:',
     noModelHow:
       'Ordinary sailing brings them in: the agent keeps every stretch in which the ship holds a steady heading at speed, away from the berth.',
-    noCompass: 'This vessel has no compass to show.',
   },
 
   deviation: {
@@ -155,13 +146,9 @@ export const text = {
     },
     drawn: (drawn: string, all: string) => `${drawn} of ${all} samples drawn.`,
     place: 'Place and time',
-    lastPlace: 'Last position',
-    chosenPlace: 'Chosen place',
     latitude: 'Latitude',
     longitude: 'Longitude',
     date: 'Date',
-    latitudeHint: 'such as 54 30 N',
-    longitudeHint: 'such as 018 40 E',
     apply: 'Show',
     reset: 'Back to the last position',
     choose: 'Choose another place',
@@ -184,13 +171,13 @@ export const text = {
 
   table: {
     title: 'Table of deviations',
-    caption: (place: string) => `Deviation every 15° of compass heading, ${place}`,
+    caption: (place: string, day: string) =>
+      `Deviation every 15° of compass heading at ${place} on ${day}`,
     compass: 'Compass',
     magnetic: 'Magnetic',
     point: 'Point',
     deviation: 'Deviation',
     band: '95 %',
-    print: 'Print',
   },
 
   residuals: {

@@ -13,7 +13,7 @@ export interface Dot {
   used: boolean;
 }
 
-export const deviationHeight = (width: number): number => (width < 520 ? 280 : 380);
+export const deviationHeight = (width: number): number => (width < 520 ? 300 : 410);
 
 export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number): Element {
   const line = closed(rows);
@@ -26,14 +26,17 @@ export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number):
     height: deviationHeight(width),
     marginLeft: 48,
     marginRight: 14,
-    marginTop: 14,
-    marginBottom: 44,
+    marginTop: 30,
+    marginBottom: 62,
     style: { fontSize: '12px', fontVariant: 'tabular-nums' },
     x: {
       domain: [0, 360],
       ticks: [0, 45, 90, 135, 180, 225, 270, 315, 360].filter((d) => !narrow || d % 90 === 0),
       tickFormat: (d: number) => `${heading(d)}\n${compassPoint(d)}`,
-      label: null,
+      label: text.deviation.axisX,
+      labelAnchor: 'center',
+      labelArrow: 'none',
+      labelOffset: 56,
       tickSize: 5,
     },
     y: {
@@ -46,7 +49,8 @@ export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number):
       ticks: narrow ? 5 : 7,
       tickFormat: sideTick,
       tickSize: 0,
-      label: null,
+      label: text.deviation.axisY,
+      labelArrow: 'none',
     },
     marks: [
       Plot.gridX(
@@ -56,7 +60,7 @@ export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number):
           strokeOpacity: 1,
         },
       ),
-      Plot.gridY({ stroke: colours.grid, strokeOpacity: 1 }),
+      Plot.gridY({ ticks: narrow ? 5 : 7, stroke: colours.grid, strokeOpacity: 1 }),
       Plot.ruleY([0], { stroke: colours.axis, strokeWidth: 1 }),
       Plot.dot(
         dots.filter((dot) => dot.used),

@@ -3,9 +3,10 @@
 import * as Plot from '@observablehq/plot';
 import { day } from '../format';
 import type { Interval, Residual } from '../science/residuals';
+import { text } from '../text';
 import { colours, sideTick, spanned } from './common';
 
-export const residualsHeight = (width: number): number => (width < 520 ? 200 : 240);
+export const residualsHeight = (width: number): number => (width < 520 ? 220 : 260);
 
 export function drawResiduals(
   residuals: Residual[],
@@ -19,7 +20,7 @@ export function drawResiduals(
     height: residualsHeight(width),
     marginLeft: 48,
     marginRight: 14,
-    marginTop: 10,
+    marginTop: 30,
     marginBottom: 30,
     style: { fontSize: '12px', fontVariant: 'tabular-nums' },
     x: {
@@ -39,10 +40,11 @@ export function drawResiduals(
       ticks: 5,
       tickFormat: sideTick,
       tickSize: 0,
-      label: null,
+      label: text.residuals.axisY,
+      labelArrow: 'none',
     },
     marks: [
-      Plot.gridY({ stroke: colours.grid, strokeOpacity: 1 }),
+      Plot.gridY({ ticks: 5, stroke: colours.grid, strokeOpacity: 1 }),
       Plot.ruleY([0], { stroke: colours.axis }),
       Plot.dot(
         residuals.filter((residual) => residual.used),

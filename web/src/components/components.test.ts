@@ -1,0 +1,196 @@
+import { render } from 'svelte/server';
+import { describe, expect, test } from 'vitest';
+import type {
+  AgentStream,
+  Coverage,
+  DeviationTable as Table,
+  ModelVersion,
+  Vessel,
+} from '../api/types';
+import AgentPanel from './AgentPanel.svelte';
+import CoefficientPanel from './CoefficientPanel.svelte';
+import CoveragePanel from './CoveragePanel.svelte';
+import DeviationTable from './DeviationTable.svelte';
+import ParameterPanel from './ParameterPanel.svelte';
+import VesselTable from './VesselTable.svelte';
+import Worst from './Worst.svelte';
+
+/** What a reader without style sheets sees, in one line. */
+function words(rendered: { body: string }): string {
+  return rendered.body
+    .replace(/<!--.*?-->/gs, '')
+    .replace(/<[^>]*>/g, ' ')
+    .replace(/\s+/g, ' ')
+    .trim();
+}
+
+const version: ModelVersion = {
+  id: 'm',
+  version: 3,
+  compass_id: 'c',
+  epoch_from: null,
+  epoch_to: null,
+  data_from: '2026-09-01T00:00:00Z',
+  data_until: '2026-11-01T00:00:00Z',
+  created_at: '2026-11-01T00:10:00Z',
+  input_hash: '0123456789abcdef',
+  estimator: 'robust-1',
+  lat: 54,
+  lon: 10,
+  h_nt: 18_000,
+  z_nt: 46_000,
+  handbook: { A: 0.3, B: 3.1, C: -2.2, D: 1, E: 0.1 },
+  model: {
+    parameters_over_lambda: {
+      bx_nt: 2060,
+      chi13: -0.0215,
+      by_nt: -2930,
+      chi23: 0.0022,
+      chi11_minus_chi22: 0.0352,
+      chi12: 0.0012,
+      chi21: 0.0016,
+    },
+    constant_deg: 0.3,
+    covariance: Array.from({ length: 8 }, (_, i) =>
+      Array.from({ length: 8 }, (_, j) => (i !== j ? 0 : i === 0 ? 100 ** 2 : 0.001 ** 2)),
+    ),
+    identifiable: {
+      bx_nt: true,
+      chi13: false,
+      by_nt: true,
+      chi23: false,
+      chi11_minus_chi22: true,
+      chi12: true,
+      chi21: true,
+      constant_deg: false,
+    },
+    rms_deg: 0.4,
+    samples_used: 900,
+    samples_rejected: 4,
+  },
+};
+
+describe('the parameters', () => {
+  test('say in words what each rests on, with its error', () => {
+    const shown = words(render(ParameterPanel, { props: { version } }));
+    expect(shown).toContain(
+      'Permanent field, fore and aft P, forward positive +2.06 µT ± 0.20 µT the data',
+    );
+    expect(shown).toContain('−0.0215 ± 0.0020 the prior');
+    expect(shown).toContain('5 of 8 are known from this ship’s own data.');
+  });
+
+  test('without a covariance show no error of zero', () => {
+    const bare = { ...version, model: { ...version.model, covariance: null, identifiable: null } };
+    const shown = words(render(ParameterPanel, { props: { version: bare } }));
+    expect(shown).toContain('+2.06 µT – not stated');
+    expect(shown).not.toContain('± 0');
+  });
+});
+
+test('the coefficients stand beside the handbook’s, which may be missing', () => {
+  expect(words(render(CoefficientPanel, { props: { version } }))).toMatch(
+    /east and west \+3\.4° \+3\.1°/,
+  );
+  const without = { ...version, handbook: null };
+  expect(words(render(CoefficientPanel, { props: { version: without } }))).toMatch(
+    /east and west \+3\.4° –/,
+  );
+});
+
+test('the table of deviations has every fifteenth degree with side and band', () => {
+  const table: Table = {
+    lat: 54,
+    lon: 10,
+    at: '2026-11-01T00:00:00Z',
+    variation_deg: 3,
+    h_nt: 18_000,
+    z_nt: 46_000,
+    model_id: 'm',
+    model_version: 3,
+    rows: Array.from({ length: 72 }, (_, i) => ({
+      compass_deg: i * 5,
+      magnetic_deg: (i * 5 + 357.7) % 360,
+      deviation_deg: i === 0 ? -2.3 : 1.04,
+      band95_deg: i === 0 ? null : 0.42,
+    })),
+  };
+  const rendered = render(DeviationTable, { props: { table } });
+  const shown = words(rendered);
+  expect(shown).toContain('at 54° 00.0′ N, 010° 00.0′ E on 1 Nov 2026');
+  expect(shown).toContain('000° N 2.3° W – 357.7°');
+  expect(shown).toContain('345° 1.0° E ± 0.4° 342.7°');
+  expect(rendered.body.match(/scope="row"/g)).toHaveLength(24);
+});
+
+test('coverage names the headings that are missing, and says when one band is all there is', () => {
+  const coverage: Coverage = {
+    heading_step_deg: 15,
+    magnetic_latitude_step_deg: 10,
+    bands: [],
+    cells: Array.from({ length: 20 }, (_, i) => ({
+      heading_from_deg: i * 15,
+      magnetic_latitude_from_deg: 40,
+      samples: 3,
+    })),
+  };
+  const shown = words(render(CoveragePanel, { props: { coverage } }));
+  expect(shown).toContain('No samples yet on compass headings 300°–000°.');
+  expect(shown).toContain('All samples are from one band of magnetic latitude');
+  expect(words(render(CoveragePanel, { props: { coverage: { ...coverage, cells: [] } } }))).toBe(
+    'No samples yet.',
+  );
+});
+
+describe('the installations', () => {
+  const agent: AgentStream = {
+    stream: '0190a000-0000-7000-8000-000000000900',
+    compass_id: 'c',
+    compass_name: 'Standard compass',
+    agent_version: '0.1.0',
+    opened_at: '2026-09-01T00:00:00Z',
+    last_upload_at: null,
+    contiguous_seq: 4,
+    batches: 6,
+    samples: 12_000,
+    tally: { turning: 25, accepted: 70, moonlight_too_bright: 5 },
+  };
+
+  test('count windows by reason, accepted first, and name reasons that are new', () => {
+    const shown = words(render(AgentPanel, { props: { agents: [agent] } }));
+    expect(shown).toMatch(
+      /accepted 70 % 70 refused: turning 25 % 25 refused: moonlight too bright 5 % 5/,
+    );
+    expect(shown).toContain('A batch before the latest is missing');
+    expect(shown).toContain('waiting for the first batch');
+  });
+
+  test('none yet is said', () => {
+    expect(words(render(AgentPanel, { props: { agents: [] } }))).toContain(
+      'No agent has been enrolled',
+    );
+  });
+});
+
+test('the list shows side, heading and band, and what is not there yet', () => {
+  const vessel: Vessel = {
+    id: 'v',
+    name: 'MV Arcturus',
+    created_at: '2026-09-01T00:00:00Z',
+    last_position: { lat: -33.9, lon: 18.4, at: '2026-11-01T06:00:00Z' },
+    compasses: [],
+    open_alerts: 0,
+    worst: { compass_deg: 45, deviation_deg: -6.2, band95_deg: 0.4 },
+  };
+  const shown = words(render(VesselTable, { props: { vessels: [vessel] } }));
+  expect(shown).toContain('6.2° W large on 045°, ± 0.4° (95 %)');
+  expect(shown).toContain('nothing uploaded yet');
+  expect(shown).toContain('33° 54.0′ S, 018° 24.0′ E 1 Nov 2026, 06:00 UTC');
+});
+
+test('a worst deviation without a band claims none', () => {
+  const shown = words(
+    render(Worst, { props: { worst: { compass_deg: 0, deviation_deg: 1, band95_deg: null } } }),
+  );
+  expect(shown).toBe('1.0° E small on 000°');
+});
