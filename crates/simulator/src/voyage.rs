@@ -31,7 +31,8 @@ pub(crate) async fn run(args: &VoyageArgs) -> Result<ExitCode> {
     let days = cli::check_days(args.days.unwrap_or(scenario.days))?;
     let start = args.start.unwrap_or(scenario.start);
     let seed = args.seed.unwrap_or(scenario.seed);
-    let ship = Ship::new(&scenario, plan, seed, start).map_err(BadInput::new)?;
+    let ship = Ship::new(&scenario, plan, seed, start)
+        .map_err(|error| BadInput(format!("--start: {error}")))?;
     let mut log = Log::new(&ship);
     let mut talker = Talker::new(&scenario, ship, seed);
     let until = start.plus_seconds(days * 86_400.0);

@@ -30,7 +30,8 @@ impl Sailing {
         seed: u64,
         from: Timestamp,
     ) -> Result<Sailing> {
-        let ship = Ship::new(scenario, plan, seed, from).map_err(BadInput::new)?;
+        let ship = Ship::new(scenario, plan, seed, from)
+            .map_err(|error| BadInput(format!("--until: {error}")))?;
         Ok(Sailing {
             log: Log::new(&ship),
             talker: Talker::new(scenario, ship, seed),

@@ -1,0 +1,7 @@
+//! The simulator through its public face: ships, sentences, scenarios, commands.
+
+mod commands;
+mod line;
+mod scenarios;
+mod support;
+mod voyages;
