@@ -22,6 +22,7 @@ pub mod time;
 
 pub mod access;
 pub mod idempotency;
+pub mod operators;
 pub mod secret;
 pub mod session;
 pub mod tokens;

@@ -17,11 +17,13 @@ const FIRST_RETRY_S: f64 = 10.0;
 
 /// A job that was claimed.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
-pub(super) struct Job {
-    pub(super) vessel_id: VesselId,
-    pub(super) id: JobId,
+pub struct Job {
+    /// The vessel to analyse.
+    pub vessel_id: VesselId,
+    /// The job's id.
+    pub id: JobId,
     /// This one included; tells this lease from later ones.
-    pub(super) attempts: i64,
+    pub attempts: i64,
 }
 
 /// Makes sure that the vessel will be analysed, `delay_s` from now or sooner.
@@ -64,7 +66,7 @@ macro_rules! claim_sql {
 }
 
 /// Takes the job that has been due for longest.
-pub(super) async fn claim(db: &Db, now: Time) -> Result<Option<Job>> {
+pub async fn claim(db: &Db, now: Time) -> Result<Option<Job>> {
     // Asking first keeps an idle worker from taking SQLite's write lock.
     let due = rows!(
         db,

@@ -4,11 +4,11 @@ use super::operate::block_on;
 use super::{BadInput, answer};
 use crate::clock::Clock;
 use crate::config::{Admin, AdminCommand, Create, FleetRole, Person};
-use crate::db::{Db, execute, row};
+use crate::db::Db;
 use crate::ids::OperatorId;
 use crate::session::{self, Role};
 use crate::time::Time;
-use crate::{http, secret};
+use crate::{http, operators, secret};
 use anyhow::Result;
 use serde_json::json;
 use std::io::Read;
@@ -56,15 +56,8 @@ async fn create_operator(db: &Db, name: &str, now: Time) -> Made {
         Ok(name) => name,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let id = OperatorId::new();
     let mut tx = db.begin().await?;
-    execute!(
-        &mut tx,
-        "INSERT INTO operators (id, name, created_at) VALUES ($1, $2, $3)",
-        id,
-        name.as_str(),
-        now
-    )?;
+    let id = operators::create(&mut tx, &name, now).await?;
     tx.commit().await?;
     Ok(Ok(json!({ "operator_id": id, "name": name })))
 }
@@ -91,16 +84,10 @@ async fn create_user(
     };
     let hash = secret::hash_password(password.as_deref().unwrap_or_default())?;
     let mut tx = db.begin().await?;
-    if let Some(operator) = operator {
-        let found = row!(
-            in &mut tx,
-            (OperatorId,),
-            "SELECT id FROM operators WHERE id = $1 ORDER BY id",
-            operator
-        )?;
-        if found.is_none() {
-            return Ok(Err(format!("--operator: {operator} does not exist")));
-        }
+    if let Some(operator) = operator
+        && !operators::exists(&mut tx, operator).await?
+    {
+        return Ok(Err(format!("--operator: {operator} does not exist")));
     }
     let created = session::create_user(&mut tx, operator, &email, &name, role, &hash, now).await;
     let id = match created {

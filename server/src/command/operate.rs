@@ -45,7 +45,8 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
 /// When the listener fails.
 pub async fn run(app: App, listener: TcpListener) -> Result<()> {
     let mut parts = JoinSet::new();
-    parts.spawn(events::listen(app.clone()));
+    let line = events::Line::open(&app.db).await?;
+    parts.spawn(line.listen(app.clone()));
     for _ in 0..app.config.analysis_workers {
         parts.spawn(analysis::run(app.clone()));
     }

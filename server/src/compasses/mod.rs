@@ -71,6 +71,7 @@ pub struct CompassList {
     /// In the order in which they were entered.
     pub items: Vec<Compass>,
     /// `after` of the next page.
+    #[schema(required)]
     pub next: Option<String>,
 }
 

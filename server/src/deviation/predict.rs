@@ -19,6 +19,7 @@ pub struct Row {
     /// Deviation, degrees, east positive.
     pub deviation_deg: f64,
     /// Half the width of the 95 % band, degrees; none without a covariance.
+    #[schema(required)]
     pub band95_deg: Option<f64>,
 }
 
@@ -31,6 +32,7 @@ pub struct Worst {
     /// Deviation, degrees, east positive.
     pub deviation_deg: f64,
     /// Half the width of the 95 % band, degrees.
+    #[schema(required)]
     pub band95_deg: Option<f64>,
 }
 

@@ -53,6 +53,7 @@ pub struct AgentStream {
     /// When the stream was opened.
     pub opened_at: Time,
     /// When its last batch came.
+    #[schema(required)]
     pub last_upload_at: Option<Time>,
     /// Every batch up to this one is here.
     pub contiguous_seq: i64,
@@ -70,6 +71,7 @@ pub struct AgentStreamList {
     /// In the order in which they were opened.
     pub items: Vec<AgentStream>,
     /// `after` of the next page.
+    #[schema(required)]
     pub next: Option<String>,
 }
 

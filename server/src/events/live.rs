@@ -1,8 +1,10 @@
 //! From the process that makes an event to the dashboards of all processes.
 
-use super::Event;
+use super::{Event, store};
 use crate::app::App;
 use crate::db::Db;
+use crate::time::Time;
+use sqlx::PgPool;
 use sqlx::postgres::PgListener;
 use std::time::Duration;
 use tokio::sync::broadcast::{Receiver, Sender};
@@ -44,7 +46,7 @@ impl Default for Live {
 
 impl App {
     /// Makes an event known whose transaction was committed. On PostgreSQL the
-    /// commit itself has done it, through [`listen`].
+    /// commit itself has done it, through [`Line`].
     pub fn publish(&self, event: Event) {
         if matches!(self.db, Db::Sqlite { .. }) {
             self.live.tell(event);
@@ -53,32 +55,69 @@ impl App {
     }
 }
 
-/// Hears the other processes' events until the server stops; on SQLite there are
-/// none.
-pub async fn listen(app: App) {
-    let Db::Postgres(pool) = &app.db else {
-        return;
-    };
-    loop {
-        let stopped = tokio::select! {
-            () = app.stopping.cancelled() => return,
-            stopped = hear(&app, pool) => stopped,
-        };
-        if let Err(error) = stopped {
-            warn!(%error, "live events are interrupted; dashboards poll meanwhile");
+/// The line on which PostgreSQL tells of other processes' events; none on SQLite.
+pub struct Line(Option<PgListener>);
+
+impl Line {
+    /// Begins to listen; what is committed from now on will be heard.
+    pub async fn open(db: &Db) -> Result<Line, sqlx::Error> {
+        match db {
+            Db::Sqlite { .. } => Ok(Line(None)),
+            Db::Postgres(pool) => Ok(Line(Some(connect(pool).await?))),
         }
-        tokio::select! {
-            () = app.stopping.cancelled() => return,
-            () = tokio::time::sleep(RECONNECT_AFTER) => {}
+    }
+
+    /// Passes on what is heard until the server stops. After a break, what was
+    /// missed is read from the database.
+    pub async fn listen(self, app: App) {
+        let (Some(mut listener), Db::Postgres(pool)) = (self.0, &app.db) else {
+            return;
+        };
+        loop {
+            let error = tokio::select! {
+                () = app.stopping.cancelled() => return,
+                error = hear(&app, listener) => error,
+            };
+            let broke_at = Time(app.clock.now());
+            warn!(%error, "live events are interrupted");
+            listener = tokio::select! {
+                () = app.stopping.cancelled() => return,
+                listener = reconnect(pool) => listener,
+            };
+            match store::all_since(&app.db, broke_at).await {
+                Ok(missed) => missed.into_iter().for_each(|event| app.live.tell(event)),
+                Err(error) => warn!(%error, "live events were missed"),
+            }
         }
     }
 }
 
-async fn hear(app: &App, pool: &sqlx::PgPool) -> Result<(), sqlx::Error> {
+async fn connect(pool: &PgPool) -> Result<PgListener, sqlx::Error> {
     let mut listener = PgListener::connect_with(pool).await?;
     listener.listen(CHANNEL).await?;
+    // A broken connection is an error here, not silence.
+    listener.eager_reconnect(false);
+    Ok(listener)
+}
+
+async fn reconnect(pool: &PgPool) -> PgListener {
     loop {
-        let notice = listener.recv().await?;
+        tokio::time::sleep(RECONNECT_AFTER).await;
+        match connect(pool).await {
+            Ok(listener) => return listener,
+            Err(error) => warn!(%error, "live events are still interrupted"),
+        }
+    }
+}
+
+/// Passes on what is heard until the connection breaks.
+async fn hear(app: &App, mut listener: PgListener) -> sqlx::Error {
+    loop {
+        let notice = match listener.try_recv().await {
+            Ok(Some(notice)) => notice,
+            Ok(None) => return sqlx::Error::PoolTimedOut,
+            Err(error) => return error,
+        };
         match serde_json::from_str(notice.payload()) {
             Ok(event) => app.live.tell(event),
             Err(error) => warn!(%error, "a live event cannot be read"),

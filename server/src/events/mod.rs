@@ -9,7 +9,7 @@
 mod live;
 mod store;
 
-pub use live::{Live, listen};
+pub use live::{Line, Live};
 pub use store::{insert, prune};
 
 use crate::access::Reader;

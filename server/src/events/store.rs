@@ -6,11 +6,10 @@ use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::error;
 use crate::ids::{EventId, OperatorId, VesselId};
 use crate::time::Time;
-use binnacle_magnetics::time::Timestamp;
 
 const KEPT_FOR_S: f64 = 86_400.0;
-/// Ids are ordered by the clock of the process that made them, and a transaction
-/// may be seen late: how far to look back before the last event seen.
+/// Each process has its own clock, and a transaction may be seen late: how far to
+/// look back before the last event seen.
 const OVERLAP_S: f64 = 10.0;
 /// As many as a dashboard is told after a pause; with more it should read anew.
 const MOST_MISSED: i64 = 1000;
@@ -55,23 +54,35 @@ pub async fn insert(
     Ok(event)
 }
 
-/// What happened since an event was seen.
+/// What happened since an event was seen; everything there is when that is so long
+/// ago that it was forgotten.
 pub(super) async fn since(db: &Db, operator: OperatorId, last: EventId) -> Result<Vec<Event>> {
-    let Some((seconds, _)) = last.0.get_timestamp().map(|time| time.to_unix()) else {
-        return Ok(Vec::new());
-    };
-    let from = Timestamp::from_micros(seconds.saturating_mul(1_000_000) as i64)
-        .map_or(0, |time| time.plus_seconds(-OVERLAP_S).micros());
     rows!(
         db,
         Event,
         "SELECT id, operator_id, vessel_id, kind FROM events
-         WHERE operator_id = $1 AND created_at >= $2 AND id <> $3
+         WHERE operator_id = $1 AND id <> $2
+           AND created_at >= COALESCE((SELECT l.created_at FROM events l
+                                       WHERE l.id = $2 AND l.operator_id = $1), 0) - $3
          ORDER BY id
          LIMIT $4",
         operator,
-        from,
         last,
+        (OVERLAP_S * 1e6) as i64,
+        MOST_MISSED
+    )
+}
+
+/// What happened to anyone's vessels since a time, and shortly before it.
+pub(super) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
+    rows!(
+        db,
+        Event,
+        "SELECT id, operator_id, vessel_id, kind FROM events
+         WHERE created_at >= $1
+         ORDER BY id
+         LIMIT $2",
+        Time(from.0.plus_seconds(-OVERLAP_S)),
         MOST_MISSED
     )
 }

@@ -44,6 +44,7 @@ pub struct ModelSummary {
     /// The time of the last sample in it.
     pub data_until: Time,
     /// Root mean square of the residuals, degrees.
+    #[schema(required)]
     pub rms_deg: Option<f64>,
     /// Samples that carried weight.
     pub samples_used: u64,
@@ -59,8 +60,10 @@ pub struct ModelVersion {
     /// The compass.
     pub compass_id: CompassId,
     /// Since when it holds; none reaches back without end.
+    #[schema(required)]
     pub epoch_from: Option<Time>,
     /// Until when it holds; none goes on.
+    #[schema(required)]
     pub epoch_to: Option<Time>,
     /// The time of the first sample in it.
     pub data_from: Time,
@@ -81,7 +84,7 @@ pub struct ModelVersion {
     /// Vertical field there, nT, down positive.
     pub z_nt: f64,
     /// The handbook's coefficients there; none where headings are ambiguous.
-    #[schema(value_type = Option<HandbookSchema>)]
+    #[schema(required, value_type = Option<HandbookSchema>)]
     pub handbook: Option<Handbook>,
     /// The fit.
     #[schema(value_type = ModelSchema)]
@@ -94,6 +97,7 @@ pub struct ModelVersionList {
     /// The newest first.
     pub items: Vec<ModelVersion>,
     /// `after` of the next page.
+    #[schema(required)]
     pub next: Option<String>,
 }
 

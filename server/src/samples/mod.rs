@@ -127,6 +127,7 @@ struct SampleList {
     #[schema(value_type = Vec<SampleSchema>)]
     items: Vec<SampleDiagnostic>,
     /// `after` of the next page.
+    #[schema(required)]
     next: Option<String>,
 }
 

@@ -20,8 +20,10 @@ pub struct User {
     /// What the user may do.
     pub role: Role,
     /// The operator whose fleet the user sees; none for a platform admin.
+    #[schema(required)]
     pub operator_id: Option<OperatorId>,
     /// That operator's name.
+    #[schema(required)]
     pub operator_name: Option<String>,
 }
 

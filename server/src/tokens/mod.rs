@@ -57,6 +57,7 @@ pub struct Token {
     /// When it was made.
     pub created_at: Time,
     /// When it was last used, to the hour.
+    #[schema(required)]
     pub last_used_at: Option<Time>,
 }
 
@@ -88,6 +89,7 @@ pub struct TokenList {
     /// In the order in which they were made.
     pub items: Vec<Token>,
     /// `after` of the next page.
+    #[schema(required)]
     pub next: Option<String>,
 }
 

@@ -39,22 +39,29 @@ pub struct Vessel {
     /// Its name.
     pub name: String,
     /// Its IMO number, seven digits.
+    #[schema(required)]
     pub imo_number: Option<String>,
     /// Its call sign.
+    #[schema(required)]
     pub call_sign: Option<String>,
     /// Its flag state.
+    #[schema(required)]
     pub flag: Option<String>,
     /// When it was entered here.
     pub created_at: Time,
     /// When its last batch came.
+    #[schema(required)]
     pub last_upload_at: Option<Time>,
     /// Where its latest sample was taken.
+    #[schema(required)]
     pub last_position: Option<LastPosition>,
     /// Its compasses, in the order in which they were entered.
     pub compasses: Vec<Compass>,
     /// The current model of its first compass that has one.
+    #[schema(required)]
     pub model: Option<ModelSummary>,
     /// The heading with the greatest deviation by that model, at the last position.
+    #[schema(required)]
     pub worst: Option<Worst>,
     /// Alerts that nobody has acknowledged.
     pub open_alerts: u32,
@@ -92,6 +99,7 @@ pub struct VesselList {
     /// In the order in which they were entered.
     pub items: Vec<Vessel>,
     /// `after` of the next page.
+    #[schema(required)]
     pub next: Option<String>,
 }
 

@@ -495,7 +495,7 @@ export interface components {
              * @description Every batch up to this one is here.
              */
             contiguous_seq: number;
-            last_upload_at?: components["schemas"]["Time"] | null;
+            last_upload_at: components["schemas"]["Time"] | null;
             /** @description When the stream was opened. */
             opened_at: components["schemas"]["Time"];
             /**
@@ -518,7 +518,7 @@ export interface components {
             /** @description In the order in which they were opened. */
             items: components["schemas"]["AgentStream"][];
             /** @description `after` of the next page. */
-            next?: string | null;
+            next: string | null;
         };
         /** @description A magnetic element aboard. */
         Compass: {
@@ -541,7 +541,7 @@ export interface components {
             /** @description In the order in which they were entered. */
             items: components["schemas"]["Compass"][];
             /** @description `after` of the next page. */
-            next?: string | null;
+            next: string | null;
         };
         /**
          * @description What a compass serves as.
@@ -604,7 +604,7 @@ export interface components {
              * Format: double
              * @description Half the width of the 95 % band, degrees; none without a covariance.
              */
-            band95_deg?: number | null;
+            band95_deg: number | null;
             /**
              * Format: double
              * @description Compass heading.
@@ -783,9 +783,9 @@ export interface components {
             email: string;
             /** @description The user's name. */
             name: string;
-            operator_id?: components["schemas"]["OperatorId"] | null;
+            operator_id: components["schemas"]["OperatorId"] | null;
             /** @description That operator's name. */
-            operator_name?: string | null;
+            operator_name: string | null;
             /** @description What the user may do. */
             role: components["schemas"]["Role"];
             /** @description The user's id. */
@@ -851,7 +851,7 @@ export interface components {
              * Format: double
              * @description Root mean square of the residuals, degrees.
              */
-            rms_deg?: number | null;
+            rms_deg: number | null;
             /**
              * Format: int64
              * @description Samples that carried weight.
@@ -873,8 +873,8 @@ export interface components {
             data_from: components["schemas"]["Time"];
             /** @description The time of the last sample in it. */
             data_until: components["schemas"]["Time"];
-            epoch_from?: components["schemas"]["Time"] | null;
-            epoch_to?: components["schemas"]["Time"] | null;
+            epoch_from: components["schemas"]["Time"] | null;
+            epoch_to: components["schemas"]["Time"] | null;
             /** @description The estimator that made it. */
             estimator: string;
             /**
@@ -882,7 +882,7 @@ export interface components {
              * @description Horizontal field there, nT.
              */
             h_nt: number;
-            handbook?: components["schemas"]["HandbookCoefficients"] | null;
+            handbook: components["schemas"]["HandbookCoefficients"] | null;
             /** @description The model version's id. */
             id: components["schemas"]["ModelId"];
             /** @description SHA-256 of everything that it was made from. */
@@ -915,7 +915,7 @@ export interface components {
             /** @description The newest first. */
             items: components["schemas"]["ModelVersion"][];
             /** @description `after` of the next page. */
-            next?: string | null;
+            next: string | null;
         };
         /** @description An enrolment code to be made. */
         NewCode: {
@@ -1123,7 +1123,7 @@ export interface components {
             /** @description In order of time. */
             items: components["schemas"]["Sample"][];
             /** @description `after` of the next page. */
-            next?: string | null;
+            next: string | null;
         };
         /**
          * @description Why a sample was left out, or counted for less.
@@ -1157,7 +1157,7 @@ export interface components {
             expires_at: components["schemas"]["Time"];
             /** @description The token's id. */
             id: components["schemas"]["TokenId"];
-            last_used_at?: components["schemas"]["Time"] | null;
+            last_used_at: components["schemas"]["Time"] | null;
             /** @description What it is for, in the user's words. */
             name: string;
             /** @description What it may do. */
@@ -1173,7 +1173,7 @@ export interface components {
             /** @description In the order in which they were made. */
             items: components["schemas"]["Token"][];
             /** @description `after` of the next page. */
-            next?: string | null;
+            next: string | null;
         };
         /**
          * @description What a token may do.
@@ -1188,20 +1188,20 @@ export interface components {
         /** @description A vessel, and how its compass stands. */
         Vessel: {
             /** @description Its call sign. */
-            call_sign?: string | null;
+            call_sign: string | null;
             /** @description Its compasses, in the order in which they were entered. */
             compasses: components["schemas"]["Compass"][];
             /** @description When it was entered here. */
             created_at: components["schemas"]["Time"];
             /** @description Its flag state. */
-            flag?: string | null;
+            flag: string | null;
             /** @description The vessel's id. */
             id: components["schemas"]["VesselId"];
             /** @description Its IMO number, seven digits. */
-            imo_number?: string | null;
-            last_position?: components["schemas"]["LastPosition"] | null;
-            last_upload_at?: components["schemas"]["Time"] | null;
-            model?: components["schemas"]["ModelSummary"] | null;
+            imo_number: string | null;
+            last_position: components["schemas"]["LastPosition"] | null;
+            last_upload_at: components["schemas"]["Time"] | null;
+            model: components["schemas"]["ModelSummary"] | null;
             /** @description Its name. */
             name: string;
             /**
@@ -1209,7 +1209,7 @@ export interface components {
              * @description Alerts that nobody has acknowledged.
              */
             open_alerts: number;
-            worst?: components["schemas"]["WorstHeading"] | null;
+            worst: components["schemas"]["WorstHeading"] | null;
         };
         /** @description The data of an event. */
         VesselEvent: {
@@ -1228,7 +1228,7 @@ export interface components {
             /** @description In the order in which they were entered. */
             items: components["schemas"]["Vessel"][];
             /** @description `after` of the next page. */
-            next?: string | null;
+            next: string | null;
         };
         /** @description A vessel's settings. */
         VesselSettings: {
@@ -1246,7 +1246,7 @@ export interface components {
              * Format: double
              * @description Half the width of the 95 % band, degrees.
              */
-            band95_deg?: number | null;
+            band95_deg: number | null;
             /**
              * Format: double
              * @description Compass heading.

@@ -1,0 +1,281 @@
+//! From batches to models, and the queue between.
+
+use crate::on_both;
+use crate::support::{Shore, passage};
+use binnacle_server::analysis::{self, Worked};
+use serde_json::{Value, json};
+
+on_both!(
+    a_passage_becomes_a_model_that_foretells_the_deviation,
+    without_enough_headings_the_answer_says_what_is_missing,
+    many_batches_make_one_job_that_waits_for_more,
+    the_same_input_makes_no_second_version,
+    the_order_of_batches_does_not_change_the_model,
+    a_lease_that_ended_goes_to_another_worker,
+    a_job_that_fails_is_tried_again_and_then_given_up,
+    a_change_of_settings_makes_a_new_version_and_reaches_the_ship,
+    samples_page_and_filter_and_come_as_files,
+);
+
+const DAY: &str = "2026-11-15T00:00:00Z";
+/// Longer than the delay before an analysis.
+const A_WHILE_S: f64 = 10.0;
+
+/// Takes a job as a worker does that then dies.
+async fn claim(shore: &Shore) -> bool {
+    let now = shore.app.clock.now().into();
+    let job = analysis::claim(&shore.app.db, now).await.unwrap();
+    job.is_some()
+}
+
+async fn a_passage_becomes_a_model_that_foretells_the_deviation(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    assert_eq!(ada.get(&nao.path("/model")).await.problem(), "no-model-yet");
+    nao.put(1, &passage(DAY, 300)).await.good();
+    shore.advance(A_WHILE_S);
+    assert_eq!(shore.work().await.len(), 1);
+
+    let model = ada.get(&nao.path("/model")).await.good();
+    assert_eq!(model["version"], 1);
+    assert_eq!(model["data_from"], DAY);
+    assert_eq!(model["input_hash"].as_str().unwrap().len(), 64);
+    assert!(model["model"]["rms_deg"].as_f64().unwrap() < 0.2, "{model}");
+    let table = ada.get(&nao.path("/deviation?step_deg=10")).await.good();
+    assert_eq!(table["model_id"], model["id"]);
+    let rows = table["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 36);
+    let samples = ada.get(&nao.path("/samples")).await.good();
+    for sample in samples["items"].as_array().unwrap() {
+        let residual = sample["residual_deg"].as_f64().unwrap();
+        assert!(residual.abs() < 0.5, "{sample}");
+        assert_eq!(sample["used"], true);
+    }
+    let vessel = ada.get(&nao.path("")).await.good();
+    assert_eq!(vessel["model"]["id"], model["id"]);
+    assert!(vessel["worst"]["deviation_deg"].as_f64().unwrap().abs() > 2.0);
+    assert_eq!(vessel["last_position"]["lat"], 48.0);
+
+    // The ship gets it with her next word, and not again once she has it.
+    let downlink = nao.downlink("").await;
+    assert_eq!(downlink["model"]["id"], model["id"]);
+    assert_eq!(downlink["model"]["model"], model["model"]);
+    let has = format!("?model={}", model["id"].as_str().unwrap());
+    assert!(nao.downlink(&has).await.get("model").is_none());
+    shore.finish().await;
+}
+
+async fn without_enough_headings_the_answer_says_what_is_missing(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 3)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    for path in ["/model", "/deviation"] {
+        let answer = ada.get(&nao.path(path)).await;
+        assert_eq!(answer.problem(), "no-model-yet");
+        let detail = answer.json()["detail"].as_str().unwrap().to_owned();
+        assert!(detail.contains("needed"), "{detail}");
+    }
+    let listed = ada.get(&nao.path("/samples")).await.good();
+    assert_eq!(listed["items"].as_array().unwrap().len(), 3);
+    shore.finish().await;
+}
+
+async fn many_batches_make_one_job_that_waits_for_more(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    for seq in 1..=10 {
+        nao.put(seq, &passage(DAY, 4)).await.good();
+    }
+    assert_eq!(shore.work().await, [], "before the delay is over");
+    shore.advance(A_WHILE_S);
+    assert_eq!(shore.work().await.len(), 1);
+    assert_eq!(shore.work().await, []);
+    shore.finish().await;
+}
+
+async fn the_same_input_makes_no_second_version(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let samples = passage(DAY, 300);
+    nao.put(1, &samples).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    // The same samples come again in a batch of their own.
+    nao.put(2, &samples).await.good();
+    shore.advance(A_WHILE_S);
+    let worked = shore.work().await;
+    assert!(matches!(worked[..], [Worked::Analysed(_, 0)]), "{worked:?}");
+    let versions = ada.get(&nao.path("/models")).await.good();
+    assert_eq!(versions["items"].as_array().unwrap().len(), 1);
+
+    nao.put(3, &passage("2026-11-20T00:00:00Z", 10))
+        .await
+        .good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let versions = ada.get(&nao.path("/models?limit=1")).await.good();
+    assert_eq!(versions["items"][0]["version"], 2);
+    let rest = format!("/models?after={}", versions["next"].as_str().unwrap());
+    let older = ada.get(&nao.path(&rest)).await.good();
+    assert_eq!(older["items"][0]["version"], 1);
+    assert_eq!(older["next"], json!(null));
+    shore.finish().await;
+}
+
+async fn the_order_of_batches_does_not_change_the_model(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let samples = passage(DAY, 300);
+    let halves = [&samples[..150], &samples[150..]];
+    let mut models: Vec<Value> = Vec::new();
+    for order in [[0, 1], [1, 0]] {
+        let ship = shore.ship(&ada, "Nao").await;
+        for half in order {
+            ship.put(half as u64 + 1, halves[half]).await.good();
+            shore.advance(A_WHILE_S);
+            shore.work().await;
+        }
+        models.push(ada.get(&ship.path("/model")).await.good());
+    }
+    assert_eq!(models[0]["input_hash"], models[1]["input_hash"]);
+    assert_eq!(models[0]["model"], models[1]["model"]);
+    shore.finish().await;
+}
+
+async fn a_lease_that_ended_goes_to_another_worker(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    shore.advance(A_WHILE_S);
+    // A worker takes the job and is never heard of again.
+    assert!(claim(&shore).await);
+    assert_eq!(shore.work().await, []);
+    // A batch that comes meanwhile waits: a vessel is analysed by one at a time.
+    nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
+    shore.advance(A_WHILE_S);
+    assert_eq!(shore.work().await, []);
+    shore.advance(600.0);
+    let other = shore.second().await;
+    let worked = analysis::step(&other).await.unwrap();
+    assert!(matches!(worked, Some(Worked::Analysed(_, 1))), "{worked:?}");
+    assert_eq!(ada.get(&nao.path("/model")).await.status, 200);
+    other.db.close().await;
+    shore.finish().await;
+}
+
+async fn a_job_that_fails_is_tried_again_and_then_given_up(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 30)).await.good();
+    for _ in 0..6 {
+        shore.advance(1000.0);
+        claim(&shore).await;
+    }
+    shore.advance(1000.0);
+    let worked = shore.work().await;
+    assert!(matches!(worked[..], [Worked::Failed(_)]), "{worked:?}");
+    let metrics = shore
+        .http
+        .get(format!("{}/metrics", shore.url))
+        .send()
+        .await
+        .unwrap();
+    assert!(
+        metrics
+            .text()
+            .await
+            .unwrap()
+            .contains("binnacle_jobs{state=\"dead\"}")
+    );
+    // A later batch starts afresh, and its success clears the dead one away.
+    nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
+    shore.advance(A_WHILE_S);
+    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    let left = analysis::count_jobs(&shore.app.db).await.unwrap();
+    assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
+    shore.finish().await;
+}
+
+async fn a_change_of_settings_makes_a_new_version_and_reaches_the_ship(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let mut settings = ada.get(&nao.path("/settings")).await.good();
+    assert_eq!(settings["agent"]["version"], 0);
+    settings["agent"]["min_sog_kn"] = json!(6.0);
+    settings["analysis"]["gyro_speed_error"] = json!("uncorrected");
+    let put = |body: Value| {
+        let request = ada.request(reqwest::Method::PUT, &nao.path("/settings"));
+        crate::support::Answer::of(request.json(&body))
+    };
+    assert_eq!(put(settings.clone()).await.good()["agent"]["version"], 1);
+    assert_eq!(nao.downlink("").await["settings"]["min_sog_kn"], 6.0);
+    assert!(nao.downlink("?settings=1").await.get("settings").is_none());
+    shore.work().await;
+    assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 2);
+
+    settings["agent"]["min_sog_kn"] = json!(-1.0);
+    assert_eq!(put(settings.clone()).await.problem(), "invalid");
+    settings["agent"]["min_sog_kn"] = json!(6.0);
+    settings["analysis"]["reference_constant_sd_deg"] = json!(-1.0);
+    assert_eq!(put(settings).await.problem(), "invalid");
+    shore.finish().await;
+}
+
+async fn samples_page_and_filter_and_come_as_files(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 100)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let first = ada.get(&nao.path("/samples?limit=60")).await.good();
+    assert_eq!(first["items"].as_array().unwrap().len(), 60);
+    let next = format!(
+        "/samples?limit=60&after={}",
+        first["next"].as_str().unwrap()
+    );
+    let second = ada.get(&nao.path(&next)).await.good();
+    assert_eq!(second["items"].as_array().unwrap().len(), 40);
+    assert_eq!(second["next"], json!(null));
+    assert_eq!(second["items"][0]["time"], "2026-11-15T10:00:00Z");
+
+    let range = "/samples?from=2026-11-15T01:00:00Z&to=2026-11-15T02:00:00Z";
+    let found = ada.get(&nao.path(range)).await.good();
+    assert_eq!(found["items"].as_array().unwrap().len(), 6);
+    assert_eq!(
+        ada.get(&nao.path("/samples?from=yesterday"))
+            .await
+            .problem(),
+        "invalid"
+    );
+    assert_eq!(
+        ada.get(&nao.path("/samples?after=x")).await.problem(),
+        "bad-request"
+    );
+
+    let csv = ada.get(&nao.path("/samples.csv")).await;
+    assert_eq!(csv.headers["content-type"], "text/csv; charset=utf-8");
+    assert_eq!(csv.text.lines().count(), 101);
+    let lines = ada.get(&nao.path("/samples.ndjson")).await;
+    assert_eq!(lines.text.lines().count(), 100);
+    let coverage = ada.get(&nao.path("/coverage")).await.good();
+    let cells = coverage["cells"].as_array().unwrap();
+    let counted: u64 = cells
+        .iter()
+        .map(|cell| cell["samples"].as_u64().unwrap())
+        .sum();
+    assert_eq!(counted, 100);
+    for wrong in [
+        "?lat=95&lon=0",
+        "?lat=1",
+        "?at=1850-01-01T00:00:00Z",
+        "?step_deg=0",
+    ] {
+        let answer = ada.get(&nao.path(&format!("/deviation{wrong}"))).await;
+        assert_eq!(answer.problem(), "invalid", "{wrong}");
+    }
+    shore.finish().await;
+}

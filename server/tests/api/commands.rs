@@ -1,0 +1,252 @@
+//! The program itself, run as a user runs it.
+
+use crate::support::passage;
+use serde_json::{Value, json};
+use std::fmt::Write;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_binnacle-server"))
+        .args(arguments)
+        .current_dir(folder)
+        .env_remove("BINNACLE_DATABASE_URL")
+        .output()
+        .unwrap()
+}
+
+fn good(output: &Output) -> String {
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{errors}");
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// Exit code 2, nothing on standard output, one line with all the words.
+fn assert_refused(output: &Output, words: &[&str]) {
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{errors}");
+    assert!(output.stdout.is_empty());
+    assert_eq!(errors.trim_end().lines().count(), 1, "{errors}");
+    for word in words {
+        assert!(errors.contains(word), "{word:?} is not in {errors:?}");
+    }
+}
+
+fn samples_csv(folder: &Path) {
+    let mut text = "time,lat,lon,compass_deg,gyro_deg,windows\n".to_owned();
+    for sample in passage("2026-11-15T00:00:00Z", 300) {
+        let gyro = sample.gyro.unwrap().degrees();
+        writeln!(
+            text,
+            "{},{},{},{},{gyro},60",
+            sample.time,
+            sample.position.lat_deg(),
+            sample.position.lon_deg(),
+            sample.compass.degrees(),
+        )
+        .unwrap();
+    }
+    std::fs::write(folder.join("samples.csv"), text).unwrap();
+}
+
+#[test]
+fn field_prints_the_earths_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = ["field", "--lat", "80", "--lon", "0", "--date", "2025.0"];
+    let more = ["--model", "wmm2025"];
+    let output = run(folder.path(), &[&place[..], &more].concat());
+    let field: Value = serde_json::from_str(&good(&output)).unwrap();
+    // NOAA's first test value for WMM2025.
+    assert!(
+        (field["x_nt"].as_f64().unwrap() - 6521.6).abs() < 0.1,
+        "{field}"
+    );
+    assert!((field["declination_deg"].as_f64().unwrap() - 1.28).abs() < 0.01);
+    assert_eq!(field["model"], "wmm2025");
+}
+
+#[test]
+fn what_fit_prints_deviation_reads() {
+    let folder = tempfile::tempdir().unwrap();
+    samples_csv(folder.path());
+    for method in ["robust", "paper"] {
+        let table = run(folder.path(), &["fit", "samples.csv", "--method", method]);
+        if method == "paper" && !table.status.success() {
+            // One latitude does not carry the paper's fit, and it says so.
+            assert_refused(&table, &["samples.csv"]);
+            continue;
+        }
+        assert!(good(&table).contains("chi13"));
+    }
+    let fitted = good(&run(folder.path(), &["fit", "samples.csv", "--json"]));
+    let model: Value = serde_json::from_str(&fitted).unwrap();
+    assert_eq!(model["covariance"].as_array().unwrap().len(), 8);
+    std::fs::write(folder.path().join("model.json"), &fitted).unwrap();
+
+    let place = ["--lat", "48", "--lon=-6", "--date", "2026-11-15"];
+    let asked = ["deviation", "--model", "model.json", "--json"];
+    let rows = good(&run(folder.path(), &[&asked[..], &place].concat()));
+    let rows: Value = serde_json::from_str(&rows).unwrap();
+    let rows = rows["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 24);
+    assert!(rows[6]["band95_deg"].as_f64().unwrap() > 0.0);
+
+    let shown = good(&run(folder.path(), &[&asked[..3], &place].concat()));
+    assert_eq!(shown.lines().count(), 25, "{shown}");
+}
+
+#[test]
+fn parameters_alone_are_a_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = json!({ "parameters_over_lambda": {
+        "bx_nt": 2060.0, "chi13": -0.0215, "by_nt": -2930.0, "chi23": 0.0022,
+        "chi11_minus_chi22": 0.0352, "chi12": 0.0012, "chi21": 0.0016,
+    }});
+    std::fs::write(folder.path().join("m.json"), model.to_string()).unwrap();
+    let field = ["--h-nt", "24000", "--z-nt=-38000", "--step-deg", "90"];
+    let asked = ["deviation", "--model", "m.json", "--json"];
+    let output = run(folder.path(), &[&asked[..], &field].concat());
+    let rows: Value = serde_json::from_str(&good(&output)).unwrap();
+    assert_eq!(rows["rows"].as_array().unwrap().len(), 4);
+    assert_eq!(rows["rows"][0]["band95_deg"], json!(null));
+}
+
+#[test]
+fn analyse_does_offline_what_the_server_does() {
+    let folder = tempfile::tempdir().unwrap();
+    samples_csv(folder.path());
+    let book = r#"[{"from":"2026-11-16T00:00:00Z","kind":"adjustment"}]"#;
+    std::fs::write(folder.path().join("book.json"), book).unwrap();
+    let output = run(
+        folder.path(),
+        &["analyse", "samples.csv", "--logbook", "book.json"],
+    );
+    let analysis: Value = serde_json::from_str(&good(&output)).unwrap();
+    assert_eq!(analysis["epochs"].as_array().unwrap().len(), 2);
+    assert_eq!(analysis["samples"].as_array().unwrap().len(), 300);
+}
+
+#[test]
+fn bad_input_is_refused_by_file_line_and_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    let head = "time,lat,lon,compass_deg,gyro_deg\n2026-11-15T00:00:00Z,48,-6,10,8\n";
+    let cases: [(&str, String, &[&str]); 9] = [
+        (
+            "column.csv",
+            head.replace("compass", "needle"),
+            &["column.csv:1", "compass_deg"],
+        ),
+        (
+            "twice.csv",
+            head.replace("lon", "lat"),
+            &["twice.csv:1", "lat"],
+        ),
+        (
+            "nan.csv",
+            format!("{head}2026-11-15T00:10:00Z,48,-6,NaN,8"),
+            &["nan.csv:3", "compass_deg"],
+        ),
+        (
+            "lat.csv",
+            format!("{head}2026-11-15T00:10:00Z,95,-6,10,8"),
+            &["lat.csv:3", "lat", "95"],
+        ),
+        (
+            "old.csv",
+            format!("{head}1850-01-01T00:00:00Z,48,-6,10,8"),
+            &["old.csv:3", "1850"],
+        ),
+        (
+            "time.csv",
+            format!("{head}yesterday,48,-6,10,8"),
+            &["time.csv:3", "time", "yesterday"],
+        ),
+        (
+            "short.csv",
+            format!("{head}2026-11-15T00:10:00Z,48"),
+            &["short.csv:3"],
+        ),
+        ("few.csv", head.to_owned(), &["few.csv", "needed"]),
+        ("empty.csv", String::new(), &["empty.csv:1", "compass_deg"]),
+    ];
+    for (name, text, words) in cases {
+        write(name, &text);
+        assert_refused(&run(folder.path(), &["fit", name]), words);
+        if name != "few.csv" && name != "old.csv" {
+            assert_refused(&run(folder.path(), &["analyse", name]), words);
+        }
+    }
+    std::fs::write(
+        folder.path().join("noise.csv"),
+        [0x00, 0xff, 0x80, b'\n', 0xfe],
+    )
+    .unwrap();
+    assert_refused(&run(folder.path(), &["fit", "noise.csv"]), &["noise.csv:1"]);
+    assert_refused(&run(folder.path(), &["fit", "none.csv"]), &["none.csv"]);
+
+    write(
+        "model.json",
+        "{\n\"parameters_over_lambda\": {\"bx_nt\": 1}\n}",
+    );
+    let asked = [
+        "deviation",
+        "--model",
+        "model.json",
+        "--h-nt",
+        "20000",
+        "--z-nt",
+        "0",
+    ];
+    assert_refused(&run(folder.path(), &asked), &["model.json:2", "chi13"]);
+    let outside = ["field", "--lat", "95", "--lon", "0", "--date", "2026-01-01"];
+    assert_refused(&run(folder.path(), &outside), &["--lat", "95"]);
+    let old = ["field", "--lat", "45", "--lon", "0", "--date", "1850-01-01"];
+    assert_refused(&run(folder.path(), &old), &["--date", "1850"]);
+}
+
+#[test]
+fn admin_creates_who_may_sign_in() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = good(&run(
+        folder.path(),
+        &["admin", "create", "operator", "--name", "Nao"],
+    ));
+    let made: Value = serde_json::from_str(&made).unwrap();
+    let operator = made["operator_id"].as_str().unwrap();
+    let user = [
+        "admin",
+        "create",
+        "user",
+        "--operator",
+        operator,
+        "--email",
+        "A@b.example",
+    ];
+    let more = ["--name", "Ada", "--role", "viewer"];
+    let user = [&user[..], &more].concat();
+    let created: Value = serde_json::from_str(&good(&run(folder.path(), &user))).unwrap();
+    assert!(created["password"].as_str().unwrap().len() >= 16);
+    assert_refused(&run(folder.path(), &user), &["--email", "account already"]);
+    let nobody = user.iter().map(|word| match *word {
+        word if word == operator => "00000000-0000-0000-0000-000000000000",
+        "A@b.example" => "c@d.example",
+        word => word,
+    });
+    let nobody: Vec<&str> = nobody.collect();
+    assert_refused(
+        &run(folder.path(), &nobody),
+        &["--operator", "does not exist"],
+    );
+}
+
+#[test]
+fn a_database_of_another_kind_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["migrate", "--database-url", "mysql://x/y"]);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        !output.status.success() && errors.contains("postgres:"),
+        "{errors}"
+    );
+}

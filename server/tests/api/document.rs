@@ -1,0 +1,32 @@
+//! The API's document.
+
+use crate::support::{Answer, Engine, Shore};
+use binnacle_server::http::openapi;
+use serde_json::Value;
+
+#[test]
+fn the_committed_document_is_the_servers() {
+    let committed = include_str!("../../openapi.json");
+    let current = openapi().to_pretty_json().unwrap();
+    assert!(
+        committed.trim_end() == current.trim_end(),
+        "run `cargo run -p binnacle-server -- openapi > server/openapi.json`, then `npm run schema` in web"
+    );
+}
+
+#[tokio::test]
+async fn the_document_and_its_page_are_served_to_anyone() {
+    let shore = Shore::start(Engine::Sqlite).await;
+    let document = Answer::of(shore.http.get(format!("{}/api/openapi.json", shore.url))).await;
+    assert_eq!(document.good()["openapi"], "3.1.0");
+    let page = Answer::of(shore.http.get(format!("{}/api/docs", shore.url))).await;
+    let paths: Value = document.json()["paths"].take();
+    for path in paths.as_object().unwrap().keys() {
+        assert!(
+            page.text.contains(path.as_str()),
+            "{path} is not on the page"
+        );
+    }
+    assert!(!page.text.contains("<script"), "the page needs no script");
+    shore.finish().await;
+}

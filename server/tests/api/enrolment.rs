@@ -1,0 +1,100 @@
+//! One-time codes.
+
+use crate::on_both;
+use crate::support::{Answer, Shore, exchange, sample};
+use reqwest::Method;
+use serde_json::json;
+
+on_both!(
+    a_code_works_once,
+    a_code_expires,
+    a_code_may_be_typed_carelessly,
+    a_code_for_another_vessels_compass_is_refused,
+    an_agent_reaches_only_its_own_streams,
+);
+
+async fn a_code_works_once(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let vessel = ada.create_vessel("Nao").await;
+    let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
+    let code = ada.post(&path, &json!({})).await.good();
+    let code = code["code"].as_str().unwrap();
+    let enrolled = exchange(&shore, code).await.good();
+    assert_eq!(enrolled["vessel_name"], "Nao");
+    assert_eq!(enrolled["compass_name"], "Standard compass");
+    assert_eq!(exchange(&shore, code).await.problem(), "gone");
+    assert_eq!(
+        exchange(&shore, "0000-0000-0000-0000").await.problem(),
+        "not-found"
+    );
+    let streams = ada.get(&path).await.good();
+    assert_eq!(streams["items"].as_array().unwrap().len(), 1);
+    assert_eq!(streams["items"][0]["stream"], enrolled["stream"]);
+    assert_eq!(streams["items"][0]["agent_version"], "1.2.3");
+    shore.finish().await;
+}
+
+async fn a_code_expires(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let vessel = ada.create_vessel("Nao").await;
+    let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
+    let made = ada.post(&path, &json!({ "valid_for_s": 60 })).await.good();
+    assert_eq!(made["expires_at"], "2026-11-21T07:01:00Z");
+    shore.advance(60.0);
+    let late = exchange(&shore, made["code"].as_str().unwrap()).await;
+    assert_eq!(late.problem(), "gone");
+    for wrong in [0, 7_776_001] {
+        let refused = ada.post(&path, &json!({ "valid_for_s": wrong })).await;
+        assert_eq!(refused.problem(), "invalid");
+    }
+    shore.finish().await;
+}
+
+async fn a_code_may_be_typed_carelessly(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let vessel = ada.create_vessel("Nao").await;
+    let path = format!("/vessels/{}/agents", vessel["id"].as_str().unwrap());
+    let made = ada.post(&path, &json!({})).await.good();
+    let code = made["code"].as_str().unwrap();
+    let typed = format!(" {} ", code.to_lowercase().replace('-', " "));
+    assert_eq!(exchange(&shore, &typed).await.status, 200);
+    shore.finish().await;
+}
+
+async fn a_code_for_another_vessels_compass_is_refused(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let eve = shore.admin("eve").await;
+    let theirs = ada.create_vessel("Nao").await;
+    let ours = eve.create_vessel("Kogge").await;
+    let path = format!("/vessels/{}/agents", ours["id"].as_str().unwrap());
+    let wanted = json!({ "compass_id": theirs["compasses"][0]["id"] });
+    assert_eq!(eve.post(&path, &wanted).await.problem(), "not-found");
+    shore.finish().await;
+}
+
+async fn an_agent_reaches_only_its_own_streams(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let kogge = shore.ship(&ada, "Kogge").await;
+    let stolen = crate::support::frame(kogge.stream, 1, &[]);
+    let path = format!("/streams/{}/batches/1", kogge.stream);
+    let put = Answer::of(nao.request(Method::PUT, &path).body(stolen)).await;
+    assert_eq!(put.problem(), "not-found");
+    let path = format!("/streams/{}/downlink", kogge.stream);
+    let asked = Answer::of(nao.request(Method::GET, &path)).await;
+    assert_eq!(asked.problem(), "not-found");
+    // And it is no key to the fleet.
+    let vessels = Answer::of(nao.request(Method::GET, "/vessels")).await;
+    assert_eq!(vessels.problem(), "unauthenticated");
+
+    let opened = Answer::of(nao.request(Method::POST, "/streams")).await;
+    assert_eq!(opened.status, 201);
+    let stream = opened.json()["stream"].as_str().unwrap().to_owned();
+    let second = binnacle_wire::batch::StreamId(stream.parse().unwrap());
+    let now = shore.app.clock.now();
+    let batch = crate::support::frame(second, 1, &[sample(now, 90.0)]);
+    let path = format!("/streams/{stream}/batches/1");
+    let put = Answer::of(nao.request(Method::PUT, &path).body(batch)).await;
+    assert_eq!(put.good()["contiguous_seq"], 1);
+    shore.finish().await;
+}

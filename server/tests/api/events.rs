@@ -1,0 +1,121 @@
+//! Live events.
+
+use crate::on_both;
+use crate::support::{Person, Shore, passage};
+use futures_util::StreamExt;
+use reqwest::Method;
+use std::time::Duration;
+use tokio::time::timeout;
+
+on_both!(
+    a_dashboard_hears_of_a_batch_and_a_model,
+    a_dashboard_that_comes_back_gets_what_it_missed,
+    nobody_hears_of_another_operators_fleet,
+    a_stopping_server_lets_its_dashboards_go,
+);
+
+const DAY: &str = "2026-11-15T00:00:00Z";
+
+/// What an event source reads.
+struct Source {
+    stream: futures_util::stream::BoxStream<'static, reqwest::Result<Vec<u8>>>,
+    text: String,
+}
+
+impl Source {
+    async fn open(person: &Person, last: Option<&str>) -> Source {
+        let mut request = person.request(Method::GET, "/events");
+        if let Some(last) = last {
+            request = request.header("last-event-id", last);
+        }
+        let response = request.send().await.unwrap();
+        assert_eq!(response.headers()["content-type"], "text/event-stream");
+        let chunks = futures_util::stream::unfold(response, |mut response| async {
+            let chunk = response.chunk().await.transpose()?;
+            Some((chunk.map(|bytes| bytes.to_vec()), response))
+        });
+        Source {
+            stream: chunks.boxed(),
+            text: String::new(),
+        }
+    }
+
+    /// The next event's id and data; `None` when the server has hung up.
+    async fn next(&mut self) -> Option<(String, String)> {
+        let read = timeout(Duration::from_secs(20), self.read());
+        read.await.expect("an event within 20 s")
+    }
+
+    async fn read(&mut self) -> Option<(String, String)> {
+        loop {
+            if let Some((block, rest)) = self.text.split_once("\n\n") {
+                let field = |name: &str| {
+                    let line = block.lines().find_map(|line| line.strip_prefix(name));
+                    line.map(|value| value.trim().to_owned())
+                };
+                let found = field("id:").zip(field("data:"));
+                let rest = rest.to_owned();
+                self.text = rest;
+                if found.is_some() {
+                    return found;
+                }
+                continue;
+            }
+            let bytes = self.stream.next().await?.ok()?;
+            self.text.push_str(&String::from_utf8(bytes).unwrap());
+        }
+    }
+}
+
+async fn a_dashboard_hears_of_a_batch_and_a_model(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    let (_, batch) = source.next().await.unwrap();
+    assert_eq!(
+        batch,
+        format!("{{\"vessel_id\":\"{}\",\"kind\":\"batch\"}}", nao.id)
+    );
+    shore.advance(10.0);
+    shore.work().await;
+    let (_, model) = source.next().await.unwrap();
+    assert!(model.contains("\"kind\":\"model\""), "{model}");
+    shore.finish().await;
+}
+
+async fn a_dashboard_that_comes_back_gets_what_it_missed(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    let (seen, _) = source.next().await.unwrap();
+    drop(source);
+    shore.advance(10.0);
+    shore.work().await;
+    let mut source = Source::open(&ada, Some(&seen)).await;
+    let (_, missed) = source.next().await.unwrap();
+    assert!(missed.contains("\"kind\":\"model\""), "{missed}");
+    shore.finish().await;
+}
+
+async fn nobody_hears_of_another_operators_fleet(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let eve = shore.admin("eve").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let kogge = shore.ship(&eve, "Kogge").await;
+    let mut source = Source::open(&eve, None).await;
+    nao.put(1, &passage(DAY, 3)).await.good();
+    kogge.put(1, &passage(DAY, 3)).await.good();
+    let (_, first) = source.next().await.unwrap();
+    assert!(first.contains(&kogge.id), "{first}");
+    shore.finish().await;
+}
+
+async fn a_stopping_server_lets_its_dashboards_go(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let mut source = Source::open(&ada, None).await;
+    shore.app.stopping.cancel();
+    assert_eq!(source.next().await, None);
+    shore.finish().await;
+}

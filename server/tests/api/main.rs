@@ -1,0 +1,39 @@
+//! The server as others see it: over real HTTP, on both databases.
+//!
+//! PostgreSQL comes from `BINNACLE_TEST_POSTGRES`, the URL of a server on which
+//! each test makes a database of its own; without it the tests fail, they are
+//! never skipped. Run them through `make test` or `scripts/with-postgres`.
+
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
+mod support;
+
+mod analysis;
+mod commands;
+mod dashboard;
+mod document;
+mod enrolment;
+mod events;
+mod fleet;
+mod ingest;
+mod sessions;
+mod tenants;
+
+/// Runs each test on SQLite and on PostgreSQL.
+macro_rules! on_both {
+    ($($test:ident),* $(,)?) => {
+        mod sqlite {
+            $(#[tokio::test]
+            async fn $test() {
+                super::$test(crate::support::Shore::start(crate::support::Engine::Sqlite).await).await;
+            })*
+        }
+        mod postgres {
+            $(#[tokio::test]
+            async fn $test() {
+                super::$test(crate::support::Shore::start(crate::support::Engine::Postgres).await).await;
+            })*
+        }
+    };
+}
+pub(crate) use on_both;

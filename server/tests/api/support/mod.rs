@@ -1,0 +1,131 @@
+//! A server of its own for each test, and those who talk to it.
+
+mod database;
+mod person;
+mod ship;
+
+pub(crate) use database::Engine;
+pub(crate) use person::{Answer, Person, attempt};
+pub(crate) use ship::{Ship, exchange, frame, passage, sample};
+
+use binnacle_magnetics::time::Timestamp;
+use binnacle_server::analysis::{self, Worked};
+use binnacle_server::app::App;
+use binnacle_server::clock::Clock;
+use binnacle_server::config::{Cli, Command, Serve};
+use binnacle_server::db::Db;
+use binnacle_server::{command, operations};
+use clap::Parser;
+use database::Database;
+use metrics_exporter_prometheus::PrometheusHandle;
+use std::sync::OnceLock;
+use tokio::net::TcpListener;
+use tokio::task::JoinHandle;
+
+/// When every test begins.
+pub(crate) const START: &str = "2026-11-21T07:00:00Z";
+pub(crate) const PASSWORD: &str = "correct horse battery";
+
+/// A running server with a clock that the test moves. Its worker does nothing by
+/// itself: the test calls [`Shore::work`].
+pub(crate) struct Shore {
+    pub(crate) app: App,
+    pub(crate) url: String,
+    pub(crate) http: reqwest::Client,
+    serving: JoinHandle<anyhow::Result<()>>,
+    database: Database,
+}
+
+impl Shore {
+    pub(crate) async fn start(engine: Engine) -> Shore {
+        let database = Database::new(engine).await;
+        Shore::open(database, Clock::manual(Timestamp::parse(START).unwrap())).await
+    }
+
+    async fn open(database: Database, clock: Clock) -> Shore {
+        let db = Db::connect(&database.url).await.unwrap();
+        db.migrate().await.unwrap();
+        let config = config(&database.url);
+        let app = App::new(db, clock, config, metrics());
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let url = format!("http://{}", listener.local_addr().unwrap());
+        let serving = tokio::spawn(command::run(app.clone(), listener));
+        Shore {
+            app,
+            url,
+            http: client(),
+            serving,
+            database,
+        }
+    }
+
+    /// Stops the server and starts another on the same database.
+    pub(crate) async fn restart(self) -> Shore {
+        self.app.stopping.cancel();
+        self.serving.await.unwrap().unwrap();
+        Shore::open(self.database, self.app.clock).await
+    }
+
+    /// Stops the server and removes its database.
+    pub(crate) async fn finish(self) {
+        self.app.stopping.cancel();
+        self.serving.await.unwrap().unwrap();
+        self.database.remove().await;
+    }
+
+    /// A second server process on the same database, as it were.
+    pub(crate) async fn second(&self) -> App {
+        let db = Db::connect(&self.database.url).await.unwrap();
+        let config = config(&self.database.url);
+        App::new(db, self.app.clock.clone(), config, metrics())
+    }
+
+    /// Does every job that is due now.
+    pub(crate) async fn work(&self) -> Vec<Worked> {
+        let mut done = Vec::new();
+        while let Some(worked) = analysis::step(&self.app).await.unwrap() {
+            done.push(worked);
+        }
+        done
+    }
+
+    pub(crate) fn advance(&self, seconds: f64) {
+        self.app.clock.advance(seconds);
+    }
+
+    /// An operator of her own with one admin, signed in.
+    pub(crate) async fn admin(&self, name: &str) -> Person {
+        Person::admin(self, name).await
+    }
+
+    /// A vessel of the person's with an enrolled agent.
+    pub(crate) async fn ship(&self, person: &Person, name: &str) -> Ship {
+        Ship::enrol(self, person, name).await
+    }
+}
+
+fn config(url: &str) -> Serve {
+    let arguments = ["binnacle-server", "serve", "--database-url", url];
+    let more = ["--listen", "127.0.0.1:0", "--analysis-workers", "0"];
+    let Command::Serve(serve) = Cli::parse_from(arguments.into_iter().chain(more)).command else {
+        unreachable!("serve was asked for");
+    };
+    serve
+}
+
+/// There is one recorder in a process.
+fn metrics() -> PrometheusHandle {
+    static HANDLE: OnceLock<PrometheusHandle> = OnceLock::new();
+    HANDLE
+        .get_or_init(|| operations::install_metrics().unwrap())
+        .clone()
+}
+
+fn client() -> reqwest::Client {
+    // Only one of the tests can be first; reqwest wants a provider also for http.
+    let _ = rustls::crypto::ring::default_provider().install_default();
+    reqwest::Client::builder()
+        .redirect(reqwest::redirect::Policy::none())
+        .build()
+        .unwrap()
+}

@@ -1,0 +1,153 @@
+//! Someone with a browser.
+
+use super::{PASSWORD, Shore};
+use binnacle_server::ids::OperatorId;
+use binnacle_server::secret;
+use binnacle_server::session::{self, Role};
+use binnacle_server::time::Time;
+use reqwest::Method;
+use serde_json::{Value, json};
+use std::sync::OnceLock;
+
+#[derive(Clone)]
+pub(crate) struct Person {
+    url: String,
+    http: reqwest::Client,
+    pub(crate) operator: OperatorId,
+    pub(crate) email: String,
+    pub(crate) cookie: String,
+}
+
+/// A status and what came with it.
+#[derive(Debug)]
+pub(crate) struct Answer {
+    pub(crate) status: u16,
+    pub(crate) headers: reqwest::header::HeaderMap,
+    pub(crate) text: String,
+}
+
+impl Answer {
+    pub(crate) async fn of(request: reqwest::RequestBuilder) -> Answer {
+        let response = request.send().await.unwrap();
+        Answer {
+            status: response.status().as_u16(),
+            headers: response.headers().clone(),
+            text: response.text().await.unwrap(),
+        }
+    }
+
+    pub(crate) fn json(&self) -> Value {
+        serde_json::from_str(&self.text).unwrap_or_else(|_| panic!("not JSON: {self:?}"))
+    }
+
+    /// The JSON of a request that went well.
+    pub(crate) fn good(&self) -> Value {
+        assert!((200..300).contains(&self.status), "{self:?}");
+        self.json()
+    }
+
+    /// The last word of a problem's type, after checking that it is one.
+    pub(crate) fn problem(&self) -> String {
+        let problem = self.json();
+        assert_eq!(self.headers["content-type"], "application/problem+json");
+        assert_eq!(problem["status"], self.status);
+        assert!(problem["title"].is_string() && problem["detail"].is_string());
+        let kind = problem["type"].as_str().unwrap();
+        kind.rsplit('/').next().unwrap().to_owned()
+    }
+}
+
+/// Hashing takes long without optimisation: once is enough.
+fn password_hash() -> &'static str {
+    static HASH: OnceLock<String> = OnceLock::new();
+    HASH.get_or_init(|| secret::hash_password(PASSWORD).unwrap())
+}
+
+impl Person {
+    pub(super) async fn admin(shore: &Shore, name: &str) -> Person {
+        let operator = create_operator(shore, name).await;
+        let email = format!("{name}@example.com");
+        Person::create(shore, Some(operator), &email, Role::Admin).await;
+        Person::sign_in(shore, operator, &email).await
+    }
+
+    /// A colleague of this person, signed in.
+    pub(crate) async fn viewer(&self, shore: &Shore) -> Person {
+        let email = format!("viewer-{}", self.email);
+        Person::create(shore, Some(self.operator), &email, Role::Viewer).await;
+        Person::sign_in(shore, self.operator, &email).await
+    }
+
+    pub(crate) async fn create(
+        shore: &Shore,
+        operator: Option<OperatorId>,
+        email: &str,
+        role: Role,
+    ) {
+        let now = Time(shore.app.clock.now());
+        let mut tx = shore.app.db.begin().await.unwrap();
+        session::create_user(&mut tx, operator, email, email, role, password_hash(), now)
+            .await
+            .unwrap();
+        tx.commit().await.unwrap();
+    }
+
+    pub(crate) async fn sign_in(shore: &Shore, operator: OperatorId, email: &str) -> Person {
+        let answer = attempt(shore, email, PASSWORD).await;
+        assert_eq!(answer.status, 200, "{answer:?}");
+        let cookie = answer.headers["set-cookie"].to_str().unwrap();
+        Person {
+            url: shore.url.clone(),
+            http: shore.http.clone(),
+            operator,
+            email: email.to_owned(),
+            cookie: cookie.split(';').next().unwrap().to_owned(),
+        }
+    }
+
+    /// The same person, talking to a server that was started again.
+    pub(crate) fn at(&self, shore: &Shore) -> Person {
+        Person {
+            url: shore.url.clone(),
+            ..self.clone()
+        }
+    }
+
+    /// A request as the dashboard makes it.
+    pub(crate) fn request(&self, method: Method, path: &str) -> reqwest::RequestBuilder {
+        self.http
+            .request(method, format!("{}/api/v1{path}", self.url))
+            .header("cookie", &self.cookie)
+            .header("x-binnacle-request", "1")
+    }
+
+    pub(crate) async fn get(&self, path: &str) -> Answer {
+        Answer::of(self.request(Method::GET, path)).await
+    }
+
+    pub(crate) async fn post(&self, path: &str, body: &Value) -> Answer {
+        Answer::of(self.request(Method::POST, path).json(body)).await
+    }
+
+    pub(crate) async fn create_vessel(&self, name: &str) -> Value {
+        self.post("/vessels", &json!({ "name": name })).await.good()
+    }
+}
+
+pub(crate) async fn attempt(shore: &Shore, email: &str, password: &str) -> Answer {
+    let request = shore
+        .http
+        .post(format!("{}/api/v1/session", shore.url))
+        .json(&json!({ "email": email, "password": password }));
+    Answer::of(request).await
+}
+
+async fn create_operator(shore: &Shore, name: &str) -> OperatorId {
+    let now = Time(shore.app.clock.now());
+    let mut tx = shore.app.db.begin().await.unwrap();
+    let id = binnacle_server::operators::create(&mut tx, name, now)
+        .await
+        .unwrap();
+    tx.commit().await.unwrap();
+    id
+}

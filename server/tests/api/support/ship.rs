@@ -1,0 +1,128 @@
+//! A ship with an agent, whose batches the test makes.
+
+use super::{Answer, Person, Shore};
+use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::field::{FieldModel, field};
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::messages::EnrolAnswer;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+pub(crate) struct Ship {
+    url: String,
+    http: reqwest::Client,
+    pub(crate) id: String,
+    pub(crate) token: String,
+    pub(crate) stream: StreamId,
+}
+
+impl Ship {
+    pub(super) async fn enrol(shore: &Shore, person: &Person, name: &str) -> Ship {
+        let vessel = person.create_vessel(name).await;
+        let id = vessel["id"].as_str().unwrap().to_owned();
+        let code = person
+            .post(&format!("/vessels/{id}/agents"), &json!({}))
+            .await
+            .good();
+        let enrolled = exchange(shore, code["code"].as_str().unwrap()).await.good();
+        let enrolled: EnrolAnswer = serde_json::from_value(enrolled).unwrap();
+        Ship {
+            url: shore.url.clone(),
+            http: shore.http.clone(),
+            id,
+            token: enrolled.token,
+            stream: enrolled.stream,
+        }
+    }
+
+    /// The same ship, talking to a server that was started again.
+    pub(crate) fn at(&mut self, shore: &Shore) {
+        self.url.clone_from(&shore.url);
+    }
+
+    pub(crate) async fn put(&self, seq: u64, samples: &[Sample]) -> Answer {
+        self.put_bytes(seq, frame(self.stream, seq, samples)).await
+    }
+
+    pub(crate) async fn put_bytes(&self, seq: u64, bytes: Vec<u8>) -> Answer {
+        let path = format!("/streams/{}/batches/{seq}", self.stream);
+        Answer::of(self.request(reqwest::Method::PUT, &path).body(bytes)).await
+    }
+
+    pub(crate) async fn downlink(&self, has: &str) -> Value {
+        let path = format!("/streams/{}/downlink{has}", self.stream);
+        Answer::of(self.request(reqwest::Method::GET, &path))
+            .await
+            .good()
+    }
+
+    pub(crate) fn request(&self, method: reqwest::Method, path: &str) -> reqwest::RequestBuilder {
+        self.http
+            .request(method, format!("{}/api/v1{path}", self.url))
+            .bearer_auth(&self.token)
+    }
+
+    pub(crate) fn path(&self, rest: &str) -> String {
+        format!("/vessels/{}{rest}", self.id)
+    }
+}
+
+pub(crate) async fn exchange(shore: &Shore, code: &str) -> Answer {
+    let request = shore
+        .http
+        .post(format!("{}/api/v1/agents/enrol", shore.url))
+        .json(&json!({ "code": code, "agent_version": "1.2.3" }));
+    Answer::of(request).await
+}
+
+pub(crate) fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
+    let batch = Batch {
+        stream,
+        seq,
+        samples: samples.to_vec(),
+        tally: BTreeMap::from([("accepted".to_owned(), 60 * samples.len() as u64)]),
+    };
+    binnacle_wire::encode(&batch).unwrap()
+}
+
+/// A ship whose magnetism is known.
+fn truth() -> Model {
+    serde_json::from_value(json!({ "parameters_over_lambda": {
+        "bx_nt": 1500.0, "chi13": -0.01, "by_nt": -900.0, "chi23": 0.002,
+        "chi11_minus_chi22": 0.04, "chi12": 0.001, "chi21": 0.002,
+    }}))
+    .unwrap()
+}
+
+/// What that ship's compass and gyro read on a true heading at a time.
+pub(crate) fn sample(time: Timestamp, heading_deg: f64) -> Sample {
+    let position = Position::new(48.0, -6.0).unwrap();
+    let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
+    let heading = TrueHeading::new(heading_deg).unwrap();
+    let compass = truth()
+        .compass_for_true(heading, earth.declination(), earth.for_ship())
+        .unwrap();
+    Sample {
+        time,
+        position,
+        compass,
+        gyro: Some(heading),
+        satellite: None,
+        sog_kn: Some(12.0),
+        rate_of_turn_deg_min: None,
+        spread_deg: Some(0.3),
+        windows: 60,
+    }
+}
+
+/// A passage of ten-minute samples on all headings, from a day and hour on.
+pub(crate) fn passage(from: &str, samples: usize) -> Vec<Sample> {
+    let start = Timestamp::parse(from).unwrap();
+    (0..samples)
+        .map(|i| sample(start.plus_seconds(600.0 * i as f64), 37.0 * i as f64))
+        .collect()
+}
