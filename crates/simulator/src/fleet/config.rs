@@ -57,9 +57,9 @@ pub(super) fn agent_toml(plan: &ShipPlan, ports: Ports) -> String {
         ports.output
     ));
     line(format_args!("\n[page]\nlisten = \"{}\"", ports.page));
-    // A demonstration lasts minutes: models are asked for twice a minute.
+    // A demonstration lasts minutes: models are asked for every ten seconds.
     line(format_args!(
-        "\n[uplink]\npoll_s = 30\nretry_min_s = 1\nretry_max_s = 10"
+        "\n[uplink]\npoll_s = 10\nretry_min_s = 1\nretry_max_s = 10"
     ));
     text
 }
