@@ -33,7 +33,7 @@ test-rust: web ## Test every crate and, end to end, the real programs on both da
 	@scripts/with-postgres $(CARGO) test --locked --workspace
 
 test-browser: web ## Drive the dashboard in a real Chromium
-	$(CARGO) build --locked -p binnacle-server -p binnacle-agent -p binnacle-simulator
+	$(CARGO) build --locked --workspace --all-targets
 	@scripts/browser-test
 
 lint: web ## Formatter, linters, licences, advisories, documentation
