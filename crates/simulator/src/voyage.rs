@@ -96,9 +96,10 @@ fn open(args: &VoyageArgs, partial: Option<&Path>) -> Result<Sink> {
 
 /// A file gets its name when it is whole; devices and pipes have theirs.
 fn partial_path(out: &Path) -> PathBuf {
-    // What /dev/stdout stands for may be a file, but one without a name.
-    let is_device =
-        out.starts_with("/dev") || std::fs::metadata(out).is_ok_and(|found| !found.is_file());
+    // What /dev/stdout stands for may be a file, but not one to be renamed to.
+    let is_device = out.starts_with("/dev")
+        || out.starts_with("/proc")
+        || std::fs::metadata(out).is_ok_and(|found| !found.is_file());
     if is_device {
         return out.to_owned();
     }
