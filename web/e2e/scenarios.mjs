@@ -55,7 +55,10 @@ export const scenarios = {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
-      await page.getByText(/^Live$/).waitFor();
+      await page
+        .getByRole('banner')
+        .getByText(/^Live$/)
+        .waitFor();
       await shoot('vessels');
       await openVessel(page);
 
@@ -119,6 +122,30 @@ export const scenarios = {
       const code = await page.getByTestId('enrolment-code').innerText();
       assert.ok(code.length >= 8, 'the code is shown');
       await page.getByText(`--code ${code}`).waitFor();
+    },
+  },
+
+  'a new vessel says what is missing before there is a model': {
+    allowedErrors: [
+      notSignedIn,
+      /status of 404 .*\/(model|deviation)\b/,
+      /status of 422 .*\/vessels\b/,
+    ],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('button', { name: 'Add a vessel' }).click();
+      await page.getByLabel('Name').fill('Browser Test');
+      await page.getByLabel('IMO number').fill('1234568');
+      await page.getByRole('button', { name: 'Add vessel' }).click();
+      await page.getByRole('alert').filter({ hasText: '1234568' }).waitFor();
+      await page.getByLabel('IMO number').fill('');
+      await page.getByRole('button', { name: 'Add vessel' }).click();
+      await page.getByRole('link', { name: 'Browser Test' }).first().click();
+      await page.getByTestId('no-model').getByText('No model yet').waitFor();
+      await page.getByText('No samples yet.').waitFor();
+      await page.getByText('No agent has been enrolled').waitFor();
+      await fitsItsWidth(page);
+      await shoot('new-vessel', { fullPage: true });
     },
   },
 

@@ -100,6 +100,6 @@ describe('times and counts', () => {
     expect(format.percent(1, 1000)).toBe('< 1 %');
     expect(format.percent(64, 100)).toBe('64 %');
     expect(format.percent(0, 0)).toBe('–');
-    expect(format.microtesla(-24_130)).toBe('−24.1 µT');
+    expect(format.microtesla(-24_130)).toBe('−24.1\u00a0µT');
   });
 });

@@ -124,10 +124,10 @@ export function ago(value: string | null | undefined, now: Date): string {
   return `${Math.floor(hours / 24)} days ago`;
 }
 
-/** Nanotesla, written for people: `24.1 µT`. */
+/** Nanotesla, written for people: `24.1 µT`, kept on one line. */
 export function microtesla(nanotesla: number | null | undefined): string {
   if (nanotesla === null || nanotesla === undefined || !Number.isFinite(nanotesla)) return unknown;
-  return `${plain(nanotesla / 1000, 1)} µT`;
+  return `${plain(nanotesla / 1000, 1)}\u00a0µT`;
 }
 
 /** A count with thin spaces between thousands: `12 480`. */
