@@ -60,7 +60,7 @@ impl Motion {
             sog_kn: 0.0,
             cog_deg: 0.0,
             sea: plan.sea,
-            course_deg: f64::NAN,
+            course_deg: 0.0,
             turn_deg_s: 0.0,
             water_kn: 0.0,
             turned_deg: 0.0,
@@ -78,6 +78,15 @@ impl Motion {
             cos_latitude: position.lat_deg().to_radians().cos(),
             random,
         }
+    }
+
+    /// Heads as ordered, as if she had long done so.
+    pub(crate) fn begin(&mut self, order: Order) {
+        self.course_deg = match order {
+            Order::Steer { course_deg, .. } => course_deg,
+            Order::Alongside { heading_deg } => heading_deg,
+        };
+        self.heading_deg = self.course_deg;
     }
 
     /// What changes slowly; once a minute.
@@ -117,9 +126,6 @@ impl Motion {
 
     /// Brings the course round; gives the turn when it is over.
     fn turn(&mut self, dt: f64, order_deg: f64) -> Option<Turned> {
-        if self.course_deg.is_nan() {
-            self.course_deg = order_deg;
-        }
         let left_deg = wrap_180(order_deg - self.course_deg);
         let most = self.greatest_turn_deg_s;
         let wanted = (left_deg / 40.0).clamp(-most, most);

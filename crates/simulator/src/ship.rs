@@ -95,10 +95,11 @@ impl Ship {
         seed: u64,
         start: Timestamp,
     ) -> Result<Ship, FieldError> {
-        let motion = Motion::new(plan, seed);
+        let mut motion = Motion::new(plan, seed);
         let surroundings = Surroundings::new(scenario, &plan.name, seed, start, motion.position)?;
         let mut passage = Passage::new(plan, seed);
         let order = passage.step(0.0, motion.position);
+        motion.begin(order);
         let mut ship = Ship {
             plan: plan.clone(),
             start,

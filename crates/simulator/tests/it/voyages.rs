@@ -130,6 +130,15 @@ fn a_turn_disturbs_the_compass_for_two_minutes_and_not_for_ten() {
 }
 
 #[test]
+fn a_voyage_does_not_begin_with_a_turn() {
+    let scenario = scenario("", "");
+    for seed in 0..10 {
+        let reading = ship(&scenario, seed).step(2.0);
+        assert!(reading.rate_deg_min.abs() < 10.0, "{reading:?}");
+    }
+}
+
+#[test]
 fn lightning_stays_and_cargo_goes_ashore_again() {
     let events = r#"events = [
         { kind = "cargo", from_day = 1, to_day = 2, b_nt = [900, 0, 0] },
