@@ -10,6 +10,8 @@
 //! together, so that the parameters follow from ordinary normal equations on
 //! the whitened rows. Cost is linear in the number of observations.
 //!
+//! The equations and the constants' reasons are in docs/science.md, §7.
+//!
 //! What always holds:
 //! - rows are linearised at the heading fused from compass and reference, never
 //!   at the noisy compass heading alone, which would bias the fit;

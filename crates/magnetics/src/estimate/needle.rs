@@ -47,7 +47,7 @@ impl Needle {
     }
 
     /// Derivative of deviation, in radians, by each of the parameters at fixed
-    /// magnetic heading: from dζ = −(sin ζ dux + cos ζ duy)/|u|.
+    /// magnetic heading (docs/science.md, eq. 9): from dζ = −(sin ζ dux + cos ζ duy)/|u|.
     pub(crate) fn gradient(&self) -> [f64; PARAMETERS] {
         let [hx, hy, z] = self.earth;
         let (sin, cos) = self.compass_rad.sin_cos();

@@ -6,8 +6,9 @@ use super::noise::{STATES, Transition};
 use super::prior::scales;
 use crate::angle::wrap_180;
 use crate::deviation::Coefficients;
-use crate::fit::Observation;
+use crate::fit::{Observation, gyro_speed_error_deg};
 use crate::model::Parameters;
+use crate::position::Position;
 use crate::ship::{EarthField, PARAMETERS};
 use std::f64::consts::TAU;
 
@@ -21,8 +22,6 @@ pub(crate) const CONSTANT: usize = PARAMETERS;
 const SPEED_ERROR_SD: f64 = 0.15;
 /// Standard deviation of the daily swing of variation, degrees at 24 µT.
 const DAILY_SD_DEG: f64 = 0.08;
-/// Radius of the earth's turning in knots, IMO's 902.5 at the equator.
-const EARTH_TURN_KN: f64 = 902.5;
 /// Where H is this, an error of variation has its nominal size.
 const NOMINAL_H_NT: f64 = 24_000.0;
 /// Share of the reference in the heading at which rows are linearised, from the
@@ -95,15 +94,15 @@ fn step(later: &Observation, earlier: &Observation) -> (f64, f64) {
 }
 
 fn station(o: &Observation, transition: Transition) -> Station {
-    let lat_rad = o.position.map_or(0.0, |p| p.lat_deg().to_radians());
     // A gyro loses its sense of north towards the poles; 80° is as far as the
     // rule is meant to hold.
-    let per_cos_lat = 1.0 / lat_rad.cos().max(0.17);
-    let heading = (o.compass.degrees() + o.deviation.degrees_east() + o.variation.degrees_east())
-        .to_radians();
+    let lat_deg = o.position.map_or(0.0, Position::lat_deg);
+    let per_cos_lat = 1.0 / lat_deg.to_radians().cos().max(0.17);
+    let heading = (o.compass + o.deviation) + o.variation;
     let variation_load = (NOMINAL_H_NT / o.h_nt).clamp(0.5, 4.0);
-    let speed_error =
-        (o.sog_kn.unwrap_or(0.0) * heading.cos() / EARTH_TURN_KN * per_cos_lat).to_degrees();
+    let speed_error = o
+        .sog_kn
+        .map_or(0.0, |sog_kn| gyro_speed_error_deg(heading, sog_kn, lat_deg));
     let (sin, cos) = match (o.time, o.position) {
         (Some(time), Some(position)) => {
             let day = time.micros().rem_euclid(86_400_000_000) as f64 / 86_400e6;

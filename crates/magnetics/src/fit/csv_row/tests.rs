@@ -1,0 +1,198 @@
+use super::*;
+
+fn row() -> CsvRow {
+    CsvRow {
+        variation_deg: Some(-3.0),
+        h_nt: Some(24_000.0),
+        z_nt: Some(38_000.0),
+        compass_deg: Some(358.0),
+        gyro_deg: Some(1.0),
+        ..CsvRow::default()
+    }
+}
+
+fn read(row: CsvRow) -> Result<CsvObservations, CsvRowError> {
+    observations_from_csv(&[row], GyroSpeedError::Corrected, 0.5)
+}
+
+#[test]
+fn deviation_is_reference_less_variation_less_compass() {
+    let read = read(row()).unwrap();
+    assert!((read.observations[0].deviation.degrees_east() - 6.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_field_comes_from_time_and_place_where_it_is_not_given() {
+    let at_sea = CsvRow {
+        time: Some(Timestamp::parse("2026-06-01T00:00:00Z").unwrap()),
+        lat: Some(50.0),
+        lon: Some(-20.0),
+        compass_deg: Some(10.0),
+        satellite_deg: Some(5.0),
+        ..CsvRow::default()
+    };
+    let observation = read(at_sea).unwrap().observations[0];
+    assert!((15_000.0..25_000.0).contains(&observation.h_nt));
+    assert!(observation.variation.degrees_east() < -3.0);
+}
+
+#[test]
+fn a_row_without_a_reference_is_counted() {
+    let read = read(CsvRow {
+        gyro_deg: None,
+        ..row()
+    })
+    .unwrap();
+    assert_eq!((read.observations.len(), read.without_reference), (0, 1));
+}
+
+#[test]
+#[allow(clippy::too_many_lines)] // a table
+fn each_fault_names_its_column() {
+    let faults = [
+        (
+            CsvRow {
+                compass_deg: None,
+                ..row()
+            },
+            "compass_deg",
+        ),
+        (
+            CsvRow {
+                compass_deg: Some(361.0),
+                ..row()
+            },
+            "compass_deg",
+        ),
+        (
+            CsvRow {
+                compass_deg: Some(f64::NAN),
+                ..row()
+            },
+            "compass_deg",
+        ),
+        (
+            CsvRow {
+                h_nt: None,
+                ..row()
+            },
+            "h_nt",
+        ),
+        (
+            CsvRow {
+                h_nt: Some(-1.0),
+                ..row()
+            },
+            "h_nt",
+        ),
+        (
+            CsvRow {
+                z_nt: Some(f64::NAN),
+                ..row()
+            },
+            "z_nt",
+        ),
+        (
+            CsvRow {
+                variation_deg: Some(200.0),
+                ..row()
+            },
+            "variation_deg",
+        ),
+        (
+            CsvRow {
+                lat: Some(95.0),
+                lon: Some(0.0),
+                ..row()
+            },
+            "lat",
+        ),
+        (
+            CsvRow {
+                lat: Some(5.0),
+                lon: Some(999.0),
+                ..row()
+            },
+            "lon",
+        ),
+        (
+            CsvRow {
+                lat: Some(5.0),
+                ..row()
+            },
+            "lon",
+        ),
+        (
+            CsvRow {
+                gyro_deg: Some(-5.0),
+                ..row()
+            },
+            "gyro_deg",
+        ),
+        (
+            CsvRow {
+                weight: Some(-1.0),
+                ..row()
+            },
+            "weight",
+        ),
+        (
+            CsvRow {
+                variation_deg: None,
+                lat: Some(5.0),
+                lon: Some(5.0),
+                ..row()
+            },
+            "time",
+        ),
+        (
+            CsvRow {
+                variation_deg: None,
+                time: Some(Timestamp::parse("1850-01-01T00:00:00Z").unwrap()),
+                lat: Some(5.0),
+                lon: Some(5.0),
+                ..row()
+            },
+            "time",
+        ),
+    ];
+    for (row, column) in faults {
+        let error = read(row).unwrap_err();
+        assert_eq!((error.column(), error.row()), (column, Some(0)), "{error}");
+    }
+}
+
+#[test]
+fn a_missing_column_is_named() {
+    assert_eq!(
+        check_columns(["time", "lat", "lon", "compass_deg", "gyro_deg"]),
+        Ok(())
+    );
+    assert_eq!(
+        check_columns([
+            "variation_deg",
+            "h_nt",
+            "z_nt",
+            "compass_deg",
+            "reference_deg"
+        ]),
+        Ok(())
+    );
+    for (header, missing) in [
+        (vec!["time", "lat", "lon", "gyro_deg"], "compass_deg"),
+        (vec!["time", "lat", "compass_deg", "gyro_deg"], "lon"),
+        (
+            vec!["variation_deg", "h_nt", "compass_deg", "gyro_deg"],
+            "z_nt",
+        ),
+        (
+            vec!["time", "lat", "lon", "compass_deg"],
+            "gyro_deg, satellite_deg or reference_deg",
+        ),
+    ] {
+        assert_eq!(
+            check_columns(header),
+            Err(CsvRowError::MissingColumn(missing))
+        );
+    }
+}
