@@ -176,6 +176,11 @@ test('the list shows side, heading and band, and what is not there yet', () => {
   const vessel: Vessel = {
     id: 'v',
     name: 'MV Arcturus',
+    imo_number: null,
+    call_sign: null,
+    flag: null,
+    last_upload_at: null,
+    model: null,
     created_at: '2026-09-01T00:00:00Z',
     last_position: { lat: -33.9, lon: 18.4, at: '2026-11-01T06:00:00Z' },
     compasses: [],

@@ -31,6 +31,8 @@ class RouteState {
       history.pushState(null, '', link.href);
       read();
       scrollTo(0, 0);
+      // As after a real change of page, the keyboard starts from the top again.
+      document.getElementById('content')?.focus({ preventScroll: true });
     };
     read();
     addEventListener('popstate', read);
