@@ -8,25 +8,27 @@ use tokio::time::{Instant, MissedTickBehavior, interval};
 /// How often is asked.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// Asks until there is an answer.
+/// Asks until there is an answer, or else why there is none yet.
 ///
 /// # Errors
-/// With `what` when there is none `within` the time; or as soon as asking fails.
+/// With `what`, and why not, when there is none `within` the time; or as soon as
+/// asking fails.
 pub async fn eventually<T>(
     what: impl Display,
     within: Duration,
-    mut ask: impl AsyncFnMut() -> Result<Option<T>>,
+    mut ask: impl AsyncFnMut() -> Result<Result<T, String>>,
 ) -> Result<T> {
     let deadline = Instant::now() + within;
     let mut ticks = interval(EVERY);
     ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
     loop {
         ticks.tick().await;
-        if let Some(answer) = ask().await? {
-            return Ok(answer);
-        }
+        let why_not = match ask().await? {
+            Ok(answer) => return Ok(answer),
+            Err(why_not) => why_not,
+        };
         if Instant::now() >= deadline {
-            bail!("{what}: not within {} s", within.as_secs());
+            bail!("{what}: not within {} s: {why_not}", within.as_secs());
         }
     }
 }

@@ -27,6 +27,16 @@ pub enum Pace {
     Live,
 }
 
+impl Pace {
+    /// Whether time may pass beyond an instant.
+    fn allows(&self, time: Timestamp) -> bool {
+        match self {
+            Pace::FastUntil(end) => time < *end,
+            Pace::Live => true,
+        }
+    }
+}
+
 /// How far the bridge has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Progress {
@@ -34,10 +44,18 @@ pub enum Progress {
     Waiting,
     /// The last fix that was sent.
     At(Timestamp),
-    /// The ship waits, at the end of [`Pace::FastUntil`].
-    Held(Timestamp),
     /// There is nothing more to send.
     Ended,
+}
+
+impl Progress {
+    /// The last fix that was sent.
+    pub fn time(&self) -> Option<Timestamp> {
+        match self {
+            Progress::At(time) => Some(*time),
+            Progress::Waiting | Progress::Ended => None,
+        }
+    }
 }
 
 /// A bridge that sends its sentences to one agent.
@@ -144,8 +162,7 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
                     }
                     Pace::FastUntil(end) if time >= end => {
                         self.send().await?;
-                        self.news.send_replace(Progress::Held(time));
-                        self.paces.wait_for(|pace| *pace == Pace::Live).await?;
+                        self.paces.wait_for(|pace| pace.allows(time)).await?;
                     }
                     Pace::FastUntil(_) => {}
                 }
@@ -177,13 +194,21 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
     }
 }
 
-/// When the fix of an RMC sentence was taken.
+/// When the fix of an RMC sentence was taken. The line is as poor as a ship's:
+/// a sentence with a wrong checksum tells nothing.
 fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
     if line.get(3..7)? != b"RMC," {
         return None;
     }
-    let line = std::str::from_utf8(line).ok()?;
-    let mut fields = line.split(',').skip(1);
+    let (body, sum) = std::str::from_utf8(&line[1..])
+        .ok()?
+        .trim_end()
+        .split_once('*')?;
+    let computed = body.bytes().fold(0, |sum, byte| sum ^ byte);
+    if sum != format!("{computed:02X}") {
+        return None;
+    }
+    let mut fields = body.split(',').skip(1);
     let (clock, day) = (fields.next()?, fields.nth(7)?);
     let (dd, mm, yy) = (day.get(0..2)?, day.get(2..4)?, day.get(4..6)?);
     let (hour, minute, second) = (clock.get(0..2)?, clock.get(2..4)?, clock.get(4..6)?);
@@ -196,9 +221,11 @@ mod tests {
 
     #[test]
     fn a_fix_tells_its_time_and_other_sentences_do_not() {
-        let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*00\r\n";
+        let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
         let time = Timestamp::parse("2026-11-21T07:30:15Z").unwrap();
         assert_eq!(time_of_fix(fix), Some(time));
+        let damaged = fix.map(|byte| if byte == b'6' { b'5' } else { byte });
+        assert_eq!(time_of_fix(&damaged), None);
         assert_eq!(time_of_fix(b"$HCHDG,010.0,,,,*00\r\n"), None);
         assert_eq!(time_of_fix(b"$GPRMC,,V,,,,,,,,,,N*00\r\n"), None);
         assert_eq!(time_of_fix(b"\xff\r\n"), None);

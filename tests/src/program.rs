@@ -81,7 +81,8 @@ pub async fn answer_of(mut command: Command, input: &str) -> Result<String> {
     Ok(String::from_utf8(output.stdout)?)
 }
 
-/// A program that runs until it is killed. Its log is shown when a test fails.
+/// A program that runs until it is killed. When a test fails before that, the
+/// end of its log is shown.
 #[derive(Debug)]
 pub struct Program {
     name: String,
@@ -89,6 +90,8 @@ pub struct Program {
     log: PathBuf,
     /// Bytes of the log that earlier runs wrote.
     before: usize,
+    /// Killed on purpose.
+    done: bool,
 }
 
 impl Program {
@@ -112,6 +115,7 @@ impl Program {
             child,
             log: log.to_owned(),
             before,
+            done: false,
         })
     }
 
@@ -141,19 +145,20 @@ impl Program {
     pub async fn kill(mut self) -> Result<()> {
         ensure!(self.is_running()?, "{} had ended by itself", self.name);
         self.child.kill().await?;
+        self.done = true;
         Ok(())
     }
 }
 
 impl Drop for Program {
     fn drop(&mut self) {
-        if !std::thread::panicking() {
+        if self.done {
             return;
         }
         let log = self.log();
         let lines: Vec<&str> = log.lines().collect();
         let tail = lines[lines.len().saturating_sub(40)..].join("\n");
-        // Captured with the failing test's output.
+        // Shown with the failing test's output.
         println!("-- the end of {}'s log:\n{tail}", self.name);
     }
 }

@@ -115,7 +115,12 @@ stale_s = 15
         let agent = self.agent.as_mut().context("the agent runs")?;
         eventually(format!("{} is ready", self.name), START, async || {
             ensure!(agent.is_running()?, "the agent has ended:\n{}", agent.log());
-            Ok(agent.log().contains("ready").then_some(()))
+            let log = agent.log();
+            Ok(if log.contains("ready") {
+                Ok(())
+            } else {
+                Err(log)
+            })
         })
         .await
     }

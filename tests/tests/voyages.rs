@@ -19,6 +19,8 @@ use uuid::Uuid;
 
 const START: &str = "2026-10-01T00:00:00Z";
 const DAYS: f64 = 12.0;
+/// A ship sails on for so long while another is hit.
+const AFTER_KILL_S: f64 = 12.0 * 3600.0;
 /// Sailed at the end, for the autopilot.
 const LIVE_S: f64 = 600.0;
 /// A few days' sailing may take so long on a busy machine.
@@ -81,7 +83,7 @@ fn kills(seed: u64) -> Vec<(f64, Victim)> {
 
 async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Result<Vessel> {
     let (id, code) = shore.create_vessel(scenario).await?;
-    let pace = Pace::FastUntil(fast_end());
+    let pace = Pace::FastUntil(day(0.0));
     let voyage = Voyage::sail(&format!("{scenario}.toml"), seed, folder, pace).await?;
     let mut ship = Ship::new(scenario, folder, voyage.feed.address())?;
     ship.enrol(&shore.url, &code).await?;
@@ -93,20 +95,21 @@ async fn set_sail(shore: &Shore, scenario: &str, seed: u64, folder: &Path) -> Re
     })
 }
 
-/// Sails to the end of the fast part, with the kills on the way.
+/// Sails to the end of the fast part, with the kills on the way: no ship runs
+/// ahead of them, and all are still under way when one comes.
 async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()> {
     for (when, victim) in kills(seed) {
+        let moment = day(when);
+        for vessel in &*vessels {
+            let pace = Pace::FastUntil(moment.plus_seconds(AFTER_KILL_S));
+            vessel.voyage.feed.set_pace(pace)?;
+        }
         let whose = if let Victim::Agent(index) = victim {
             index
         } else {
             0
         };
-        let moment = day(when);
-        let passed = |progress: &Progress| match progress {
-            Progress::Waiting => false,
-            Progress::At(time) => *time >= moment,
-            Progress::Held(_) | Progress::Ended => true,
-        };
+        let passed = |progress: &Progress| progress.time() >= Some(moment);
         vessels[whose].voyage.feed.reached(PATIENCE, passed).await?;
         match victim {
             Victim::Agent(index) => vessels[index].ship.kill_and_restart().await?,
@@ -114,8 +117,9 @@ async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()
         }
     }
     for vessel in vessels {
-        let held = |progress: &Progress| matches!(progress, Progress::Held(_));
-        vessel.voyage.feed.reached(PATIENCE, held).await?;
+        vessel.voyage.feed.set_pace(Pace::FastUntil(fast_end()))?;
+        let there = |progress: &Progress| progress.time() >= Some(fast_end());
+        vessel.voyage.feed.reached(PATIENCE, there).await?;
         vessel.ship.assert_running()?;
     }
     Ok(())
@@ -125,20 +129,29 @@ async fn sail(shore: &mut Shore, vessels: &mut [Vessel], seed: u64) -> Result<()
 async fn settled(vessel: &Vessel, until: Timestamp) -> Result<Spool> {
     eventually("the agent has sent all", PATIENCE, async || {
         let status = vessel.ship.status().await?;
-        let Some(time) = status["ship_time"].as_str() else {
-            return Ok(None);
-        };
-        if Timestamp::parse(time)? < until {
-            return Ok(None);
-        }
+        let time = status["ship_time"]
+            .as_str()
+            .map(Timestamp::parse)
+            .transpose()?;
         let spool = Spool::of(&vessel.ship).await?;
-        Ok((spool.waiting == 0).then_some(spool))
+        let settled = time >= Some(until) && spool.waiting == 0;
+        Ok(if settled {
+            Ok(spool)
+        } else {
+            Err(status.to_string())
+        })
     })
     .await
 }
 
-/// Compares both ends' records with each other and with what the API gives out.
-async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, spool: &Spool) -> Result<()> {
+/// Compares both ends' records: what the agent holds to be acknowledged and
+/// what the shore holds must be the same batches, to the checksum. Gives back
+/// the samples in them, in order of time.
+async fn assert_every_batch_once(
+    shore: &Shore,
+    vessel: &Vessel,
+    spool: &Spool,
+) -> Result<Vec<Sample>> {
     ensure!(
         spool.in_trouble == 0,
         "{} batches are in trouble",
@@ -172,6 +185,31 @@ async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, spool: &Spool)
         let both = 5.0 * f64::from(pair[0].windows) + 5.0 * f64::from(pair[1].windows);
         ensure!(apart >= both, "these share windows: {pair:?}");
     }
+    Ok(sent)
+}
+
+/// Waits for a model of all samples; its version.
+async fn final_model(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<u64> {
+    let last = sent.last().context("there are samples")?.time;
+    let path = format!("/vessels/{}/model", vessel.id);
+    eventually("a model of all samples", PATIENCE, async || {
+        let Some(model) = shore.find(&path).await? else {
+            return Ok(Err("there is none".to_owned()));
+        };
+        let until = model["data_until"].as_str().context("data_until")?;
+        let version = model["version"].as_u64().context("version")?;
+        let complete = Timestamp::parse(until)? >= last;
+        Ok(if complete {
+            Ok(version)
+        } else {
+            Err(format!("{until}, {last}"))
+        })
+    })
+    .await
+}
+
+/// What the API gives out is what was sent, each sample once.
+async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, sent: &[Sample]) -> Result<()> {
     let listed = shore
         .list(&format!("/vessels/{}/samples", vessel.id))
         .await?;
@@ -186,7 +224,7 @@ async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, spool: &Spool)
         listed.len(),
         sent.len()
     );
-    for (listed, sent) in listed.iter().zip(&sent) {
+    for (listed, sent) in listed.iter().zip(sent) {
         let same = (listed.time, listed.windows) == (sent.time, sent.windows)
             && apart_deg(listed.compass.degrees(), sent.compass.degrees()) < 1e-6;
         ensure!(same, "sent {sent:?}, listed {listed:?}");
@@ -196,25 +234,6 @@ async fn assert_every_sample_once(shore: &Shore, vessel: &Vessel, spool: &Spool)
 
 fn apart_deg(a: f64, b: f64) -> f64 {
     wrap_180(a - b).abs()
-}
-
-/// The model of all samples, on shore: its version.
-async fn final_model(shore: &Shore, vessel: &Vessel) -> Result<u64> {
-    let samples = shore
-        .list(&format!("/vessels/{}/samples", vessel.id))
-        .await?;
-    let times = samples.iter().filter_map(|sample| sample["time"].as_str());
-    let last = times.max().context("there are samples")?.to_owned();
-    let path = format!("/vessels/{}/model", vessel.id);
-    eventually("a model of all samples", PATIENCE, async || {
-        let Some(model) = shore.find(&path).await? else {
-            return Ok(None);
-        };
-        let until = model["data_until"].as_str().context("data_until")?;
-        let version = model["version"].as_u64().context("version")?;
-        Ok((until >= last.as_str()).then_some(version))
-    })
-    .await
 }
 
 /// The band of the deviation curve at the voyage's end holds the truth on at
@@ -260,7 +279,12 @@ fn missed(row: &Value, truth: &Place) -> Option<String> {
 async fn assert_autopilot_hears_truth(vessel: &mut Vessel, version: u64) -> Result<()> {
     eventually("the model is on board", PATIENCE, async || {
         let status = vessel.ship.status().await?;
-        Ok((status["model"]["version"].as_u64() >= Some(version)).then_some(()))
+        let aboard = status["model"]["version"].as_u64() >= Some(version);
+        Ok(if aboard {
+            Ok(())
+        } else {
+            Err(status.to_string())
+        })
     })
     .await?;
     vessel.voyage.feed.set_pace(Pace::Live)?;
@@ -313,8 +337,9 @@ async fn with_kills(engine: Engine, seed: u64) -> Result<()> {
     sail(&mut shore, &mut vessels, seed).await?;
     for vessel in &mut vessels {
         let spool = settled(vessel, fast_end()).await?;
-        assert_every_sample_once(&shore, vessel, &spool).await?;
-        let version = final_model(&shore, vessel).await?;
+        let sent = assert_every_batch_once(&shore, vessel, &spool).await?;
+        let version = final_model(&shore, vessel, &sent).await?;
+        assert_every_sample_once(&shore, vessel, &sent).await?;
         assert_autopilot_hears_truth(vessel, version).await?;
         let truth = vessel.voyage.truth().await?.at_the_end;
         assert_band_holds_truth(&shore, vessel, &truth).await?;
