@@ -4,7 +4,7 @@ use crate::eventually::eventually;
 use crate::program::{self, Program};
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
-use std::net::{SocketAddr, TcpListener};
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -16,18 +16,16 @@ const START: Duration = Duration::from_secs(30);
 pub struct Ship {
     name: String,
     folder: PathBuf,
-    output: SocketAddr,
     agent: Option<Program>,
 }
 
 impl Ship {
     /// Writes `agent.toml` into a new folder. The agent reads its sentences at
-    /// `feed`, and gives out corrected headings at [`Ship::output`].
+    /// `feed`, and gives out corrected headings at a port that [`Ship::ready`] tells.
     ///
     /// # Errors
     /// When the folder cannot be written.
     pub fn new(name: &str, parent: &Path, feed: SocketAddr) -> Result<Ship> {
-        let output = free_port()?;
         let folder = parent.join(name);
         std::fs::create_dir_all(&folder)?;
         let config = format!(
@@ -41,7 +39,7 @@ satellite = [{{ input = "bridge", talker = "GP", sentence = "THS" }}]
 position = [{{ input = "bridge", talker = "GP", sentence = "RMC" }}]
 rate_of_turn = [{{ input = "bridge", sentence = "ROT" }}]
 [output]
-tcp_server = "{output}"
+tcp_server = "127.0.0.1:0"
 interval_s = 0.1
 [page]
 listen = "127.0.0.1:0"
@@ -57,14 +55,8 @@ stale_s = 15
         Ok(Ship {
             name: name.to_owned(),
             folder,
-            output,
             agent: None,
         })
-    }
-
-    /// Where the agent gives out corrected headings.
-    pub fn output(&self) -> SocketAddr {
-        self.output
     }
 
     /// The path of `agent.toml`.
@@ -107,20 +99,17 @@ stale_s = 15
         Ok(())
     }
 
-    /// Waits until the agent has opened everything.
+    /// Waits until the agent has opened everything; where it gives out corrected
+    /// headings.
     ///
     /// # Errors
     /// When it ends instead, or takes too long.
-    pub async fn ready(&mut self) -> Result<()> {
+    pub async fn ready(&mut self) -> Result<SocketAddr> {
         let agent = self.agent.as_mut().context("the agent runs")?;
         eventually(format!("{} is ready", self.name), START, async || {
             ensure!(agent.is_running()?, "the agent has ended:\n{}", agent.log());
             let log = agent.log();
-            Ok(if log.contains("ready") {
-                Ok(())
-            } else {
-                Err(log)
-            })
+            Ok(output_in(&log).ok_or(log))
         })
         .await
     }
@@ -190,8 +179,9 @@ stale_s = 15
     }
 }
 
-/// A port that was free a moment ago: the same after a restart, which port 0
-/// would not be.
-fn free_port() -> Result<SocketAddr> {
-    Ok(TcpListener::bind("127.0.0.1:0")?.local_addr()?)
+/// The address in the line that says that the agent is ready.
+fn output_in(log: &str) -> Option<SocketAddr> {
+    let line = log.lines().find(|line| line.contains(" ready "))?;
+    let (_, rest) = line.split_once("output=\"")?;
+    rest.split('"').next()?.parse().ok()
 }

@@ -5,6 +5,7 @@ use crate::program;
 use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::time::Timestamp;
 use serde::Deserialize;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use tokio::process::Child;
@@ -69,7 +70,8 @@ impl Voyage {
             "--scenario",
         ]);
         command.arg(file).arg("--truth").arg(&truth);
-        let mut simulator = command.stdout(Stdio::piped()).spawn()?;
+        let log = File::create(folder.join(format!("{scenario}.log")))?;
+        let mut simulator = command.stdout(Stdio::piped()).stderr(log).spawn()?;
         let sentences = simulator
             .stdout
             .take()

@@ -47,9 +47,8 @@ async fn noise_and_a_line_of_ten_megabytes_do_not_stop_an_agent() {
     let feed = Feed::start(Cursor::new(rubbish), Pace::Live).await.unwrap();
     let mut ship = Ship::new("rubbish", folder.path(), feed.address()).unwrap();
     ship.start().unwrap();
-    ship.ready().await.unwrap();
-
-    let output = TcpStream::connect(ship.output()).await.unwrap();
+    let output = ship.ready().await.unwrap();
+    let output = TcpStream::connect(output).await.unwrap();
     let mut lines = BufReader::new(output).lines();
     let heard = timeout(Duration::from_mins(1), async {
         loop {

@@ -287,8 +287,9 @@ async fn assert_autopilot_hears_truth(vessel: &mut Vessel, version: u64) -> Resu
         })
     })
     .await?;
+    let output = vessel.ship.ready().await?;
     vessel.voyage.feed.set_pace(Pace::Live)?;
-    let heard = heard::corrections(vessel.ship.output(), 20, PATIENCE).await?;
+    let heard = heard::corrections(output, 20, PATIENCE).await?;
     vessel
         .voyage
         .feed
