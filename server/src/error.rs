@@ -62,6 +62,9 @@ pub enum Error {
         /// Seconds to wait.
         retry_after_s: u64,
     },
+    /// The path is there, but not for this method.
+    #[error("this path knows no such method")]
+    MethodNotAllowed,
     /// Something went wrong here.
     #[error("something went wrong here; it has been logged")]
     Internal(anyhow::Error),
@@ -125,6 +128,11 @@ impl Error {
                 StatusCode::TOO_MANY_REQUESTS,
                 "throttled",
                 "Too many attempts",
+            ),
+            Error::MethodNotAllowed => (
+                StatusCode::METHOD_NOT_ALLOWED,
+                "method-not-allowed",
+                "Method not allowed",
             ),
             Error::Internal(_) => (
                 StatusCode::INTERNAL_SERVER_ERROR,

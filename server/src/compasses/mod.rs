@@ -2,7 +2,7 @@
 
 mod store;
 
-pub use store::{insert_standard, of_operator, of_vessel};
+pub use store::{insert_standard, of_fleet, of_vessel};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;

@@ -17,17 +17,24 @@ pub async fn of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<Compass>> {
     )
 }
 
-/// The compasses of a whole fleet.
-pub async fn of_operator(db: &Db, operator: OperatorId) -> Result<Vec<Compass>> {
+/// The compasses of an operator's vessels from one id to another.
+pub async fn of_fleet(
+    db: &Db,
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+) -> Result<Vec<Compass>> {
     rows!(
         db,
         Compass,
         "SELECT c.id, c.vessel_id, c.name, c.role, c.created_at
          FROM compasses c
          JOIN vessels v ON v.id = c.vessel_id
-         WHERE v.operator_id = $1
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
          ORDER BY c.vessel_id, c.id",
-        operator
+        operator,
+        first,
+        last
     )
 }
 

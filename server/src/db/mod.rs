@@ -6,7 +6,7 @@
 //! transaction fails half-way for another's sake.
 //!
 //! The macros take the SQL as a literal and run it on whichever database is
-//! there: [`rows!`], [`row!`] and [`execute!`].
+//! there: `rows!`, `row!` and `execute!`.
 
 mod connect;
 mod queries;

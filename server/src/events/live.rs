@@ -14,7 +14,7 @@ use tracing::warn;
 pub(super) const CHANNEL: &str = "binnacle_events";
 /// Events that a slow dashboard may lag behind before it must read them again.
 const BUFFERED: usize = 256;
-const RECONNECT_AFTER: Duration = Duration::from_secs(5);
+const RECONNECT_AFTER: Duration = Duration::from_secs(1);
 
 /// The dashboards of this process.
 #[derive(Clone, Debug)]

@@ -9,6 +9,7 @@ use crate::{
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
 use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use std::time::Duration;
 use tower_http::catch_panic::CatchPanicLayer;
@@ -104,8 +105,20 @@ fn parts() -> (Router<App>, utoipa::openapi::OpenApi) {
         .fallback_service(get(dashboard::serve))
         .layer(CompressionLayer::new())
         .layer(axum::middleware::from_fn(headers::add));
-    let router = Router::new().merge(agents).merge(people);
+    let router = Router::new()
+        .merge(agents)
+        .merge(people)
+        .method_not_allowed_fallback(no_such_method);
     (router, document)
+}
+
+async fn no_such_method() -> error::Error {
+    error::Error::MethodNotAllowed
+}
+
+/// What a bug answers; the panic itself is on standard error.
+fn panicked(_: Box<dyn std::any::Any + Send>) -> Response {
+    error::Error::Internal(anyhow::anyhow!("a handler panicked")).into_response()
 }
 
 async fn no_such_route() -> error::Error {
@@ -121,7 +134,7 @@ pub fn router(app: App) -> Router {
             StatusCode::REQUEST_TIMEOUT,
             PATIENCE,
         ))
-        .layer(CatchPanicLayer::new())
+        .layer(CatchPanicLayer::custom(panicked))
         .layer(axum::middleware::from_fn(operations::measure))
         .layer(TraceLayer::new_for_http())
         .with_state(app)

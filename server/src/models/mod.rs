@@ -4,7 +4,7 @@ mod schema;
 mod store;
 
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
-pub use store::{StoredModel, current, current_of_operator, current_of_vessel, insert};
+pub use store::{StoredModel, current, current_of_fleet, current_of_vessel, insert};
 
 use crate::access::Reader;
 use crate::app::App;

@@ -58,18 +58,25 @@ pub async fn current_of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<StoredMo
     )
 }
 
-/// The current models of a whole fleet.
-pub async fn current_of_operator(db: &Db, operator: OperatorId) -> Result<Vec<StoredModel>> {
+/// The current models of an operator's vessels from one id to another.
+pub async fn current_of_fleet(
+    db: &Db,
+    operator: OperatorId,
+    first: VesselId,
+    last: VesselId,
+) -> Result<Vec<StoredModel>> {
     rows!(
         db,
         StoredModel,
         "SELECT m.* FROM models m
          JOIN vessels v ON v.id = m.vessel_id
-         WHERE v.operator_id = $1
+         WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
            AND m.version = (SELECT MAX(n.version) FROM models n
                             WHERE n.vessel_id = m.vessel_id AND n.compass_id = m.compass_id)
          ORDER BY m.vessel_id, m.compass_id",
-        operator
+        operator,
+        first,
+        last
     )
 }
 

@@ -113,8 +113,15 @@ async fn list_vessels(
 ) -> Result<Json<VesselList>> {
     let found = store::list(&app.db, reader.operator, page.after_id()?, page.fetch()).await?;
     let listed = page.cut(found, |row| row.id.to_string());
-    let compasses = compasses::of_operator(&app.db, reader.operator).await?;
-    let models = models::current_of_operator(&app.db, reader.operator).await?;
+    let (Some(first), Some(last)) = (listed.items.first(), listed.items.last()) else {
+        return Ok(Json(VesselList {
+            items: Vec::new(),
+            next: None,
+        }));
+    };
+    let (operator, first, last) = (reader.operator, first.id, last.id);
+    let compasses = compasses::of_fleet(&app.db, operator, first, last).await?;
+    let models = models::current_of_fleet(&app.db, operator, first, last).await?;
     let items = listed
         .items
         .into_iter()

@@ -1,7 +1,9 @@
 //! Live events.
 
 use crate::on_both;
-use crate::support::{Person, Shore, passage};
+use crate::support::{Engine, Person, Shore, passage};
+use binnacle_server::db::Db;
+use binnacle_server::events;
 use futures_util::StreamExt;
 use reqwest::Method;
 use std::time::Duration;
@@ -12,7 +14,31 @@ on_both!(
     a_dashboard_that_comes_back_gets_what_it_missed,
     nobody_hears_of_another_operators_fleet,
     a_stopping_server_lets_its_dashboards_go,
+    events_are_forgotten_after_a_day,
 );
+
+#[tokio::test]
+async fn a_broken_line_to_postgres_is_mended_and_what_was_missed_is_told() {
+    let shore = Shore::start(Engine::Postgres).await;
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    let Db::Postgres(pool) = &shore.app.db else {
+        unreachable!("PostgreSQL was asked for");
+    };
+    let broken: Vec<bool> = sqlx::query_scalar(
+        "SELECT pg_terminate_backend(pid) FROM pg_stat_activity
+         WHERE datname = current_database() AND query LIKE 'LISTEN%'",
+    )
+    .fetch_all(pool)
+    .await
+    .unwrap();
+    assert_eq!(broken, [true]);
+    nao.put(1, &passage(DAY, 3)).await.good();
+    let (_, batch) = source.next().await.unwrap();
+    assert!(batch.contains(&nao.id), "{batch}");
+    shore.finish().await;
+}
 
 const DAY: &str = "2026-11-15T00:00:00Z";
 
@@ -117,5 +143,34 @@ async fn a_stopping_server_lets_its_dashboards_go(shore: Shore) {
     let mut source = Source::open(&ada, None).await;
     shore.app.stopping.cancel();
     assert_eq!(source.next().await, None);
+    shore.finish().await;
+}
+
+async fn left(shore: &Shore) -> (i64,) {
+    let sql = "SELECT COUNT(*) FROM events";
+    match &shore.app.db {
+        Db::Sqlite { readers, .. } => sqlx::query_as(sql).fetch_one(readers).await,
+        Db::Postgres(pool) => sqlx::query_as(sql).fetch_one(pool).await,
+    }
+    .unwrap()
+}
+
+async fn events_are_forgotten_after_a_day(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 3)).await.good();
+    nao.put(2, &passage(DAY, 3)).await.good();
+    let (seen, _) = source.next().await.unwrap();
+    shore.advance(86_401.0);
+    events::prune(&shore.app.db, shore.app.clock.now().into())
+        .await
+        .unwrap();
+    nao.put(3, &passage(DAY, 3)).await.good();
+    let mut source = Source::open(&ada, Some(&seen)).await;
+    let (third, _) = source.next().await.unwrap();
+    // Were the second still there, it would have come before.
+    let (listed,) = left(&shore).await;
+    assert_eq!(listed, 1, "after {third}");
     shore.finish().await;
 }

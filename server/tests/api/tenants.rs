@@ -11,6 +11,7 @@ on_both!(
     every_route_wants_to_know_who_asks,
     another_operators_lists_are_empty,
     an_id_that_is_none_is_not_found,
+    a_method_that_a_path_does_not_know_is_refused_in_words,
 );
 
 /// Every operation of the API's document: method, path, and a body that is right.
@@ -122,6 +123,15 @@ async fn an_id_that_is_none_is_not_found(shore: Shore) {
         "/nowhere",
     ] {
         assert_eq!(ada.get(path).await.problem(), "not-found", "{path}");
+    }
+    shore.finish().await;
+}
+
+async fn a_method_that_a_path_does_not_know_is_refused_in_words(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    for path in ["/vessels", "/agents/enrol", "/streams"] {
+        let answer = Answer::of(ada.request(Method::PATCH, path)).await;
+        assert_eq!(answer.problem(), "method-not-allowed", "{path}");
     }
     shore.finish().await;
 }
