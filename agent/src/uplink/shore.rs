@@ -23,6 +23,8 @@ const READ_TIMEOUT: Duration = Duration::from_secs(90);
 /// Several batches go over one connection, which is then closed: keeping it
 /// alive would cost more than opening it again.
 const IDLE_CONNECTION: Duration = Duration::from_secs(5);
+/// However long somebody on the way asks the agent to stay away.
+const LONGEST_RETRY_AFTER: Duration = Duration::from_hours(6);
 /// No answer is longer.
 const LARGEST_ANSWER: usize = 1 << 20;
 
@@ -220,10 +222,15 @@ fn not_the_shore(status: StatusCode) -> Trouble {
     ))
 }
 
-/// Whole seconds; the other form, a date, would need the shore's clock.
 fn retry_after(response: &Response) -> Option<Duration> {
-    let text = response.headers().get(RETRY_AFTER)?.to_str().ok()?;
-    text.trim().parse().ok().map(Duration::from_secs)
+    asked_pause(response.headers().get(RETRY_AFTER)?.to_str().ok()?)
+}
+
+/// Whole seconds, within reason; the other form, a date, would need the shore's
+/// clock.
+fn asked_pause(text: &str) -> Option<Duration> {
+    let asked = text.trim().parse().ok().map(Duration::from_secs)?;
+    Some(asked.min(LONGEST_RETRY_AFTER))
 }
 
 async fn body(mut response: Response) -> Result<Vec<u8>, Trouble> {
@@ -251,4 +258,20 @@ fn link_trouble(error: &reqwest::Error) -> Trouble {
         "the connection broke"
     };
     Trouble::Link(format!("{kind}: {cause}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_on_the_way_can_silence_the_agent_for_good() {
+        assert_eq!(asked_pause(" 120 "), Some(Duration::from_mins(2)));
+        for endless in ["100000000", "18446744073709551615"] {
+            assert_eq!(asked_pause(endless), Some(LONGEST_RETRY_AFTER));
+        }
+        for nothing in ["", "-1", "Fri, 31 Dec 2027 23:59:59 GMT"] {
+            assert_eq!(asked_pause(nothing), None);
+        }
+    }
 }
