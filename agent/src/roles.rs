@@ -6,6 +6,7 @@
 
 use crate::config::{RolesConfig, SourceConfig};
 use crate::observation::{Observation, Reading};
+use crate::sentences;
 use crate::ship_time::{ShipClock, Step};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
@@ -254,6 +255,14 @@ impl Source {
         {
             return false;
         }
+        // With the talker left out, the agent's own output is not meant: on a
+        // shared line a compass that has died would live on as its echo.
+        if self.config.talker.is_none()
+            && seen.talker == sentences::TALKER
+            && matches!(&seen.sentence, b"HDG" | b"THS")
+        {
+            return false;
+        }
         // A magnetic heading is a raw one only where the ship says so.
         if matches!(seen.reading, Reading::Magnetic(_)) && !self.config.raw {
             return false;
@@ -371,6 +380,32 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
             first(&mut roles, &seen("b", "GPZDA", Reading::Time(at(1)))),
             None
         );
+    }
+
+    #[test]
+    fn the_agents_own_output_is_no_compass_and_no_gyro() {
+        let mut roles = roles(
+            r#"
+compass = [{ input = "a", sentence = "HDG" }]
+gyro = [{ input = "a" }]
+"#,
+        );
+        let compass = |id| {
+            let raw = CompassHeading::new(7.0).unwrap();
+            let (deviation, variation) = (None, None);
+            let reading = Reading::Compass {
+                raw,
+                deviation,
+                variation,
+            };
+            seen("a", id, reading)
+        };
+        assert!(first(&mut roles, &compass("HCHDG")).is_some());
+        assert!(first(&mut roles, &seen("a", "HETHS", heading(7.0))).is_some());
+        assert_eq!(first(&mut roles, &compass("IIHDG")), None);
+        let echo = seen("a", "IITHS", Reading::TrueNotValid);
+        assert_eq!(first(&mut roles, &echo), None);
+        assert!(first(&mut roles, &seen("a", "IIHDT", heading(7.0))).is_some());
     }
 
     #[test]

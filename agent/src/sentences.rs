@@ -14,7 +14,8 @@ use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
 use std::io::Write;
 
-const TALKER: [u8; 2] = *b"II";
+/// Whose HDG and THS a source must ask for by name to hear them.
+pub(crate) const TALKER: [u8; 2] = *b"II";
 
 /// The model that a heading was corrected with.
 #[derive(Clone, Copy, Debug, PartialEq)]
