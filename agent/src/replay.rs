@@ -4,7 +4,6 @@
 
 use crate::config::RolesConfig;
 use crate::input;
-use crate::observation::Reading;
 use crate::sampler::Tally;
 use crate::ship::Ship;
 use anyhow::Context;
@@ -54,12 +53,7 @@ pub(crate) fn replay(
     for file in files {
         let read = input::replay(file, |observations| {
             for observation in observations {
-                match observation.reading {
-                    Reading::Time(at) if input::is_recorded_time(observation) => {
-                        ship.observe_recorded_time(at);
-                    }
-                    _ => ship.observe(observation, heard),
-                }
+                ship.observe(observation, heard);
             }
             replayed.samples.extend(ship.sampler.take_samples());
         });
@@ -136,8 +130,11 @@ fn number(value: Option<f64>, decimals: usize) -> String {
 }
 
 /// Writes a file beside its place and then puts it there, so that what is there
-/// is whole.
+/// is whole. A device or a pipe is written to, never replaced.
 pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    if is_device(path) {
+        return fs::write(path, bytes).with_context(|| path.display().to_string());
+    }
     let mut partial = path.as_os_str().to_owned();
     partial.push(".partial");
     let partial = PathBuf::from(partial);
@@ -148,4 +145,31 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         fs::rename(&partial, path)
     };
     write().with_context(|| path.display().to_string())
+}
+
+/// What /dev/stdout stands for may be a file, but not one to be renamed to.
+fn is_device(path: &Path) -> bool {
+    path.starts_with("/dev")
+        || path.starts_with("/proc")
+        || fs::metadata(path).is_ok_and(|found| !found.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_takes_the_place_of_a_file_and_never_of_a_device() {
+        let directory = tempfile::TempDir::new().unwrap();
+        let path = directory.path().join("samples.csv");
+        for table in [&b"longer than the next"[..], b"whole"] {
+            write_whole(&path, table).unwrap();
+            assert_eq!(fs::read(&path).unwrap(), table);
+        }
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
+        assert!(!is_device(&path));
+        for device in ["/dev/null", "/dev/stdout", "/proc/self/fd/1"] {
+            assert!(is_device(Path::new(device)), "{device}");
+        }
+    }
 }

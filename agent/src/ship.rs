@@ -2,7 +2,8 @@
 
 use crate::config::RolesConfig;
 use crate::hold::Hold;
-use crate::observation::Observation;
+use crate::input::is_recorded_time;
+use crate::observation::{Observation, Reading};
 use crate::roles::{Roles, Signal};
 use crate::sampler::Sampler;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
@@ -74,6 +75,12 @@ impl Ship {
 
     /// Takes what a source said, heard at `heard`.
     pub(crate) fn observe(&mut self, seen: &Observation, heard: Instant) {
+        if let Reading::Time(at) = seen.reading
+            && is_recorded_time(seen)
+        {
+            self.observe_recorded_time(at);
+            return;
+        }
         for signal in self.roles.observe(seen).into_iter().flatten() {
             self.sampler.take(signal);
             self.readings.take(signal, heard);
@@ -81,7 +88,7 @@ impl Ship {
     }
 
     /// Takes the time that a recording gives a line.
-    pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) {
+    fn observe_recorded_time(&mut self, stamp: Timestamp) {
         if let Some(signal) = self.roles.observe_recorded_time(stamp) {
             self.sampler.take(signal);
         }
@@ -104,5 +111,51 @@ impl Readings {
             Signal::Roll(value) => self.roll_deg = Some(Latest { value, heard }),
             Signal::Time(_) | Signal::Jump(_) => {}
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_of_a_recording_ranks_behind_the_receivers() {
+        let mut ship = Ship::new(&RolesConfig::usual(), 15.0, Settings::default(), None);
+        let at = |text| Timestamp::parse(text).unwrap();
+        let mut say = |talker, sentence, time| {
+            let seen = Observation {
+                input: "log".into(),
+                talker,
+                sentence,
+                reading: Reading::Time(at(time)),
+            };
+            ship.observe(&seen, Instant::now());
+            ship.time()
+        };
+        // A recorder in the zone of her port, and a receiver.
+        let (log, zda) = ((*b"--", *b"LOG"), (*b"GP", *b"ZDA"));
+        say(zda.0, zda.1, "2026-01-02T12:00:00Z");
+        say(log.0, log.1, "2026-01-02T13:00:01Z");
+        say(log.0, log.1, "2026-01-02T13:00:02Z");
+        let now = say(zda.0, zda.1, "2026-01-02T12:00:03Z");
+        assert_eq!(now, Some(at("2026-01-02T12:00:03Z")));
+    }
+
+    #[test]
+    fn the_time_of_a_recording_serves_where_there_is_no_receiver() {
+        let roles = RolesConfig {
+            position: Vec::new(),
+            ..RolesConfig::usual()
+        };
+        let mut ship = Ship::new(&roles, 15.0, Settings::default(), None);
+        let at = Timestamp::parse("2026-01-02T13:00:01Z").unwrap();
+        let seen = Observation {
+            input: "log".into(),
+            talker: *b"--",
+            sentence: *b"LOG",
+            reading: Reading::Time(at),
+        };
+        ship.observe(&seen, Instant::now());
+        assert_eq!(ship.time(), Some(at));
     }
 }
