@@ -119,6 +119,7 @@ impl Agent {
         let sealed = Arc::new(Notify::new());
         let uplink = Uplink {
             spool: spool.clone(),
+            token: spool.identity().await?.map(|identity| identity.token),
             shore: Shore::new(config.uplink.pinned_ca.as_deref())?,
             backoff: Backoff::new(
                 config.uplink.retry_min_s.duration(),

@@ -56,6 +56,12 @@ pub(crate) struct Identity {
     pub(crate) compass_name: String,
 }
 
+impl Identity {
+    fn is_same_compass(&self, other: &Identity) -> bool {
+        (&self.vessel_name, &self.compass_name) == (&other.vessel_name, &other.compass_name)
+    }
+}
+
 impl fmt::Debug for Identity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} at {} (token withheld)", self.stream, self.server)
@@ -98,9 +104,18 @@ impl Spool {
     }
 
     /// Becomes another stream, as after enrolment: batches that were not
-    /// acknowledged are numbered anew in it.
+    /// acknowledged are numbered anew in it. The model and settings of another
+    /// compass are forgotten: nobody must steer by them.
     pub(crate) async fn enrol(&self, identity: &Identity) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
+        let before = get::<Identity>(&mut tx, IDENTITY).await?;
+        if before.is_some_and(|before| !before.is_same_compass(identity)) {
+            sqlx::query("DELETE FROM state WHERE name IN ($1, $2)")
+                .bind(MODEL)
+                .bind(SETTINGS)
+                .execute(&mut *tx)
+                .await?;
+        }
         batches::renumber(&mut tx, identity.stream).await?;
         put(&mut tx, IDENTITY, identity).await?;
         tx.commit().await

@@ -143,10 +143,16 @@ async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Resul
     Ok(true)
 }
 
+fn left_out(error: impl std::fmt::Display) {
+    tracing::error!(%error, "a damaged sample was left out");
+}
+
 fn readable(text: &str) -> Option<Sample> {
-    serde_json::from_str(text)
-        .inspect_err(|error| tracing::error!(%error, "a damaged sample was left out"))
-        .ok()
+    let sample: Sample = serde_json::from_str(text).map_err(left_out).ok()?;
+    // Damage on the disk may leave a number that reads but that no batch can
+    // carry: it must not keep the others from being sealed.
+    codec::check(&sample, 0).map_err(left_out).ok()?;
+    Some(sample)
 }
 
 /// Adds a sealed batch that waits to be sent.

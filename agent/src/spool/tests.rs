@@ -240,3 +240,44 @@ async fn the_token_is_readable_by_its_owner_only_and_never_shown() {
     }
     assert!(!format!("{:?}", identity(7)).contains("secret"));
 }
+
+#[tokio::test]
+async fn a_sample_that_damage_made_impossible_does_not_keep_others_from_being_sealed() {
+    let (_directory, spool) = enrolled().await;
+    spool
+        .store(&[sample(0), sample(1)], &accepted(60), Seal::Full)
+        .await
+        .unwrap();
+    let damaged = sqlx::query(
+        "UPDATE pending_samples SET sample = replace(sample, '12.0', '912.0') WHERE id = 1",
+    );
+    damaged.execute(&spool.pool).await.unwrap();
+    let (pending, sealed) = spool.store(&[], &BTreeMap::new(), Seal::All).await.unwrap();
+    assert_eq!((pending, sealed), (Pending::default(), 1));
+    let sent = spool.next_batch().await.unwrap().unwrap();
+    let batch = binnacle_wire::decode(&sent.bytes).unwrap();
+    assert_eq!(batch.samples.len(), 1);
+    assert_eq!(batch.samples[0].time, sample(1).time);
+}
+
+#[tokio::test]
+async fn settings_outlive_a_new_token_but_not_another_compass() {
+    let (_directory, spool) = enrolled().await;
+    let settings = Settings {
+        version: 3,
+        ..Settings::default()
+    };
+    let told = Downlink {
+        settings: Some(settings.clone()),
+        ..downlink(0)
+    };
+    spool.keep_downlink(&told).await.unwrap();
+    spool.enrol(&identity(8)).await.unwrap();
+    assert_eq!(spool.settings().await.unwrap(), settings);
+    let other = Identity {
+        vessel_name: "Arrano".to_owned(),
+        ..identity(9)
+    };
+    spool.enrol(&other).await.unwrap();
+    assert_eq!(spool.settings().await.unwrap(), Settings::default());
+}

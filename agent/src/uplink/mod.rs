@@ -25,7 +25,7 @@ use tokio::sync::{Notify, watch};
 use tokio::time::{Instant, timeout};
 use tokio_util::sync::CancellationToken;
 
-/// How often a pause is interrupted to see whether the agent was enrolled anew.
+/// How often a pause or idleness is interrupted to see whether the agent was enrolled anew.
 const LOOK_FOR_ENROLMENT: Duration = Duration::from_secs(5);
 
 /// How the link is, for the page.
@@ -76,6 +76,8 @@ pub(crate) struct Uplink {
     /// Asks for news when nothing was sent for so long.
     pub(crate) poll: Duration,
     pub(crate) tell: Tell,
+    /// The token that the model and settings in effect came with.
+    pub(crate) token: Option<String>,
     /// Rings when a batch has been sealed.
     pub(crate) sealed: Arc<Notify>,
     pub(crate) rng: StdRng,
@@ -126,6 +128,10 @@ impl Uplink {
             self.tell.link.send_replace(LinkStatus::default());
             return Ok(Next::Idle(LOOK_FOR_ENROLMENT));
         };
+        if self.token.as_ref() != Some(&identity.token) {
+            self.enrolled_anew(&identity).await?;
+            *answered = None;
+        }
         if answered.is_none() {
             self.connecting();
         }
@@ -152,12 +158,26 @@ impl Uplink {
         }
     }
 
+    /// What the spool has is in effect: nothing of another compass, if it is one.
+    async fn enrolled_anew(&mut self, identity: &Identity) -> sqlx::Result<()> {
+        self.tell.model.send_replace(self.spool.model().await?);
+        self.tell
+            .settings
+            .send_replace(self.spool.settings().await?);
+        self.token = Some(identity.token.clone());
+        Ok(())
+    }
+
     async fn succeed(
         &mut self,
         identity: &Identity,
         batch: Option<&SealedBatch>,
         downlink: Downlink,
     ) -> sqlx::Result<Next> {
+        if self.spool.identity().await?.as_ref() != Some(identity) {
+            // Enrolled anew meanwhile: this answer is for another stream.
+            return Ok(Next::GoOn);
+        }
         match batch {
             Some(batch) => {
                 self.spool
@@ -276,6 +296,7 @@ impl Uplink {
             Next::GoOn => {}
             Next::Idle(longest) => {
                 // A batch that was sealed meanwhile has left its ring behind.
+                let longest = longest.min(LOOK_FOR_ENROLMENT);
                 timeout(longest, self.sealed.notified()).await.ok();
             }
             Next::Pause(pause) => self.pause(pause).await,

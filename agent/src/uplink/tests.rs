@@ -137,6 +137,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
     let sealed = Arc::new(Notify::new());
     let uplink = Uplink {
         spool: spool.clone(),
+        token: Some(identity.token.clone()),
         shore: Shore::new(None).unwrap(),
         backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
         poll: Duration::from_hours(1),
@@ -352,4 +353,31 @@ async fn settings_are_in_effect_and_kept_and_then_asked_for_by_version() {
         .map(|q| q["settings"].as_str())
         .collect();
     assert_eq!(asked, ["0", "3"]);
+}
+
+#[tokio::test]
+async fn an_agent_enrolled_for_another_compass_drops_what_the_first_was_told() {
+    let settings = Settings {
+        version: 3,
+        ..Settings::default()
+    };
+    let fake = Fake {
+        settings: Some(settings.clone()),
+        ..Fake::default()
+    };
+    let mut rig = rig(1, fake).await;
+    rig.all_sent().await;
+    assert_eq!(*rig.settings.borrow_and_update(), settings);
+    rig.fake.lock().unwrap().settings = None;
+    let first = rig.spool.identity().await.unwrap().unwrap();
+    let second = Identity {
+        token: "another".to_owned(),
+        compass_name: "Steering compass".to_owned(),
+        ..first
+    };
+    rig.spool.enrol(&second).await.unwrap();
+    rig.sealed.notify_one();
+    let in_effect = rig.settings.wait_for(|settings| settings.version == 0);
+    let in_time = timeout(Duration::from_secs(20), in_effect).await;
+    assert!(in_time.is_ok(), "the old settings are still in effect");
 }
