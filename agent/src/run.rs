@@ -34,8 +34,8 @@ use tokio_util::sync::CancellationToken;
 
 /// Samples are written to the spool when there are so many, or after a second.
 pub(crate) const SAMPLES_PER_COMMIT: usize = 64;
-/// Deliveries of observations that may wait.
-const CHANNEL: usize = 64;
+/// Deliveries of observations that may wait: what is here dies with the agent.
+const CHANNEL: usize = 8;
 const SECOND: Duration = Duration::from_secs(1);
 /// Variation at twenty knots changes by less than a tenth of a degree meanwhile.
 const POSITION_SERVES: Duration = Duration::from_mins(10);

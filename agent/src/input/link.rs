@@ -13,6 +13,10 @@ use tokio::sync::mpsc::error::TrySendError;
 /// How long a connection may take to open.
 pub(super) const CONNECT_LIMIT: Duration = Duration::from_secs(10);
 
+/// The system would let tens of megabytes gather, days of a voyage that is
+/// played fast: all lost if the agent is killed. This is a minute of a busy bridge.
+const RECEIVE_BUFFER_BYTES: usize = 128 * 1024;
+
 const FIRST_PAUSE: Duration = Duration::from_millis(100);
 const LONGEST_PAUSE: Duration = Duration::from_secs(10);
 
@@ -100,7 +104,9 @@ pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
     let keepalive = socket2::TcpKeepalive::new()
         .with_time(Duration::from_secs(30))
         .with_interval(Duration::from_secs(10));
-    socket2::SockRef::from(&stream).set_tcp_keepalive(&keepalive)?;
+    let socket = socket2::SockRef::from(&stream);
+    socket.set_tcp_keepalive(&keepalive)?;
+    socket.set_recv_buffer_size(RECEIVE_BUFFER_BYTES)?;
     Ok(stream)
 }
 
