@@ -18,6 +18,7 @@ use axum::extract::State;
 use axum::http::header::{HeaderValue, SET_COOKIE};
 use axum::http::{HeaderMap, StatusCode};
 use serde::Deserialize;
+use tokio::sync::OwnedSemaphorePermit;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -55,17 +56,29 @@ async fn sign_in(
     State(app): State<App>,
     Valid(request): Valid<SignIn>,
 ) -> Result<(HeaderMap, Json<User>)> {
-    if request.password.len() > MAX_PASSWORD_BYTES {
+    // PostgreSQL takes no NUL in a text, and nobody has such an e-mail.
+    let unheard_of = request.email.chars().any(char::is_control);
+    if unheard_of || request.password.len() > MAX_PASSWORD_BYTES {
         return Err(Error::WrongPassword);
     }
     let email = store::normal_email(&request.email);
     let now = app.clock.now();
     throttle::check(&app.db, &email, now).await?;
+    let place = app
+        .hashing
+        .clone()
+        .acquire_owned()
+        .await
+        .map_err(anyhow::Error::from)?;
+    // Others may have failed while this attempt waited. Each keeps its place until
+    // its failure is noted, so that guesses sent at once do not outrun the count.
+    throttle::check(&app.db, &email, now).await?;
     let found = store::find_by_email(&app.db, &email).await?;
     let (user, stored) = found.map_or((None, None), |(user, hash)| (Some(user), Some(hash)));
-    let matches = password_matches(&app, request.password, stored).await?;
+    let (matches, place) = password_matches(place, request.password, stored).await?;
     let Some(user) = user.filter(|_| matches) else {
         throttle::note_failure(&app.db, &email, now).await?;
+        drop(place);
         return Err(Error::WrongPassword);
     };
     let token = secret::new_token();
@@ -102,12 +115,16 @@ async fn me(caller: Caller) -> Json<User> {
     Json(caller.user)
 }
 
-async fn password_matches(app: &App, password: String, stored: Option<String>) -> Result<bool> {
-    let permit = app.hashing.clone().acquire_owned().await;
+/// Whether the password is right. The place goes along, so that it is taken for as
+/// long as the hashing lasts, even when nobody waits for the answer any more.
+async fn password_matches(
+    place: OwnedSemaphorePermit,
+    password: String,
+    stored: Option<String>,
+) -> Result<(bool, OwnedSemaphorePermit)> {
     let matches = tokio::task::spawn_blocking(move || {
         let matches = secret::password_matches(&password, stored.as_deref());
-        drop(permit);
-        matches
+        (matches, place)
     });
     Ok(matches.await?)
 }

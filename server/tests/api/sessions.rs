@@ -12,6 +12,7 @@ on_both!(
     the_cookie_is_out_of_reach_of_scripts_and_other_sites,
     a_change_with_a_cookie_needs_the_header_of_our_own_pages,
     guessing_is_slowed_down_whether_or_not_the_email_exists,
+    guesses_sent_at_once_do_not_outrun_the_throttle,
     what_is_not_a_sign_in_is_refused_in_words,
     a_token_may_do_what_its_scope_says_until_it_is_revoked,
     a_token_ends_by_itself,
@@ -88,6 +89,17 @@ async fn guessing_is_slowed_down_whether_or_not_the_email_exists(shore: Shore) {
         attempt(&shore, "ada@example.com", PASSWORD).await.status,
         200
     );
+    shore.finish().await;
+}
+
+async fn guesses_sent_at_once_do_not_outrun_the_throttle(shore: Shore) {
+    let guesses = (0..30).map(|_| attempt(&shore, "ada@example.com", "wrong"));
+    let answers = futures_util::future::join_all(guesses).await;
+    let judged = answers.iter().filter(|answer| answer.status == 401).count();
+    // The fifth failure begins the wait; one more may have been under way.
+    assert!((5..=6).contains(&judged), "{judged} guesses were judged");
+    let odd = attempt(&shore, "ada\0@example.com", "wrong").await;
+    assert_eq!(odd.problem(), "wrong-password");
     shore.finish().await;
 }
 
