@@ -15,6 +15,6 @@ mod store;
 mod worker;
 
 pub use input::{Input, input_hash};
-pub use queue::{Job, claim, count as count_jobs, enqueue};
+pub use queue::{Job, claim, count as count_jobs, enqueue, renew};
 pub use store::{chunks, coverage, refusal};
 pub use worker::{Worked, run, step};

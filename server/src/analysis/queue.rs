@@ -1,7 +1,7 @@
 //! The queue of work.
 //!
 //! What always holds: a job is run by one worker at a time, the one that holds its
-//! lease; a lease that ends unanswered goes back to the queue; a job that failed
+//! lease and renews it while it works; a lease that ends goes back to the queue; a job that failed
 //! [`MOST_ATTEMPTS`] times waits for a person as `dead`, until a later analysis of
 //! the vessel succeeds.
 
@@ -11,8 +11,9 @@ use crate::time::Time;
 
 /// Attempts before a job is given up.
 pub(super) const MOST_ATTEMPTS: i64 = 5;
-/// How long a worker may take before another may.
-pub(super) const LEASE_S: f64 = 600.0;
+/// How long a worker may be silent before another may take its job. Short, so that
+/// a vessel need not wait long for the job of a process that was killed.
+const LEASE_S: f64 = 60.0;
 const FIRST_RETRY_S: f64 = 10.0;
 
 /// A job that was claimed.
@@ -101,6 +102,21 @@ pub async fn claim(db: &Db, now: Time) -> Result<Option<Job>> {
     };
     tx.commit().await?;
     Ok(job)
+}
+
+/// Begins a job's lease anew, unless it was lost.
+pub async fn renew(db: &Db, job: Job, now: Time) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "UPDATE jobs SET lease_until = $4
+         WHERE vessel_id = $1 AND id = $2 AND attempts = $3 AND state = 'running'",
+        job.vessel_id,
+        job.id,
+        job.attempts,
+        Time(now.0.plus_seconds(LEASE_S))
+    )?;
+    tx.commit().await
 }
 
 /// Removes a finished job, and those that died before it; `false` when the lease

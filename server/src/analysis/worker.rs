@@ -9,11 +9,14 @@ use crate::events;
 use crate::ids::{CompassId, VesselId};
 use binnacle_magnetics::analyse::analyse;
 use metrics::{counter, histogram};
+use std::convert::Infallible;
 use std::time::{Duration, Instant};
 use tracing::{error, info, warn};
 
 /// How often to look for jobs that nobody was told of.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
+/// How often to renew the lease of the job at hand: thrice before it ends.
+const RENEW_EVERY: Duration = Duration::from_secs(20);
 /// How often to forget old events.
 const PRUNE_EVERY: Duration = Duration::from_hours(1);
 
@@ -64,7 +67,10 @@ pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
     let begun = Instant::now();
     let outcome = match job.attempts {
         // Its worker died each time: whatever it is, it takes the process with it.
-        ..=queue::MOST_ATTEMPTS => work(app, job).await,
+        ..=queue::MOST_ATTEMPTS => tokio::select! {
+            done = work(app, job) => done,
+            never = keep_lease(app, job) => match never {},
+        },
         _ => Err(Error::Internal(anyhow::anyhow!(
             "its lease ended too often"
         ))),
@@ -87,6 +93,16 @@ pub async fn step(app: &App) -> anyhow::Result<Option<Worked>> {
         warn!(%vessel, error, "the analysis failed and will be tried again");
     }
     Ok(Some(Worked::Failed(vessel)))
+}
+
+/// Renews a job's lease for as long as it is waited for.
+async fn keep_lease(app: &App, job: queue::Job) -> Infallible {
+    loop {
+        tokio::time::sleep(RENEW_EVERY).await;
+        if let Err(error) = queue::renew(&app.db, job, app.clock.now().into()).await {
+            warn!(vessel = %job.vessel_id, %error, "a lease was not renewed");
+        }
+    }
 }
 
 /// Analyses a vessel's compasses and stores what is new.

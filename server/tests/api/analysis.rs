@@ -12,6 +12,7 @@ on_both!(
     the_same_input_makes_no_second_version,
     the_order_of_batches_does_not_change_the_model,
     a_lease_that_ended_goes_to_another_worker,
+    a_lease_that_is_renewed_is_not_taken,
     a_job_that_fails_is_tried_again_and_then_given_up,
     a_change_of_settings_makes_a_new_version_and_reaches_the_ship,
     samples_page_and_filter_and_come_as_files,
@@ -161,6 +162,31 @@ async fn a_lease_that_ended_goes_to_another_worker(shore: Shore) {
     assert!(matches!(worked, Some(Worked::Analysed(_, 1))), "{worked:?}");
     assert_eq!(ada.get(&nao.path("/model")).await.status, 200);
     other.db.close().await;
+    shore.finish().await;
+}
+
+async fn a_lease_that_is_renewed_is_not_taken(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 30)).await.good();
+    shore.advance(A_WHILE_S);
+    let now = || shore.app.clock.now().into();
+    let job = analysis::claim(&shore.app.db, now())
+        .await
+        .unwrap()
+        .unwrap();
+    for _ in 0..3 {
+        shore.advance(50.0);
+        analysis::renew(&shore.app.db, job, now()).await.unwrap();
+    }
+    assert_eq!(shore.work().await, []);
+    // The worker was killed: within a minute another takes its job.
+    shore.advance(60.0);
+    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    // Whoever comes back late renews nothing.
+    analysis::renew(&shore.app.db, job, now()).await.unwrap();
+    let left = analysis::count_jobs(&shore.app.db).await.unwrap();
+    assert_eq!(left, [("queued", 0), ("running", 0), ("dead", 0)]);
     shore.finish().await;
 }
 
