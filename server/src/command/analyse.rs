@@ -3,9 +3,10 @@
 use super::{BadInput, answer, input, json};
 use crate::config::Analyse;
 use binnacle_magnetics::analyse::{AnalysisSettings, LogbookEntry, analyse as run};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::fit::CsvRow;
+use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
-use serde_json::{Map, Value, json};
 use std::process::ExitCode;
 
 /// Prints epochs, models and what became of each sample, as JSON.
@@ -29,44 +30,38 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
     Ok(json(&run(&samples, &logbook, &AnalysisSettings::default())))
 }
 
-/// A sample of a row: the checks are those of its JSON form.
+/// A sample of a row, or the column at fault and what is wrong with it.
 fn sample(row: &CsvRow) -> Result<Sample, (&'static str, String)> {
-    let fields = [
-        ("time", row.time.map(|time| json!(time))),
-        ("lat", row.lat.map(Value::from)),
-        ("lon", row.lon.map(Value::from)),
-        ("compass_deg", row.compass_deg.map(Value::from)),
-        ("gyro_deg", row.gyro_deg.map(Value::from)),
-        (
-            "satellite_deg",
-            row.satellite_deg.or(row.reference_deg).map(Value::from),
-        ),
-        ("sog_kn", row.sog_kn.map(Value::from)),
-        (
-            "windows",
-            Some(json!(
-                row.windows.unwrap_or(60.0).clamp(1.0, 65_535.0) as u16
-            )),
-        ),
-    ];
-    for (name, value) in &fields[..4] {
-        if value.is_none() {
-            return Err((name, "is empty".to_owned()));
-        }
-    }
-    let object: Map<String, Value> = fields
-        .iter()
-        .filter_map(|(name, value)| Some(((*name).to_owned(), value.clone()?)))
-        .collect();
-    serde_json::from_value(Value::Object(object)).map_err(|error| {
-        let what = error.to_string();
-        let about = if what.contains("latitude") {
-            "lat"
-        } else if what.contains("longitude") {
-            "lon"
-        } else {
-            "heading"
-        };
-        (about, what)
+    let empty = |column| move || (column, "is empty".to_owned());
+    let lat = row.lat.ok_or_else(empty("lat"))?;
+    let lon = row.lon.ok_or_else(empty("lon"))?;
+    let compass_deg = row.compass_deg.ok_or_else(empty("compass_deg"))?;
+    // Which of the two is at fault shows when the other is made harmless.
+    Position::new(lat, 0.0).map_err(|error| ("lat", error.to_string()))?;
+    let (satellite, satellite_deg) = match row.satellite_deg {
+        Some(found) => ("satellite_deg", Some(found)),
+        None => ("reference_deg", row.reference_deg),
+    };
+    Ok(Sample {
+        time: row.time.ok_or_else(empty("time"))?,
+        position: Position::new(lat, lon).map_err(|error| ("lon", error.to_string()))?,
+        compass: CompassHeading::try_from(compass_deg)
+            .map_err(|error| ("compass_deg", error.to_string()))?,
+        gyro: heading("gyro_deg", row.gyro_deg)?,
+        satellite: heading(satellite, satellite_deg)?,
+        sog_kn: row.sog_kn,
+        rate_of_turn_deg_min: None,
+        spread_deg: None,
+        windows: row.windows.unwrap_or(60.0).clamp(1.0, 65_535.0) as u16,
     })
+}
+
+fn heading(
+    column: &'static str,
+    degrees: Option<f64>,
+) -> Result<Option<TrueHeading>, (&'static str, String)> {
+    degrees
+        .map(TrueHeading::try_from)
+        .transpose()
+        .map_err(|error| (column, error.to_string()))
 }

@@ -148,11 +148,38 @@ fn check_header(path: &str, header: &StringRecord) -> Result<(), BadInput> {
         .map_err(|error| BadInput(format!("{path}:1: {error}")))
 }
 
+/// The columns that are known.
+const COLUMNS: [&str; 15] = [
+    "time",
+    "lat",
+    "lon",
+    "variation_deg",
+    "h_nt",
+    "z_nt",
+    "compass_deg",
+    "gyro_deg",
+    "satellite_deg",
+    "reference_deg",
+    "sog_kn",
+    "rate_of_turn_deg_min",
+    "spread_deg",
+    "windows",
+    "weight",
+];
+/// No time and no number is longer, and a complaint quotes it.
+const LONGEST_VALUE: usize = 64;
+
 /// Reads the columns that are known; others are let be.
 fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, String)> {
     let mut row = CsvRow::default();
+    let mut unused = None;
     for (column, text) in header.iter().zip(record) {
         let number = match column {
+            _ if !COLUMNS.contains(&column) => continue,
+            _ if text.len() > LONGEST_VALUE => {
+                let what = format!("{} bytes are no value", text.len());
+                return Err((column.to_owned(), what));
+            }
             "time" => {
                 if !text.is_empty() {
                     let time = Timestamp::parse(text);
@@ -172,7 +199,8 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
             "sog_kn" => &mut row.sog_kn,
             "windows" => &mut row.windows,
             "weight" => &mut row.weight,
-            _ => continue,
+            // Nothing is made of it here, but it must be what it says it is.
+            _ => &mut unused,
         };
         *number = parse(text).map_err(|what| (column.to_owned(), what))?;
     }

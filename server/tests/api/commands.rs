@@ -131,7 +131,7 @@ fn bad_input_is_refused_by_file_line_and_field() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     let head = "time,lat,lon,compass_deg,gyro_deg\n2026-11-15T00:00:00Z,48,-6,10,8\n";
-    let cases: [(&str, String, &[&str]); 9] = [
+    let cases: [(&str, String, &[&str]); 12] = [
         (
             "column.csv",
             head.replace("compass", "needle"),
@@ -163,6 +163,22 @@ fn bad_input_is_refused_by_file_line_and_field() {
             &["time.csv:3", "time", "yesterday"],
         ),
         (
+            "compass.csv",
+            format!("{head}2026-11-15T00:10:00Z,48,-6,400,8"),
+            &["compass.csv:3", "compass_deg", "400"],
+        ),
+        (
+            "long.csv",
+            format!("{head}2026-11-15T00:10:00Z,48,-6,{},8", "1".repeat(1000)),
+            &["long.csv:3", "compass_deg", "1000 bytes"],
+        ),
+        (
+            "spread.csv",
+            head.replace("deg\n", "deg,spread_deg\n")
+                .replace(",8\n", ",8,wide\n"),
+            &["spread.csv:2", "spread_deg", "wide"],
+        ),
+        (
             "short.csv",
             format!("{head}2026-11-15T00:10:00Z,48"),
             &["short.csv:3"],
@@ -177,6 +193,10 @@ fn bad_input_is_refused_by_file_line_and_field() {
             assert_refused(&run(folder.path(), &["analyse", name]), words);
         }
     }
+    let weightless = "variation_deg,h_nt,z_nt,compass_deg,gyro_deg,weight\n-3,24000,38000,10,8,0\n";
+    write("weightless.csv", weightless);
+    let refused = run(folder.path(), &["fit", "weightless.csv"]);
+    assert_refused(&refused, &["weightless.csv", "0 usable samples"]);
     std::fs::write(
         folder.path().join("noise.csv"),
         [0x00, 0xff, 0x80, b'\n', 0xfe],

@@ -114,13 +114,14 @@ pub fn fit_robust(
 }
 
 fn check_field(all: &[Observation], usable: &[Observation]) -> Result<(), FitError> {
-    if all.is_empty() || !usable.is_empty() {
-        return Ok(());
+    let weighed = all.iter().filter(|o| o.weight > 0.0).map(|o| o.h_nt);
+    match weighed.reduce(f64::max) {
+        Some(strongest_nt) if usable.is_empty() => Err(FitError::FieldTooWeak {
+            strongest_nt,
+            needed_nt: WEAKEST_H_NT,
+        }),
+        _ => Ok(()),
     }
-    Err(FitError::FieldTooWeak {
-        strongest_nt: all.iter().map(|o| o.h_nt).fold(0.0, f64::max),
-        needed_nt: WEAKEST_H_NT,
-    })
 }
 
 fn check_number(rows: &[Observation]) -> Result<(), FitError> {
