@@ -126,7 +126,7 @@ async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Resul
     }
     let mut samples: Vec<Sample> = rows.iter().filter_map(|(_, text)| readable(text)).collect();
     samples.sort_by_key(|sample| sample.time);
-    let seq = get::<u64>(tx, NEXT_SEQ).await?.unwrap_or(1);
+    let seq = next_seq(tx).await?;
     let count = samples.len();
     let batch = Batch {
         stream: identity.stream,
@@ -141,6 +141,15 @@ async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Resul
     insert_batch(tx, seq, &bytes, count).await?;
     put(tx, NEXT_SEQ, &(seq + 1)).await?;
     Ok(true)
+}
+
+/// Never a number that a batch here has, also when damage took the counter.
+async fn next_seq(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
+    let highest: Option<i64> = sqlx::query_scalar("SELECT MAX(seq) FROM batches")
+        .fetch_one(&mut *tx)
+        .await?;
+    let free = highest.map_or(1, |seq| seq.cast_unsigned() + 1);
+    Ok(get::<u64>(tx, NEXT_SEQ).await?.unwrap_or(1).max(free))
 }
 
 fn left_out(error: impl std::fmt::Display) {

@@ -281,3 +281,16 @@ async fn settings_outlive_a_new_token_but_not_another_compass() {
     spool.enrol(&other).await.unwrap();
     assert_eq!(spool.settings().await.unwrap(), Settings::default());
 }
+
+#[tokio::test]
+async fn sealing_goes_on_when_damage_took_the_counter() {
+    let (_directory, spool) = enrolled().await;
+    seal(&spool, 0..1).await;
+    sqlx::query("DELETE FROM state WHERE name = 'next_seq'")
+        .execute(&spool.pool)
+        .await
+        .unwrap();
+    seal(&spool, 1..2).await;
+    let standing = spool.standing().await.unwrap();
+    assert_eq!((standing.waiting_batches, standing.pending_samples), (2, 0));
+}
