@@ -281,8 +281,8 @@ fn in_own_units_squared(covariance: &Matrix) -> Covariance {
 }
 
 /// Which parameters the data alone tell, the population taken much wider than
-/// it is. χ12 and χ21 are judged with the constant held: A and the constant
-/// cannot be told apart by headings.
+/// it is. A is (χ21 − χ12)/2 and cannot be told from the constant, so that of
+/// χ12 and χ21 headings tell the sum, E, and neither by itself.
 fn identifiable(information: &Matrix) -> Identifiable {
     let mut alone = *information;
     for j in 0..UNKNOWNS {
@@ -293,8 +293,6 @@ fn identifiable(information: &Matrix) -> Identifiable {
         };
         alone[(j, j)] += own;
     }
-    // Held: known beyond doubt.
-    alone[(CONSTANT, CONSTANT)] += 1e12;
     let by_data = alone.cholesky().map(|factor| factor.inverse());
     let told = |j: usize| by_data.is_some_and(|covariance| covariance[(j, j)].sqrt() < DATA_DRIVEN);
     // What is permanent is known only when what the dip induces is.
