@@ -6,6 +6,8 @@
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
+pub(crate) mod tally;
+
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
 use binnacle_magnetics::fit::Observation;
 use binnacle_magnetics::model::{Model, Parameters};

@@ -1,18 +1,31 @@
-//! How near the estimator comes to the best that any could do: the Cramér–Rao
-//! bound, from the true covariance of the noise, as a dense matrix.
+//! The tables of `docs/science.md`: how often the band holds the truth, and how
+//! near the error comes to the best that any estimator could do, the Cramér–Rao
+//! bound, from the true covariance of the noise as a dense matrix.
+//!
+//! Takes minutes: `cargo run --release -p binnacle-magnetics --example study [SHIPS]`.
 
-#![allow(clippy::unwrap_used)] // all of this is tests
+#![allow(clippy::unwrap_used)] // a study, run by hand
 
 #[allow(dead_code)]
+#[path = "../tests/voyages/mod.rs"]
 mod voyages;
 
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::fit::{Observation, RobustOptions, fit_robust};
 use binnacle_magnetics::ship::EarthField;
 use nalgebra::{DMatrix, DVector};
+use voyages::tally::Tally;
 use voyages::{Errors, Faults, Passage, Truth, Variety, Voyage, predicted, sail, true_deviation};
 
 const HEADINGS: usize = 36;
+
+fn main() {
+    let ships = std::env::args().nth(1);
+    let ships = ships.map_or(30, |n| n.parse().expect("the number of ships"));
+    table_of_efficiency(ships);
+    table_of_coverage(ships);
+    table_of_the_unusual(ships);
+}
 
 /// Autocovariance of the Schuler swing at lags of ten minutes, from the
 /// generator itself: turns kick it at random.
@@ -137,10 +150,8 @@ fn ratio(variety: Variety, days: f64, ships: u64, faults: &Faults) -> f64 {
     (errors / bounds).sqrt()
 }
 
-#[test]
-#[ignore = "minutes long; run with --ignored --nocapture"]
-fn table_of_efficiency() {
-    let ships: u64 = std::env::var("SHIPS").map_or(30, |n| n.parse().unwrap());
+/// The error over the bound.
+fn table_of_efficiency(ships: u64) {
     let faults = Faults {
         storms_per_month: 0.0,
         ..Faults::USUAL
@@ -148,5 +159,111 @@ fn table_of_efficiency() {
     for variety in [Variety::Rich, Variety::Medium, Variety::Poor] {
         let ratio = ratio(variety, 14.0, ships, &faults);
         println!("{variety:?}, 14 days: error {ratio:.2} times the bound");
+    }
+}
+
+/// How often the band holds the truth.
+fn table_of_coverage(ships: u64) {
+    for days in [10.0, 60.0] {
+        for variety in [Variety::Rich, Variety::Medium, Variety::Poor] {
+            let mut tally = Tally::default();
+            for seed in 0..ships {
+                tally.add(seed, variety, days, &Faults::USUAL);
+            }
+            tally.print(&format!("{variety:?} {days} days"));
+        }
+    }
+}
+
+/// What happens when ships or instruments are not as usual.
+fn table_of_the_unusual(ships: u64) {
+    let usual = Faults::USUAL;
+    let quiet = Faults {
+        slow_gyro_deg: 0.05,
+        schuler_deg: 0.1,
+        variation_deg: 0.05,
+        swing_deg: 0.05,
+        ..usual
+    };
+    let cases = [
+        (
+            "ship twice as magnetic",
+            60.0,
+            Faults { ship: 2.0, ..usual },
+        ),
+        (
+            "gyro swings 0.8",
+            60.0,
+            Faults {
+                schuler_deg: 0.8,
+                ..usual
+            },
+        ),
+        (
+            "gyro wanders 0.8",
+            60.0,
+            Faults {
+                slow_gyro_deg: 0.8,
+                ..usual
+            },
+        ),
+        (
+            "gyro constant 0.5",
+            60.0,
+            Faults {
+                gyro_constant_deg: 0.5,
+                ..usual
+            },
+        ),
+        (
+            "speed error left 0.3",
+            60.0,
+            Faults {
+                speed_error: 0.3,
+                ..usual
+            },
+        ),
+        ("quiet instruments", 60.0, quiet),
+        (
+            "outliers 3 %",
+            60.0,
+            Faults {
+                outliers: 0.03,
+                ..usual
+            },
+        ),
+        (
+            "six storms a month",
+            60.0,
+            Faults {
+                storms_per_month: 6.0,
+                ..usual
+            },
+        ),
+        ("no drift, 200 days", 200.0, usual),
+        (
+            "drift 150 nT, 200 days",
+            200.0,
+            Faults {
+                drift_nt: 150.0,
+                ..usual
+            },
+        ),
+        (
+            "drift 300 nT, 200 days",
+            200.0,
+            Faults {
+                drift_nt: 300.0,
+                ..usual
+            },
+        ),
+    ];
+    for (name, days, faults) in cases {
+        let mut tally = Tally::default();
+        for seed in 0..ships {
+            let variety = [Variety::Rich, Variety::Medium, Variety::Poor][seed as usize % 3];
+            tally.add(seed + 5000, variety, days, &faults);
+        }
+        tally.print(name);
     }
 }
