@@ -3,6 +3,7 @@
 //!
 //! Nothing is made up: what cannot be told is absent, with the reason in words.
 
+use crate::weak_field::LEAST_H_NT;
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
 };
@@ -74,6 +75,9 @@ pub(crate) fn correct(from: Ingredients<'_>) -> Corrected {
 fn fill(corrected: &mut Corrected, from: Ingredients<'_>) -> Result<(), String> {
     let (earth, variation) = earth_at(from)?;
     corrected.variation_deg = Some(variation);
+    if earth.h_nt < LEAST_H_NT {
+        return Err("the field is too weak for a magnetic compass".to_owned());
+    }
     let compass = from.compass.ok_or("the compass is silent")?;
     let model = from.model.ok_or("there is no model yet")?;
     let foretold = model
@@ -94,6 +98,9 @@ pub(crate) fn card(from: Ingredients<'_>) -> Vec<CardRow> {
     let (Ok((earth, _)), Some(model)) = (earth_at(from), from.model) else {
         return Vec::new();
     };
+    if earth.h_nt < LEAST_H_NT {
+        return Vec::new();
+    }
     let row = |step: u32| {
         let compass = CompassHeading::new(f64::from(step * 15))?;
         let foretold = model.model.deviation(compass, earth).ok()?;
@@ -185,6 +192,19 @@ mod tests {
         let card = card(ingredients(Some(&model)));
         assert_eq!(card.len(), 24);
         assert!(card.iter().all(|row| row.band95_deg.is_some()));
+    }
+
+    #[test]
+    fn nothing_is_corrected_beside_a_magnetic_pole() {
+        let model = model(0.0, None);
+        let from = Ingredients {
+            position: Position::new(-64.0, 136.0).ok(),
+            ..ingredients(Some(&model))
+        };
+        let corrected = correct(from);
+        assert!(corrected.compass_deg.is_some() && corrected.true_deg.is_none());
+        assert!(corrected.problem.unwrap().contains("too weak"));
+        assert!(card(from).is_empty());
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod roles;
 mod sampler;
 mod ship;
 mod ship_time;
+mod weak_field;
 
 mod spool;
 mod uplink;

@@ -21,6 +21,7 @@ pub(crate) use outcome::{Outcome, Tally};
 
 use crate::hold::Hold;
 use crate::roles::Signal;
+use crate::weak_field::is_weak;
 use binnacle_magnetics::angle::{wrap_180, wrap_360};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
@@ -219,6 +220,9 @@ impl Sampler {
             return Err(Outcome::NoReference);
         }
         let position = fresh(self.position, index).ok_or(Outcome::NoPosition)?;
+        if is_weak(position, start_of(index)?) {
+            return Err(Outcome::HighLatitude);
+        }
         let enough = |span: &Span| span.readings >= LEAST_READINGS;
         let (gyro, satellite) = (gyro.filter(enough), satellite.filter(enough));
         if !enough(&compass) || gyro.or(satellite).is_none() {
@@ -296,6 +300,11 @@ impl Sampler {
 
 fn window_of(time: Timestamp) -> i64 {
     time.micros().div_euclid(WINDOW_MICROS)
+}
+
+fn start_of(window: i64) -> Result<Timestamp, Outcome> {
+    let micros = window.saturating_mul(WINDOW_MICROS);
+    Timestamp::from_micros(micros).map_err(|_| Outcome::Clock)
 }
 
 fn fresh<T: Copy>(last: Option<(T, i64)>, index: i64) -> Option<T> {

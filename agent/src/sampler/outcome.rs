@@ -35,9 +35,11 @@ pub(crate) enum Outcome {
     Settling,
     /// The heading swung too far.
     Swinging,
+    /// The horizontal field is too weak for a compass.
+    HighLatitude,
 }
 
-const ALL: [(Outcome, &str); 15] = [
+const ALL: [(Outcome, &str); 16] = [
     (Outcome::Accepted, "accepted"),
     (Outcome::HoldBerthed, "hold_berthed"),
     (Outcome::HoldMagneticCargo, "hold_magnetic_cargo"),
@@ -53,6 +55,7 @@ const ALL: [(Outcome, &str); 15] = [
     (Outcome::Turning, "turning"),
     (Outcome::Settling, "settling"),
     (Outcome::Swinging, "swinging"),
+    (Outcome::HighLatitude, "high_latitude"),
 ];
 
 /// Windows by outcome.

@@ -72,6 +72,19 @@ fn a_steady_hour_settles_first_and_is_then_sampled_every_ten_minutes() {
 }
 
 #[test]
+fn nothing_is_sampled_beside_a_magnetic_pole() {
+    let mut sampler = sampler();
+    let pole = Position::new(-64.0, 136.0).unwrap();
+    for time in 0..1200 {
+        feed(&mut sampler, second(time, 1.0));
+        sampler.take(Signal::Position(pole));
+    }
+    let (samples, tally) = finished(sampler);
+    assert_eq!(samples, []);
+    assert_eq!(tally.of(Outcome::HighLatitude), 119);
+}
+
+#[test]
 fn nothing_is_sampled_for_three_minutes_after_a_turn() {
     let mut sampler = sampler();
     let heading = |t: i64| 90.0 + 0.2 * (t - 1000).clamp(0, 200) as f64;
