@@ -54,6 +54,21 @@ impl Page {
         Ok(Some(number))
     }
 
+    /// The cursor of a list by a number that several items may share: the number,
+    /// and how many of those that have it were listed.
+    ///
+    /// # Errors
+    /// When the cursor is none of this list's.
+    pub fn after_shared(&self) -> Result<Option<(i64, usize)>> {
+        let Some(after) = &self.after else {
+            return Ok(None);
+        };
+        let parts = after.split_once('.');
+        let read =
+            parts.and_then(|(number, listed)| Some((number.parse().ok()?, listed.parse().ok()?)));
+        read.map(Some).ok_or_else(|| bad_cursor(after))
+    }
+
     /// How many items a page holds.
     pub fn limit(&self) -> usize {
         self.limit.unwrap_or(DEFAULT_LIMIT).clamp(1, MAX_LIMIT) as usize

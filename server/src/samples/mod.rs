@@ -190,10 +190,23 @@ async fn list_samples(
     Params(range): Params<Range>,
     page: Page,
 ) -> Result<Json<SampleList>> {
-    let after = page.after_number()?;
+    let after = page.after_shared()?;
     let mut samples = find(&app, reader, id, &range).await?;
-    samples.retain(|found| after.is_none_or(|after| found.sample.time.micros() > after));
-    let listed = page.cut(samples, |found| found.sample.time.micros().to_string());
+    let micros = |found: &SampleDiagnostic| found.sample.time.micros();
+    let before =
+        |samples: &[SampleDiagnostic], at: i64| samples.partition_point(|found| micros(found) < at);
+    // Two installations may have sampled at the same instant.
+    let begin = after.map_or(0, |(at, listed)| {
+        before(&samples, at)
+            .saturating_add(listed)
+            .min(samples.len())
+    });
+    let end = (begin + page.limit()).min(samples.len());
+    let last = samples[begin..end].last().map(micros);
+    let next = last.map(|at| format!("{at}.{}", end - before(&samples, at)));
+    let listed = page.cut(samples.split_off(begin), |_| {
+        next.clone().unwrap_or_default()
+    });
     Ok(Json(SampleList {
         items: listed.items,
         next: listed.next,

@@ -13,6 +13,7 @@ on_both!(
     the_order_of_batches_does_not_change_the_model,
     a_lease_that_ended_goes_to_another_worker,
     a_lease_that_is_renewed_is_not_taken,
+    samples_of_one_instant_are_all_listed,
     a_job_that_fails_is_tried_again_and_then_given_up,
     a_change_of_settings_makes_a_new_version_and_reaches_the_ship,
     samples_page_and_filter_and_come_as_files,
@@ -162,6 +163,32 @@ async fn a_lease_that_ended_goes_to_another_worker(shore: Shore) {
     assert!(matches!(worked, Some(Worked::Analysed(_, 1))), "{worked:?}");
     assert_eq!(ada.get(&nao.path("/model")).await.status, 200);
     other.db.close().await;
+    shore.finish().await;
+}
+
+async fn samples_of_one_instant_are_all_listed(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut samples = passage(DAY, 7);
+    for index in 1..6 {
+        samples[index].time = samples[1].time;
+    }
+    nao.put(1, &samples).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let all = ada.get(&nao.path("/samples")).await.good()["items"].clone();
+    let mut listed = Vec::new();
+    let mut after = String::new();
+    loop {
+        let page = format!("/samples?limit=2{after}");
+        let page = ada.get(&nao.path(&page)).await.good();
+        listed.extend(page["items"].as_array().unwrap().clone());
+        let Some(next) = page["next"].as_str() else {
+            break;
+        };
+        after = format!("&after={next}");
+    }
+    assert_eq!((listed.len(), Value::Array(listed)), (7, all));
     shore.finish().await;
 }
 
