@@ -2,6 +2,7 @@
 //! the small types that read a request.
 
 mod docs;
+mod document;
 mod headers;
 mod json;
 mod page;

@@ -98,6 +98,7 @@ fn parts() -> (Router<App>, utoipa::openapi::OpenApi) {
         .split_for_parts();
     let mut document = described;
     document.merge(more);
+    super::document::complete(&mut document);
     let people = people
         .route("/api/openapi.json", get(super::docs::document))
         .route("/api/docs", get(super::docs::page))

@@ -100,7 +100,7 @@ async fn sign_in(
 ///
 /// The session ends for good, whoever holds its cookie.
 #[utoipa::path(delete, path = "/session", tag = "session",
-    responses((status = 204), (status = 401, body = Problem)))]
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
 async fn sign_out(State(app): State<App>, caller: Caller) -> Result<(StatusCode, HeaderMap)> {
     if let Some(token) = &caller.session {
         store::close(&app.db, &secret::hash(token)).await?;

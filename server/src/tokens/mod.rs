@@ -144,7 +144,8 @@ async fn create_token(
 
 /// Revoke an API token
 #[utoipa::path(delete, path = "/tokens/{id}", tag = "session", params(("id" = TokenId, Path)),
-    responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem)))]
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
 async fn delete_token(
     State(app): State<App>,
     caller: Caller,

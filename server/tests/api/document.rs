@@ -14,6 +14,21 @@ fn the_committed_document_is_the_servers() {
     );
 }
 
+#[test]
+fn every_answer_is_described_and_every_problem_is_one() {
+    let document = serde_json::to_value(openapi()).unwrap();
+    for (path, operations) in document["paths"].as_object().unwrap() {
+        for (method, operation) in operations.as_object().unwrap() {
+            for (status, answer) in operation["responses"].as_object().unwrap() {
+                let place = format!("{method} {path} {status}");
+                assert!(answer["description"].is_string(), "{place}");
+                let problem = answer["content"].get("application/problem+json");
+                assert_eq!(problem.is_some(), status.starts_with('4'), "{place}");
+            }
+        }
+    }
+}
+
 #[tokio::test]
 async fn the_document_and_its_page_are_served_to_anyone() {
     let shore = Shore::start(Engine::Sqlite).await;

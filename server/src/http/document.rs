@@ -1,0 +1,79 @@
+//! What the document must say of every operation, and none says for itself.
+//!
+//! What always holds: each answer has a description, which OpenAPI 3.1 demands;
+//! each problem has the media type of RFC 9457; and the problems that come from
+//! reading a request are listed wherever there is something to read.
+
+use axum::http::StatusCode;
+use std::mem;
+use utoipa::openapi::path::{Operation, ParameterIn};
+use utoipa::openapi::{OpenApi, RefOr, Response};
+
+/// Adds it.
+pub(super) fn complete(document: &mut OpenApi) {
+    for path in document.paths.paths.values_mut() {
+        let all = [
+            &mut path.get,
+            &mut path.post,
+            &mut path.put,
+            &mut path.delete,
+        ];
+        for operation in all.into_iter().flatten() {
+            add_problems(operation);
+            for (status, answer) in &mut operation.responses.responses {
+                if let RefOr::T(answer) = answer {
+                    describe(status, answer);
+                }
+            }
+        }
+    }
+}
+
+/// Lists what a request may be refused for before the operation sees it.
+fn add_problems(operation: &mut Operation) {
+    let answers = &mut operation.responses.responses;
+    let Some(problem) = answers.get("401").or_else(|| answers.get("404")).cloned() else {
+        return;
+    };
+    let parameters = || {
+        let all = operation.parameters.iter().flatten();
+        all.filter_map(|found| match found {
+            RefOr::T(parameter) => Some(parameter),
+            RefOr::Ref(_) => None,
+        })
+    };
+    let fleet = operation.tags.iter().flatten().any(|tag| tag == "fleet");
+    let query = parameters().any(|found| found.parameter_in == ParameterIn::Query);
+    let body = operation.request_body.is_some();
+    // A batch's frame is taken whatever its media type is called.
+    let json = body && !parameters().any(|found| found.name == "seq");
+    for (status, may_be) in [
+        ("400", query || body),
+        ("403", fleet),
+        ("413", body),
+        ("415", json),
+        ("422", json),
+    ] {
+        if may_be && !answers.contains_key(status) {
+            answers.insert(status.to_owned(), problem.clone());
+        }
+    }
+}
+
+fn describe(status: &str, answer: &mut Response) {
+    let Ok(status) = status.parse::<StatusCode>() else {
+        return;
+    };
+    if answer.description.is_empty() {
+        status
+            .canonical_reason()
+            .unwrap_or("Answer")
+            .clone_into(&mut answer.description);
+    }
+    if status.is_client_error() {
+        let content = mem::take(&mut answer.content).into_values();
+        answer.content = content
+            .map(|content| ("application/problem+json".to_owned(), content))
+            .collect();
+    }
+}
