@@ -64,14 +64,24 @@ pub(super) fn agent_toml(plan: &ShipPlan, ports: Ports) -> String {
     text
 }
 
-/// A folder's name for a ship.
+/// A folder's name for a ship: her letters and digits, with hyphens between.
 pub(super) fn slug(name: &str) -> String {
-    let plain = |c: char| {
-        if c.is_ascii_alphanumeric() {
-            c.to_ascii_lowercase()
-        } else {
-            '-'
-        }
-    };
-    name.chars().map(plain).collect()
+    let lower = name.to_lowercase();
+    let words = lower.split(|c: char| !c.is_alphanumeric());
+    words
+        .filter(|word| !word.is_empty())
+        .collect::<Vec<_>>()
+        .join("-")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::slug;
+
+    #[test]
+    fn a_ships_folder_has_her_own_letters_and_no_leading_hyphen() {
+        assert_eq!(slug("Östersjön"), "östersjön");
+        assert_eq!(slug("  M/V Baía de Santos"), "m-v-baía-de-santos");
+        assert_ne!(slug("Åland"), slug("Öland"));
+    }
 }
