@@ -51,7 +51,7 @@ enum Command {
     },
     /// Exchanges the code from the dashboard for a token, which is kept in the data directory.
     Enrol {
-        /// Where the shore is, as https://binnacle.example.
+        /// Where the shore is, as `https://binnacle.example`.
         #[arg(long)]
         server: String,
         /// The one-time code.

@@ -184,7 +184,11 @@ impl Run<'_> {
         } else {
             behind_s
         };
-        writeln!(std::io::stderr(), "sailing on in real time; Ctrl-C ends it")?;
+        let shown_at = self.args.server.as_deref().unwrap_or_default();
+        writeln!(
+            std::io::stderr(),
+            "sailing on in real time, shown at {shown_at}; Ctrl-C ends it"
+        )?;
         let mut tasks = JoinSet::new();
         for mut ship in fleet {
             tasks.spawn(async move { ship.sail_live(shift_s).await });
