@@ -6,6 +6,8 @@
 //!   and makes no second model version.
 //! - No transaction is open while an analysis runs. What it found is stored in one
 //!   transaction, and only by the process that still holds the job's lease.
+//! - A server that starts with another estimator than a vessel's analysis was made
+//!   with analyses that vessel again.
 //! - One job waits for each vessel, however many batches come; a batch that comes
 //!   while one runs makes the next.
 
@@ -15,6 +17,6 @@ mod store;
 mod worker;
 
 pub use input::{Input, input_hash};
-pub use queue::{Job, claim, count as count_jobs, enqueue, renew};
+pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};
 pub use store::{chunks, coverage, refusal};
 pub use worker::{Worked, run, step};

@@ -8,6 +8,7 @@
 use crate::db::{Db, Result, Tx, execute, rows};
 use crate::ids::{JobId, VesselId};
 use crate::time::Time;
+use binnacle_magnetics::analyse::ESTIMATOR;
 
 /// Attempts before a job is given up.
 pub(super) const MOST_ATTEMPTS: i64 = 5;
@@ -44,6 +45,23 @@ pub async fn enqueue(tx: &mut Tx, vessel: VesselId, now: Time, delay_s: f64) -> 
         Time(now.0.plus_seconds(delay_s))
     )?;
     Ok(())
+}
+
+/// Makes sure that every vessel last analysed by an estimator other than this
+/// program's will be analysed again; says how many there are.
+pub async fn enqueue_outdated(db: &Db, now: Time) -> Result<usize> {
+    let mut tx = db.begin().await?;
+    let outdated = rows!(
+        in &mut tx,
+        (VesselId,),
+        "SELECT DISTINCT vessel_id FROM analyses WHERE estimator <> $1 ORDER BY vessel_id",
+        ESTIMATOR
+    )?;
+    for (vessel,) in &outdated {
+        enqueue(&mut tx, *vessel, now, 0.0).await?;
+    }
+    tx.commit().await?;
+    Ok(outdated.len())
 }
 
 macro_rules! claim_sql {

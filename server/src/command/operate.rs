@@ -47,6 +47,10 @@ pub async fn run(app: App, listener: TcpListener) -> Result<()> {
     let mut parts = JoinSet::new();
     let line = events::Line::open(&app.db).await?;
     parts.spawn(line.listen(app.clone()));
+    let outdated = analysis::enqueue_outdated(&app.db, app.clock.now().into()).await?;
+    if outdated > 0 {
+        info!(vessels = outdated, "another estimator: analysing again");
+    }
     for _ in 0..app.config.analysis_workers {
         parts.spawn(analysis::run(app.clone()));
     }

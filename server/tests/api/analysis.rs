@@ -10,6 +10,7 @@ on_both!(
     without_enough_headings_the_answer_says_what_is_missing,
     many_batches_make_one_job_that_waits_for_more,
     the_same_input_makes_no_second_version,
+    another_estimator_analyses_every_vessel_again_at_the_start,
     the_order_of_batches_does_not_change_the_model,
     a_lease_that_ended_goes_to_another_worker,
     a_lease_that_is_renewed_is_not_taken,
@@ -123,6 +124,50 @@ async fn the_same_input_makes_no_second_version(shore: Shore) {
     let older = ada.get(&nao.path(&rest)).await.good();
     assert_eq!(older["items"][0]["version"], 1);
     assert_eq!(older["next"], json!(null));
+    shore.finish().await;
+}
+
+async fn another_estimator_analyses_every_vessel_again_at_the_start(shore: Shore) {
+    // It has started once it answers.
+    async fn restart(shore: Shore) -> Shore {
+        let shore = shore.restart().await;
+        let health = format!("{}/healthz", shore.url);
+        assert!(
+            shore
+                .http
+                .get(health)
+                .send()
+                .await
+                .unwrap()
+                .status()
+                .is_success()
+        );
+        shore
+    }
+    let ada = shore.admin("ada").await;
+    let mut nao = shore.ship(&ada, "Nao").await;
+    let gaviota = shore.ship(&ada, "Gaviota").await;
+    nao.put(1, &passage(DAY, 30)).await.good();
+    gaviota.put(1, &passage(DAY, 30)).await.good();
+    shore.advance(A_WHILE_S);
+    assert_eq!(shore.work().await.len(), 2);
+    let shore = restart(shore).await;
+    assert_eq!(shore.work().await, [], "the estimator is the same");
+
+    // As an earlier version left it; for one of the two a job waits already.
+    shore
+        .sql("UPDATE analyses SET estimator = 'older', input_hash = 'older'")
+        .await;
+    nao.at(&shore);
+    nao.put(2, &passage("2026-11-20T00:00:00Z", 3)).await.good();
+    let shore = restart(shore).await;
+    let worked = shore.work().await;
+    let [Worked::Analysed(first, 1), Worked::Analysed(second, 1)] = worked[..] else {
+        panic!("{worked:?}");
+    };
+    assert_ne!(first, second);
+    let shore = restart(shore).await;
+    assert_eq!(shore.work().await, []);
     shore.finish().await;
 }
 

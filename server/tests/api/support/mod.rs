@@ -13,7 +13,7 @@ use binnacle_server::analysis::{self, Worked};
 use binnacle_server::app::App;
 use binnacle_server::clock::Clock;
 use binnacle_server::config::{Cli, Command, Serve};
-use binnacle_server::db::Db;
+use binnacle_server::db::{Db, Tx};
 use binnacle_server::{command, operations};
 use clap::Parser;
 use database::Database;
@@ -78,6 +78,20 @@ impl Shore {
         let db = Db::connect(&self.database.url).await.unwrap();
         let config = config(&self.database.url);
         App::new(db, self.app.clock.clone(), config, metrics())
+    }
+
+    /// Changes the database behind the server's back.
+    pub(crate) async fn sql(&self, statement: &'static str) {
+        match self.app.db.begin().await.unwrap() {
+            Tx::Sqlite(mut tx) => {
+                sqlx::query(statement).execute(&mut *tx).await.unwrap();
+                tx.commit().await.unwrap();
+            }
+            Tx::Postgres(mut tx) => {
+                sqlx::query(statement).execute(&mut *tx).await.unwrap();
+                tx.commit().await.unwrap();
+            }
+        }
     }
 
     /// Does every job that is due now.
