@@ -5,6 +5,9 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use binnacle_magnetics::analyse::SampleDiagnostic;
 
+/// Not `weight`, which `fit` takes for one known beforehand: it would weight the
+/// samples twice.
+const ROBUST_WEIGHT: &str = "robust_weight";
 /// The columns that `fit` reads come first.
 const COLUMNS: [&str; 19] = [
     "time",
@@ -23,7 +26,7 @@ const COLUMNS: [&str; 19] = [
     "deviation_deg",
     "predicted_deg",
     "residual_deg",
-    "weight",
+    ROBUST_WEIGHT,
     "used",
     "reason",
 ];
@@ -33,9 +36,13 @@ pub(super) fn csv(samples: &[SampleDiagnostic]) -> Result<Response> {
     let failed = |error: csv::Error| Error::Internal(error.into());
     writer.write_record(COLUMNS).map_err(failed)?;
     for sample in samples {
-        // The names in JSON are the names of the columns.
+        // The names in JSON are the names of the other columns.
         let fields = serde_json::to_value(sample)?;
-        let record = COLUMNS.map(|column| match &fields[column] {
+        let name = |column| match column {
+            ROBUST_WEIGHT => "weight",
+            same => same,
+        };
+        let record = COLUMNS.map(|column| match &fields[name(column)] {
             serde_json::Value::Null => String::new(),
             serde_json::Value::String(text) => text.clone(),
             other => other.to_string(),

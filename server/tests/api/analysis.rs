@@ -1,7 +1,9 @@
 //! From batches to models, and the queue between.
 
+use crate::commands::{good, run};
 use crate::on_both;
 use crate::support::{Shore, passage};
+use binnacle_magnetics::angle::TrueHeading;
 use binnacle_server::analysis::{self, Worked};
 use serde_json::{Value, json};
 
@@ -18,6 +20,7 @@ on_both!(
     a_job_that_fails_is_tried_again_and_then_given_up,
     a_change_of_settings_makes_a_new_version_and_reaches_the_ship,
     samples_page_and_filter_and_come_as_files,
+    fit_reads_the_exported_samples_and_weights_them_once,
 );
 
 const DAY: &str = "2026-11-15T00:00:00Z";
@@ -375,5 +378,38 @@ async fn samples_page_and_filter_and_come_as_files(shore: Shore) {
         let answer = ada.get(&nao.path(&format!("/deviation{wrong}"))).await;
         assert_eq!(answer.problem(), "invalid", "{wrong}");
     }
+    shore.finish().await;
+}
+
+async fn fit_reads_the_exported_samples_and_weights_them_once(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut samples = passage(DAY, 300);
+    // One that the analysis gives no full weight.
+    let gyro_deg = samples[150].gyro.unwrap().degrees();
+    samples[150].gyro = Some(TrueHeading::new(gyro_deg + 3.0).unwrap());
+    nao.put(1, &samples).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let exported = ada.get(&nao.path("/samples.csv")).await.text;
+    let table: Vec<Vec<&str>> = exported.lines().map(|l| l.split(',').collect()).collect();
+    let column = table[0].iter().position(|name| *name == "robust_weight");
+    let column = column.unwrap();
+    assert!(
+        table[151][column].parse::<f64>().unwrap() < 0.9,
+        "{:?}",
+        table[151]
+    );
+
+    let mut unweighted = String::new();
+    for mut row in table {
+        row.remove(column);
+        unweighted += &(row.join(",") + "\n");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("exported.csv"), &exported).unwrap();
+    std::fs::write(folder.path().join("unweighted.csv"), unweighted).unwrap();
+    let fit = |file| good(&run(folder.path(), &["fit", file, "--json"]));
+    assert_eq!(fit("exported.csv"), fit("unweighted.csv"));
     shore.finish().await;
 }
