@@ -5,10 +5,15 @@ use crate::db::{Result as DbResult, Tx, execute, row};
 use crate::error::{Error, Result};
 use crate::ids::VesselId;
 use crate::time::Time;
+use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::Batch;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use uuid::Uuid;
+
+/// A sample further ahead of the server's clock has a wrong date, and does not say
+/// where the ship was last.
+const AHEAD_S: f64 = 86_400.0;
 
 #[derive(sqlx::FromRow)]
 struct Progress {
@@ -136,18 +141,21 @@ async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time)
         vessel,
         now
     )?;
-    let Some(last) = batch.samples.last() else {
+    let latest = Time(now.0.plus_seconds(AHEAD_S));
+    let believable = |sample: &&Sample| Time(sample.time) <= latest;
+    let Some(last) = batch.samples.iter().rev().find(believable) else {
         return Ok(());
     };
-    // A late batch does not move the ship back.
+    // A late batch does not move the ship back, unless from a day yet to come.
     execute!(
         &mut *tx,
         "UPDATE vessels SET last_sample_at = $2, last_lat = $3, last_lon = $4
-         WHERE id = $1 AND (last_sample_at IS NULL OR last_sample_at < $2)",
+         WHERE id = $1 AND (last_sample_at IS NULL OR last_sample_at < $2 OR last_sample_at > $5)",
         vessel,
         Time(last.time),
         last.position.lat_deg(),
-        last.position.lon_deg()
+        last.position.lon_deg(),
+        latest
     )?;
     Ok(())
 }

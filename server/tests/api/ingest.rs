@@ -12,6 +12,8 @@ on_both!(
     batches_out_of_order_are_acknowledged_up_to_the_gap,
     a_batch_without_samples_counts_its_windows,
     a_late_batch_does_not_move_the_ship_back,
+    a_date_to_come_does_not_say_where_the_ship_was_last,
+    a_position_from_a_day_to_come_is_replaced,
     what_is_not_the_batch_named_is_refused_and_not_stored,
     what_was_acknowledged_outlives_the_server,
     batches_of_one_stream_at_once_are_all_stored,
@@ -73,6 +75,38 @@ async fn a_late_batch_does_not_move_the_ship_back(shore: Shore) {
     let nao = shore.ship(&ada, "Nao").await;
     nao.put(2, &passage("2026-11-20T12:00:00Z", 1)).await.good();
     nao.put(1, &passage(DAY, 1)).await.good();
+    let vessel = ada.get(&nao.path("")).await.good();
+    assert_eq!(vessel["last_position"]["at"], "2026-11-20T12:00:00Z");
+    shore.finish().await;
+}
+
+async fn a_date_to_come_does_not_say_where_the_ship_was_last(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let at = async || ada.get(&nao.path("")).await.good()["last_position"]["at"].clone();
+    let mut samples = passage(DAY, 1);
+    // The server's clock is at 07:00 on the 21st.
+    samples.extend(passage("2026-11-22T07:01:00Z", 1));
+    nao.put(1, &samples).await.good();
+    assert_eq!(at().await, DAY);
+    nao.put(2, &passage("2029-07-06T00:00:00Z", 2)).await.good();
+    assert_eq!(at().await, DAY);
+    nao.put(3, &passage("2026-11-22T07:00:00Z", 1)).await.good();
+    assert_eq!(at().await, "2026-11-22T07:00:00Z");
+    let streams = ada.get(&nao.path("/agents")).await.good();
+    assert_eq!(streams["items"][0]["samples"], 5);
+    shore.finish().await;
+}
+
+async fn a_position_from_a_day_to_come_is_replaced(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 1)).await.good();
+    // As an earlier version left it: the year 2046.
+    shore
+        .sql("UPDATE vessels SET last_sample_at = 2414448000000000")
+        .await;
+    nao.put(2, &passage("2026-11-20T12:00:00Z", 1)).await.good();
     let vessel = ada.get(&nao.path("")).await.good();
     assert_eq!(vessel["last_position"]["at"], "2026-11-20T12:00:00Z");
     shore.finish().await;
