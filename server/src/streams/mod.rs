@@ -31,6 +31,10 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
+/// No batch has this number or a higher one: up to here JSON's numbers are exact,
+/// and one more fits into the database.
+const SEQ_END: u64 = 1 << 53;
+
 /// The routes of this part.
 pub fn router() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -119,7 +123,13 @@ fn read(bytes: &[u8], stream: StreamId, seq: u64) -> Result<Batch> {
             detail: format!("the frame is of stream {}", batch.stream),
         });
     }
-    if batch.seq != seq || i64::try_from(seq).is_err() {
+    if batch.seq >= SEQ_END {
+        return Err(Error::BadRequest(format!(
+            "seq: {} is not below {SEQ_END}",
+            batch.seq
+        )));
+    }
+    if batch.seq != seq {
         return Err(Error::Invalid {
             field: "seq",
             detail: format!("the frame is number {}", batch.seq),

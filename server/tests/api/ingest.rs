@@ -116,6 +116,7 @@ async fn what_is_not_the_batch_named_is_refused_and_not_stored(shore: Shore) {
     let ada = shore.admin("ada").await;
     let nao = shore.ship(&ada, "Nao").await;
     let good = frame(nao.stream, 1, &passage(DAY, 6));
+    let numbered = |seq| frame(nao.stream, seq, &passage(DAY, 1));
     let mut flipped = good.clone();
     flipped[40] ^= 0x10;
     let cases = [
@@ -126,6 +127,9 @@ async fn what_is_not_the_batch_named_is_refused_and_not_stored(shore: Shore) {
         (2, good, "invalid"),
         (1, frame(StreamId(Uuid::now_v7()), 1, &[]), "invalid"),
         (1, vec![0; 262_145], "too-large"),
+        (1 << 53, numbered(1 << 53), "bad-request"),
+        (i64::MAX as u64, numbered(i64::MAX as u64), "bad-request"),
+        (u64::MAX, numbered(u64::MAX), "bad-request"),
     ];
     for (seq, bytes, problem) in cases {
         let answer = nao.put_bytes(seq, bytes).await;
@@ -140,6 +144,8 @@ async fn what_is_not_the_batch_named_is_refused_and_not_stored(shore: Shore) {
     assert_eq!(nao.downlink("").await["contiguous_seq"], 0);
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["batches"], 0);
+    let highest = (1 << 53) - 1;
+    nao.put(highest, &passage(DAY, 1)).await.good();
     shore.finish().await;
 }
 
