@@ -1,5 +1,6 @@
 //! The real program in a folder of its own.
 
+use rustix::process::{Pid, Signal, kill_process};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::process::{Output, Stdio};
@@ -115,13 +116,8 @@ impl Running {
 
     /// Signal 15; its exit code and the rest of its log.
     pub(crate) async fn terminate(mut self) -> (Option<i32>, String) {
-        let id = self.process.id().unwrap().to_string();
-        Command::new("kill")
-            .arg("-TERM")
-            .arg(id)
-            .status()
-            .await
-            .unwrap();
+        let id = i32::try_from(self.process.id().unwrap()).unwrap();
+        kill_process(Pid::from_raw(id).unwrap(), Signal::TERM).unwrap();
         let mut rest = String::new();
         while let Some(line) = self.log.next_line().await.unwrap() {
             rest += &line;
