@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Prints epochs, models and what became of each sample, as JSON.
 ///
 /// # Errors
-/// When standard output is closed.
+/// When standard output cannot be written.
 pub fn analyse(arguments: &Analyse) -> anyhow::Result<ExitCode> {
     answer(find(arguments))
 }

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Prints the rows, as a table or as JSON.
 ///
 /// # Errors
-/// When standard output is closed.
+/// When standard output cannot be written.
 pub fn deviation(arguments: &Deviation) -> anyhow::Result<ExitCode> {
     answer(find(arguments).map(|rows| {
         if arguments.json {

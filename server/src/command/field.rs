@@ -20,7 +20,7 @@ struct Answer {
 /// Prints the field as JSON.
 ///
 /// # Errors
-/// When standard output is closed.
+/// When standard output cannot be written.
 pub fn field(arguments: &Field) -> anyhow::Result<ExitCode> {
     answer(find(arguments).map(|found| json(&found)))
 }

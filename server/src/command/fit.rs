@@ -12,7 +12,7 @@ use std::process::ExitCode;
 /// Prints the model, as a table or as JSON.
 ///
 /// # Errors
-/// When standard output is closed.
+/// When standard output cannot be written.
 pub fn fit(arguments: &Fit) -> anyhow::Result<ExitCode> {
     answer(find(arguments).map(|model| {
         if arguments.json {

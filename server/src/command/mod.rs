@@ -22,7 +22,7 @@ pub use operate::{migrate, openapi, run, serve};
 
 use serde::Serialize;
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 /// What is wrong with the input, in one line.
@@ -41,13 +41,22 @@ impl BadInput {
 fn answer(answer: Result<String, BadInput>) -> anyhow::Result<ExitCode> {
     match answer {
         Ok(text) => {
-            writeln!(std::io::stdout().lock(), "{}", text.trim_end())?;
+            print(text.trim_end())?;
             Ok(ExitCode::SUCCESS)
         }
         Err(error) => {
             writeln!(std::io::stderr().lock(), "binnacle-server: {error}")?;
             Ok(ExitCode::from(2))
         }
+    }
+}
+
+/// Prints on standard output; a reader who has seen enough (`| head`) is no error.
+fn print(text: &str) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        printed => printed,
     }
 }
 

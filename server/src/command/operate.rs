@@ -111,10 +111,10 @@ pub fn migrate(database: &Database) -> Result<ExitCode> {
 /// Prints the OpenAPI document.
 ///
 /// # Errors
-/// When standard output is closed.
+/// When standard output cannot be written.
 pub fn openapi() -> Result<ExitCode> {
     let document = http::openapi().to_pretty_json()?;
-    writeln!(std::io::stdout().lock(), "{document}")?;
+    super::print(&document)?;
     Ok(ExitCode::SUCCESS)
 }
 

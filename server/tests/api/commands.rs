@@ -6,13 +6,17 @@ use std::fmt::Write;
 use std::path::Path;
 use std::process::{Command, Output};
 
-pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_binnacle-server"))
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_binnacle-server"));
+    command
         .args(arguments)
         .current_dir(folder)
-        .env_remove("BINNACLE_DATABASE_URL")
-        .output()
-        .unwrap()
+        .env_remove("BINNACLE_DATABASE_URL");
+    command
+}
+
+pub(crate) fn run(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().unwrap()
 }
 
 pub(crate) fn good(output: &Output) -> String {
@@ -124,6 +128,30 @@ fn analyse_does_offline_what_the_server_does() {
     let analysis: Value = serde_json::from_str(&good(&output)).unwrap();
     assert_eq!(analysis["epochs"].as_array().unwrap().len(), 2);
     assert_eq!(analysis["samples"].as_array().unwrap().len(), 300);
+}
+
+#[test]
+fn a_reader_who_has_seen_enough_is_no_error() {
+    let folder = tempfile::tempdir().unwrap();
+    samples_csv(folder.path());
+    let created = ["admin", "create", "operator", "--name", "Nao"];
+    let asked: [&[&str]; 4] = [
+        &["analyse", "samples.csv"],
+        &["fit", "samples.csv"],
+        &["openapi"],
+        &created,
+    ];
+    for arguments in asked {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = command(folder.path(), arguments)
+            .stdout(writer)
+            .output()
+            .unwrap();
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {errors}");
+        assert_eq!(errors, "", "{arguments:?}");
+    }
 }
 
 #[test]
