@@ -1,10 +1,16 @@
 //! Where the corrected heading goes: a TCP server, UDP datagrams, a serial port.
 //!
 //! No listener can hold the agent up: a TCP client that does not read is
-//! dropped, a serial port that is busy or gone misses a line.
+//! dropped, a serial port that is busy or gone misses a line. Nor does a client
+//! that falls silent and comes back get old headings from here as if they were
+//! new: little waits in the kernel, not for long, and what waits for a client
+//! that is dropped is thrown away. What its own computer has already received
+//! is out of our hands.
 
 use crate::config::{OutputConfig, SerialConfig};
 use anyhow::Context;
+use socket2::SockRef;
+use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
@@ -17,8 +23,14 @@ use tokio_util::sync::CancellationToken;
 
 /// So many outputs behind, a client is dropped.
 const CLIENT_LAG: usize = 16;
-/// A client that takes no byte for so long is dropped.
-const CLIENT_TIMEOUT: Duration = Duration::from_secs(10);
+/// A client that has not taken a line after so many intervals is dropped.
+const PATIENCE_INTERVALS: f64 = 2.0;
+/// However short the interval, a lost segment may be sent again.
+const LEAST_PATIENCE_S: f64 = 1.0;
+/// However long the interval, a heading this old is not for steering.
+const MOST_PATIENCE_S: f64 = 10.0;
+/// Room in the kernel for lines that a client has not taken: a few of them.
+const CLIENT_BUFFER_BYTES: usize = 4096;
 /// A serial port that failed is opened again after this.
 const SERIAL_RETRY: Duration = Duration::from_secs(5);
 
@@ -51,7 +63,8 @@ impl Outputs {
             outputs.tcp_address = Some(listener.local_addr()?);
             let (clients, _) = broadcast::channel(CLIENT_LAG);
             outputs.clients = Some(clients.clone());
-            tokio::spawn(accept(listener, clients, shutdown.clone()));
+            let patience = patience(config.interval_s.0);
+            tokio::spawn(accept(listener, clients, patience, shutdown.clone()));
         }
         if let Some(target) = config.udp {
             outputs.udp = Some((udp_socket(target).await?, target));
@@ -98,9 +111,15 @@ async fn udp_socket(target: SocketAddr) -> anyhow::Result<UdpSocket> {
     Ok(socket)
 }
 
+fn patience(interval_s: f64) -> Duration {
+    let seconds = PATIENCE_INTERVALS * interval_s;
+    Duration::from_secs_f64(seconds.clamp(LEAST_PATIENCE_S, MOST_PATIENCE_S))
+}
+
 async fn accept(
     listener: TcpListener,
     clients: broadcast::Sender<Arc<[u8]>>,
+    patience: Duration,
     shutdown: CancellationToken,
 ) {
     while let Some(accepted) = shutdown.run_until_cancelled(listener.accept()).await {
@@ -109,7 +128,8 @@ async fn accept(
                 let lines = clients.subscribe();
                 let shutdown = shutdown.clone();
                 tokio::spawn(async move {
-                    let served = shutdown.run_until_cancelled(serve(stream, lines)).await;
+                    let serving = serve(stream, lines, patience);
+                    let served = shutdown.run_until_cancelled(serving).await;
                     let reason = served.unwrap_or("the agent stops");
                     tracing::info!(%address, reason, "a heading client is gone");
                 });
@@ -124,18 +144,54 @@ async fn accept(
 }
 
 /// Writes to one client until it fails; says why.
-async fn serve(mut stream: TcpStream, mut lines: broadcast::Receiver<Arc<[u8]>>) -> &'static str {
+async fn serve(
+    mut stream: TcpStream,
+    mut lines: broadcast::Receiver<Arc<[u8]>>,
+    patience: Duration,
+) -> &'static str {
+    if let Err(error) = keep_little(&stream, patience) {
+        tracing::warn!(%error, "a client's buffer cannot be bounded");
+        return "it might get old headings";
+    }
     loop {
         let line = match lines.recv().await {
             Ok(line) => line,
-            Err(broadcast::error::RecvError::Lagged(_)) => return "it does not keep up",
+            Err(broadcast::error::RecvError::Lagged(_)) => {
+                discard_unsent(&stream);
+                return "it does not keep up";
+            }
             Err(broadcast::error::RecvError::Closed) => return "the agent stops",
         };
-        match timeout(CLIENT_TIMEOUT, stream.write_all(&line)).await {
+        match timeout(patience, stream.write_all(&line)).await {
             Ok(Ok(())) => {}
+            Ok(Err(error)) if error.kind() == io::ErrorKind::TimedOut => {
+                return "it does not answer";
+            }
             Ok(Err(_)) => return "it closed the connection",
-            Err(_) => return "it does not read",
+            Err(_) => {
+                discard_unsent(&stream);
+                return "it does not read";
+            }
         }
+    }
+}
+
+/// Bounds how much the kernel keeps for a client, and for how long.
+fn keep_little(stream: &TcpStream, patience: Duration) -> io::Result<()> {
+    let socket = SockRef::from(stream);
+    socket.set_send_buffer_size(CLIENT_BUFFER_BYTES)?;
+    // Elsewhere, the small buffer alone is the bound.
+    #[cfg(target_os = "linux")]
+    socket.set_tcp_user_timeout(Some(patience))?;
+    #[cfg(not(target_os = "linux"))]
+    let _ = patience;
+    Ok(())
+}
+
+/// Makes closing reset the connection, or the kernel would go on delivering.
+fn discard_unsent(stream: &TcpStream) {
+    if let Err(error) = SockRef::from(stream).set_linger(Some(Duration::ZERO)) {
+        tracing::debug!(%error, "a client's buffer is left to the kernel");
     }
 }
 
@@ -224,11 +280,55 @@ mod tests {
             outputs.send(b"line\r\n".to_vec());
         }
         let mut rest = Vec::new();
-        slow.read_to_end(&mut rest).await.unwrap();
+        let cut = slow.read_to_end(&mut rest).await.unwrap_err();
+        assert_eq!(cut.kind(), io::ErrorKind::ConnectionReset);
         let mut quick = BufReader::new(TcpStream::connect(address).await.unwrap()).lines();
         connected(&outputs, 1).await;
         outputs.send(b"after\r\n".to_vec());
         assert_eq!(quick.next_line().await.unwrap().unwrap(), "after");
+    }
+
+    /// A client with little room of its own, and its end here.
+    async fn small_client() -> (TcpStream, TcpStream) {
+        let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+        let socket = tokio::net::TcpSocket::new_v4().unwrap();
+        socket.set_recv_buffer_size(4096).unwrap();
+        let client = socket
+            .connect(listener.local_addr().unwrap())
+            .await
+            .unwrap();
+        (client, listener.accept().await.unwrap().0)
+    }
+
+    #[tokio::test]
+    async fn what_waits_for_a_client_that_does_not_read_is_thrown_away() {
+        let (mut client, stream) = small_client().await;
+        let (lines, waiting) = broadcast::channel(CLIENT_LAG);
+        let long: Arc<[u8]> = vec![b'x'; 64 * 1024].into();
+        lines.send(long).unwrap();
+        drop(lines);
+        let reason = serve(stream, waiting, Duration::from_millis(50)).await;
+        assert_eq!(reason, "it does not read");
+        let mut rest = Vec::new();
+        let cut = client.read_to_end(&mut rest).await.unwrap_err();
+        assert_eq!(cut.kind(), io::ErrorKind::ConnectionReset);
+        assert!(rest.len() < 32 * 1024, "{} bytes were kept", rest.len());
+    }
+
+    #[cfg(target_os = "linux")]
+    #[tokio::test]
+    async fn the_kernel_keeps_little_and_not_for_long() {
+        let (_client, stream) = small_client().await;
+        keep_little(&stream, patience(1.0)).unwrap();
+        let socket = SockRef::from(&stream);
+        // Linux says twice what was asked for.
+        assert!(socket.send_buffer_size().unwrap() <= 2 * CLIENT_BUFFER_BYTES);
+        let seconds = Duration::from_secs;
+        assert_eq!(socket.tcp_user_timeout().unwrap(), Some(seconds(2)));
+        assert_eq!(
+            (patience(0.05), patience(3600.0)),
+            (seconds(1), seconds(10))
+        );
     }
 
     #[tokio::test]
