@@ -212,6 +212,10 @@ fn replay(files: &[PathBuf], config: Option<&Path>, csv: Option<&Path>) -> anyho
 }
 
 async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
+    if let Ok(false) = config.data_dir.try_exists() {
+        let path = config.data_dir.display();
+        return Err(BadInput(format!("{path}: there is no such data directory yet")).into());
+    }
     let spool = Spool::open(&config.data_dir).await?;
     let status = match ask_running(&spool).await {
         Some(status) => status,

@@ -141,6 +141,19 @@ async fn a_wrong_configuration_is_one_line_and_exit_code_2() {
 }
 
 #[tokio::test]
+async fn asking_for_the_status_makes_no_data_directory() {
+    let agent = Agent::new(nowhere());
+    let done = agent.call(&["status"]).await;
+    let said = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("state: there is no such data directory"),
+        "{said}"
+    );
+    assert!(!agent.spool().parent().unwrap().exists());
+}
+
+#[tokio::test]
 async fn a_wrong_code_is_refused_and_nothing_is_kept() {
     let shore = Shore::start(None, None).await;
     let agent = Agent::new(nowhere());
