@@ -143,9 +143,17 @@ impl Spool {
         self.get(LAST_CONTACT).await
     }
 
-    /// The crew's hold.
+    /// The crew's hold. One that cannot be read is still a hold: a sample less
+    /// is better than one of the quay.
     pub(crate) async fn hold(&self) -> sqlx::Result<Option<Hold>> {
-        Ok(self.get(HOLD).await?.flatten())
+        let mut connection = self.pool.acquire().await?;
+        let Some(text) = text(&mut connection, HOLD).await? else {
+            return Ok(None);
+        };
+        Ok(serde_json::from_str(&text).unwrap_or_else(|error| {
+            tracing::error!(%error, "the hold in the spool cannot be read; it counts as berthed");
+            Some(Hold::Berthed)
+        }))
     }
 
     /// Keeps the crew's hold.
@@ -196,11 +204,9 @@ async fn get<T: DeserializeOwned>(
     connection: &mut SqliteConnection,
     name: &str,
 ) -> sqlx::Result<Option<T>> {
-    let text: Option<String> = sqlx::query_scalar("SELECT value FROM state WHERE name = $1")
-        .bind(name)
-        .fetch_optional(connection)
-        .await?;
-    let Some(text) = text else { return Ok(None) };
+    let Some(text) = text(connection, name).await? else {
+        return Ok(None);
+    };
     match serde_json::from_str(&text) {
         Ok(value) => Ok(Some(value)),
         Err(error) => {
@@ -208,6 +214,13 @@ async fn get<T: DeserializeOwned>(
             Ok(None)
         }
     }
+}
+
+async fn text(connection: &mut SqliteConnection, name: &str) -> sqlx::Result<Option<String>> {
+    sqlx::query_scalar("SELECT value FROM state WHERE name = $1")
+        .bind(name)
+        .fetch_optional(connection)
+        .await
 }
 
 async fn put<T: Serialize>(

@@ -197,6 +197,19 @@ async fn a_damaged_batch_is_put_aside_and_the_others_go_on() {
 }
 
 #[tokio::test]
+async fn a_hold_that_cannot_be_read_is_still_a_hold() {
+    let (_directory, spool) = enrolled().await;
+    assert_eq!(spool.hold().await.unwrap(), None);
+    sqlx::query("INSERT INTO state (name, value) VALUES ('hold', '\"degau')")
+        .execute(&spool.pool)
+        .await
+        .unwrap();
+    assert_eq!(spool.hold().await.unwrap(), Some(Hold::Berthed));
+    spool.set_hold(None).await.unwrap();
+    assert_eq!(spool.hold().await.unwrap(), None);
+}
+
+#[tokio::test]
 async fn everything_is_there_after_opening_again() {
     let (directory, spool) = enrolled().await;
     seal(&spool, 0..1).await;
