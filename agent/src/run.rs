@@ -122,8 +122,8 @@ impl Agent {
             token: spool.identity().await?.map(|identity| identity.token),
             shore: Shore::new(config.uplink.pinned_ca.as_deref())?,
             backoff: Backoff::new(
-                config.uplink.retry_min_s.duration(),
-                config.uplink.retry_max_s.duration(),
+                config.uplink.retry_min_s.get_ref().duration(),
+                config.uplink.retry_max_s.get_ref().duration(),
             ),
             poll: config.uplink.poll_s.duration(),
             tell: Tell {

@@ -15,6 +15,7 @@ use std::fs;
 use std::net::SocketAddr;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use toml::Spanned;
 
 /// All of `agent.toml`.
 #[derive(Debug, Deserialize)]
@@ -98,9 +99,9 @@ pub(crate) struct UplinkConfig {
     /// Asks for news when nothing was sent for so many seconds.
     pub(crate) poll_s: PositiveSeconds,
     /// The first pause after a failure, at most.
-    pub(crate) retry_min_s: PositiveSeconds,
+    pub(crate) retry_min_s: Spanned<PositiveSeconds>,
     /// The longest pause after failures.
-    pub(crate) retry_max_s: PositiveSeconds,
+    pub(crate) retry_max_s: Spanned<PositiveSeconds>,
 }
 
 impl Default for UplinkConfig {
@@ -108,8 +109,8 @@ impl Default for UplinkConfig {
         UplinkConfig {
             pinned_ca: None,
             poll_s: PositiveSeconds(21_600.0),
-            retry_min_s: PositiveSeconds(30.0),
-            retry_max_s: PositiveSeconds(3_600.0),
+            retry_min_s: Spanned::new(0..0, PositiveSeconds(30.0)),
+            retry_max_s: Spanned::new(0..0, PositiveSeconds(3_600.0)),
         }
     }
 }
@@ -218,10 +219,17 @@ fn parse(text: &str) -> Result<Config, Wrong> {
             });
         }
     }
-    if config.uplink.retry_min_s > config.uplink.retry_max_s {
+    let (min, max) = (&config.uplink.retry_min_s, &config.uplink.retry_max_s);
+    if min.get_ref() > max.get_ref() {
+        // What was left out has no place in the file.
+        let (wrong, other) = if min.span().is_empty() {
+            (max, format!("less than retry_min_s, {}", min.get_ref().0))
+        } else {
+            (min, format!("more than retry_max_s, {}", max.get_ref().0))
+        };
         return Err(Wrong {
-            span: text.find("retry_m").map(|at| at..at),
-            problem: "retry_min_s is more than retry_max_s".to_owned(),
+            span: Some(wrong.span()),
+            problem: format!("{} is {other}", wrong.get_ref().0),
         });
     }
     Ok(config)
@@ -341,6 +349,25 @@ stale_s = 15
         let wrong = WHOLE.replace("talker = \"HC\"", "talker = \"COMPASS\"");
         assert!(message(&wrong).starts_with("agent.toml:6: talker: "));
         assert!(message("").contains("data_dir"));
+    }
+
+    #[test]
+    fn retries_the_wrong_way_round_are_named_where_they_are_written() {
+        let wrong = WHOLE.replace("poll_s = 21600", "# retry_min_s, retry_max_s: see below");
+        let both = wrong.replace("retry_min_s = 30", "retry_min_s = 7200");
+        assert_eq!(
+            message(&both),
+            "agent.toml:20: retry_min_s: 7200 is more than retry_max_s, 3600"
+        );
+        let one = wrong
+            .replace("retry_min_s = 30\n", "\n")
+            .replace("retry_max_s = 3600", "retry_max_s = 10");
+        assert_eq!(
+            message(&one),
+            "agent.toml:21: retry_max_s: 10 is less than retry_min_s, 30"
+        );
+        let zero = WHOLE.replace("retry_min_s = 30", "retry_min_s = 0");
+        assert!(message(&zero).starts_with("agent.toml:20: retry_min_s: 0 is not"));
     }
 
     #[test]
