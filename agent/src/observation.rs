@@ -31,9 +31,9 @@ pub(crate) enum Reading {
     Compass {
         /// Before deviation.
         raw: CompassHeading,
-        /// As the instrument gives it; logged, never applied.
+        /// As the instrument gives it; never applied.
         deviation: Option<Deviation>,
-        /// As the instrument gives it; logged, never applied.
+        /// As the instrument gives it; never applied.
         variation: Option<Variation>,
     },
     /// HDM: deviation applied or not, only the ship's configuration knows.

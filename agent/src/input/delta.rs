@@ -52,7 +52,7 @@ pub(super) struct Deltas {
     input: Arc<str>,
     /// `vessels.urn:…`, once the server has said who it is.
     own_ship: Option<String>,
-    /// As the server said last; logged with the reading, never applied.
+    /// As the server said last; never applied.
     deviation: Option<Deviation>,
     variation: Option<Variation>,
 }
