@@ -44,7 +44,7 @@ soak: web ## The long tests: many kills, many voyages
 	@BINNACLE_SOAK=1 scripts/with-postgres $(CARGO) test --locked --workspace
 
 bench: setup ## Run the benchmarks of BENCHMARKS.md
-	$(CARGO) bench --locked -p binnacle-magnetics -p binnacle-nmea -p binnacle-wire
+	$(CARGO) bench --locked -p binnacle-magnetics -p binnacle-nmea -p binnacle-wire --bench '*'
 
 study: setup ## Measure the estimator on many voyages: coverage, error over the bound
 	$(CARGO) run --locked --release -p binnacle-magnetics --example study
