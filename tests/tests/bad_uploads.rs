@@ -7,14 +7,18 @@ use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_tests::{Engine, Shore};
+use binnacle_tests::{Engine, Shore, eventually};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::encode;
 use binnacle_wire::messages::{EnrolAnswer, EnrolRequest};
 use reqwest::{Method, StatusCode};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::time::Duration;
 use uuid::Uuid;
+
+/// An analysis of a dozen samples, on a busy machine.
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// An agent without a ship: this test sends its batches.
 struct Agent {
@@ -192,10 +196,17 @@ async fn assert_stored_once(shore: &Shore, ours: &Agent) -> Result<()> {
         status == StatusCode::CONFLICT && kind.ends_with("/stream-forked"),
         "{problem}"
     );
-    let stored = shore
-        .list(&format!("/vessels/{}/samples", ours.vessel))
-        .await?;
-    ensure!(stored.len() == 12, "{} samples", stored.len());
+    // The API lists what the analysis has seen, which comes a moment later.
+    let path = format!("/vessels/{}/samples", ours.vessel);
+    let stored = eventually("the samples are analysed", PATIENCE, async || {
+        let stored = shore.list(&path).await?;
+        Ok(match stored.len() {
+            0 => Err("none yet".to_owned()),
+            some => Ok(some),
+        })
+    })
+    .await?;
+    ensure!(stored == 12, "{stored} samples");
     Ok(())
 }
 
