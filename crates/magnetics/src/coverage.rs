@@ -61,12 +61,18 @@ pub fn magnetic_latitude_deg(h_nt: f64, z_nt: f64) -> f64 {
     z_nt.atan2(2.0 * h_nt).to_degrees()
 }
 
+/// The southern edge of the band that a field belongs to, degrees of magnetic
+/// latitude.
+pub fn magnetic_latitude_band_deg(h_nt: f64, z_nt: f64) -> i16 {
+    band_of(magnetic_latitude_deg(h_nt, z_nt))
+}
+
 /// Counts samples given as compass heading, horizontal and vertical field in nT.
 pub fn coverage(samples: impl IntoIterator<Item = (CompassHeading, f64, f64)>) -> Coverage {
     let mut bands: BTreeMap<i16, CoverageBand> = BTreeMap::new();
     let mut cells: BTreeMap<(i16, u16), u64> = BTreeMap::new();
     for (compass, h_nt, z_nt) in samples {
-        let band_from = band_of(magnetic_latitude_deg(h_nt, z_nt));
+        let band_from = magnetic_latitude_band_deg(h_nt, z_nt);
         let band = bands.entry(band_from).or_insert(CoverageBand {
             magnetic_latitude_from_deg: band_from,
             h_nt_from: h_nt,

@@ -22,6 +22,7 @@ pub mod deviation;
 pub mod handbook;
 pub mod ship;
 
+pub mod advice;
 pub mod analyse;
 pub mod coverage;
 pub mod estimate;

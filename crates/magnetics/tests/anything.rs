@@ -1,9 +1,12 @@
 //! Whatever observations come, a fit ends in a finite model or a named refusal.
 
+use binnacle_magnetics::advice::{Question, advise};
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation};
+use binnacle_magnetics::coverage::coverage;
 use binnacle_magnetics::fit::{Observation, RobustOptions, fit_paper, fit_robust};
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::position::Position;
+use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
 use proptest::prelude::*;
 
@@ -65,6 +68,24 @@ proptest! {
         if let Ok(fit) = fit_robust(&observations, &RobustOptions::default()) {
             prop_assert!(is_sound(&fit.model), "{:?}", fit.model);
             prop_assert_eq!(fit.rows.len(), observations.len());
+            let seen = observations.iter().map(|o| (o.compass, o.h_nt, o.z_nt));
+            let advice = advise(&Question {
+                model: &fit.model,
+                noise: &fit.noise,
+                reference_constant_sd_deg: 0.5,
+                gyro_share: observations[0].gyro_share,
+                here: EarthField {
+                    h_nt: observations[0].h_nt,
+                    z_nt: observations[0].z_nt,
+                },
+                elsewhere: &[],
+                coverage: &coverage(seen),
+            });
+            if let Ok(next) = advice {
+                let elsewhere = next.elsewhere.map_or(0.0, |advice| advice.band.worst_deg);
+                let bands = [next.here.band.rms_deg, next.here.band.worst_deg, elsewhere];
+                prop_assert!(bands.iter().all(|band| (0.0..=180.0).contains(band)), "{:?}", bands);
+            }
         }
     }
 
