@@ -190,7 +190,9 @@ pub struct Field {
 pub enum Method {
     /// Equation 11 of Basterretxea-Iribar, Sotés and Uriarte 2016, for comparison
     Paper,
-    /// The product's
+    /// Ordinary least squares on the exact deviation, every sample alike, for comparison
+    Ols,
+    /// The product's: noise that remembers, outliers, and what ships are like
     #[default]
     Robust,
 }

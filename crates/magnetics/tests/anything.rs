@@ -3,7 +3,7 @@
 use binnacle_magnetics::advice::{Question, advise};
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation};
 use binnacle_magnetics::coverage::coverage;
-use binnacle_magnetics::fit::{Observation, RobustOptions, fit_paper, fit_robust};
+use binnacle_magnetics::fit::{Observation, RobustOptions, fit_ols, fit_paper, fit_robust};
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::ship::EarthField;
@@ -95,6 +95,16 @@ proptest! {
     ) {
         if let Ok(model) = fit_paper(&observations) {
             prop_assert!(is_sound(&model), "{:?}", model);
+        }
+    }
+
+    #[test]
+    fn ordinary_least_squares_of_anything_is_finite_or_refused(
+        observations in proptest::collection::vec(observation(), 0..60)
+    ) {
+        if let Ok(model) = fit_ols(&observations) {
+            prop_assert!(is_sound(&model), "{:?}", model);
+            prop_assert_eq!(model.samples_used + model.samples_rejected, observations.len() as u64);
         }
     }
 }

@@ -5,7 +5,9 @@
 
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
 use binnacle_magnetics::deviation::Coefficients;
-use binnacle_magnetics::fit::{FitError, Observation, RobustOptions, fit_paper, fit_robust};
+use binnacle_magnetics::fit::{
+    FitError, Observation, RobustOptions, fit_ols, fit_paper, fit_robust,
+};
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::ship::EarthField;
 
@@ -90,6 +92,23 @@ fn with_its_two_slips_the_table_gives_the_papers_own_parameters() {
     assert!((rms - 0.020).abs() < 0.001, "rms {rms}");
     assert!(worst < 0.045, "worst {worst}");
     assert!((model.rms_deg.unwrap() - rms).abs() < 1e-9);
+}
+
+#[test]
+fn residuals_in_angle_find_the_same_ship() {
+    let rows = with_the_slips();
+    let model = fit_ols(&rows).unwrap();
+    assert_parameters(
+        &model,
+        [0.0206, -0.0215, -0.0293, 0.0022, 0.0352, 0.0012, 0.0016],
+        1e-4,
+    );
+    // In angle nothing fits better than least squares in angle.
+    assert!(model.rms_deg < fit_paper(&rows).unwrap().rms_deg);
+    assert_eq!(
+        fit_ols(&as_printed()[..7]).unwrap_err(),
+        fit_paper(&as_printed()[..7]).unwrap_err()
+    );
 }
 
 #[test]

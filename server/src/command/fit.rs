@@ -4,7 +4,7 @@ use super::{BadInput, answer, input, json, table};
 use crate::config::{Fit, Method};
 use binnacle_magnetics::deviation::NAMES;
 use binnacle_magnetics::fit::{
-    GyroSpeedError, RobustOptions, fit_paper, fit_robust, observations_from_csv,
+    GyroSpeedError, RobustOptions, fit_ols, fit_paper, fit_robust, observations_from_csv,
 };
 use binnacle_magnetics::model::Model;
 use std::process::ExitCode;
@@ -34,6 +34,7 @@ fn find(arguments: &Fit) -> Result<Model, BadInput> {
     .map_err(|error| table.complaint(&error))?;
     let fitted = match arguments.method {
         Method::Paper => fit_paper(&read.observations),
+        Method::Ols => fit_ols(&read.observations),
         Method::Robust => {
             let options = RobustOptions {
                 reference_constant_sd_deg: read.references.constant_sd_deg,

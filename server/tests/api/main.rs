@@ -14,6 +14,7 @@ mod dashboard;
 mod document;
 mod enrolment;
 mod events;
+mod fit;
 mod fleet;
 mod ingest;
 mod sessions;

@@ -6,22 +6,13 @@
 //! noise is held to be independent. The product's own fit is
 //! [`fit_robust`](super::fit_robust).
 
+use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::check_headings;
 use super::{FitError, Observation};
 use crate::angle::wrap_180;
 use crate::deviation::Coefficients;
-use crate::estimate::POPULATION_SD;
-use crate::model::{Identifiable, Model, Parameters};
+use crate::model::{Model, Parameters};
 use crate::ship::{EarthField, PARAMETERS};
-use nalgebra::{SMatrix, SVector};
-
-/// One more than there are unknowns, so that a residual is left.
-const NEEDED_SAMPLES: u64 = 8;
-/// Columns of unit length whose normal matrix has an eigenvalue below this are
-/// the same column twice.
-const SMALLEST_EIGENVALUE: f64 = 1e-10;
-
-type Normal = SMatrix<f64, PARAMETERS, PARAMETERS>;
 
 /// Fits eq. 11 by least squares. The model has no constant.
 ///
@@ -30,15 +21,10 @@ type Normal = SMatrix<f64, PARAMETERS, PARAMETERS>;
 /// latitude, where eq. 11 has no unique solution.
 pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
     let found = observations.len() as u64;
-    if found < NEEDED_SAMPLES {
-        return Err(FitError::TooFewSamples {
-            found,
-            needed: NEEDED_SAMPLES,
-        });
-    }
+    check_number(found)?;
     check_headings(observations)?;
-    let mut normal = Normal::zeros();
-    let mut right = SVector::<f64, PARAMETERS>::zeros();
+    let mut normal = Matrix::zeros();
+    let mut right = Vector::zeros();
     let mut squares = 0.0;
     for o in observations {
         let (row, force) = equation_11(o);
@@ -46,45 +32,18 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
         right += row * force;
         squares += force * force;
     }
-    // nT and pure numbers differ by five orders of magnitude.
-    let scale = normal.diagonal().map(|square| 1.0 / square.sqrt());
-    let scaled = Normal::from_diagonal(&scale) * normal * Normal::from_diagonal(&scale);
-    let smallest = scaled.symmetric_eigenvalues().min();
-    // NaN (a column of zeros) is not above either.
-    if smallest.is_nan() || smallest < SMALLEST_EIGENVALUE {
-        return Err(FitError::OneMagneticLatitude);
-    }
-    let inverse = scaled
-        .cholesky()
-        .ok_or(FitError::OneMagneticLatitude)?
-        .inverse();
-    let inverse = Normal::from_diagonal(&scale) * inverse * Normal::from_diagonal(&scale);
+    let inverse = invert(&normal)?;
     let solution = inverse * right;
-    let freedom = (found - PARAMETERS as u64) as f64;
+    let freedom = (observations.len() - PARAMETERS) as f64;
     let variance = ((squares - solution.dot(&right)) / freedom).max(0.0);
 
     let parameters = Parameters::from_array(solution.into());
-    let mut covariance = [[0.0; 8]; 8];
-    for i in 0..PARAMETERS {
-        for j in 0..PARAMETERS {
-            covariance[i][j] = variance * inverse[(i, j)];
-        }
-    }
-    let told = |j: usize| covariance[j][j].sqrt() < POPULATION_SD[j] / 2.0;
+    let covariance = covariance(&inverse, variance);
     Ok(Model {
         parameters_over_lambda: parameters,
         constant_deg: 0.0,
         covariance: Some(covariance),
-        identifiable: Some(Identifiable {
-            bx_nt: told(0),
-            chi13: told(1),
-            by_nt: told(2),
-            chi23: told(3),
-            chi11_minus_chi22: told(4),
-            chi12: told(5),
-            chi21: told(6),
-            constant_deg: false,
-        }),
+        identifiable: Some(identifiable(&covariance)),
         rms_deg: Some(rms_deg(&parameters, observations)?),
         samples_used: found,
         samples_rejected: 0,
@@ -92,12 +51,12 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
 }
 
 /// Eq. 11's row for M/λ and its right side H sin δ, nT.
-fn equation_11(o: &Observation) -> (SVector<f64, PARAMETERS>, f64) {
+fn equation_11(o: &Observation) -> (Vector, f64) {
     let (sin, cos) = o.compass.radians().sin_cos();
     let deviation = o.deviation.degrees_east().to_radians();
     let (sin2, cos2) = (2.0 * o.compass.radians() + deviation).sin_cos();
     let half = o.h_nt / 2.0;
-    let row = SVector::from([
+    let row = Vector::from([
         sin,
         o.z_nt * sin,
         cos,

@@ -6,7 +6,7 @@ mod ship;
 
 pub(crate) use database::Engine;
 pub(crate) use person::{Answer, Person, attempt};
-pub(crate) use ship::{Ship, exchange, frame, passage, sample};
+pub(crate) use ship::{Ship, exchange, frame, passage, sample, truth};
 
 use binnacle_magnetics::time::Timestamp;
 use binnacle_server::analysis::{self, Worked};

@@ -90,7 +90,7 @@ pub(crate) fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
 }
 
 /// A ship whose magnetism is known.
-fn truth() -> Model {
+pub(crate) fn truth() -> Model {
     serde_json::from_value(json!({ "parameters_over_lambda": {
         "bx_nt": 1500.0, "chi13": -0.01, "by_nt": -900.0, "chi23": 0.002,
         "chi11_minus_chi22": 0.04, "chi12": 0.001, "chi21": 0.002,
