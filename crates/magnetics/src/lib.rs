@@ -24,6 +24,7 @@ pub mod ship;
 
 pub mod advice;
 pub mod analyse;
+pub mod berth;
 pub mod coverage;
 pub mod estimate;
 pub mod fit;
