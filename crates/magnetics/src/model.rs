@@ -1,5 +1,7 @@
 //! A ship's magnetic model as it is fitted, stored and sent to the bridge.
 
+mod json;
+
 use serde::{Deserialize, Serialize};
 
 /// The seven ratios that headings alone can tell: Poisson's parameters over λ.
@@ -53,28 +55,23 @@ pub struct Identifiable {
 }
 
 /// A fitted model: what `fit` prints, what the server stores, and what the
-/// bridge steers by.
+/// bridge steers by. Its JSON is described in docs/model.md.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "json::Form", into = "json::Form")]
 pub struct Model {
     /// The seven ratios to λ.
     pub parameters_over_lambda: Parameters,
     /// What is added to the exact deviation: alignment, reference and variation
     /// offsets, degrees, east positive.
-    #[serde(default)]
     pub constant_deg: f64,
     /// 8 × 8, or none when the model came without one.
-    #[serde(default)]
     pub covariance: Option<Covariance>,
     /// Which parameters the data determine.
-    #[serde(default)]
     pub identifiable: Option<Identifiable>,
     /// Root mean square of the residuals, degrees.
-    #[serde(default)]
     pub rms_deg: Option<f64>,
     /// Samples that carried weight.
-    #[serde(default)]
     pub samples_used: u64,
     /// Samples that were left out or held to be outliers.
-    #[serde(default)]
     pub samples_rejected: u64,
 }

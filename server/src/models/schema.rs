@@ -23,6 +23,9 @@ impl TryFrom<String> for ModelJson {
 #[schema(as = Model)]
 #[allow(dead_code, reason = "describes binnacle_magnetics::model::Model")]
 pub struct ModelSchema {
+    /// The version of this form: 1. Not to be confused with the count of the
+    /// compass's models.
+    version: u32,
     parameters_over_lambda: ParametersSchema,
     /// What is added to the exact deviation: alignment, reference and variation
     /// offsets, degrees, east positive.

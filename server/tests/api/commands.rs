@@ -240,6 +240,8 @@ fn bad_input_is_refused_by_file_line_and_field() {
         "0",
     ];
     assert_refused(&run(folder.path(), &asked), &["model.json:2", "chi13"]);
+    write("model.json", "{\n\"version\": 2,\n\"parameters\": {}\n}");
+    assert_refused(&run(folder.path(), &asked), &["model.json:2", "version 2"]);
     let outside = ["field", "--lat", "95", "--lon", "0", "--date", "2026-01-01"];
     assert_refused(&run(folder.path(), &outside), &["--lat", "95"]);
     let old = ["field", "--lat", "45", "--lon", "0", "--date", "1850-01-01"];

@@ -818,6 +818,12 @@ export interface components {
              * @description Samples that carried weight.
              */
             samples_used: number;
+            /**
+             * Format: int32
+             * @description The version of this form: 1. Not to be confused with the count of the
+             *     compass's models.
+             */
+            version: number;
         };
         /** @description A model as it is sent to the bridge. */
         ModelDownlink: {

@@ -41,6 +41,7 @@ const version: ModelVersion = {
   z_nt: 46_000,
   handbook: { A: 0.3, B: 3.1, C: -2.2, D: 1, E: 0.1 },
   model: {
+    version: 1,
     parameters_over_lambda: {
       bx_nt: 2060,
       chi13: -0.0215,

@@ -7,6 +7,7 @@ import { parameterRows } from './parameters';
 import { byInterval, residualsOf, thinned } from './residuals';
 
 const model: Model = {
+  version: 1,
   parameters_over_lambda: {
     bx_nt: 2060,
     chi13: -0.0215,

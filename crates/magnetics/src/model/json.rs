@@ -1,0 +1,78 @@
+//! The written form of a model (docs/model.md): what `fit --json` prints, the
+//! server stores and the bridge is sent.
+//!
+//! What always holds: the version stands first; a form without one is version 1,
+//! as models were written before they had it; a form of another version is
+//! refused by its number, because its other fields may mean something else.
+//! A change of what a field means takes the next number; a new
+//! field that may be absent does not.
+
+use super::{Covariance, Identifiable, Model, Parameters};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
+
+const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "Model")]
+pub(super) struct Form {
+    #[serde(default = "version", deserialize_with = "known_version")]
+    version: u32,
+    parameters_over_lambda: Parameters,
+    #[serde(default)]
+    constant_deg: f64,
+    #[serde(default)]
+    covariance: Option<Covariance>,
+    #[serde(default)]
+    identifiable: Option<Identifiable>,
+    #[serde(default)]
+    rms_deg: Option<f64>,
+    #[serde(default)]
+    samples_used: u64,
+    #[serde(default)]
+    samples_rejected: u64,
+}
+
+fn version() -> u32 {
+    VERSION
+}
+
+fn known_version<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    let found = u32::deserialize(deserializer)
+        .map_err(|error| D::Error::custom(format_args!("version: {error}")))?;
+    if found == VERSION {
+        return Ok(found);
+    }
+    Err(D::Error::custom(format_args!(
+        "version: a model of version {found}; this program reads version {VERSION}"
+    )))
+}
+
+impl From<Form> for Model {
+    fn from(form: Form) -> Model {
+        Model {
+            parameters_over_lambda: form.parameters_over_lambda,
+            constant_deg: form.constant_deg,
+            covariance: form.covariance,
+            identifiable: form.identifiable,
+            rms_deg: form.rms_deg,
+            samples_used: form.samples_used,
+            samples_rejected: form.samples_rejected,
+        }
+    }
+}
+
+impl From<Model> for Form {
+    fn from(model: Model) -> Form {
+        Form {
+            version: VERSION,
+            parameters_over_lambda: model.parameters_over_lambda,
+            constant_deg: model.constant_deg,
+            covariance: model.covariance,
+            identifiable: model.identifiable,
+            rms_deg: model.rms_deg,
+            samples_used: model.samples_used,
+            samples_rejected: model.samples_rejected,
+        }
+    }
+}
