@@ -88,6 +88,8 @@ export const scenarios = {
 
       await page.getByTestId('residual-chart').locator('svg circle').first().waitFor();
       await page.getByTestId('coverage-table').waitFor();
+      const advice = await page.getByTestId('sail-next').innerText();
+      assert.match(advice, /(would narrow the band|narrows it by more than) .*\d\.\d/);
       await page.getByRole('heading', { name: 'Coefficients' }).waitFor();
       await page.getByText('accepted', { exact: true }).first().waitFor();
       await fitsItsWidth(page);

@@ -217,6 +217,29 @@ export const text = {
     south: (v: string) => `${v} S`,
   },
 
+  sailNext: {
+    title: 'What to sail next',
+    lead: 'Where a watch would teach most about this compass: four hours on one compass heading; three watches are on three successive days. The band is the 95 % band, as a mean over all headings.',
+    here: 'In these waters',
+    elsewhere: 'For other waters',
+    between: (from: string, to: string) => `Between ${from} and ${to}`,
+    anyHeading: 'On any heading',
+    latitudes: (from: string, to: string) => `Between ${from} and ${to}, magnetic latitude`,
+    and: (before: string, last: string) => `${before} and ${last}`,
+    gainHere: (now: string, one: string, three: string) =>
+      `A watch would narrow the band from ${now} to ${one}, three watches on one of these headings to ${three}.`,
+    gainElsewhere: (now: string, heading: string, one: string, headings: string, three: string) =>
+      `A watch on about ${heading} there would narrow the band in other waters from ${now} to ${one}, three watches (${headings}) to ${three}.`,
+    elsewhereNow: (mean: string, worst: string) =>
+      `In other magnetic latitudes the band is ${mean} as a mean, ${worst} at worst.`,
+    nothing: (band: string, floor: string, most: string) =>
+      `No watch would narrow the band noticeably. It is ${band}; ${floor} of that is the reference’s own constant error, which no heading shows, so that nothing sailed narrows it by more than ${most}.`,
+    reference:
+      'To narrow it further, check the gyro or satellite compass against a transit, the sun’s bearing or a second reference.',
+    magneticLatitude:
+      'Magnetic latitude follows the dip of the earth’s field; it differs from the chart’s latitude by some ten degrees.',
+  },
+
   parameters: {
     title: 'The ship’s magnetism',
     lead: 'The seven quantities behind the curve, each in proportion to the mean shielding λ, and the constant.',

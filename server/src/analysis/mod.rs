@@ -18,5 +18,5 @@ mod worker;
 
 pub use input::{Input, input_hash};
 pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};
-pub use store::{chunks, coverage, refusal};
+pub use store::{Covered, chunks, coverage, refusal};
 pub use worker::{Worked, run, step};

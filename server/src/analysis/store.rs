@@ -6,8 +6,10 @@ use crate::events::{self, Event, Kind};
 use crate::ids::{CompassId, ModelId, VesselId};
 use crate::models::{self, ModelJson, StoredModel};
 use crate::time::Time;
+use binnacle_magnetics::advice::SailNext;
 use binnacle_magnetics::analyse::{Analysis, SampleDiagnostic};
 use binnacle_magnetics::coverage::Coverage;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Samples are kept in rows of so many microseconds: 30 days.
@@ -19,6 +21,18 @@ pub(super) struct Found {
     pub(super) compass_id: CompassId,
     pub(super) input_hash: String,
     pub(super) analysis: Analysis,
+    pub(super) covered: Covered,
+}
+
+/// Where a compass's samples lie, and where more would tell most.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Covered {
+    /// Counts of samples.
+    #[serde(flatten)]
+    pub coverage: Coverage,
+    /// None without a model, and in what was stored before there was advice.
+    #[serde(default)]
+    pub sail_next: Option<SailNext>,
 }
 
 /// The input of the compass's last analysis.
@@ -52,7 +66,7 @@ pub async fn refusal(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Op
 }
 
 /// Where a compass's samples lie; empty before the first analysis.
-pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Coverage> {
+pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Covered> {
     let found = row!(
         db,
         (String,),
@@ -62,7 +76,10 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
         compass
     )?;
     let Some((text,)) = found else {
-        return Ok(binnacle_magnetics::coverage::coverage([]));
+        return Ok(Covered {
+            coverage: binnacle_magnetics::coverage::coverage([]),
+            sail_next: None,
+        });
     };
     Ok(serde_json::from_str(&text)?)
 }
@@ -115,7 +132,7 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
         now,
         refusal,
         serde_json::to_string(&analysis.epochs)?,
-        serde_json::to_string(&analysis.coverage)?
+        serde_json::to_string(&found.covered)?
     )?;
     save_diagnostics(tx, found).await?;
     let Some(model) = next_model(found, now) else {

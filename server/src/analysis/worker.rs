@@ -1,12 +1,13 @@
 //! Takes jobs from the queue, one after the other.
 
-use super::store::Found;
+use super::store::{Covered, Found};
 use super::{input, queue, store};
 use crate::app::App;
 use crate::compasses;
 use crate::error::{Error, Result};
 use crate::events;
 use crate::ids::{CompassId, VesselId};
+use binnacle_magnetics::advice::sail_next;
 use binnacle_magnetics::analyse::analyse;
 use metrics::{counter, histogram};
 use std::convert::Infallible;
@@ -141,11 +142,17 @@ async fn analyse_compass(
         if input.samples.is_empty() || last_hash.as_ref() == Some(&input_hash) {
             return Ok(None);
         }
+        let analysis = analyse(&input.samples, &input.logbook, &input.settings);
+        let covered = Covered {
+            coverage: analysis.coverage.clone(),
+            sail_next: sail_next(&analysis),
+        };
         Ok(Some(Found {
             vessel_id,
             compass_id,
             input_hash,
-            analysis: analyse(&input.samples, &input.logbook, &input.settings),
+            analysis,
+            covered,
         }))
     });
     Ok(found.await??)

@@ -2,14 +2,25 @@
 
 use super::{BadInput, answer, input, json};
 use crate::config::Analyse;
-use binnacle_magnetics::analyse::{AnalysisSettings, LogbookEntry, analyse as run};
+use binnacle_magnetics::advice::{SailNext, sail_next};
+use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookEntry, analyse as run};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::fit::CsvRow;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
+use serde::Serialize;
 use std::process::ExitCode;
 
-/// Prints epochs, models and what became of each sample, as JSON.
+/// What is printed.
+#[derive(Serialize)]
+struct Analysed {
+    #[serde(flatten)]
+    analysis: Analysis,
+    sail_next: Option<SailNext>,
+}
+
+/// Prints epochs, models, what to sail next and what became of each sample, as
+/// JSON.
 ///
 /// # Errors
 /// When standard output cannot be written.
@@ -27,7 +38,11 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         Some(path) => input::json_file(path)?,
         None => Vec::new(),
     };
-    Ok(json(&run(&samples, &logbook, &AnalysisSettings::default())))
+    let analysis = run(&samples, &logbook, &AnalysisSettings::default());
+    Ok(json(&Analysed {
+        sail_next: sail_next(&analysis),
+        analysis,
+    }))
 }
 
 /// A sample of a row, or the column at fault and what is wrong with it.

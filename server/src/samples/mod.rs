@@ -1,11 +1,12 @@
 //! A compass's samples and what became of each in the last analysis.
 
+mod coverage;
 mod export;
 
 use crate::access::Reader;
 use crate::analysis;
 use crate::app::App;
-use crate::compasses::{self, WhichCompass};
+use crate::compasses;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, time};
 use crate::ids::{CompassId, VesselId};
@@ -14,7 +15,6 @@ use crate::vessels;
 use axum::extract::State;
 use axum::response::Response;
 use binnacle_magnetics::analyse::SampleDiagnostic;
-use binnacle_magnetics::coverage::Coverage;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -26,7 +26,7 @@ pub fn router() -> OpenApiRouter<App> {
         .routes(routes!(list_samples))
         .routes(routes!(samples_csv))
         .routes(routes!(samples_ndjson))
-        .routes(routes!(find_coverage))
+        .merge(coverage::router())
 }
 
 /// Which samples.
@@ -131,53 +131,6 @@ struct SampleList {
     next: Option<String>,
 }
 
-/// Where a compass's samples lie.
-#[derive(ToSchema)]
-#[schema(as = Coverage)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::coverage::Coverage")]
-struct CoverageSchema {
-    /// Width of a heading sector, degrees.
-    heading_step_deg: u16,
-    /// Width of a band of magnetic latitude, degrees.
-    magnetic_latitude_step_deg: i16,
-    /// The bands that hold samples, from south to north.
-    bands: Vec<CoverageBandSchema>,
-    /// The cells that hold samples, by band and then by heading.
-    cells: Vec<CoverageCellSchema>,
-}
-
-/// The range of fields in one band of magnetic latitude.
-#[derive(ToSchema)]
-#[schema(as = CoverageBand)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_magnetics::coverage::CoverageBand"
-)]
-struct CoverageBandSchema {
-    /// The band's southern edge, degrees of magnetic latitude.
-    magnetic_latitude_from_deg: i16,
-    h_nt_from: f64,
-    h_nt_to: f64,
-    z_nt_from: f64,
-    z_nt_to: f64,
-    samples: u64,
-}
-
-/// One sector of heading within one band.
-#[derive(ToSchema)]
-#[schema(as = CoverageCell)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_magnetics::coverage::CoverageCell"
-)]
-struct CoverageCellSchema {
-    /// The sector's first compass heading, degrees.
-    heading_from_deg: u16,
-    /// The band's southern edge, degrees of magnetic latitude.
-    magnetic_latitude_from_deg: i16,
-    samples: u64,
-}
-
 /// List a compass's samples
 #[utoipa::path(get, path = "/vessels/{id}/samples", tag = "fleet",
     params(("id" = VesselId, Path), Range, Page),
@@ -240,22 +193,6 @@ async fn samples_ndjson(
     Params(range): Params<Range>,
 ) -> Result<Response> {
     export::ndjson(&find(&app, reader, id, &range).await?)
-}
-
-/// Where a compass's samples lie, by heading and magnetic latitude
-#[utoipa::path(get, path = "/vessels/{id}/coverage", tag = "fleet",
-    params(("id" = VesselId, Path), WhichCompass),
-    responses((status = 200, body = CoverageSchema), (status = 401, body = Problem),
-              (status = 404, body = Problem)))]
-async fn find_coverage(
-    State(app): State<App>,
-    reader: Reader,
-    Id(id): Id<VesselId>,
-    Params(which): Params<WhichCompass>,
-) -> Result<Json<Coverage>> {
-    vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
-    let compass = compasses::find(&app.db, id, which.compass).await?;
-    Ok(Json(analysis::coverage(&app.db, id, compass.id).await?))
 }
 
 async fn find(

@@ -20,6 +20,7 @@ on_both!(
     a_job_that_fails_is_tried_again_and_then_given_up,
     a_change_of_settings_makes_a_new_version_and_reaches_the_ship,
     samples_page_and_filter_and_come_as_files,
+    coverage_tells_what_to_sail_next_once_there_is_a_model,
     fit_reads_the_exported_samples_and_weights_them_once,
 );
 
@@ -378,6 +379,42 @@ async fn samples_page_and_filter_and_come_as_files(shore: Shore) {
         let answer = ada.get(&nao.path(&format!("/deviation{wrong}"))).await;
         assert_eq!(answer.problem(), "invalid", "{wrong}");
     }
+    shore.finish().await;
+}
+
+async fn coverage_tells_what_to_sail_next_once_there_is_a_model(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let before = ada.get(&nao.path("/coverage")).await.good();
+    assert_eq!(before["sail_next"], json!(null));
+    nao.put(1, &passage(DAY, 300)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let coverage = ada.get(&nao.path("/coverage")).await.good();
+    assert_eq!(coverage["cells"].as_array().unwrap().len(), 24);
+    let next = &coverage["sail_next"];
+    assert_eq!(next["watch_hours"], 4.0);
+    // Two days in one place tell little of any other.
+    let band = |of: &Value| of["rms_deg"].as_f64().unwrap();
+    let elsewhere = &next["elsewhere"];
+    assert!(
+        band(&elsewhere["band"]) > band(&next["here"]["band"]),
+        "{next}"
+    );
+    let best = &elsewhere["suggestions"][0];
+    assert!(
+        best["magnetic_latitude_from_deg"].as_i64().unwrap() < 0,
+        "{best}"
+    );
+    assert_eq!(best["headings"].as_array().unwrap().len(), 3);
+    assert!(
+        band(&best["after_three"]) < band(&best["after_one"]),
+        "{best}"
+    );
+    assert!(
+        band(&best["after_one"]) < band(&elsewhere["band"]),
+        "{best}"
+    );
     shore.finish().await;
 }
 

@@ -121,6 +121,8 @@ fn analyse_does_offline_what_the_server_does() {
     let analysis: Value = serde_json::from_str(&good(&output)).unwrap();
     assert_eq!(analysis["epochs"].as_array().unwrap().len(), 2);
     assert_eq!(analysis["samples"].as_array().unwrap().len(), 300);
+    let here = &analysis["sail_next"]["here"];
+    assert!(here["band"]["rms_deg"].as_f64().unwrap() > 0.5, "{here}");
 }
 
 #[test]

@@ -254,7 +254,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Where a compass's samples lie, by heading and magnetic latitude */
+        /** Where a compass's samples lie, and where more would tell most */
         get: operations["find_coverage"];
         put?: never;
         post?: never;
@@ -520,6 +520,19 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
+        /** @description Half the width of the 95 % band over all headings in some waters, degrees. */
+        Band: {
+            /**
+             * Format: double
+             * @description Root mean square.
+             */
+            rms_deg: number;
+            /**
+             * Format: double
+             * @description On the worst heading.
+             */
+            worst_deg: number;
+        };
         /** @description A magnetic element aboard. */
         Compass: {
             /** @description When it was entered. */
@@ -564,6 +577,7 @@ export interface components {
              * @description Width of a band of magnetic latitude, degrees.
              */
             magnetic_latitude_step_deg: number;
+            sail_next: components["schemas"]["SailNext"] | null;
         };
         /** @description The range of fields in one band of magnetic latitude. */
         CoverageBand: {
@@ -746,6 +760,38 @@ export interface components {
              */
             E: number;
         };
+        /** @description The band where the ship is, and the headings that narrow it. */
+        HeadingAdvice: {
+            band: components["schemas"]["Band"];
+            /**
+             * Format: double
+             * @description Nothing sailed can narrow the band's root mean square by more, degrees.
+             */
+            narrows_at_most_deg: number;
+            /** @description The best first; empty where nothing narrows it noticeably. */
+            suggestions: components["schemas"]["HeadingSuggestion"][];
+        };
+        /**
+         * @description Compass headings clockwise from one to the other: the range may pass north,
+         *     and 0 to 360 is any heading.
+         */
+        HeadingRange: {
+            /** Format: int32 */
+            heading_from_deg: number;
+            /** Format: int32 */
+            heading_to_deg: number;
+        };
+        /** @description Headings on which a watch is worth having; the range as in `HeadingRange`. */
+        HeadingSuggestion: {
+            /** @description At most, after a watch on any heading of the range. */
+            after_one: components["schemas"]["Band"];
+            /** @description At most, after three watches on one heading of the range. */
+            after_three: components["schemas"]["Band"];
+            /** Format: int32 */
+            heading_from_deg: number;
+            /** Format: int32 */
+            heading_to_deg: number;
+        };
         /** @description Which parameters the data determine; what is false rests on the prior. */
         Identifiable: {
             bx_nt: boolean;
@@ -771,6 +817,33 @@ export interface components {
              * @description Degrees east.
              */
             lon: number;
+        };
+        /** @description The band in other waters, and the magnetic latitudes that narrow it. */
+        LatitudeAdvice: {
+            band: components["schemas"]["Band"];
+            /**
+             * Format: double
+             * @description Nothing sailed can narrow the band's root mean square by more, degrees.
+             */
+            narrows_at_most_deg: number;
+            /** @description The best first; empty where nothing narrows it noticeably. */
+            suggestions: components["schemas"]["LatitudeSuggestion"][];
+        };
+        /** @description Magnetic latitudes in which a watch is worth having. */
+        LatitudeSuggestion: {
+            /** @description At most, after the first of them. */
+            after_one: components["schemas"]["Band"];
+            /** @description At most, after all three. */
+            after_three: components["schemas"]["Band"];
+            /** @description On which headings to stand three watches there, in this order. */
+            headings: components["schemas"]["HeadingRange"][];
+            /**
+             * Format: int32
+             * @description Southern edge, degrees of magnetic latitude, north positive.
+             */
+            magnetic_latitude_from_deg: number;
+            /** Format: int32 */
+            magnetic_latitude_to_deg: number;
         };
         /** @description A token just made. */
         MadeToken: components["schemas"]["Token"] & {
@@ -1036,6 +1109,26 @@ export interface components {
          * @enum {string}
          */
         Role: "admin" | "viewer" | "platform_admin";
+        /**
+         * @description What to sail next. A watch is four hours on one compass heading; three
+         *     watches are on three successive days.
+         */
+        SailNext: {
+            elsewhere: components["schemas"]["LatitudeAdvice"] | null;
+            /**
+             * Format: double
+             * @description Half the band that is left when all is learnt that headings can show:
+             *     the reference's own constant error, degrees.
+             */
+            floor_deg: number;
+            /** @description The headings to sail here, for the band here. */
+            here: components["schemas"]["HeadingAdvice"];
+            /**
+             * Format: double
+             * @description Length of a watch, hours.
+             */
+            watch_hours: number;
+        };
         /** @description A sample and what became of it. */
         Sample: {
             /**

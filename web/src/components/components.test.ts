@@ -5,6 +5,7 @@ import type {
   Coverage,
   DeviationTable as Table,
   ModelVersion,
+  SailNext,
   Vessel,
 } from '../api/types';
 import AgentPanel from './AgentPanel.svelte';
@@ -12,6 +13,7 @@ import CoefficientPanel from './CoefficientPanel.svelte';
 import CoveragePanel from './CoveragePanel.svelte';
 import DeviationTable from './DeviationTable.svelte';
 import ParameterPanel from './ParameterPanel.svelte';
+import SailNextPanel from './SailNextPanel.svelte';
 import VesselTable from './VesselTable.svelte';
 import Worst from './Worst.svelte';
 
@@ -129,6 +131,7 @@ test('coverage names the headings that are missing, and says when one band is al
     heading_step_deg: 15,
     magnetic_latitude_step_deg: 10,
     bands: [],
+    sail_next: null,
     cells: Array.from({ length: 20 }, (_, i) => ({
       heading_from_deg: i * 15,
       magnetic_latitude_from_deg: 40,
@@ -141,6 +144,68 @@ test('coverage names the headings that are missing, and says when one band is al
   expect(words(render(CoveragePanel, { props: { coverage: { ...coverage, cells: [] } } }))).toBe(
     'No samples yet.',
   );
+});
+
+describe('what to sail next', () => {
+  const band = (rms_deg: number) => ({ rms_deg, worst_deg: 2 * rms_deg });
+  const advice: SailNext = {
+    watch_hours: 4,
+    floor_deg: 0.98,
+    here: {
+      band: band(1.2),
+      narrows_at_most_deg: 0.22,
+      suggestions: [
+        {
+          heading_from_deg: 30,
+          heading_to_deg: 75,
+          after_one: band(0.9),
+          after_three: band(0.8),
+        },
+      ],
+    },
+    elsewhere: {
+      band: band(2.9),
+      narrows_at_most_deg: 1.92,
+      suggestions: [
+        {
+          magnetic_latitude_from_deg: -60,
+          magnetic_latitude_to_deg: 20,
+          headings: [
+            { heading_from_deg: 90, heading_to_deg: 105 },
+            { heading_from_deg: 345, heading_to_deg: 360 },
+            { heading_from_deg: 90, heading_to_deg: 105 },
+          ],
+          after_one: band(2),
+          after_three: band(1.3),
+        },
+      ],
+    },
+  };
+
+  test('is headings here and magnetic latitudes for elsewhere, with what they would do', () => {
+    const shown = words(render(SailNextPanel, { props: { advice } }));
+    expect(shown).toContain(
+      'Between 030° and 075° A watch would narrow the band from ± 1.2° to ± 0.9°, three watches on one of these headings to ± 0.8°.',
+    );
+    expect(shown).toContain('the band is ± 2.9° as a mean, ± 5.8° at worst');
+    expect(shown).toContain(
+      'Between 60° S and 20° N, magnetic latitude A watch on about 100° there would narrow the band in other waters from ± 2.9° to ± 2.0°, three watches (100° and 350°) to ± 1.3°.',
+    );
+    expect(shown).not.toContain('No watch');
+  });
+
+  test('is nothing where only the reference’s own error is left, and that is said', () => {
+    const known: SailNext = {
+      ...advice,
+      here: { band: band(1.01), narrows_at_most_deg: 0.03, suggestions: [] },
+      elsewhere: null,
+    };
+    const shown = words(render(SailNextPanel, { props: { advice: known } }));
+    expect(shown).toContain('It is ± 1.01°; ± 0.98° of that is the reference’s own constant error');
+    expect(shown).toContain('narrows it by more than 0.03°');
+    expect(shown).toContain('check the gyro');
+    expect(shown).not.toContain('For other waters');
+  });
 });
 
 describe('the installations', () => {

@@ -1,6 +1,7 @@
 /** Coverage as a table: bands of magnetic latitude by sectors of heading. */
 
 import type { Coverage } from '../api/types';
+import { text } from '../text';
 
 export interface CoverageTable {
   headings: number[];
@@ -52,6 +53,13 @@ export function gaps(table: CoverageTable): { fromDeg: number; toDeg: number }[]
     else found.push({ fromDeg, toDeg: fromDeg + stepDeg });
   }
   return found;
+}
+
+/** `40° N`; the equator has no side. */
+export function magneticLatitude(value: number): string {
+  const size = `${Math.abs(value)}°`;
+  if (value === 0) return size;
+  return value < 0 ? text.coverage.south(size) : text.coverage.north(size);
 }
 
 function sum(values: number[]): number {

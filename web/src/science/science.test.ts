@@ -1,6 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { Coverage, Model, Sample } from '../api/types';
 import { exactCoefficients } from './coefficients';
+import { headingRange, latitudeRange, widths } from './advice';
 import { coverageTable, gaps } from './coverage';
 import { closed, deviationAt, everyStep, extremes, grade } from './curve';
 import { parameterRows } from './parameters';
@@ -139,6 +140,7 @@ describe('coverage', () => {
     heading_step_deg: 15,
     magnetic_latitude_step_deg: 10,
     bands: [],
+    sail_next: null,
     cells: cells.map(([magnetic_latitude_from_deg, heading_from_deg, samples]) => ({
       magnetic_latitude_from_deg,
       heading_from_deg,
@@ -172,5 +174,28 @@ describe('coverage', () => {
       { fromDeg: 345, toDeg: 30 },
     ]);
     expect(gaps(coverageTable(coverage(filled)))).toEqual([]);
+  });
+});
+
+describe('what to sail next', () => {
+  const band = (rms_deg: number) => ({ rms_deg, worst_deg: rms_deg });
+
+  test('widths have as many decimals as show that they differ', () => {
+    expect(widths(band(1.2), band(0.9))).toEqual(['± 1.2°', '± 0.9°']);
+    expect(widths(band(1.29), band(1.26), band(1.18))).toEqual(['± 1.29°', '± 1.26°', '± 1.18°']);
+  });
+
+  test('a range may pass north, and the whole circle is any heading', () => {
+    const range = (from: number, to: number) =>
+      headingRange({ heading_from_deg: from, heading_to_deg: to });
+    expect(range(30, 75)).toBe('Between 030° and 075°');
+    expect(range(330, 15)).toBe('Between 330° and 015°');
+    expect(range(300, 360)).toBe('Between 300° and 000°');
+    expect(range(0, 360)).toBe('On any heading');
+  });
+
+  test('latitudes have their side, the equator none', () => {
+    expect(latitudeRange(-60, 0)).toBe('Between 60° S and 0°, magnetic latitude');
+    expect(latitudeRange(-10, 20)).toBe('Between 10° S and 20° N, magnetic latitude');
   });
 });
