@@ -116,6 +116,7 @@ enum SampleReasonSchema {
     OutsideFieldModel,
     FieldTooWeak,
     MagneticCargo,
+    Berth,
     Outlier,
     NoModel,
 }

@@ -48,7 +48,7 @@ fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>) -> Epoch 
 /// compass itself were moved, for then everything may be another.
 fn prior(epoch: &Epoch, before: Option<&Model>) -> Prior {
     let upset = match epoch.begun_by {
-        Some(LogbookKind::Repair | LogbookKind::Degaussing) => before.and_then(Prior::after_upset),
+        Some(kind) if kind.leaves_the_iron() => before.and_then(Prior::after_upset),
         _ => None,
     };
     upset.unwrap_or_else(Prior::population)

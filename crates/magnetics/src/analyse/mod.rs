@@ -12,7 +12,7 @@ mod reading;
 mod settings;
 
 pub use crate::fit::GyroSpeedError;
-pub use logbook::{LogbookEntry, LogbookKind};
+pub use logbook::{Cargo, LogbookEntry, LogbookError, LogbookKind};
 pub use settings::AnalysisSettings;
 
 use crate::coverage::{Coverage, coverage};
@@ -134,6 +134,8 @@ pub enum SampleReason {
     FieldTooWeak,
     /// Taken with magnetic cargo on board.
     MagneticCargo,
+    /// Taken alongside.
+    Berth,
     /// It disagrees with the rest: its weight was lowered by more than half.
     Outlier,
     /// Its epoch has no model.

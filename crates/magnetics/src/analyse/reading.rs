@@ -1,6 +1,6 @@
 //! Samples put in order, each with the earth's field around it.
 
-use super::logbook::{LogbookEntry, LogbookKind};
+use super::logbook::LogbookEntry;
 use super::settings::AnalysisSettings;
 use super::{LastPlace, SampleDiagnostic, SampleReason};
 use crate::angle::{TrueHeading, Variation};
@@ -47,19 +47,19 @@ pub(super) fn readings(
     let mut sorted = samples.to_vec();
     sorted.sort_by(in_order);
     sorted.dedup_by(|a, b| in_order(a, b) == Ordering::Equal);
-    let cargo: Vec<&LogbookEntry> = logbook
+    let excluding: Vec<&LogbookEntry> = logbook
         .iter()
-        .filter(|e| e.kind == LogbookKind::MagneticCargo)
+        .filter(|entry| entry.kind.excludes().is_some())
         .collect();
     let mut field = DailyField::new(settings.field_model);
     sorted
         .into_iter()
         .map(|sample| {
             let mut reading = reading(sample, &mut field, settings);
-            if cargo.iter().any(|entry| during(entry, sample.time)) {
-                let reason = &mut reading.diagnostic.reason;
-                *reason = reason.or(Some(SampleReason::MagneticCargo));
-            }
+            // Of several reasons the first in their order, whatever the entries'.
+            let reported = excluding.iter().filter_map(|entry| entry.excludes(&sample));
+            let reason = &mut reading.diagnostic.reason;
+            *reason = reason.or(reported.min());
             reading
         })
         .collect()
@@ -102,10 +102,6 @@ fn corrected_gyro(sample: &Sample, speed_error: GyroSpeedError) -> Option<TrueHe
     };
     let error = gyro_speed_error_deg(gyro, sog_kn, sample.position.lat_deg());
     TrueHeading::new(gyro.degrees() - error).or(Some(gyro))
-}
-
-fn during(entry: &LogbookEntry, time: Timestamp) -> bool {
-    entry.from <= time && entry.to.is_none_or(|to| time <= to)
 }
 
 /// The field model at noon of the day that was asked for last: over half a day
