@@ -2,10 +2,12 @@
 //!
 //! Samples go up as binary [`batch`]es, immutable once sealed, in the frame of
 //! [`codec`], with the [`reasons`] why windows were refused; enrolment,
-//! acknowledgement, models and [`settings`] are the JSON [`messages`].
+//! acknowledgement, models, [`settings`] and reports for the [`logbook`] are the
+//! JSON [`messages`].
 
 pub mod batch;
 pub mod codec;
+pub mod logbook;
 pub mod messages;
 pub mod reasons;
 pub mod settings;

@@ -1,6 +1,8 @@
-//! The JSON part of the conversation: enrolment, acknowledgement, downlink.
+//! The JSON part of the conversation: enrolment, acknowledgement, downlink, and
+//! what officers report for the logbook.
 
 use crate::batch::StreamId;
+use crate::logbook::Report;
 pub use crate::settings::Settings;
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::time::Timestamp;
@@ -71,6 +73,35 @@ pub struct ModelDownlink {
     pub model: Model,
 }
 
+/// `PUT /api/v1/agents/logbook/{id}` with the agent's token: what an officer
+/// reported, whole, under an id made on board.
+///
+/// The same again changes nothing, and neither does an older revision that comes
+/// late: it may be sent until it is acknowledged.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LogbookReport {
+    /// From 1; one more each time the officer changes the report.
+    pub revision: u32,
+    /// The officer's name, or nothing.
+    #[serde(default)]
+    pub reporter: String,
+    /// Whether the officer takes the report back.
+    #[serde(default)]
+    pub withdrawn: bool,
+    /// What happened.
+    #[serde(flatten)]
+    pub report: Report,
+}
+
+/// The answer to a [`LogbookReport`]: it is in the logbook.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LogbookAnswer {
+    /// The latest revision from on board that is there.
+    pub revision: u32,
+    /// Whether the entry counts no more, taken back on board or ashore.
+    pub withdrawn: bool,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -99,6 +130,17 @@ mod tests {
             "server_time": "2026-11-21T07:00:00Z",
         }));
         assert_comes_back::<OpenStreamAnswer>(&json!({ "stream": ID }));
+    }
+
+    #[test]
+    fn a_report_reads_as_it_is_written() {
+        assert_comes_back::<LogbookReport>(&json!({
+            "revision": 2, "reporter": "Li", "withdrawn": false,
+            "kind": "magnetic_cargo", "from": "2026-11-20T00:00:00Z",
+            "to": "2026-11-21T00:00:00Z", "cargo": "scrap", "hatch": "2", "port": "Bilbao",
+            "note": "",
+        }));
+        assert_comes_back::<LogbookAnswer>(&json!({ "revision": 2, "withdrawn": false }));
     }
 
     #[test]
