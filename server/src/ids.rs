@@ -55,4 +55,5 @@ id!(CompassId, "A magnetic element aboard.");
 id!(AgentId, "An installation of the agent.");
 id!(ModelId, "A version of a compass's model.");
 id!(JobId, "A piece of work in the queue.");
+id!(EntryId, "An entry of a vessel's logbook.");
 id!(EventId, "Something a dashboard is told.");

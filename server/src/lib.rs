@@ -28,6 +28,7 @@ pub mod session;
 pub mod tokens;
 
 pub mod compasses;
+pub mod logbook;
 pub mod settings;
 pub mod vessels;
 

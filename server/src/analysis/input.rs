@@ -3,7 +3,7 @@
 use crate::db::{Db, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
-use crate::settings;
+use crate::{logbook, settings};
 use anyhow::Context;
 use binnacle_magnetics::analyse::{AnalysisSettings, ESTIMATOR, LogbookEntry};
 use binnacle_magnetics::sample::Sample;
@@ -22,9 +22,10 @@ pub struct Input {
     pub settings: AnalysisSettings,
 }
 
-/// Batches of a compass, as they are stored.
+/// What is stored of a compass, its batches as they came.
 pub(super) struct Stored {
     batches: Vec<(Vec<u8>,)>,
+    logbook: Vec<LogbookEntry>,
     settings: AnalysisSettings,
 }
 
@@ -40,8 +41,11 @@ pub(super) async fn load(db: &Db, vessel: VesselId, compass: CompassId) -> Resul
         vessel,
         compass
     )?;
-    let settings = settings::find(db, vessel).await?.analysis;
-    Ok(Stored { batches, settings })
+    Ok(Stored {
+        batches,
+        logbook: logbook::of_compass(db, vessel, compass).await?,
+        settings: settings::find(db, vessel).await?.analysis,
+    })
 }
 
 impl Stored {
@@ -54,7 +58,7 @@ impl Stored {
         }
         Ok(Input {
             samples: distinct(samples)?,
-            logbook: Vec::new(),
+            logbook: self.logbook,
             settings: self.settings,
         })
     }

@@ -46,6 +46,8 @@ pub enum Kind {
     Batch,
     /// A compass has a new model.
     Model,
+    /// Something was reported, amended or withdrawn.
+    Logbook,
 }
 
 /// An event, with those who may know of it.

@@ -16,6 +16,7 @@ pub(super) fn complete(document: &mut OpenApi) {
             &mut path.get,
             &mut path.post,
             &mut path.put,
+            &mut path.patch,
             &mut path.delete,
         ];
         for operation in all.into_iter().flatten() {

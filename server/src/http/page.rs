@@ -69,6 +69,19 @@ impl Page {
         read.map(Some).ok_or_else(|| bad_cursor(after))
     }
 
+    /// The cursor of a list by time: an item's time and its id.
+    ///
+    /// # Errors
+    /// When the cursor is none of this list's.
+    pub fn after_time(&self) -> Result<Option<(i64, Uuid)>> {
+        let Some(after) = &self.after else {
+            return Ok(None);
+        };
+        let parts = after.split_once('.');
+        let read = parts.and_then(|(micros, id)| Some((micros.parse().ok()?, id.parse().ok()?)));
+        read.map(Some).ok_or_else(|| bad_cursor(after))
+    }
+
     /// How many items a page holds.
     pub fn limit(&self) -> usize {
         self.limit.unwrap_or(DEFAULT_LIMIT).clamp(1, MAX_LIMIT) as usize

@@ -3,8 +3,8 @@
 use super::headers;
 use crate::app::App;
 use crate::{
-    compasses, dashboard, deviation, enrolment, error, events, models, operations, samples,
-    session, settings, streams, tokens, vessels,
+    compasses, dashboard, deviation, enrolment, error, events, logbook, models, operations,
+    samples, session, settings, streams, tokens, vessels,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -67,6 +67,7 @@ fn for_agents() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(enrolment::agent_router())
         .merge(streams::router())
+        .merge(logbook::agent_router())
 }
 
 fn for_people() -> OpenApiRouter<App> {
@@ -77,6 +78,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(compasses::router())
         .merge(enrolment::router())
         .merge(settings::router())
+        .merge(logbook::router())
         .merge(models::router())
         .merge(deviation::router())
         .merge(samples::router())

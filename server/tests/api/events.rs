@@ -6,11 +6,13 @@ use binnacle_server::db::Db;
 use binnacle_server::events;
 use futures_util::StreamExt;
 use reqwest::Method;
+use serde_json::json;
 use std::time::Duration;
 use tokio::time::timeout;
 
 on_both!(
     a_dashboard_hears_of_a_batch_and_a_model,
+    a_dashboard_hears_of_a_report,
     a_dashboard_that_comes_back_gets_what_it_missed,
     nobody_hears_of_another_operators_fleet,
     a_stopping_server_lets_its_dashboards_go,
@@ -107,6 +109,17 @@ async fn a_dashboard_hears_of_a_batch_and_a_model(shore: Shore) {
     shore.work().await;
     let (_, model) = source.next().await.unwrap();
     assert!(model.contains("\"kind\":\"model\""), "{model}");
+    shore.finish().await;
+}
+
+async fn a_dashboard_hears_of_a_report(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut source = Source::open(&ada, None).await;
+    let lightning = json!({ "kind": "lightning", "from": DAY });
+    ada.post(&nao.path("/logbook"), &lightning).await.good();
+    let (_, heard) = source.next().await.unwrap();
+    assert!(heard.contains("\"kind\":\"logbook\""), "{heard}");
     shore.finish().await;
 }
 

@@ -17,6 +17,7 @@ mod events;
 mod fit;
 mod fleet;
 mod ingest;
+mod logbook;
 mod sessions;
 mod tenants;
 

@@ -29,6 +29,7 @@ fn operations() -> Vec<(Method, String, Value)> {
                     json!({ "name": "Aft", "role": "steering" })
                 }
                 (&Method::PUT, "/vessels/{id}/settings") => settings(),
+                (&Method::POST, "/vessels/{id}/logbook") => lightning(),
                 _ => json!({}),
             };
             found.push((method, path.to_owned(), body));
@@ -36,6 +37,10 @@ fn operations() -> Vec<(Method, String, Value)> {
     }
     assert!(found.len() > 20, "{found:?}");
     found
+}
+
+fn lightning() -> Value {
+    json!({ "kind": "lightning", "from": "2026-11-20T00:00:00Z" })
 }
 
 fn settings() -> Value {
@@ -55,11 +60,14 @@ async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
         .as_str()
         .unwrap()
         .to_owned();
+    let logbook = format!("/vessels/{id}/logbook");
+    let entry = ada.post(&logbook, &lightning()).await.good()["id"].clone();
     for (method, path, body) in operations() {
         if !path.contains("/vessels/{id}") {
             continue;
         }
         let path = path.replace("{id}", &id);
+        let path = path.replace("{entry}", entry.as_str().unwrap());
         let theirs = Answer::of(eve.request(method.clone(), &path).json(&body)).await;
         assert_eq!(theirs.problem(), "not-found", "{method} {path}");
         let ours = Answer::of(ada.request(method.clone(), &path).json(&body)).await;
@@ -82,6 +90,7 @@ async fn every_route_wants_to_know_who_asks(shore: Shore) {
         }
         let path = path
             .replace("{id}", &id)
+            .replace("{entry}", &id)
             .replace("{stream}", &id)
             .replace("{seq}", "1");
         let url = format!("{}/api/v1{path}", shore.url);

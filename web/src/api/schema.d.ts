@@ -21,6 +21,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/agents/logbook/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Send a report from on board
+         * @description Answers when it is durable. The same again, or an older revision, changes
+         *     nothing and is answered alike; so does a revision of what was withdrawn ashore.
+         */
+        put: operations["put_report"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/events": {
         parameters: {
             query?: never;
@@ -281,6 +302,70 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/vessels/{id}/logbook": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read a vessel's logbook
+         * @description Withdrawn entries stay in it, marked.
+         */
+        get: operations["list_logbook"];
+        put?: never;
+        /** Report what bears on a vessel's magnetism */
+        post: operations["report_entry"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/logbook/{entry}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See an entry with all its revisions */
+        get: operations["find_entry"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        /**
+         * Amend an entry
+         * @description What is left out stays as it is; null takes a value away. The entry as it was
+         *     is kept among its revisions.
+         */
+        patch: operations["amend_entry"];
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/logbook/{entry}/withdraw": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Withdraw an entry
+         * @description It stays in the logbook, marked, and counts no more. Withdrawing it again
+         *     changes nothing.
+         */
+        post: operations["withdraw_entry"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/vessels/{id}/model": {
         parameters: {
             query?: never;
@@ -533,6 +618,39 @@ export interface components {
              */
             worst_deg: number;
         };
+        /** @description What an officer reported, whole. */
+        BoardReport: components["schemas"]["LogbookReport"] & {
+            /**
+             * @description The officer's name, or nothing.
+             * @default
+             */
+            reporter: string;
+            /**
+             * Format: int32
+             * @description From 1; one more each time the officer changes the report.
+             */
+            revision: number;
+            /**
+             * @description Whether the officer takes the report back.
+             * @default false
+             */
+            withdrawn: boolean;
+        };
+        /** @description A report that is in the logbook. */
+        BoardReportAnswer: {
+            /**
+             * Format: int32
+             * @description The latest revision from on board that is there.
+             */
+            revision: number;
+            /** @description Whether the entry counts no more, taken back on board or ashore. */
+            withdrawn: boolean;
+        };
+        /**
+         * @description What a magnetic cargo consists of.
+         * @enum {string}
+         */
+        CargoKind: "steel" | "scrap" | "containers" | "other";
         /** @description A magnetic element aboard. */
         Compass: {
             /** @description When it was entered. */
@@ -715,10 +833,15 @@ export interface components {
             expires_at: components["schemas"]["Time"];
         };
         /**
+         * Format: uuid
+         * @description An entry of a vessel's logbook.
+         */
+        EntryId: string;
+        /**
          * @description What happened to a vessel.
          * @enum {string}
          */
-        EventKind: "batch" | "model";
+        EventKind: "batch" | "model" | "logbook";
         /**
          * @description The model of the earth's field.
          * @enum {string}
@@ -844,6 +967,82 @@ export interface components {
             magnetic_latitude_from_deg: number;
             /** Format: int32 */
             magnetic_latitude_to_deg: number;
+        };
+        /**
+         * @description What is to be changed in an entry; what is left out stays, null takes a value
+         *     away.
+         */
+        LogbookAmendment: {
+            cargo?: components["schemas"]["CargoKind"] | null;
+            compass_id?: components["schemas"]["CompassId"] | null;
+            from?: components["schemas"]["Time"] | null;
+            hatch?: string | null;
+            kind?: components["schemas"]["LogbookKind"] | null;
+            note?: string | null;
+            port?: string | null;
+            to?: components["schemas"]["Time"] | null;
+        };
+        /**
+         * @description Where an entry was reported.
+         * @enum {string}
+         */
+        LogbookAuthor: "user" | "agent" | "firm";
+        /** @description An entry of a vessel's logbook. */
+        LogbookEntry: components["schemas"]["LogbookReport"] & {
+            /** @description Where it was reported. */
+            author: components["schemas"]["LogbookAuthor"];
+            compass_id: components["schemas"]["CompassId"] | null;
+            /** @description When it came here. */
+            created_at: components["schemas"]["Time"];
+            /** @description The reporter's name; empty when a report from on board gives none. */
+            created_by: string;
+            /** @description The entry's id. */
+            id: components["schemas"]["EntryId"];
+            revised_at: components["schemas"]["Time"] | null;
+            /** @description Who amended it last. */
+            revised_by: string | null;
+            /**
+             * Format: int32
+             * @description Counts from 1.
+             */
+            revision: number;
+            /** @description Why. */
+            withdrawal_reason: string | null;
+            withdrawn_at: components["schemas"]["Time"] | null;
+            /** @description Who withdrew it. */
+            withdrawn_by: string | null;
+        };
+        /**
+         * @description What a logbook entry is about.
+         * @enum {string}
+         */
+        LogbookKind: "adjustment" | "corrector_change" | "compass_moved" | "repair" | "dry_docking" | "welding" | "degaussing" | "lightning" | "shock" | "magnetic_cargo" | "berth" | "note";
+        /** @description A page of a logbook. */
+        LogbookList: {
+            /** @description What happened last comes first. */
+            items: components["schemas"]["LogbookEntry"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description One event, as its reporter writes it down. */
+        LogbookReport: {
+            cargo?: components["schemas"]["CargoKind"] | null;
+            /** @description When it happened, or began. */
+            from: components["schemas"]["Time"];
+            /**
+             * @description Where the magnetic cargo lies.
+             * @example 2
+             */
+            hatch?: string | null;
+            kind: components["schemas"]["LogbookKind"];
+            /**
+             * @description In the reporter's own words.
+             * @default
+             */
+            note: string;
+            /** @description The port, where there is one. */
+            port?: string | null;
+            to?: components["schemas"]["Time"] | null;
         };
         /** @description A token just made. */
         MadeToken: components["schemas"]["Token"] & {
@@ -1014,6 +1213,10 @@ export interface components {
             /** @description What it serves as. */
             role: components["schemas"]["CompassRole"];
         };
+        /** @description An entry to be written. */
+        NewEntry: components["schemas"]["LogbookReport"] & {
+            compass_id?: components["schemas"]["CompassId"] | null;
+        };
         /** @description A token to be made. */
         NewToken: {
             expires_at?: components["schemas"]["Time"] | null;
@@ -1103,6 +1306,27 @@ export interface components {
              * @description Standard deviation of a reference's constant error, degrees.
              */
             reference_constant_sd_deg: number;
+        };
+        /** @description An entry as it is, and as it was. */
+        RevisedEntry: components["schemas"]["LogbookEntry"] & {
+            /** @description As it was written each time, the first time first. */
+            revisions: components["schemas"]["Revision"][];
+        };
+        /** @description An entry as it was written once. */
+        Revision: {
+            /** @description When. */
+            at: components["schemas"]["Time"];
+            /** @description Where it was written. */
+            author: components["schemas"]["LogbookAuthor"];
+            /** @description Who wrote it; empty when a report from on board does not say. */
+            author_name: string;
+            /** @description What it said. */
+            entry: components["schemas"]["NewEntry"];
+            /**
+             * Format: int32
+             * @description Counts from 1.
+             */
+            number: number;
         };
         /**
          * @description What a user may do.
@@ -1228,7 +1452,7 @@ export interface components {
          * @description Why a sample was left out, or counted for less.
          * @enum {string}
          */
-        SampleReason: "no_reference" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "outlier" | "no_model";
+        SampleReason: "no_reference" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "outlier" | "no_model";
         /** @description What a user signs in with. */
         SignIn: {
             /**
@@ -1339,6 +1563,11 @@ export interface components {
             /** @description How her samples are read. */
             analysis: components["schemas"]["ReadingSettings"];
         };
+        /** @description Why an entry is withdrawn. */
+        Withdrawal: {
+            /** @description In a few words. */
+            reason?: string | null;
+        };
         /** @description The heading with the greatest deviation. */
         WorstHeading: {
             /**
@@ -1408,6 +1637,87 @@ export interface operations {
             };
             /** @description Gone */
             410: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    put_report: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @description Made on board */
+                id: components["schemas"]["EntryId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BoardReport"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BoardReportAnswer"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -2576,6 +2886,417 @@ export interface operations {
             };
             /** @description Also when there is no model yet */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_logbook: {
+        parameters: {
+            query?: {
+                /** @description Of this kind only. */
+                kind?: components["schemas"]["LogbookKind"];
+                /** @description What had not ended before this instant, RFC 3339. */
+                from?: string;
+                /** @description What began before this instant, RFC 3339. */
+                to?: string;
+                /** @description Whether withdrawn entries are listed too; they are if not said. */
+                withdrawn?: boolean;
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LogbookList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    report_entry: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewEntry"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LogbookEntry"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_entry: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                entry: components["schemas"]["EntryId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RevisedEntry"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    amend_entry: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                entry: components["schemas"]["EntryId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["LogbookAmendment"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LogbookEntry"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The entry is withdrawn */
+            410: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    withdraw_entry: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                entry: components["schemas"]["EntryId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Withdrawal"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LogbookEntry"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
                 headers: {
                     [name: string]: unknown;
                 };
