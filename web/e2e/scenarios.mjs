@@ -89,7 +89,7 @@ export const scenarios = {
       await page.getByTestId('residual-chart').locator('svg circle').first().waitFor();
       await page.getByTestId('coverage-table').waitFor();
       const advice = await page.getByTestId('sail-next').innerText();
-      assert.match(advice, /(would narrow the band|narrows it by more than) .*\d\.\d/);
+      assert.match(advice, /(would narrow the band|narrows the band by more than) .*\d\.\d/);
       await page.getByRole('heading', { name: 'Coefficients' }).waitFor();
       await page.getByText('accepted', { exact: true }).first().waitFor();
       await fitsItsWidth(page);

@@ -233,7 +233,7 @@ export const text = {
     elsewhereNow: (mean: string, worst: string) =>
       `In other magnetic latitudes the band is ${mean} as a mean, ${worst} at worst.`,
     nothing: (band: string, floor: string, most: string) =>
-      `No watch would narrow the band noticeably. It is ${band}; ${floor} of that is the reference’s own constant error, which no heading shows, so that nothing sailed narrows it by more than ${most}.`,
+      `Neither one watch nor three would narrow the band noticeably. It is ${band}, and the reference’s own constant error, which no heading shows, is ${floor} by itself: nothing sailed narrows the band by more than ${most}.`,
     reference:
       'To narrow it further, check the gyro or satellite compass against a transit, the sun’s bearing or a second reference.',
     magneticLatitude:
