@@ -46,10 +46,15 @@ export function remains(advice: Advice, floorDeg: number): string {
  * they differ.
  */
 export function widths<Bands extends Band[]>(...bands: Bands): { [K in keyof Bands]: string } {
-  const shown = (digits: number) => bands.map((band) => plusMinus(band.rms_deg, digits));
+  const shown = (digits: number) => bands.map((band) => size(band.rms_deg, digits));
   const rough = shown(1);
   const alike = rough.some((width, i) => i > 0 && width === rough[i - 1]);
   return (alike ? shown(2) : rough) as { [K in keyof Bands]: string };
+}
+
+/** As `plusMinus`, but never broken over two lines. */
+export function size(value: number, digits = 1): string {
+  return plusMinus(value, digits).replace(' ', '\u00a0');
 }
 
 /** `Between 030° and 075°`; the whole circle is any heading. */

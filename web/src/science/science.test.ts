@@ -181,8 +181,12 @@ describe('what to sail next', () => {
   const band = (rms_deg: number) => ({ rms_deg, worst_deg: rms_deg });
 
   test('widths have as many decimals as show that they differ', () => {
-    expect(widths(band(1.2), band(0.9))).toEqual(['± 1.2°', '± 0.9°']);
-    expect(widths(band(1.29), band(1.26), band(1.18))).toEqual(['± 1.29°', '± 1.26°', '± 1.18°']);
+    expect(widths(band(1.2), band(0.9))).toEqual(['±\u00a01.2°', '±\u00a00.9°']);
+    expect(widths(band(1.29), band(1.26), band(1.18))).toEqual([
+      '±\u00a01.29°',
+      '±\u00a01.26°',
+      '±\u00a01.18°',
+    ]);
   });
 
   test('a range may pass north, and the whole circle is any heading', () => {
