@@ -73,8 +73,8 @@ try {
       const { origin } = new URL(request.url());
       if (origin !== settings.url) complaints.push(`request to another host: ${origin}`);
     });
-    const shoot = (what, options = {}) =>
-      page.screenshot({ path: `${artefacts}browser-${what}.png`, ...options });
+    const shoot = (what, options = {}, part = page) =>
+      part.screenshot({ path: `${artefacts}browser-${what}.png`, ...options });
     const started = performance.now();
     try {
       await run({ page, context, settings, shoot });

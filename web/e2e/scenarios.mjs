@@ -115,6 +115,59 @@ export const scenarios = {
     },
   },
 
+  'cargo is reported, discharged and withdrawn': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      const logbook = page.getByRole('region', { name: 'Logbook' });
+      await logbook.getByText('Nothing has been reported yet').waitFor();
+      await shoot('logbook-empty', {}, logbook);
+
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('combobox', { name: /^What/ }).selectOption({ label: 'Lightning' });
+      assert.equal(await logbook.getByLabel('Hatch').count(), 0);
+      await logbook
+        .getByRole('combobox', { name: /^What/ })
+        .selectOption({ label: 'Magnetic cargo' });
+      await logbook.getByLabel('Loaded').fill('2026-05-09T06:00');
+      await logbook.getByLabel('Discharged').fill('2026-05-08T06:00');
+      await logbook.getByRole('combobox', { name: /^Cargo/ }).selectOption({ label: 'Scrap' });
+      await logbook.getByLabel('Hatch').fill('2');
+      await logbook.getByRole('textbox', { name: /^Port/ }).fill('Bilbao');
+      await logbook.getByLabel('Remarks').fill('Shredded, some 4000 t');
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('alert').filter({ hasText: 'before it begins' }).waitFor();
+      await shoot('logbook-form', {}, logbook);
+      await logbook.getByLabel('Discharged').fill('');
+      await logbook.getByLabel('Remarks').press('Tab');
+      await page.keyboard.press('Enter');
+      await logbook.getByText('since 9 May 2026, 06:00 UTC').first().waitFor();
+      await logbook.getByText('Scrap, hatch 2, Bilbao').waitFor();
+
+      await logbook.getByRole('button', { name: /^Discharged/ }).click();
+      await logbook.getByLabel('Discharged').fill('2026-05-09T09:00');
+      await logbook.getByRole('button', { name: 'Save' }).click();
+      await logbook.getByText('9 May 2026, 06:00 – 09:00 UTC').first().waitFor();
+
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('combobox', { name: /^What/ }).selectOption({ label: 'Lightning' });
+      await logbook.getByLabel(/^When /).fill('2026-05-10T03:12');
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('listitem').nth(1).waitFor();
+      await logbook.getByRole('button', { name: /^Withdraw: Lightning/ }).click();
+      await shoot('logbook-withdraw', {}, logbook);
+      await logbook.getByRole('button', { name: 'Keep it' }).click();
+      await logbook.getByRole('button', { name: /^Withdraw: Lightning/ }).click();
+      await logbook.getByLabel('Why').fill('It was another ship');
+      await logbook.getByRole('button', { name: 'Withdraw the entry' }).click();
+      await logbook.locator('s', { hasText: 'Lightning' }).waitFor();
+      await logbook.getByText(/Withdrawn by Test Officer/).waitFor();
+      await fitsItsWidth(page);
+      await shoot('logbook', {}, logbook);
+    },
+  },
+
   'an administrator makes an enrolment code': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {
@@ -187,6 +240,10 @@ export const scenarios = {
       await page.getByTestId('coverage-table').waitFor();
       await fitsItsWidth(page);
       await shoot('vessel-phone', { fullPage: true });
+      const logbook = page.getByRole('region', { name: 'Logbook' });
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await fitsItsWidth(page);
+      await shoot('logbook-phone', {}, logbook);
     },
   },
 

@@ -3,7 +3,7 @@
  * value in it is a function; values come in already written by `format.ts`.
  */
 
-import type { ParameterName } from './api/types';
+import type { CargoKind, LogbookKind, ParameterName } from './api/types';
 
 export const text = {
   product: 'Binnacle',
@@ -17,6 +17,7 @@ export const text = {
   copy: 'Copy',
   copied: 'Copied',
   optional: 'optional',
+  utc: 'UTC',
 
   signIn: {
     title: 'Sign in',
@@ -198,6 +199,104 @@ export const text = {
     period: 'Period',
     days: (n: number) => `${n} days`,
     truncated: (n: string) => `Only the last ${n} samples of this period are shown.`,
+  },
+
+  logbook: {
+    title: 'Logbook',
+    lead: 'What bears on the ship’s magnetism, reported ashore or on board. What was wrong is withdrawn and stays readable.',
+    report: 'Report',
+    reportTitle: 'Report what happened',
+    amendTitle: 'Amend the entry',
+    closeTitle: 'When did it end?',
+    none: 'Nothing has been reported yet. Report lightning, magnetic cargo, time alongside, and work on ship or compass: it tells a change of magnetism from an error, and keeps what is not the ship’s own out of her model.',
+    noneViewer: 'Nothing has been reported yet. Administrators report here, officers on board.',
+    kind: 'What',
+    from: 'When',
+    to: 'Until',
+    fromOf: { magnetic_cargo: 'Loaded', berth: 'Alongside from' },
+    toOf: { magnetic_cargo: 'Discharged', berth: 'Sailed' },
+    cargo: 'Cargo',
+    hatch: 'Hatch',
+    port: 'Port',
+    compass: 'Compass',
+    wholeShip: 'The whole ship',
+    note: 'Remarks',
+    submit: 'Report',
+    save: 'Save',
+    saving: 'Saving…',
+    fromMissing: 'Say when it happened.',
+    toWrong: 'The end is not a time.',
+    toBeforeFrom: 'It cannot end before it begins.',
+    amend: 'Amend',
+    withdraw: 'Withdraw',
+    close: { magnetic_cargo: 'Discharged…', berth: 'Sailed…' },
+    open: { magnetic_cargo: 'on board', berth: 'alongside' },
+    since: (begin: string) => `since ${begin}`,
+    inHatch: (hatch: string) => `hatch ${hatch}`,
+    earlier: 'Show earlier entries',
+    reported: 'Reported.',
+    amended: 'The entry has been amended.',
+    isWithdrawn: 'The entry has been withdrawn.',
+    withdrawQuestion:
+      'Withdraw this entry? It stays in the logbook, struck through, and counts no more. It cannot be brought back.',
+    withdrawReason: 'Why',
+    withdrawConfirm: 'Withdraw the entry',
+    withdrawCancel: 'Keep it',
+    by: {
+      user: (name: string, at: string) => `Reported by ${name}, ${at}.`,
+      agent: (name: string, at: string) =>
+        name === ''
+          ? `Reported on board, here ${at}.`
+          : `Reported on board by ${name}, here ${at}.`,
+      firm: (name: string, at: string) => `Reported by ${name}, adjuster, ${at}.`,
+    },
+    revised: (name: string, at: string) =>
+      name === '' ? `Amended on board, ${at}.` : `Amended by ${name}, ${at}.`,
+    withdrawn: (name: string, at: string) =>
+      name === '' ? `Withdrawn on board, ${at}.` : `Withdrawn by ${name}, ${at}.`,
+    groups: {
+      cargo: 'Cargo and berth',
+      blow: 'What struck her',
+      work: 'Work on ship and compass',
+      rest: 'Anything else',
+    },
+    kinds: {
+      magnetic_cargo: 'Magnetic cargo',
+      berth: 'Alongside',
+      lightning: 'Lightning',
+      shock: 'Grounding, collision or shock',
+      adjustment: 'Adjustment',
+      corrector_change: 'Correctors changed',
+      compass_moved: 'Compass moved',
+      repair: 'Repair',
+      dry_docking: 'Dry-docking',
+      welding: 'Welding',
+      degaussing: 'Degaussing',
+      note: 'Remark',
+    } satisfies Record<LogbookKind, string>,
+    cargoes: {
+      steel: 'Steel',
+      scrap: 'Scrap',
+      containers: 'Containers',
+      other: 'Other cargo',
+    } satisfies Record<CargoKind, string>,
+    effects: {
+      magnetic_cargo:
+        'Samples from loading to discharge are left out of the model; without a discharge, all from loading on.',
+      berth: 'Samples taken alongside are left out of the model.',
+      lightning: 'Changes no sample: a strike that altered the magnetism shows in the residuals.',
+      shock: 'Changes no sample: a blow that altered the magnetism shows in the residuals.',
+      adjustment: 'A new epoch begins: what was learnt before does not count for the compass now.',
+      corrector_change:
+        'A new epoch begins: what was learnt before does not count for the compass now.',
+      compass_moved:
+        'A new epoch begins: what was learnt before does not count for the compass now.',
+      repair: 'A new epoch begins: permanent magnetism is learnt anew.',
+      dry_docking: 'A new epoch begins: permanent magnetism is learnt anew.',
+      welding: 'A new epoch begins: permanent magnetism is learnt anew.',
+      degaussing: 'A new epoch begins: permanent magnetism is learnt anew.',
+      note: 'Changes nothing in the model.',
+    } satisfies Record<LogbookKind, string>,
   },
 
   coverage: {

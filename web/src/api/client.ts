@@ -7,7 +7,7 @@ import createClient from 'openapi-fetch';
 import { text } from '../text';
 import { Problem, readProblem } from './problem';
 import type { paths } from './schema';
-import type { NewVessel, Sample } from './types';
+import type { LogbookEntry, NewEntry, NewVessel, Sample } from './types';
 
 /** A place and a time at which to show the deviation. */
 export interface Place {
@@ -91,6 +91,50 @@ export const listAgents = (id: string) =>
         params: { path: { id }, query: page(longestPage, after) },
       }),
     ),
+  );
+
+/** What was reported, what happened last first; at most so many. */
+export async function listLogbook(
+  id: string,
+  most: number,
+): Promise<{ items: LogbookEntry[]; truncated: boolean }> {
+  const found = await answer(
+    client.GET('/api/v1/vessels/{id}/logbook', {
+      params: { path: { id }, query: page(most) },
+    }),
+  );
+  return { items: found.items, truncated: found.next !== null };
+}
+
+/** A key that no other request has; `randomUUID` is for pages over TLS only. */
+export function newKey(): string {
+  const bytes = crypto.getRandomValues(new Uint8Array(16));
+  return Array.from(bytes, (byte) => byte.toString(16).padStart(2, '0')).join('');
+}
+
+/** Writes an entry; under the same key the same entry is written once. */
+export const reportEntry = (id: string, body: NewEntry, key: string) =>
+  answer(
+    client.POST('/api/v1/vessels/{id}/logbook', {
+      params: { path: { id }, header: { 'Idempotency-Key': key } },
+      body,
+    }),
+  );
+
+export const amendEntry = (id: string, entry: string, body: NewEntry) =>
+  answer(
+    client.PATCH('/api/v1/vessels/{id}/logbook/{entry}', {
+      params: { path: { id, entry } },
+      body,
+    }),
+  );
+
+export const withdrawEntry = (id: string, entry: string, reason: string) =>
+  answer(
+    client.POST('/api/v1/vessels/{id}/logbook/{entry}/withdraw', {
+      params: { path: { id, entry } },
+      body: { reason },
+    }),
   );
 
 export const createEnrolmentCode = (id: string, compass_id: string) =>

@@ -12,8 +12,10 @@ import { findMe } from './client';
 export interface News {
   /** The vessel it is about; none when anything may have changed. */
   vesselId: string | null;
-  kind: 'batch' | 'model' | 'all';
+  kind: (typeof kinds)[number] | 'all';
 }
+
+const kinds = ['batch', 'model', 'logbook'] as const;
 
 type Listener = (news: News) => void;
 
@@ -108,8 +110,8 @@ export function parseNews(data: string): News | null {
     if (typeof value !== 'object' || value === null) return null;
     if (!('vessel_id' in value) || typeof value.vessel_id !== 'string') return null;
     if (!('kind' in value)) return null;
-    if (value.kind !== 'batch' && value.kind !== 'model') return null;
-    return { vesselId: value.vessel_id, kind: value.kind };
+    const kind = kinds.find((known) => known === value.kind);
+    return kind ? { vesselId: value.vessel_id, kind } : null;
   } catch {
     return null;
   }

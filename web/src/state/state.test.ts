@@ -48,7 +48,9 @@ describe('what was fetched', () => {
 
 describe('news', () => {
   test('of a vessel is read, and anything else is passed over', () => {
-    expect(parseNews('{"vessel_id":"v","kind":"batch"}')).toEqual({ vesselId: 'v', kind: 'batch' });
+    for (const kind of ['batch', 'model', 'logbook']) {
+      expect(parseNews(JSON.stringify({ vessel_id: 'v', kind }))).toEqual({ vesselId: 'v', kind });
+    }
     for (const odd of [
       '',
       '[]',
