@@ -35,7 +35,7 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         samples.push(sample(row).map_err(|(column, what)| table.invalid(index, column, what))?);
     }
     let logbook: Vec<LogbookEntry> = match &arguments.logbook {
-        Some(path) => input::json_file(path)?,
+        Some(path) => input::json_list(path)?,
         None => Vec::new(),
     };
     let analysis = run(&samples, &logbook, &AnalysisSettings::default());

@@ -126,6 +126,36 @@ fn analyse_does_offline_what_the_server_does() {
 }
 
 #[test]
+fn a_logbook_that_cannot_be_is_refused_by_file_line_and_field() {
+    let folder = tempfile::tempdir().unwrap();
+    samples_csv(folder.path());
+    let good = r#"{"from": "2026-11-16T00:00:00Z", "kind": "adjustment"}"#;
+    let turned = "{\"from\": \"2026-11-16T00:00:00Z\", \"kind\": \"berth\",\n  \
+                  \"to\": \"2026-11-15T00:00:00Z\"}";
+    let cases: [(String, &[&str]); 5] = [
+        (
+            format!("[{good},\n{turned}\n]"),
+            &["book.json:2", "to:", "before"],
+        ),
+        (
+            format!("[{good},\n{}]", good.replace("adjustment", "ufo")),
+            &["book.json:2", "ufo"],
+        ),
+        (
+            format!("[{good},\n\n{}]", good.replace("from", "form")),
+            &["book.json:3", "from"],
+        ),
+        (format!("[{good}\n{good}]"), &["book.json:2"]),
+        (good.to_owned(), &["book.json:1", "sequence"]),
+    ];
+    for (book, words) in cases {
+        std::fs::write(folder.path().join("book.json"), book).unwrap();
+        let arguments = ["analyse", "samples.csv", "--logbook", "book.json"];
+        assert_refused(&run(folder.path(), &arguments), words);
+    }
+}
+
+#[test]
 fn a_reader_who_has_seen_enough_is_no_error() {
     let folder = tempfile::tempdir().unwrap();
     samples_csv(folder.path());
