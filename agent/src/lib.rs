@@ -26,7 +26,6 @@ mod output;
 mod sentences;
 
 mod page;
-mod reports;
 mod status;
 
 mod replay;

@@ -49,6 +49,7 @@ fn model() -> ModelDownlink {
             rms_deg: None,
             samples_used: 1,
             samples_rejected: 0,
+            quality: None,
         },
     }
 }

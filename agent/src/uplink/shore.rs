@@ -3,12 +3,10 @@
 //! Nothing counts as an answer but the JSON that the shore writes: the login
 //! page of a harbour's network, with whatever status, is a failure of the link.
 
-use crate::spool::{Identity, SealedBatch, StoredReport};
+use crate::spool::{Identity, SealedBatch};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::messages::{
-    Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, OpenStreamAnswer,
-};
+use binnacle_wire::messages::{Downlink, EnrolAnswer, EnrolRequest, OpenStreamAnswer};
 use reqwest::header::{CONTENT_TYPE, RETRY_AFTER};
 use reqwest::{RequestBuilder, Response, StatusCode, redirect};
 use serde::Deserialize;
@@ -146,17 +144,6 @@ impl Shore {
             .header(CONTENT_TYPE, "application/octet-stream")
             .body(batch.bytes.clone());
         answer(request).await
-    }
-
-    /// Sends a report for the logbook.
-    pub(crate) async fn put_report(
-        &self,
-        identity: &Identity,
-        report: &StoredReport,
-    ) -> Result<LogbookAnswer, Trouble> {
-        let url = format!("{}/api/v1/agents/logbook/{}", identity.server, report.id);
-        let request = self.http.put(url).bearer_auth(&identity.token);
-        answer(request.json(&report.sent)).await
     }
 
     /// Asks for news.

@@ -1,8 +1,10 @@
-//! The tables of `docs/science.md`: how often the band holds the truth, and how
-//! near the error comes to the best that any estimator could do, the Cramér–Rao
-//! bound, from the true covariance of the noise as a dense matrix.
+//! The tables of `docs/science.md` and BENCHMARKS.md: how near the error comes to
+//! the best that any estimator could do, how often the band holds the truth, and
+//! what becomes of both when ships or instruments are not as usual.
 //!
-//! Takes minutes: `cargo run --release -p binnacle-magnetics --example study [SHIPS]`.
+//! Takes minutes: `make study`, or
+//! `cargo run --release -p binnacle-magnetics --example study [SHIPS]`, with the
+//! number of ships of each kind.
 
 #![allow(clippy::unwrap_used)] // a study, run by hand
 
@@ -11,172 +13,137 @@
 mod voyages;
 
 use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::fit::{Observation, RobustOptions, fit_robust};
-use binnacle_magnetics::ship::EarthField;
-use nalgebra::{DMatrix, DVector};
-use voyages::tally::Tally;
-use voyages::{Errors, Faults, Passage, Truth, Variety, Voyage, predicted, sail, true_deviation};
+use binnacle_magnetics::fit::fit_robust;
+use voyages::bound::{HEADINGS, bound, fair};
+use voyages::tally::{Held, Tally, options};
+use voyages::{Faults, Truth, Variety, predicted, true_deviation};
 
-const HEADINGS: usize = 36;
+const VARIETIES: [Variety; 3] = [Variety::Rich, Variety::Medium, Variety::Poor];
 
 fn main() {
     let ships = std::env::args().nth(1);
-    let ships = ships.map_or(30, |n| n.parse().expect("the number of ships"));
+    let ships: u64 = ships.map_or(70, |n| n.parse().expect("the number of ships"));
     table_of_efficiency(ships);
     table_of_coverage(ships);
     table_of_the_unusual(ships);
 }
 
-/// Autocovariance of the Schuler swing at lags of ten minutes, from the
-/// generator itself: turns kick it at random.
-fn swing_covariance(faults: &Faults, variety: Variety) -> Vec<f64> {
-    use rand::SeedableRng;
-    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(99);
-    let mut passage = Passage::new(variety, &mut rng);
-    let mut errors = Errors::new(faults, &mut rng);
-    let mut series = Vec::new();
-    for minute in 0..1440 * 600 {
-        let turned = passage.minute(&mut rng);
-        errors.minute(faults, &passage, turned, &mut rng);
-        if minute % 10 == 0 {
-            series.push(errors.swing);
-        }
-    }
-    (0..100)
-        .map(|lag| {
-            let pairs = series.iter().zip(&series[lag..]);
-            pairs.map(|(a, b)| a * b).sum::<f64>() / (series.len() - lag) as f64
-        })
-        .collect()
-}
-
-/// What the generator's noise has in common between two observations.
-fn covariance(a: &Observation, b: &Observation, faults: &Faults, swing: &[f64]) -> f64 {
-    let seconds = a.time.unwrap().seconds_since(b.time.unwrap()).abs();
-    let cos_lat = |o: &Observation| o.position.unwrap().lat_deg().to_radians().cos();
-    let gyro = swing
-        .get((seconds / 600.0).round() as usize)
-        .unwrap_or(&0.0)
-        + faults.slow_gyro_deg.powi(2) * (-seconds / (3.0 * 86_400.0)).exp();
-    let miles = seconds / 3600.0 * a.sog_kn.unwrap();
-    let crust =
-        faults.variation_deg.powi(2) * (-miles / 60.0).exp() * 24e3 * 24e3 / (a.h_nt * b.h_nt);
-    let northerly = |o: &Observation| {
-        let heading = o.compass.degrees() + o.deviation.degrees_east() + o.variation.degrees_east();
-        let share = o.sog_kn.unwrap() / 902.5 / cos_lat(o);
-        (share * heading.to_radians().cos()).to_degrees()
-    };
-    let white = if seconds == 0.0 {
-        (0.35_f64.powi(2) + 0.15_f64.powi(2)) / 10.0
-    } else {
-        0.0
-    };
-    gyro / (cos_lat(a) * cos_lat(b))
-        + faults.swing_deg.powi(2) * (-seconds / 1200.0).exp()
-        + crust
-        + faults.speed_error.powi(2) * northerly(a) * northerly(b)
-        + white
-}
-
-/// The bound on the curve's variance at the last place, averaged over headings.
-fn bound(voyage: &Voyage, faults: &Faults, swing: &[f64]) -> f64 {
-    let rows = &voyage.observations;
-    let n = rows.len();
-    let v = DMatrix::from_fn(n, n, |i, j| covariance(&rows[i], &rows[j], faults, swing));
-    let slopes = |magnetic_deg: f64, h_nt: f64, z_nt: f64| {
-        let earth = EarthField { h_nt, z_nt };
-        let at = voyage
-            .truth
-            .parameters
-            .linearised_at_magnetic(magnetic_deg.to_radians(), earth);
-        let mut slopes = [1.0; 8];
-        for (slope, radians) in slopes.iter_mut().zip(at.gradient) {
-            *slope = radians.to_degrees();
-        }
-        slopes
-    };
-    let x = DMatrix::from_fn(n, 8, |i, j| {
-        let o = &rows[i];
-        slopes(
-            o.compass.degrees() + o.deviation.degrees_east(),
-            o.h_nt,
-            o.z_nt,
-        )[j]
+/// Does a piece of work for every seed, on all cores, results in order.
+fn each<T: Send>(seeds: std::ops::Range<u64>, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let seeds: Vec<u64> = seeds.collect();
+    let mut results: Vec<(u64, T)> = std::thread::scope(|scope| {
+        let work = &work;
+        let started: Vec<_> = (0..threads)
+            .map(|t| {
+                let own: Vec<u64> = seeds.iter().copied().skip(t).step_by(threads).collect();
+                scope.spawn(move || own.into_iter().map(|s| (s, work(s))).collect::<Vec<_>>())
+            })
+            .collect();
+        started
+            .into_iter()
+            .flat_map(|thread| thread.join().unwrap())
+            .collect()
     });
-    let population = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008, 0.6];
-    let mut information = DMatrix::from_diagonal(&DVector::from_iterator(
-        8,
-        population.map(|sd: f64| 1.0 / (sd * sd)),
-    ));
-    information += x.transpose() * v.cholesky().unwrap().solve(&x);
-    let left = information.cholesky().unwrap().inverse();
-    let Truth { h_nt, z_nt, .. } = voyage.truth;
-    let headings = (0..HEADINGS).map(|k| {
-        let row = DVector::from_row_slice(&slopes(k as f64 * 10.0, h_nt, z_nt));
-        row.dot(&(&left * &row))
-    });
-    headings.sum::<f64>() / HEADINGS as f64
-}
-
-/// Mean square error of the fitted curve, the gyro's constant aside.
-fn square_error(voyage: &Voyage) -> Option<f64> {
-    let model = fit_robust(&voyage.observations, &RobustOptions::default())
-        .ok()?
-        .model;
-    let Truth {
-        h_nt,
-        z_nt,
-        gyro_constant_deg,
-        ..
-    } = voyage.truth;
-    let squares = (0..HEADINGS).map(|k| {
-        let compass = k as f64 * 10.0;
-        let truth = true_deviation(&voyage.truth, compass, h_nt, z_nt) + gyro_constant_deg;
-        wrap_180(predicted(&model, compass, h_nt, z_nt).0 - truth).powi(2)
-    });
-    Some(squares.sum::<f64>() / HEADINGS as f64)
-}
-
-fn ratio(variety: Variety, days: f64, ships: u64, faults: &Faults) -> f64 {
-    let swing = swing_covariance(faults, variety);
-    let (mut errors, mut bounds) = (0.0, 0.0);
-    for seed in 0..ships {
-        let voyage = sail(7000 + seed, variety, days, faults);
-        if let Some(error) = square_error(&voyage) {
-            errors += error;
-            bounds += bound(&voyage, faults, &swing);
-        }
-    }
-    (errors / bounds).sqrt()
+    results.sort_by_key(|(seed, _)| *seed);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// The error over the bound.
 fn table_of_efficiency(ships: u64) {
-    let faults = Faults {
-        storms_per_month: 0.0,
-        ..Faults::USUAL
-    };
-    for variety in [Variety::Rich, Variety::Medium, Variety::Poor] {
-        let ratio = ratio(variety, 14.0, ships, &faults);
-        println!("{variety:?}, 14 days: error {ratio:.2} times the bound");
+    println!("error over the Cramer-Rao bound, 14 days, own place, reference's constant aside:");
+    for variety in VARIETIES {
+        let squares = each(7000..7000 + ships, |seed| error_and_bound(seed, variety));
+        let found: Vec<(f64, f64)> = squares.into_iter().flatten().collect();
+        let ratio_of = |ships: &mut dyn Iterator<Item = &(f64, f64)>| {
+            let (error, bound) = ships.fold((0.0, 0.0), |sum, s| (sum.0 + s.0, sum.1 + s.1));
+            (error / bound).sqrt()
+        };
+        let ratio = ratio_of(&mut found.iter());
+        // How much the ratio owes to which ships were drawn: each left out in turn.
+        let n = found.len() as f64;
+        let spread: f64 = (0..found.len())
+            .map(|left_out| {
+                let others = found.iter().enumerate().filter(|(i, _)| *i != left_out);
+                (ratio_of(&mut others.map(|(_, s)| s)) - ratio).powi(2)
+            })
+            .sum();
+        let error = (found.iter().map(|s| s.0).sum::<f64>() / n).sqrt();
+        println!(
+            "{:8} ships {} error {error:.3} times the bound {ratio:.3} +- {:.3}",
+            format!("{variety:?}"),
+            found.len(),
+            (spread * (n - 1.0) / n).sqrt(),
+        );
     }
+}
+
+/// Mean square error of the fitted curve, the gyro's constant counted to the
+/// truth, and its bound; none when the fit is refused.
+fn error_and_bound(seed: u64, variety: Variety) -> Option<(f64, f64)> {
+    let voyage = fair(seed, variety, 14.0, &Faults::USUAL);
+    let fitted = fit_robust(&voyage.observations, &options(&voyage.sizes)).ok()?;
+    let Truth { h_nt, z_nt, .. } = voyage.truth;
+    let squares: f64 = (0..HEADINGS)
+        .map(|k| {
+            let compass = k as f64 * 10.0;
+            let truth = true_deviation(&voyage.truth, compass, h_nt, z_nt);
+            let predicted = predicted(&fitted.model, compass, h_nt, z_nt).0;
+            wrap_180(predicted - truth - voyage.reference_constant_deg()).powi(2)
+        })
+        .sum();
+    Some((squares / HEADINGS as f64, bound(&voyage, h_nt, z_nt)))
+}
+
+fn tally(seeds: std::ops::Range<u64>, sail: impl Fn(u64) -> Tally + Sync) -> Tally {
+    let mut sum = Tally::default();
+    for one in each(seeds, sail) {
+        sum.merge(&one);
+    }
+    sum
 }
 
 /// How often the band holds the truth.
 fn table_of_coverage(ships: u64) {
-    for days in [10.0, 60.0] {
-        for variety in [Variety::Rich, Variety::Medium, Variety::Poor] {
-            let mut tally = Tally::default();
-            for seed in 0..ships {
-                tally.add(seed, variety, days, &Faults::USUAL);
+    for satellite in [false, true] {
+        println!("\ncoverage, satellite compass beside the gyro: {satellite}");
+        let faults = Faults {
+            satellite,
+            ..Faults::USUAL
+        };
+        for days in [14.0, 60.0] {
+            for variety in VARIETIES {
+                let tally = tally(0..ships, |seed| Tally::of(seed, variety, days, &faults));
+                print(&format!("{variety:?} {days} days"), &tally);
             }
-            tally.print(&format!("{variety:?} {days} days"));
         }
     }
 }
 
+fn print(name: &str, tally: &Tally) {
+    let held = |held: &Held| {
+        format!(
+            "{:4.1} % rms {:.3} se {:.3}",
+            100.0 * held.share(),
+            held.rms(),
+            held.se()
+        )
+    };
+    println!(
+        "{name:24} ships {} refused {} passed {:5.1} % | own {} | away {} | shape own {} | away {}",
+        tally.ships,
+        tally.refused,
+        100.0 * f64::from(tally.passed) / f64::from(tally.ships),
+        held(&tally.own),
+        held(&tally.away),
+        held(&tally.own_shape),
+        held(&tally.away_shape),
+    );
+}
+
 /// What happens when ships or instruments are not as usual.
 fn table_of_the_unusual(ships: u64) {
+    println!("\nunusual ships and instruments:");
     let usual = Faults::USUAL;
     let quiet = Faults {
         slow_gyro_deg: 0.05,
@@ -185,85 +152,28 @@ fn table_of_the_unusual(ships: u64) {
         swing_deg: 0.05,
         ..usual
     };
+    let of = |change: fn(&mut Faults)| {
+        let mut faults = usual;
+        change(&mut faults);
+        faults
+    };
     let cases = [
-        (
-            "ship twice as magnetic",
-            60.0,
-            Faults { ship: 2.0, ..usual },
-        ),
-        (
-            "gyro swings 0.8",
-            60.0,
-            Faults {
-                schuler_deg: 0.8,
-                ..usual
-            },
-        ),
-        (
-            "gyro wanders 0.8",
-            60.0,
-            Faults {
-                slow_gyro_deg: 0.8,
-                ..usual
-            },
-        ),
-        (
-            "gyro constant 0.5",
-            60.0,
-            Faults {
-                gyro_constant_deg: 0.5,
-                ..usual
-            },
-        ),
-        (
-            "speed error left 0.3",
-            60.0,
-            Faults {
-                speed_error: 0.3,
-                ..usual
-            },
-        ),
+        ("ship twice as magnetic", 60.0, of(|f| f.ship = 2.0)),
+        ("gyro swings 0.8", 60.0, of(|f| f.schuler_deg = 0.8)),
+        ("gyro wanders 0.8", 60.0, of(|f| f.slow_gyro_deg = 0.8)),
+        ("speed error left 0.3", 60.0, of(|f| f.speed_error = 0.3)),
         ("quiet instruments", 60.0, quiet),
-        (
-            "outliers 3 %",
-            60.0,
-            Faults {
-                outliers: 0.03,
-                ..usual
-            },
-        ),
-        (
-            "six storms a month",
-            60.0,
-            Faults {
-                storms_per_month: 6.0,
-                ..usual
-            },
-        ),
-        ("no drift, 200 days", 200.0, usual),
-        (
-            "drift 150 nT, 200 days",
-            200.0,
-            Faults {
-                drift_nt: 150.0,
-                ..usual
-            },
-        ),
-        (
-            "drift 300 nT, 200 days",
-            200.0,
-            Faults {
-                drift_nt: 300.0,
-                ..usual
-            },
-        ),
+        ("outliers 3 %", 60.0, of(|f| f.outliers = 0.03)),
+        ("six storms a month", 60.0, of(|f| f.storms_per_month = 6.0)),
+        ("no drift, 200 days", 200.0, of(|f| f.drift_nt = 0.0)),
+        ("drift 150 nT, 200 days", 200.0, of(|f| f.drift_nt = 150.0)),
+        ("drift 300 nT, 200 days", 200.0, of(|f| f.drift_nt = 300.0)),
     ];
     for (name, days, faults) in cases {
-        let mut tally = Tally::default();
-        for seed in 0..ships {
-            let variety = [Variety::Rich, Variety::Medium, Variety::Poor][seed as usize % 3];
-            tally.add(seed + 5000, variety, days, &faults);
-        }
-        tally.print(name);
+        let tally = tally(5000..5000 + ships, |seed| {
+            let variety = VARIETIES[(seed % 3) as usize];
+            Tally::of(seed, variety, days, &faults)
+        });
+        print(name, &tally);
     }
 }

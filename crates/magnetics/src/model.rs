@@ -54,6 +54,58 @@ pub struct Identifiable {
     pub constant_deg: bool,
 }
 
+/// What a model rests on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quality {
+    /// How many samples with independent errors would tell the deviation, where
+    /// the ship was last, as well as all her samples together: a gyro's errors
+    /// last for hours and days, so that samples repeat each other.
+    pub effective_samples: f64,
+    /// Standard error of the worst known combination of parameters over that of
+    /// the best, by the data alone and in units of what ships differ by; none
+    /// where the data leave one quite open.
+    pub condition: Option<f64>,
+    /// What part of the knowledge of each parameter is from the data.
+    pub from_data: FromData,
+    /// What the model should not be trusted for.
+    pub cautions: Vec<Caution>,
+}
+
+/// For each parameter and the constant the part of its variance before the data
+/// that they have taken away: 0 rests on the prior alone, 1 on the data alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)] // the names are those of the parameters
+pub struct FromData {
+    pub bx_nt: f64,
+    pub chi13: f64,
+    pub by_nt: f64,
+    pub chi23: f64,
+    pub chi11_minus_chi22: f64,
+    pub chi12: f64,
+    pub chi21: f64,
+    pub constant_deg: f64,
+}
+
+/// What a model should not be trusted for, though it is the best there is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
+#[serde(tag = "caution", rename_all = "snake_case")]
+pub enum Caution {
+    /// The data come from too narrow a range of magnetic latitudes: only the sums
+    /// bx + χ13 Z and by + χ23 Z are known, so that elsewhere the prior rules.
+    #[error(
+        "the magnetic latitudes sailed tell bx + chi13 Z and by + chi23 Z but not their parts: \
+         far from there the band rests on ships at large"
+    )]
+    OneMagneticLatitude,
+    /// Some samples lie where the horizontal field is so weak that a compass is
+    /// sluggish and small fields disturb it much.
+    #[error("samples from a horizontal field of only {h_nt:.0} nT")]
+    WeakField {
+        /// The weakest horizontal field.
+        h_nt: f64,
+    },
+}
+
 /// A fitted model: what `fit` prints, what the server stores, and what the
 /// bridge steers by. Its JSON is described in docs/model.md.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,4 +126,6 @@ pub struct Model {
     pub samples_used: u64,
     /// Samples that were left out or held to be outliers.
     pub samples_rejected: u64,
+    /// What it rests on; none when the model came without.
+    pub quality: Option<Quality>,
 }

@@ -28,6 +28,9 @@ const USUAL: NoiseLevels = NoiseLevels {
     compass_swing_deg: 0.25,
     variation_deg: 0.2,
     drift_nt: 60.0,
+    turn_deg: 0.3,
+    satellite_deg: 0.2,
+    difference_deg: 0.2,
 };
 const BISCAY: EarthField = EarthField {
     h_nt: 24_000.0,
@@ -69,6 +72,7 @@ fn known_ship(rng: &mut ChaCha8Rng, rows: u32, earth: EarthField) -> Model {
         rms_deg: None,
         samples_used: 0,
         samples_rejected: 0,
+        quality: None,
     }
 }
 

@@ -28,6 +28,7 @@ fn observation() -> impl Strategy<Value = Observation> {
         proptest::option::of(0.0..40.0_f64),
         any::<u16>(),
         0.0..3.0_f64,
+        proptest::option::of(-180.0..=180.0_f64),
     );
     (when, place, 0.0..360.0_f64, deviation, field, rest).prop_map(
         |(when, place, compass, deviation, (h_nt, z_nt), rest)| Observation {
@@ -39,6 +40,7 @@ fn observation() -> impl Strategy<Value = Observation> {
             h_nt,
             z_nt,
             gyro_share: rest.0,
+            gyro_less_satellite_deg: rest.4,
             sog_kn: rest.1,
             windows: rest.2,
             weight: rest.3,

@@ -28,6 +28,7 @@ fn model(array: [f64; 7], constant_deg: f64, covariance: Option<&Covariance>) ->
         rms_deg: None,
         samples_used: 0,
         samples_rejected: 0,
+        quality: None,
     }
 }
 

@@ -31,6 +31,7 @@ fn as_printed() -> Vec<Observation> {
                 h_nt: number(8) * NT_PER_GAUSS,
                 z_nt: number(9) * NT_PER_GAUSS,
                 gyro_share: 1.0,
+                gyro_less_satellite_deg: None,
                 sog_kn: None,
                 windows: 60,
                 weight: 1.0,

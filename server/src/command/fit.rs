@@ -4,9 +4,10 @@ use super::{BadInput, answer, input, json, table};
 use crate::config::{Fit, Method};
 use binnacle_magnetics::deviation::NAMES;
 use binnacle_magnetics::fit::{
-    GyroSpeedError, RobustOptions, fit_ols, fit_paper, fit_robust, observations_from_csv,
+    FitError, GyroSpeedError, Observation, REFERENCE_CONSTANT_SD_DEG, RobustOptions, fit_ols,
+    fit_paper, fit_robust, readings_from_csv, refer,
 };
-use binnacle_magnetics::model::Model;
+use binnacle_magnetics::model::{Model, Quality};
 use std::process::ExitCode;
 
 /// Prints the model, as a table or as JSON.
@@ -24,28 +25,22 @@ pub fn fit(arguments: &Fit) -> anyhow::Result<ExitCode> {
 }
 
 fn find(arguments: &Fit) -> Result<Model, BadInput> {
-    let options = RobustOptions::default();
     let table = input::Table::read(&arguments.file)?;
-    let read = observations_from_csv(
-        &table.rows,
-        GyroSpeedError::Corrected,
-        options.reference_constant_sd_deg,
-    )
-    .map_err(|error| table.complaint(&error))?;
+    let readings = readings_from_csv(&table.rows, GyroSpeedError::Corrected)
+        .map_err(|error| table.complaint(&error))?;
+    let refused = |error: FitError| BadInput(format!("{}: {error}", arguments.file.display()));
+    let referred = refer(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
+    let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
     let fitted = match arguments.method {
-        Method::Paper => fit_paper(&read.observations),
-        Method::Ols => fit_ols(&read.observations),
+        Method::Paper => fit_paper(&observations),
+        Method::Ols => fit_ols(&observations),
         Method::Robust => {
-            let options = RobustOptions {
-                reference_constant_sd_deg: read.references.constant_sd_deg,
-                ..options
-            };
-            fit_robust(&read.observations, &options).map(|fit| fit.model)
+            let options = RobustOptions::of_any_ship(referred.check.constant_sd_deg);
+            fit_robust(&observations, &options).map(|fit| fit.model)
         }
     };
-    let mut model =
-        fitted.map_err(|error| BadInput(format!("{}: {error}", arguments.file.display())))?;
-    model.samples_rejected += read.without_reference;
+    let mut model = fitted.map_err(refused)?;
+    model.samples_rejected += (readings.len() - observations.len()) as u64;
     Ok(model)
 }
 
@@ -95,7 +90,17 @@ fn describe(model: &Model) -> String {
         ),
         model.samples_used,
         model.samples_rejected
-    )
+    ) + &model.quality.as_ref().map_or_else(String::new, worth)
+}
+
+/// What the samples are worth, and what not to trust the model for.
+fn worth(quality: &Quality) -> String {
+    let samples = quality.effective_samples;
+    let worth = format!("\nworth {samples:.0} samples with independent errors");
+    let cautions = quality.cautions.iter();
+    cautions.fold(worth, |lines, caution| {
+        lines + "\ncaution: " + &caution.to_string()
+    })
 }
 
 /// Fields to the nanotesla, angles to the hundredth, ratios to the fourth place.

@@ -42,6 +42,57 @@ pub struct ModelSchema {
     samples_used: u64,
     /// Samples that were left out or held to be outliers.
     samples_rejected: u64,
+    /// What the model rests on; absent in a model that came without.
+    #[schema(required = false)]
+    quality: Option<QualitySchema>,
+}
+
+/// What a model rests on.
+#[derive(ToSchema)]
+#[schema(as = Quality)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::model::Quality")]
+pub(super) struct QualitySchema {
+    /// How many samples with independent errors would tell the deviation, where
+    /// the ship was last, as well as all her samples together.
+    effective_samples: f64,
+    /// Standard error of the worst known combination of parameters over that of
+    /// the best, by the data alone; null where the data leave one quite open.
+    #[schema(required)]
+    condition: Option<f64>,
+    /// What part of the knowledge of each parameter is from the data, 0 to 1.
+    from_data: FromDataSchema,
+    /// What the model should not be trusted for.
+    cautions: Vec<CautionSchema>,
+}
+
+/// For each parameter and the constant: 0 rests on ships at large, 1 on the data.
+#[derive(ToSchema)]
+#[schema(as = FromData)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::model::FromData")]
+pub(super) struct FromDataSchema {
+    bx_nt: f64,
+    chi13: f64,
+    by_nt: f64,
+    chi23: f64,
+    chi11_minus_chi22: f64,
+    chi12: f64,
+    chi21: f64,
+    constant_deg: f64,
+}
+
+/// What a model should not be trusted for.
+#[derive(Serialize, ToSchema)]
+#[serde(tag = "caution", rename_all = "snake_case")]
+#[schema(as = Caution)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::model::Caution")]
+pub(super) enum CautionSchema {
+    /// Only the sums bx + χ13 Z and by + χ23 Z are known.
+    OneMagneticLatitude,
+    /// Some samples lie where the horizontal field is weak.
+    WeakField {
+        /// The weakest horizontal field, nT.
+        h_nt: f64,
+    },
 }
 
 /// Poisson's parameters over the shielding factor.

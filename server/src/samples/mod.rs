@@ -113,6 +113,7 @@ struct SampleSchema {
 )]
 enum SampleReasonSchema {
     NoReference,
+    ReferenceFailed,
     OutsideFieldModel,
     FieldTooWeak,
     MagneticCargo,

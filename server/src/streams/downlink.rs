@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::models::{self, ModelSchema};
 use crate::settings::{self, AgentSettings};
 use crate::time::Time;
+use binnacle_magnetics::model::Model;
 use binnacle_wire::messages::{Downlink, ModelDownlink};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
@@ -85,7 +86,11 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
                 id: model.id.0,
                 version: model.version as u32,
                 data_until: model.data_until.0,
-                model: model.model.0,
+                // What the model rests on is for the shore; the bridge has its band.
+                model: Model {
+                    quality: None,
+                    ..model.model.0
+                },
             }),
         settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
         server_time: app.clock.now(),

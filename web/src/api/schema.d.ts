@@ -651,6 +651,19 @@ export interface components {
          * @enum {string}
          */
         CargoKind: "steel" | "scrap" | "containers" | "other";
+        /** @description What a model should not be trusted for. */
+        Caution: {
+            /** @enum {string} */
+            caution: "one_magnetic_latitude";
+        } | {
+            /** @enum {string} */
+            caution: "weak_field";
+            /**
+             * Format: double
+             * @description The weakest horizontal field, nT.
+             */
+            h_nt: number;
+        };
         /** @description A magnetic element aboard. */
         Compass: {
             /** @description When it was entered. */
@@ -847,6 +860,25 @@ export interface components {
          * @enum {string}
          */
         FieldModel: "igrf14" | "wmm2025";
+        /** @description For each parameter and the constant: 0 rests on ships at large, 1 on the data. */
+        FromData: {
+            /** Format: double */
+            bx_nt: number;
+            /** Format: double */
+            by_nt: number;
+            /** Format: double */
+            chi11_minus_chi22: number;
+            /** Format: double */
+            chi12: number;
+            /** Format: double */
+            chi13: number;
+            /** Format: double */
+            chi21: number;
+            /** Format: double */
+            chi23: number;
+            /** Format: double */
+            constant_deg: number;
+        };
         /**
          * @description Whether the gyro takes its speed error out itself.
          * @enum {string}
@@ -1075,6 +1107,7 @@ export interface components {
             covariance: number[][] | null;
             identifiable: components["schemas"]["Identifiable"] | null;
             parameters_over_lambda: components["schemas"]["ParametersOverLambda"];
+            quality?: components["schemas"]["Quality"] | null;
             /**
              * Format: double
              * @description Root mean square of the residuals, degrees.
@@ -1295,6 +1328,25 @@ export interface components {
             /** @description Names the kind of problem; ends in a word that programs may act on. */
             type: string;
         };
+        /** @description What a model rests on. */
+        Quality: {
+            /** @description What the model should not be trusted for. */
+            cautions: components["schemas"]["Caution"][];
+            /**
+             * Format: double
+             * @description Standard error of the worst known combination of parameters over that of
+             *     the best, by the data alone; null where the data leave one quite open.
+             */
+            condition: number | null;
+            /**
+             * Format: double
+             * @description How many samples with independent errors would tell the deviation, where
+             *     the ship was last, as well as all her samples together.
+             */
+            effective_samples: number;
+            /** @description What part of the knowledge of each parameter is from the data, 0 to 1. */
+            from_data: components["schemas"]["FromData"];
+        };
         /** @description How samples are read. */
         ReadingSettings: {
             /** @description The model of the earth's field. */
@@ -1452,7 +1504,7 @@ export interface components {
          * @description Why a sample was left out, or counted for less.
          * @enum {string}
          */
-        SampleReason: "no_reference" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "outlier" | "no_model";
+        SampleReason: "no_reference" | "reference_failed" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "outlier" | "no_model";
         /** @description What a user signs in with. */
         SignIn: {
             /**

@@ -80,7 +80,11 @@ pub(super) fn errors_of_watches(
     let gyro = gyro_share / lat.cos().max(0.17);
     let variation = (24_000.0 / earth.h_nt).clamp(0.5, 4.0);
     let parts = [
-        (noise.schuler_deg * gyro, Memory::schuler()),
+        // A watch on another heading begins with a turn.
+        (
+            noise.schuler_deg.hypot(noise.turn_deg) * gyro,
+            Memory::schuler(),
+        ),
         (noise.slow_gyro_deg * gyro, Memory::fading(3.0 * DAY_S)),
         (noise.compass_swing_deg, Memory::fading(20.0 * 60.0)),
         (
@@ -140,11 +144,14 @@ mod tests {
     fn a_gyro_repeats_itself_and_a_satellite_compass_does_not() {
         let noise = NoiseLevels {
             white_deg: 0.25,
-            schuler_deg: 0.35,
+            schuler_deg: 0.2,
+            turn_deg: 0.3,
             slow_gyro_deg: 0.3,
             compass_swing_deg: 0.25,
             variation_deg: 0.2,
             drift_nt: 60.0,
+            satellite_deg: 0.2,
+            difference_deg: 0.2,
         };
         let earth = EarthField {
             h_nt: 20_000.0,

@@ -5,9 +5,7 @@ use super::reading::Reading;
 use super::settings::AnalysisSettings;
 use super::{Epoch, SampleReason};
 use crate::estimate::Prior;
-use crate::fit::{
-    Observation, REJECTED_BELOW, ReferenceCheck, RobustFit, RobustOptions, fit_robust,
-};
+use crate::fit::{HeadingReading, REJECTED_BELOW, RobustFit, RobustOptions, fit_robust, refer};
 use crate::model::Model;
 use crate::time::Timestamp;
 
@@ -46,12 +44,14 @@ fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>) -> Epoch 
 
 /// What the epoch before tells of this one: nothing after correctors or the
 /// compass itself were moved, for then everything may be another.
-fn prior(epoch: &Epoch, before: Option<&Model>) -> Prior {
+fn prior(epoch: &Epoch, before: Option<&Model>, reference_constant_sd_deg: f64) -> Prior {
     let upset = match epoch.begun_by {
-        Some(kind) if kind.leaves_the_iron() => before.and_then(Prior::after_upset),
+        Some(kind) if kind.leaves_the_iron() => {
+            before.and_then(|model| Prior::after_upset(model, reference_constant_sd_deg))
+        }
         _ => None,
     };
-    upset.unwrap_or_else(Prior::population)
+    upset.unwrap_or_else(|| Prior::population(reference_constant_sd_deg))
 }
 
 /// Fits an epoch's model to its readings and notes in each what became of it;
@@ -64,27 +64,41 @@ pub(super) fn fit_epoch(
 ) {
     epoch.data_from = readings.first().map(|r| r.sample.time);
     epoch.data_until = readings.last().map(|r| r.sample.time);
-    let pairs = readings
+    let (indices, heading_readings): (Vec<usize>, Vec<HeadingReading>) = readings
         .iter()
-        .filter_map(|r| r.gyro.zip(r.sample.satellite));
-    let references = ReferenceCheck::new(pairs, settings.reference_constant_sd_deg);
-    epoch.references = Some(references);
+        .enumerate()
+        .filter_map(|(index, reading)| Some((index, heading_reading(reading)?)))
+        .unzip();
+    let referred = match refer(&heading_readings, settings.reference_constant_sd_deg) {
+        Ok(referred) => referred,
+        Err(refusal) => {
+            for index in indices {
+                let reason = &mut readings[index].diagnostic.reason;
+                *reason = reason.or(Some(SampleReason::ReferenceFailed));
+            }
+            epoch.refusal = Some(refusal);
+            return;
+        }
+    };
+    epoch.references = Some(referred.check);
 
     let mut taken = Vec::new();
     let mut observations = Vec::new();
-    for (index, reading) in readings.iter_mut().enumerate() {
-        let Some(observation) = observe(reading, &references) else {
+    for (index, observation) in indices.into_iter().zip(referred.observations) {
+        let diagnostic = &mut readings[index].diagnostic;
+        let Some(observation) = observation else {
+            diagnostic.reason = diagnostic.reason.or(Some(SampleReason::ReferenceFailed));
             continue;
         };
-        reading.diagnostic.deviation_deg = Some(observation.deviation.degrees_east());
-        if reading.diagnostic.reason.is_none() {
+        diagnostic.deviation_deg = Some(observation.deviation.degrees_east());
+        if diagnostic.reason.is_none() {
             taken.push(index);
             observations.push(observation);
         }
     }
     let options = RobustOptions {
-        prior: prior(epoch, before),
-        reference_constant_sd_deg: references.constant_sd_deg,
+        prior: prior(epoch, before, referred.check.constant_sd_deg),
+        reference_constant_sd_deg: referred.check.constant_sd_deg,
     };
     match fit_robust(&observations, &options) {
         Ok(fit) => {
@@ -103,19 +117,23 @@ pub(super) fn fit_epoch(
     }
 }
 
-fn observe(reading: &Reading, references: &ReferenceCheck) -> Option<Observation> {
+/// What the reading says of headings; none without a reference or a field.
+fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
     let sample = &reading.sample;
     let (variation, earth) = reading.variation.zip(reading.earth)?;
-    let merged = references.merge(reading.gyro, sample.satellite, sample.position.lat_deg())?;
-    Some(Observation {
+    if reading.gyro.is_none() && sample.satellite.is_none() {
+        return None;
+    }
+    Some(HeadingReading {
         time: Some(sample.time),
         position: Some(sample.position),
         compass: sample.compass,
-        deviation: (merged.heading - variation) - sample.compass,
+        gyro: reading.gyro,
+        satellite: sample.satellite,
+        unnamed: None,
         variation,
         h_nt: earth.h_nt,
         z_nt: earth.z_nt,
-        gyro_share: merged.gyro_share,
         sog_kn: sample.sog_kn,
         windows: sample.windows,
         weight: 1.0,

@@ -28,7 +28,7 @@ use serde::{Deserialize, Serialize};
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-1";
+pub const ESTIMATOR: &str = "state-space-2";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,6 +128,9 @@ pub struct SampleDiagnostic {
 pub enum SampleReason {
     /// Neither gyro nor satellite compass.
     NoReference,
+    /// Gyro and satellite compass contradict each other and neither could be
+    /// shown to be right, or the only one repeated itself while the ship turned.
+    ReferenceFailed,
     /// Before or after the years that the field model covers.
     OutsideFieldModel,
     /// The horizontal field is too weak for a compass.

@@ -1,7 +1,7 @@
 //! What an operator decides about how a vessel's samples are read.
 
 use crate::field::FieldModel;
-use crate::fit::GyroSpeedError;
+use crate::fit::{GyroSpeedError, REFERENCE_CONSTANT_SD_DEG};
 use serde::{Deserialize, Serialize};
 
 /// Settings of an analysis. They are part of its input: a change of settings
@@ -24,7 +24,7 @@ impl Default for AnalysisSettings {
         AnalysisSettings {
             field_model: FieldModel::Igrf14,
             gyro_speed_error: GyroSpeedError::Corrected,
-            reference_constant_sd_deg: 0.5,
+            reference_constant_sd_deg: REFERENCE_CONSTANT_SD_DEG,
         }
     }
 }

@@ -46,6 +46,7 @@ fn model_of(ship: &ShipMagnetism) -> Model {
         rms_deg: None,
         samples_used: 0,
         samples_rejected: 0,
+        quality: None,
     }
 }
 

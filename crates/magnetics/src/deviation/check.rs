@@ -153,6 +153,7 @@ mod tests {
             rms_deg: Some(0.4),
             samples_used: 100,
             samples_rejected: 3,
+            quality: None,
         }
     }
 

@@ -153,6 +153,7 @@ mod tests {
             rms_deg: None,
             samples_used: 0,
             samples_rejected: 0,
+            quality: None,
         }
     }
 

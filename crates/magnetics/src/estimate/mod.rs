@@ -17,13 +17,14 @@
 //!   at the noisy compass heading alone, which would bias the fit;
 //! - every unknown has a prior, so that the normal matrix is positive definite
 //!   and no result is ever NaN;
-//! - time runs backwards through the filter, so that where the ship's magnetism
-//!   drifts the parameters are those at the last observation.
+//! - where the ship's magnetism drifts, the parameters are those at the last
+//!   observation.
 
 mod levels;
 mod needle;
 mod noise;
 mod prior;
+mod quality;
 mod row;
 mod solve;
 mod start;

@@ -1,7 +1,7 @@
 //! What is known of a ship's magnetism before her first sample.
 
 use crate::ship::PARAMETERS;
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 /// Standard deviations over ships of bx, χ13, by, χ23, χ11−χ22, χ12 and χ21,
 /// all over λ; fields in nT. Of the size of the ship in Basterretxea-Iribar,
@@ -9,15 +9,20 @@ use nalgebra::SMatrix;
 pub(crate) const POPULATION_SD: [f64; PARAMETERS] =
     [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
 
-/// A compass may be bolted down a few degrees askew, and some are. So wide a
-/// prior leaves the sum of A and the constant to the data.
-pub(crate) const ALIGNMENT_SD_DEG: f64 = 3.0;
+/// Most compasses are bolted down to half a degree; that some are a few degrees
+/// askew is what the prior's tail is for.
+const ALIGNMENT_SD_DEG: f64 = 0.5;
+
+/// Degrees of freedom of Student's distribution over ships: the seven parameters
+/// together, and the constant. A ship far out in the tail is believed.
+const FREEDOM: [f64; 2] = [6.0, 3.0];
 
 /// How far the induced parts may move when the permanent ones are upset, as a
 /// part of the population's standard deviations.
 const INDUCED_UPSET: f64 = 0.4;
 
-/// A model known beforehand: of the same ship's epoch before, say.
+/// What is known beforehand: of ships at large, or of the same ship's epoch
+/// before. The constant is as headings show it, the reference's own in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     /// The seven parameters and the constant, in the order of
@@ -28,23 +33,29 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// Ships at large.
-    pub fn population() -> Prior {
+    /// Ships at large, whose reference has a constant error of
+    /// `reference_constant_sd_deg`.
+    pub fn population(reference_constant_sd_deg: f64) -> Prior {
         let mut covariance = [[0.0; 8]; 8];
         for (j, sd) in POPULATION_SD.iter().enumerate() {
             covariance[j][j] = sd * sd;
         }
-        covariance[PARAMETERS][PARAMETERS] = ALIGNMENT_SD_DEG.powi(2);
+        covariance[PARAMETERS][PARAMETERS] =
+            ALIGNMENT_SD_DEG.powi(2) + reference_constant_sd_deg.powi(2);
         Prior {
             mean: [0.0; 8],
             covariance,
         }
     }
 
-    /// A ship whose permanent magnetism was upset after `model` was fitted: bx
-    /// and by may be anything, what the iron's shape induces is much as it was.
-    /// None when the model has no covariance.
-    pub fn after_upset(model: &crate::model::Model) -> Option<Prior> {
+    /// A ship whose permanent magnetism was upset after `model` was fitted with
+    /// a reference of the given constant error: bx and by may be anything, what
+    /// the iron's shape induces is much as it was. None when the model has no
+    /// covariance.
+    pub fn after_upset(
+        model: &crate::model::Model,
+        reference_constant_sd_deg: f64,
+    ) -> Option<Prior> {
         let mut covariance = model.covariance?;
         let mut mean = [0.0; 8];
         mean[..PARAMETERS].copy_from_slice(&model.parameters_over_lambda.to_array());
@@ -57,6 +68,10 @@ impl Prior {
             };
             covariance[j][j] += upset * upset;
         }
+        // The reference errs now as it did then: what headings will show of the
+        // constant is known better than the constant itself.
+        let constant = &mut covariance[PARAMETERS][PARAMETERS];
+        *constant = (*constant - reference_constant_sd_deg.powi(2)).max(0.01);
         Some(Prior { mean, covariance })
     }
 
@@ -75,6 +90,30 @@ impl Prior {
         let finite = mean.iter().chain(information.iter()).all(|x| x.is_finite());
         finite.then_some((mean, information))
     }
+}
+
+/// How far a solution lies out in the prior's tail: factors for the standard
+/// deviations of the seven parameters and of the constant, from the solution's
+/// distance to the mean with its covariance.
+pub(crate) fn tail(
+    off: &SVector<f64, 8>,
+    covariance: &SMatrix<f64, 8, 8>,
+    information: &SMatrix<f64, 8, 8>,
+) -> [f64; 8] {
+    let spread = covariance + off * off.transpose();
+    let distance = |from: usize, to: usize| -> f64 {
+        let of = from..to;
+        of.clone()
+            .flat_map(|i| of.clone().map(move |j| (i, j)))
+            .map(|(i, j)| information[(i, j)] * spread[(i, j)])
+            .sum()
+    };
+    let factor = |freedom: f64, size: f64, distance: f64| {
+        ((freedom + distance.max(0.0)) / (freedom + size)).sqrt()
+    };
+    let mut out = [factor(FREEDOM[0], 7.0, distance(0, PARAMETERS)); 8];
+    out[PARAMETERS] = factor(FREEDOM[1], 1.0, distance(PARAMETERS, 8));
+    out
 }
 
 /// The population's standard deviations, the constant's (one degree) last: the

@@ -4,7 +4,7 @@
 use super::needle::Needle;
 use super::noise::{STATES, Transition};
 use super::prior::scales;
-use crate::angle::wrap_180;
+use crate::angle::{TrueHeading, wrap_180};
 use crate::deviation::Coefficients;
 use crate::fit::{Observation, gyro_speed_error_deg};
 use crate::model::Parameters;
@@ -12,21 +12,28 @@ use crate::position::Position;
 use crate::ship::{EarthField, PARAMETERS};
 use std::f64::consts::TAU;
 
-/// Unknowns that do not change: seven parameters, the constant, the gyro's
-/// leftover speed error, and two of the daily variation.
-pub(crate) const UNKNOWNS: usize = PARAMETERS + 1 + 3;
+/// Unknowns that do not change: seven parameters, the constant, and nuisances.
+pub(crate) const UNKNOWNS: usize = PARAMETERS + 1 + NUISANCES;
 /// Where the constant stands.
 pub(crate) const CONSTANT: usize = PARAMETERS;
+/// The gyro's leftover speed error, two of the daily variation, and what is left
+/// of the lasting difference of gyro and satellite compass.
+const NUISANCES: usize = 4;
 
 /// Standard deviation of what is left of a gyro's speed error, as a part of it.
 const SPEED_ERROR_SD: f64 = 0.15;
 /// Standard deviation of the daily swing of variation, degrees at 24 µT.
 const DAILY_SD_DEG: f64 = 0.08;
+/// Standard deviation of what is left, degrees, of the lasting difference of
+/// gyro and satellite compass when their usual difference is taken off.
+const OFFSET_SD_DEG: f64 = 0.3;
+/// A change of heading beyond this upsets a gyro.
+const TURN_DEG: f64 = 20.0;
 /// Where H is this, an error of variation has its nominal size.
 const NOMINAL_H_NT: f64 = 24_000.0;
-/// Share of the reference in the heading at which rows are linearised, from the
-/// sizes of the sample-to-sample noise of compass and reference.
-const FUSION_WEIGHT: f64 = 0.6;
+/// Share of the reference in the heading at which rows are linearised, as long as
+/// the sizes of the noise are not known.
+pub(crate) const USUAL_FUSION: f64 = 0.7;
 /// A residual beyond this says nothing about the heading.
 const FUSION_LIMIT_DEG: f64 = 3.0;
 /// Knots taken where speed is not known.
@@ -41,13 +48,17 @@ pub(crate) struct Station {
     pub(crate) transition: Transition,
     /// How the states but the drift add to the residual; the Schuler pair's
     /// rate does not.
-    pub(crate) gyro_load: f64,
-    pub(crate) variation_load: f64,
+    gyro_load: f64,
+    satellite_load: f64,
+    variation_load: f64,
+    /// The gyro's states' part in a difference of both references.
+    gyro_error: f64,
     /// White variance in units of a full, unit-weight row's.
     pub(crate) white_factor: f64,
-    /// Columns of the leftover speed error and the daily swing, in units of
-    /// their prior's standard deviations.
-    nuisance: [f64; 3],
+    /// Columns of the nuisances in units of their prior's standard deviations.
+    nuisance: [f64; NUISANCES],
+    /// Gyro less satellite compass, where both were read, and its columns.
+    difference: Option<(f64, [f64; NUISANCES])>,
 }
 
 /// A row at the current parameters.
@@ -59,29 +70,37 @@ pub(crate) struct Row {
     pub(crate) columns: [f64; UNKNOWNS],
     /// Its (negative) slopes by bx and by, degrees per nT.
     pub(crate) drift: [f64; 2],
+    /// What is left of the difference of both references, where both were read.
+    pub(crate) difference: Option<f64>,
 }
 
 /// Stations in the order of the observations, which the caller has sorted from
-/// the latest to the earliest.
+/// the earliest to the latest.
 pub(crate) fn stations(observations: &[Observation]) -> Vec<Station> {
-    let mut later: Option<&Observation> = None;
+    let both = observations
+        .iter()
+        .any(|o| o.gyro_less_satellite_deg.is_some());
+    let mut earlier: Option<&Observation> = None;
     let mut stations = Vec::with_capacity(observations.len());
     for observation in observations {
-        let (seconds, miles) = later.map_or((0.0, 0.0), |later| step(later, observation));
-        stations.push(station(observation, Transition::over(seconds, miles)));
-        later = Some(observation);
+        let transition = earlier.map_or_else(
+            || Transition::over(0.0, 0.0, false),
+            |earlier| step(earlier, observation),
+        );
+        stations.push(station(observation, transition, both));
+        earlier = Some(observation);
     }
     stations
 }
 
-/// Seconds and miles from one observation back to the one before it.
-fn step(later: &Observation, earlier: &Observation) -> (f64, f64) {
-    let seconds = match (later.time, earlier.time) {
-        (Some(later), Some(earlier)) => later.seconds_since(earlier).max(0.0),
+/// From one observation to the next.
+fn step(earlier: &Observation, later: &Observation) -> Transition {
+    let seconds = match (earlier.time, later.time) {
+        (Some(earlier), Some(later)) => later.seconds_since(earlier).max(0.0),
         // Rows without times have no memory in common.
         _ => 1e9,
     };
-    let miles = match (later.position, earlier.position) {
+    let miles = match (earlier.position, later.position) {
         (Some(a), Some(b)) => {
             let dlat = a.lat_deg() - b.lat_deg();
             let mid = (f64::midpoint(a.lat_deg(), b.lat_deg())).to_radians();
@@ -90,15 +109,20 @@ fn step(later: &Observation, earlier: &Observation) -> (f64, f64) {
         }
         _ => later.sog_kn.unwrap_or(TYPICAL_SPEED_KN).abs() * seconds / 3600.0,
     };
-    (seconds, miles)
+    let turn = wrap_180(true_heading(later).degrees() - true_heading(earlier).degrees());
+    Transition::over(seconds, miles, turn.abs() > TURN_DEG)
 }
 
-fn station(o: &Observation, transition: Transition) -> Station {
+fn true_heading(o: &Observation) -> TrueHeading {
+    (o.compass + o.deviation) + o.variation
+}
+
+fn station(o: &Observation, transition: Transition, both: bool) -> Station {
     // A gyro loses its sense of north towards the poles; 80° is as far as the
     // rule is meant to hold.
     let lat_deg = o.position.map_or(0.0, Position::lat_deg);
     let per_cos_lat = 1.0 / lat_deg.to_radians().cos().max(0.17);
-    let heading = (o.compass + o.deviation) + o.variation;
+    let heading = true_heading(o);
     let variation_load = (NOMINAL_H_NT / o.h_nt).clamp(0.5, 4.0);
     let speed_error = o
         .sog_kn
@@ -111,16 +135,27 @@ fn station(o: &Observation, transition: Transition) -> Station {
         _ => (0.0, 0.0),
     };
     let windows = f64::from(o.windows).clamp(1.0, FULL_WINDOWS);
+    // Half of the difference is put to either.
+    let offset_share = if both { o.gyro_share - 0.5 } else { 0.0 };
     Station {
         transition,
         gyro_load: o.gyro_share * per_cos_lat,
+        satellite_load: 1.0 - o.gyro_share,
         variation_load,
+        gyro_error: per_cos_lat,
         white_factor: (1.0 + FULL_WINDOWS / windows) / (2.0 * o.weight),
         nuisance: [
             SPEED_ERROR_SD * o.gyro_share * speed_error,
             DAILY_SD_DEG * variation_load * sin,
             DAILY_SD_DEG * variation_load * cos,
+            OFFSET_SD_DEG * offset_share,
         ],
+        difference: o.gyro_less_satellite_deg.map(|value| {
+            (
+                value,
+                [SPEED_ERROR_SD * speed_error, 0.0, 0.0, OFFSET_SD_DEG],
+            )
+        }),
     }
 }
 
@@ -139,7 +174,7 @@ pub(crate) fn in_own_units(unknowns: &Unknowns) -> ([f64; PARAMETERS], f64) {
 
 /// Predicted deviation (degrees) as the compass's user sees it, with the needle
 /// it comes from, on the magnetic heading that compass and reference agree on.
-fn predict(o: &Observation, unknowns: &Unknowns) -> (f64, Needle) {
+fn predict(o: &Observation, unknowns: &Unknowns, fusion: f64) -> (f64, Needle) {
     let (parameters, constant) = in_own_units(unknowns);
     let p = Parameters::from_array(parameters);
     let earth = EarthField {
@@ -154,16 +189,16 @@ fn predict(o: &Observation, unknowns: &Unknowns) -> (f64, Needle) {
     let by_reference = o.compass.degrees() + o.deviation.degrees_east();
     let disagreement = wrap_180(o.deviation.degrees_east() - at(by_reference).0)
         .clamp(-FUSION_LIMIT_DEG, FUSION_LIMIT_DEG);
-    at(by_reference - (1.0 - FUSION_WEIGHT) * disagreement)
+    at(by_reference - (1.0 - fusion) * disagreement)
 }
 
-/// The row of `o` at `unknowns`.
-pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns) -> Row {
-    let (predicted, needle) = predict(o, unknowns);
+/// The row of `o` at `unknowns`; `fusion` is the reference's share in its heading.
+pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns, fusion: f64) -> Row {
+    let (predicted, needle) = predict(o, unknowns, fusion);
     let gradient = needle.gradient();
     let scale = scales();
     // The heading of the row moves with the parameters too.
-    let follows = 1.0 + (1.0 - FUSION_WEIGHT) * (1.0 - needle.compass_per_magnetic());
+    let follows = 1.0 + (1.0 - fusion) * (1.0 - needle.compass_per_magnetic());
     let mut columns = [0.0; UNKNOWNS];
     for j in 0..PARAMETERS {
         columns[j] = gradient[j].to_degrees() * scale[j] * follows;
@@ -174,10 +209,15 @@ pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns) -> Ro
     for j in CONSTANT + 1..UNKNOWNS {
         residual -= columns[j] * unknowns[j];
     }
+    let difference = station.difference.map(|(value, columns)| {
+        let known = columns.iter().zip(&unknowns[CONSTANT + 1..]);
+        value - known.map(|(c, u)| c * u).sum::<f64>()
+    });
     Row {
         residual,
         columns,
         drift: [gradient[0].to_degrees(), gradient[2].to_degrees()],
+        difference,
     }
 }
 
@@ -193,19 +233,33 @@ pub(crate) fn plain_residual(o: &Observation, unknowns: &Unknowns) -> f64 {
         .ok()
         .and_then(|coefficients| coefficients.deviation_at_compass_rad(o.compass.radians()))
         .map(|deviation| deviation.to_degrees() + constant);
-    let predicted = by_compass.unwrap_or_else(|| predict(o, unknowns).0);
+    let predicted = by_compass.unwrap_or_else(|| predict(o, unknowns, USUAL_FUSION).0);
     wrap_180(o.deviation.degrees_east() - predicted)
 }
 
-/// States that a row sees, as the filter's measurement vector.
-pub(crate) fn loads(station: &Station, row: &Row) -> [f64; STATES] {
-    [
-        station.gyro_load,
-        0.0,
-        station.gyro_load,
-        1.0,
-        station.variation_load,
-        row.drift[0],
-        row.drift[1],
-    ]
+impl Station {
+    /// How the states add to the residual of `row`: the filter's measurement
+    /// vector.
+    pub(crate) fn loads(&self, row: &Row) -> [f64; STATES] {
+        [
+            self.gyro_load,
+            0.0,
+            self.gyro_load,
+            1.0,
+            self.variation_load,
+            self.satellite_load,
+            row.drift[0],
+            row.drift[1],
+        ]
+    }
+
+    /// Columns and loads of the difference of both references, where both were
+    /// read: the ship has no part in it.
+    pub(crate) fn difference(&self) -> Option<([f64; UNKNOWNS], [f64; STATES])> {
+        let (_, nuisance) = self.difference?;
+        let mut columns = [0.0; UNKNOWNS];
+        columns[CONSTANT + 1..].copy_from_slice(&nuisance);
+        let gyro = self.gyro_error;
+        Some((columns, [gyro, 0.0, gyro, 0.0, 0.0, -1.0, 0.0, 0.0]))
+    }
 }

@@ -1,17 +1,19 @@
 //! The estimate itself: a robust start, noise levels from the data, and
 //! Gauss–Newton on whitened rows.
 
-use super::levels::{Pull, fit_levels};
+use super::levels::{Pull, compass_share, fit_levels, looked_at};
 use super::noise::NoiseLevels;
-use super::prior::{Prior, scales};
+use super::prior::{Prior, scales, tail};
+use super::quality::{Evidence, quality, widely};
 use super::row::{
-    CONSTANT, Row, Station, UNKNOWNS, Unknowns, in_own_units, plain_residual, row, stations,
+    CONSTANT, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, in_own_units, plain_residual, row,
+    stations,
 };
 use super::start::start;
-use super::whiten::{Pass, whiten};
+use super::whiten::{Measured, Pass, whiten};
 use crate::fit::Observation;
-use crate::model::{Covariance, Identifiable, Parameters};
-use crate::ship::PARAMETERS;
+use crate::model::{Covariance, Identifiable, Parameters, Quality};
+use crate::ship::EarthField;
 use nalgebra::{SMatrix, SVector};
 
 /// Gauss–Newton steps at most; three suffice near the solution.
@@ -20,14 +22,14 @@ const ITERATIONS: u32 = 12;
 /// and the step, in population standard deviations, below which the parameters
 /// have settled.
 const ROUNDS: [(u32, f64); 2] = [(3, 0.01), (1, 5e-4)];
+/// The compass's part of the noise that is new in every row.
+const OF_WHITE_BY_GYRO: f64 = 0.85;
+const OF_WHITE_BY_SATELLITE: f64 = 0.5;
+const OF_WHITE_UNTIMED: f64 = 0.6;
+/// Where bx and by stand among the unknowns.
+const DRIFTING: [usize; 2] = [0, 2];
 /// Days whose scores are held against what the noise model says of them.
 const BLOCK_S: f64 = 4.0 * 86_400.0;
-/// For judging what the data alone say, the population is taken this much wider.
-const WIDER: f64 = 10.0;
-/// A parameter is the data's when they alone leave at most this part of the
-/// population's standard deviation.
-const DATA_DRIVEN: f64 = 0.5;
-
 /// What an estimate starts from beside the observations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options<'a> {
@@ -44,6 +46,7 @@ pub(crate) struct Estimate {
     pub(crate) constant_deg: f64,
     pub(crate) covariance: Covariance,
     pub(crate) identifiable: Identifiable,
+    pub(crate) quality: Quality,
     pub(crate) levels: NoiseLevels,
     /// For each observation, in the order given.
     pub(crate) rows: Vec<FittedRow>,
@@ -62,7 +65,7 @@ pub(crate) struct FittedRow {
 /// settle. The result depends on the order only where times are equal.
 pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> Option<Estimate> {
     let mut order: Vec<usize> = (0..observations.len()).collect();
-    order.sort_by_key(|&i| std::cmp::Reverse(observations[i].time));
+    order.sort_by_key(|&i| observations[i].time);
     let sorted: Vec<Observation> = order.iter().map(|&i| observations[i]).collect();
     let problem = Problem::new(&sorted, options.prior)?;
     let timed = sorted.iter().all(|o| o.time.is_some());
@@ -71,10 +74,10 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
     } else {
         NoiseLevels::MEMORYLESS
     };
-    let (unknowns, levels) = problem.solve(&typical)?;
-    let judged = problem.judge(&unknowns, &levels)?;
+    let (solution, levels) = problem.solve(&typical)?;
+    let judged = problem.judge(&solution, &levels)?;
 
-    let (parameters, constant_deg) = in_own_units(&unknowns);
+    let (parameters, constant_deg) = in_own_units(&judged.at_last);
     let mut covariance = in_own_units_squared(&judged.covariance);
     covariance[CONSTANT][CONSTANT] += options.reference_constant_sd_deg.powi(2);
     let mut rows = vec![
@@ -84,17 +87,40 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         };
         order.len()
     ];
-    for ((&index, observation), weight) in order.iter().zip(&sorted).zip(judged.weights) {
+    for ((&index, observation), &weight) in order.iter().zip(&sorted).zip(&judged.weights) {
         rows[index] = FittedRow {
-            residual_deg: plain_residual(observation, &unknowns),
+            residual_deg: plain_residual(observation, &judged.at_last),
             weight,
         };
     }
+    let parameters = Parameters::from_array(parameters);
+    let last = sorted.last()?;
+    let weighed: f64 = judged.weights.iter().sum();
+    let squares: f64 = rows
+        .iter()
+        .map(|row| row.weight * row.residual_deg.powi(2))
+        .sum();
+    let (quality, identifiable) = quality(&Evidence {
+        information: &judged.information,
+        by_data: judged.by_data,
+        rows: &judged.rows,
+        weights: &judged.weights,
+        row_variance: (squares / weighed).max(levels.of_a_row()),
+        after: &judged.covariance,
+        before: &Problem::prior_covariance(&solution)?,
+        parameters: &parameters,
+        earth: EarthField {
+            h_nt: last.h_nt,
+            z_nt: last.z_nt,
+        },
+        weakest_h_nt: sorted.iter().map(|o| o.h_nt).fold(f64::INFINITY, f64::min),
+    });
     Some(Estimate {
-        parameters: Parameters::from_array(parameters),
+        parameters,
         constant_deg,
         covariance,
-        identifiable: identifiable(&judged.information),
+        identifiable,
+        quality,
         levels,
         rows,
     })
@@ -103,27 +129,41 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
 type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Vector = SVector<f64, UNKNOWNS>;
 
-/// Observations from the latest to the earliest, with what stays the same
+/// Observations from the earliest to the latest, with what stays the same
 /// through the iteration.
 struct Problem<'a> {
     observations: &'a [Observation],
     stations: Vec<Station>,
-    prior_mean: Unknowns,
+    prior_mean: Vector,
+    prior_information: Matrix,
+}
+
+/// Where the iteration is.
+struct Solution {
+    unknowns: Unknowns,
+    /// The reference's share in the heading at which rows are taken.
+    fusion: f64,
+    /// The prior's information there.
     prior_information: Matrix,
 }
 
 /// What the final pass says of a solution.
 struct Judged {
+    /// Parameters as they were at the last observation, in population units.
+    at_last: Unknowns,
     information: Matrix,
     covariance: Matrix,
+    /// The same by the data alone.
+    by_data: Option<Matrix>,
+    rows: Vec<Row>,
     weights: Vec<f64>,
 }
 
 impl<'a> Problem<'a> {
     fn new(observations: &'a [Observation], prior: &Prior) -> Option<Problem<'a>> {
         let (mean, information) = prior.in_population_units()?;
-        let mut prior_mean = [0.0; UNKNOWNS];
-        prior_mean[..=CONSTANT].copy_from_slice(&mean);
+        let mut prior_mean = Vector::zeros();
+        prior_mean.as_mut_slice()[..=CONSTANT].copy_from_slice(&mean);
         // What is neither parameter nor constant is in units of its own prior.
         let mut prior_information = Matrix::identity();
         prior_information
@@ -137,86 +177,162 @@ impl<'a> Problem<'a> {
         })
     }
 
-    fn solve(&self, typical: &NoiseLevels) -> Option<(Unknowns, NoiseLevels)> {
-        let (mut unknowns, sd) = start(
+    fn solve(&self, typical: &NoiseLevels) -> Option<(Solution, NoiseLevels)> {
+        let (unknowns, sd) = start(
             self.observations,
             &self.stations,
-            &self.prior_mean,
+            &self.prior_mean.into(),
             &self.prior_information,
         );
+        let mut solution = Solution {
+            unknowns,
+            fusion: USUAL_FUSION,
+            prior_information: self.prior_information,
+        };
         // Most of what is left after a fit is slow; some half of it is new in
         // every row.
         let mut levels = *typical;
         levels.white_deg = (sd / 2.0).clamp(0.02, 10.0);
+        let chosen: Vec<Observation> = looked_at(self.observations.len())
+            .into_iter()
+            .map(|i| self.observations[i])
+            .collect();
+        let chosen_stations = stations(&chosen);
+        let of_white = compass_part_of_white(&chosen);
         for (sweeps, settled) in ROUNDS {
-            let rows = self.rows(&unknowns);
-            let pull = self.pull(&unknowns);
-            levels = fit_levels(&self.stations, &rows, &pull, typical, &levels, sweeps);
-            unknowns = self.descend(unknowns, &levels, settled)?;
+            let rows = rows(&chosen, &chosen_stations, &solution);
+            let pull = self.pull(&solution);
+            levels = fit_levels(&chosen_stations, &rows, &pull, typical, &levels, sweeps);
+            solution.fusion = compass_share(&chosen_stations, &rows, &levels, of_white);
+            solution = self.descend(solution, &levels, settled)?;
         }
-        Some((unknowns, levels))
+        Some((solution, levels))
     }
 
-    /// Gauss–Newton from `unknowns` until it settles.
+    /// Gauss–Newton from a solution until it settles.
     fn descend(
         &self,
-        mut unknowns: Unknowns,
+        mut solution: Solution,
         levels: &NoiseLevels,
         settled: f64,
-    ) -> Option<Unknowns> {
+    ) -> Option<Solution> {
         for _ in 0..ITERATIONS {
-            let pass = whiten(&self.stations, &self.rows(&unknowns), levels, |_, _| ());
-            let pull = self.pull(&unknowns);
-            let step = (pass.information + pull.information)
-                .cholesky()?
-                .solve(&(pass.score + pull.score));
-            for (u, d) in unknowns.iter_mut().zip(step.iter()) {
+            let rows = rows(self.observations, &self.stations, &solution);
+            let pass = whiten(&self.stations, &rows, levels, |_, _, _| ());
+            let pull = self.pull(&solution);
+            let covariance = (pass.information + pull.information).cholesky()?.inverse();
+            let step = covariance * (pass.score + pull.score);
+            for (u, d) in solution.unknowns.iter_mut().zip(step.iter()) {
                 *u += d;
             }
-            if !unknowns.iter().all(|u| u.is_finite()) {
+            if !solution.unknowns.iter().all(|u| u.is_finite()) {
                 return None;
             }
+            solution.prior_information = self.prior_at(&solution.unknowns, &covariance);
             if step.amax() < settled {
-                return Some(unknowns);
+                return Some(solution);
             }
         }
         None
     }
 
-    fn judge(&self, unknowns: &Unknowns, levels: &NoiseLevels) -> Option<Judged> {
-        let rows = self.rows(unknowns);
+    fn judge(&self, solution: &Solution, levels: &NoiseLevels) -> Option<Judged> {
+        let rows = rows(self.observations, &self.stations, solution);
         let mut weights = Vec::with_capacity(rows.len());
         let mut blocks = Blocks::new(self.observations);
-        let pass: Pass = whiten(&self.stations, &rows, levels, |index, whitened| {
-            weights.push(whitened.weight);
-            let columns = Vector::from(whitened.columns);
-            blocks.add(index, &columns, whitened.weight, whitened.innovation);
-        });
-        let covariance = (pass.information + self.prior_information)
+        let pass: Pass = whiten(
+            &self.stations,
+            &rows,
+            levels,
+            |index, measured, whitened| {
+                if measured == Measured::Deviation {
+                    weights.push(whitened.weight);
+                }
+                let columns = Vector::from(whitened.columns);
+                blocks.add(index, &columns, whitened.weight, whitened.innovation);
+            },
+        );
+        let covariance = (pass.information + solution.prior_information)
             .cholesky()?
             .inverse();
+        let covariance = covariance * blocks.inflation(&covariance);
+        // From where the filter began to where the ship is now.
+        let scale = scales();
+        let mut at_last = solution.unknowns;
+        let mut follows = Matrix::identity();
+        let mut drifted = Matrix::zeros();
+        for (a, i) in DRIFTING.into_iter().enumerate() {
+            at_last[i] += pass.drift.nt[a] / scale[i];
+            for (j, per_unknown) in pass.drift.per_unknown[a].iter().enumerate() {
+                follows[(i, j)] -= per_unknown / scale[i];
+            }
+            for (b, j) in DRIFTING.into_iter().enumerate() {
+                drifted[(i, j)] = pass.drift.covariance[a][b] / (scale[i] * scale[j]);
+            }
+        }
+        let now = |then: Matrix| follows * then * follows.transpose() + drifted;
         Some(Judged {
-            covariance: covariance * blocks.inflation(&covariance),
+            at_last,
             information: pass.information,
+            covariance: now(covariance),
+            by_data: widely(&pass.information)
+                .cholesky()
+                .map(|factor| now(factor.inverse())),
+            rows,
             weights,
         })
     }
 
-    fn rows(&self, unknowns: &Unknowns) -> Vec<Row> {
-        self.observations
-            .iter()
-            .zip(&self.stations)
-            .map(|(o, s)| row(o, s, unknowns))
-            .collect()
-    }
-
-    fn pull(&self, unknowns: &Unknowns) -> Pull {
-        let off = Vector::from(self.prior_mean) - Vector::from(*unknowns);
+    fn pull(&self, solution: &Solution) -> Pull {
+        let off = self.prior_mean - Vector::from(solution.unknowns);
         Pull {
-            information: self.prior_information,
-            score: self.prior_information * off,
+            information: solution.prior_information,
+            score: solution.prior_information * off,
         }
     }
+
+    /// What was known of parameters and constant before the data.
+    fn prior_covariance(solution: &Solution) -> Option<SMatrix<f64, 8, 8>> {
+        let information = solution.prior_information.fixed_view::<8, 8>(0, 0);
+        Some(information.into_owned().cholesky()?.inverse())
+    }
+
+    /// The prior's information, less where a solution lies out in its tail.
+    fn prior_at(&self, unknowns: &Unknowns, covariance: &Matrix) -> Matrix {
+        let off = Vector::from(*unknowns) - self.prior_mean;
+        let factors = tail(
+            &off.fixed_rows::<8>(0).into_owned(),
+            &covariance.fixed_view::<8, 8>(0, 0).into_owned(),
+            &self.prior_information.fixed_view::<8, 8>(0, 0).into_owned(),
+        );
+        let mut information = self.prior_information;
+        for i in 0..8 {
+            for j in 0..8 {
+                information[(i, j)] /= factors[i] * factors[j];
+            }
+        }
+        information
+    }
+}
+
+fn rows(observations: &[Observation], stations: &[Station], solution: &Solution) -> Vec<Row> {
+    observations
+        .iter()
+        .zip(stations)
+        .map(|(o, s)| row(o, s, &solution.unknowns, solution.fusion))
+        .collect()
+}
+
+/// What part of the noise that is new in every row is the compass's: a gyro is
+/// steadier than a compass, a satellite compass is not. Without times all noise
+/// passes for new, the reference's wander too.
+fn compass_part_of_white(observations: &[Observation]) -> f64 {
+    if observations.iter().any(|o| o.time.is_none()) {
+        return OF_WHITE_UNTIMED;
+    }
+    let by_gyro: f64 = observations.iter().map(|o| o.gyro_share).sum();
+    let gyro_share = by_gyro / observations.len() as f64;
+    OF_WHITE_BY_SATELLITE + gyro_share * (OF_WHITE_BY_GYRO - OF_WHITE_BY_SATELLITE)
 }
 
 /// Scores and information of stretches of days: were the noise model right,
@@ -278,33 +394,4 @@ fn in_own_units_squared(covariance: &Matrix) -> Covariance {
         }
     }
     out
-}
-
-/// Which parameters the data alone tell, the population taken much wider than
-/// it is. A is (χ21 − χ12)/2 and cannot be told from the constant, so that of
-/// χ12 and χ21 headings tell the sum, E, and neither by itself.
-fn identifiable(information: &Matrix) -> Identifiable {
-    let mut alone = *information;
-    for j in 0..UNKNOWNS {
-        let own = if j < PARAMETERS {
-            1.0 / (WIDER * WIDER)
-        } else {
-            1.0
-        };
-        alone[(j, j)] += own;
-    }
-    let by_data = alone.cholesky().map(|factor| factor.inverse());
-    let told = |j: usize| by_data.is_some_and(|covariance| covariance[(j, j)].sqrt() < DATA_DRIVEN);
-    // What is permanent is known only when what the dip induces is.
-    let (fore_and_aft, athwart) = (told(0) && told(1), told(2) && told(3));
-    Identifiable {
-        bx_nt: fore_and_aft,
-        chi13: fore_and_aft,
-        by_nt: athwart,
-        chi23: athwart,
-        chi11_minus_chi22: told(4),
-        chi12: told(5),
-        chi21: told(6),
-        constant_deg: false,
-    }
 }

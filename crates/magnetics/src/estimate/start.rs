@@ -1,8 +1,7 @@
 //! A first fit that outliers cannot lead astray: Huber weights on rows taken
 //! for independent, their spread from the median of the residuals.
 
-use super::row::{Row, Station, UNKNOWNS, Unknowns, row};
-use super::whiten::huber_weight;
+use super::row::{Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row};
 use crate::fit::Observation;
 use nalgebra::{SMatrix, SVector};
 
@@ -14,6 +13,8 @@ const SETTLED: f64 = 3e-3;
 const ENOUGH: usize = 4000;
 /// The median of |x| of a Gaussian is this part of its standard deviation.
 const MEDIAN_TO_SD: f64 = 0.674_489_8;
+/// Residuals beyond so many standard deviations pull no harder than at that.
+const HUBER: f64 = 2.5;
 /// No instrument is better than this; it keeps perfect data from dividing by zero.
 const LEAST_SD_DEG: f64 = 0.02;
 
@@ -35,7 +36,7 @@ pub(crate) fn start(
             .iter()
             .step_by(every)
             .zip(&stations)
-            .map(|(o, s)| row(o, s, &unknowns))
+            .map(|(o, s)| row(o, s, &unknowns, USUAL_FUSION))
             .collect();
         sd = robust_sd(rows.iter().map(|r| r.residual));
         let mut information = *prior_information;
@@ -59,6 +60,11 @@ pub(crate) fn start(
         }
     }
     (unknowns, sd)
+}
+
+/// 1 up to [`HUBER`] standard deviations, then falling as 1/|z|.
+fn huber_weight(z: f64) -> f64 {
+    (HUBER / z.abs()).min(1.0)
 }
 
 /// Standard deviation of the bulk of the residuals about zero.

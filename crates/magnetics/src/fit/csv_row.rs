@@ -1,10 +1,10 @@
-//! Rows of a table of headings as users bring them, made into observations.
+//! Rows of a table of headings as users bring them, made into readings.
 //!
 //! Reading the file is the caller's business; which columns there must be, and
 //! what a row says, is decided here.
 
-use super::{GyroSpeedError, Observation, ReferenceCheck, gyro_speed_error_deg};
-use crate::angle::{CompassHeading, Deviation, TrueHeading, Variation};
+use super::{GyroSpeedError, HeadingReading, gyro_speed_error_deg};
+use crate::angle::{CompassHeading, TrueHeading, Variation};
 use crate::field::{FieldAt, FieldModel};
 use crate::position::Position;
 use crate::time::Timestamp;
@@ -85,17 +85,6 @@ impl CsvRowError {
     }
 }
 
-/// The rows of a table that have a reference.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CsvObservations {
-    /// One for each row with a reference.
-    pub observations: Vec<Observation>,
-    /// How many rows had none.
-    pub without_reference: u64,
-    /// How gyro and satellite compass compare.
-    pub references: ReferenceCheck,
-}
-
 /// Checks that a header has what a fit needs: `compass_deg`; one of `gyro_deg`,
 /// `satellite_deg` and `reference_deg`; and either `variation_deg`, `h_nt` and
 /// `z_nt` or `time`, `lat` and `lon`.
@@ -131,115 +120,66 @@ pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<()
     need("lon")
 }
 
-/// Makes observations of rows. Where a row has both a field and a place, the
-/// field as given is used.
+/// Makes readings of rows. Where a row has both a field and a place, the field
+/// as given is used.
 ///
 /// # Errors
 /// With the first row and column that are empty or invalid. A row without any
-/// reference heading is not an error: it is counted.
-pub fn observations_from_csv(
+/// reference heading is not an error.
+pub fn readings_from_csv(
     rows: &[CsvRow],
     gyro_speed_error: GyroSpeedError,
-    one_constant_sd_deg: f64,
-) -> Result<CsvObservations, CsvRowError> {
-    let mut read = Vec::with_capacity(rows.len());
-    for (index, row) in rows.iter().enumerate() {
-        read.push(Parsed::new(row, index, gyro_speed_error)?);
-    }
-    let pairs = read.iter().filter_map(|p| p.gyro.zip(p.satellite));
-    let references = ReferenceCheck::new(pairs, one_constant_sd_deg);
-    let observations: Vec<Observation> = read
-        .iter()
-        .filter_map(|parsed| parsed.observation(&references))
-        .collect();
-    Ok(CsvObservations {
-        without_reference: (rows.len() - observations.len()) as u64,
-        observations,
-        references,
-    })
+) -> Result<Vec<HeadingReading>, CsvRowError> {
+    let indexed = rows.iter().enumerate();
+    indexed
+        .map(|(index, row)| reading(row, index, gyro_speed_error))
+        .collect()
 }
 
-/// A row whose values are right by their types.
-struct Parsed {
-    time: Option<Timestamp>,
-    position: Option<Position>,
-    compass: CompassHeading,
-    gyro: Option<TrueHeading>,
-    satellite: Option<TrueHeading>,
-    reference: Option<TrueHeading>,
-    variation: Variation,
-    h_nt: f64,
-    z_nt: f64,
-    sog_kn: Option<f64>,
-    windows: u16,
-    weight: f64,
-}
-
-impl Parsed {
-    fn new(row: &CsvRow, index: usize, speed: GyroSpeedError) -> Result<Parsed, CsvRowError> {
-        let column = Column { row: index };
-        let compass_deg = column.needed("compass_deg", row.compass_deg)?;
-        let sog_kn = column.at_least_zero("sog_kn", row.sog_kn)?;
-        let position = match (row.lat, row.lon) {
-            (Some(lat), Some(lon)) => {
-                // Which of the two is at fault shows when the other is made harmless.
-                let latitude = Position::new(lat, 0.0);
-                latitude.map_err(|e| column.invalid("lat", &e.to_string()))?;
-                Some(Position::new(lat, lon).map_err(|e| column.invalid("lon", &e.to_string()))?)
-            }
-            (Some(_), None) => return Err(column.empty("lon")),
-            (None, Some(_)) => return Err(column.empty("lat")),
-            (None, None) => None,
-        };
-        let (variation, h_nt, z_nt) = column.field(row, position)?;
-        let mut gyro: Option<TrueHeading> = column.heading("gyro_deg", row.gyro_deg)?;
-        if let (GyroSpeedError::Uncorrected, Some(read), Some(sog_kn), Some(place)) =
-            (speed, gyro, sog_kn, position)
-        {
-            let error = gyro_speed_error_deg(read, sog_kn, place.lat_deg());
-            gyro = TrueHeading::new(read.degrees() - error);
+fn reading(
+    row: &CsvRow,
+    index: usize,
+    speed: GyroSpeedError,
+) -> Result<HeadingReading, CsvRowError> {
+    let column = Column { row: index };
+    let compass_deg = column.needed("compass_deg", row.compass_deg)?;
+    let sog_kn = column.at_least_zero("sog_kn", row.sog_kn)?;
+    let position = match (row.lat, row.lon) {
+        (Some(lat), Some(lon)) => {
+            // Which of the two is at fault shows when the other is made harmless.
+            let latitude = Position::new(lat, 0.0);
+            latitude.map_err(|e| column.invalid("lat", &e.to_string()))?;
+            Some(Position::new(lat, lon).map_err(|e| column.invalid("lon", &e.to_string()))?)
         }
-        let windows = column.at_least_zero("windows", row.windows)?;
-        Ok(Parsed {
-            time: row.time,
-            position,
-            compass: CompassHeading::try_from(compass_deg)
-                .map_err(|e| column.invalid("compass_deg", &e.to_string()))?,
-            gyro,
-            satellite: column.heading("satellite_deg", row.satellite_deg)?,
-            reference: column.heading("reference_deg", row.reference_deg)?,
-            variation,
-            h_nt,
-            z_nt,
-            sog_kn,
-            // Without a count a row is taken for a whole ten-minute mean.
-            windows: windows.map_or(60.0, |n| n.clamp(1.0, 65_535.0)) as u16,
-            weight: column.at_least_zero("weight", row.weight)?.unwrap_or(1.0),
-        })
+        (Some(_), None) => return Err(column.empty("lon")),
+        (None, Some(_)) => return Err(column.empty("lat")),
+        (None, None) => None,
+    };
+    let (variation, h_nt, z_nt) = column.field(row, position)?;
+    let mut gyro: Option<TrueHeading> = column.heading("gyro_deg", row.gyro_deg)?;
+    if let (GyroSpeedError::Uncorrected, Some(read), Some(sog_kn), Some(place)) =
+        (speed, gyro, sog_kn, position)
+    {
+        let error = gyro_speed_error_deg(read, sog_kn, place.lat_deg());
+        gyro = TrueHeading::new(read.degrees() - error);
     }
-
-    fn observation(&self, references: &ReferenceCheck) -> Option<Observation> {
-        let lat_deg = self.position.map_or(0.0, Position::lat_deg);
-        let (heading, gyro_share) = match references.merge(self.gyro, self.satellite, lat_deg) {
-            Some(merged) => (merged.heading, merged.gyro_share),
-            // An unnamed reference may wander as a gyro does.
-            None => (self.reference?, 1.0),
-        };
-        let deviation: Deviation = (heading - self.variation) - self.compass;
-        Some(Observation {
-            time: self.time,
-            position: self.position,
-            compass: self.compass,
-            deviation,
-            variation: self.variation,
-            h_nt: self.h_nt,
-            z_nt: self.z_nt,
-            gyro_share,
-            sog_kn: self.sog_kn,
-            windows: self.windows,
-            weight: self.weight,
-        })
-    }
+    let windows = column.at_least_zero("windows", row.windows)?;
+    Ok(HeadingReading {
+        time: row.time,
+        position,
+        compass: CompassHeading::try_from(compass_deg)
+            .map_err(|e| column.invalid("compass_deg", &e.to_string()))?,
+        gyro,
+        satellite: column.heading("satellite_deg", row.satellite_deg)?,
+        unnamed: column.heading("reference_deg", row.reference_deg)?,
+        variation,
+        h_nt,
+        z_nt,
+        sog_kn,
+        // Without a count a row is taken for a whole ten-minute mean.
+        windows: windows.map_or(60.0, |n| n.clamp(1.0, 65_535.0)) as u16,
+        weight: column.at_least_zero("weight", row.weight)?.unwrap_or(1.0),
+    })
 }
 
 /// Names the row in every complaint.

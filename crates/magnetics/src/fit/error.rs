@@ -52,6 +52,18 @@ pub enum FitError {
         "all samples lie at one magnetic latitude: bx and chi13, by and chi23 cannot be told apart"
     )]
     OneMagneticLatitude,
+    /// Gyro and satellite compass differ throughout by more than any alignment
+    /// explains, and headings cannot tell which of them is wrong.
+    #[error(
+        "gyro and satellite compass differ by {offset_deg:.1} degrees throughout, more than the \
+         {allowed_deg:.0} degrees that any alignment explains: one of them is wrong"
+    )]
+    ReferencesDisagree {
+        /// Gyro less satellite compass, degrees.
+        offset_deg: f64,
+        /// How far they may differ.
+        allowed_deg: f64,
+    },
     /// The iteration did not settle.
     #[error("the fit did not settle: the samples contradict each other or any ship")]
     NotConverged,

@@ -11,10 +11,15 @@ mod paper;
 mod reference;
 mod robust;
 
-pub use csv_row::{CsvObservations, CsvRow, CsvRowError, check_columns, observations_from_csv};
+pub use csv_row::{CsvRow, CsvRowError, check_columns, readings_from_csv};
 pub use error::FitError;
 pub use observation::Observation;
 pub use ols::fit_ols;
 pub use paper::fit_paper;
-pub use reference::{GyroSpeedError, Reference, ReferenceCheck, gyro_speed_error_deg};
-pub use robust::{REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, WEAKEST_H_NT, fit_robust};
+pub use reference::{
+    GyroSpeedError, HeadingReading, ReferenceCheck, Referred, gyro_speed_error_deg, refer,
+};
+pub use robust::{
+    REFERENCE_CONSTANT_SD_DEG, REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, WEAKEST_H_NT,
+    fit_robust,
+};

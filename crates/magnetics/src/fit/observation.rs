@@ -29,6 +29,9 @@ pub struct Observation {
     /// What part of the reference heading is a gyro's: 1 for a gyro, 0 for a
     /// satellite compass, between for a mean of both.
     pub gyro_share: f64,
+    /// Gyro less satellite compass where both were read, degrees, their usual
+    /// difference taken off.
+    pub gyro_less_satellite_deg: Option<f64>,
     /// Speed over ground, knots.
     pub sog_kn: Option<f64>,
     /// Ten-second windows behind the row, at least 1.

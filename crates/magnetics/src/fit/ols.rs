@@ -58,6 +58,7 @@ pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
         rms_deg: Some((at.squares / weights).sqrt()),
         samples_used: found,
         samples_rejected: observations.len() as u64 - found,
+        quality: None,
     })
 }
 

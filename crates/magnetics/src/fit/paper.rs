@@ -47,6 +47,7 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
         rms_deg: Some(rms_deg(&parameters, observations)?),
         samples_used: found,
         samples_rejected: 0,
+        quality: None,
     })
 }
 

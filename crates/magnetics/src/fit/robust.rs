@@ -7,6 +7,9 @@ use crate::estimate::{NoiseLevels, Options, Prior, estimate};
 use crate::model::{Model, Parameters};
 use crate::ship::EarthField;
 
+/// What is known beforehand of a reference's constant error: its standard
+/// deviation in degrees.
+pub const REFERENCE_CONSTANT_SD_DEG: f64 = 0.5;
 /// Fewer samples than this carry no fit of eight unknowns worth having.
 const NEEDED_SAMPLES: u64 = 12;
 /// Sectors of 15° of heading that must hold samples.
@@ -27,12 +30,19 @@ pub struct RobustOptions {
     pub reference_constant_sd_deg: f64,
 }
 
+impl RobustOptions {
+    /// For a ship of which nothing is known yet.
+    pub fn of_any_ship(reference_constant_sd_deg: f64) -> RobustOptions {
+        RobustOptions {
+            prior: Prior::population(reference_constant_sd_deg),
+            reference_constant_sd_deg,
+        }
+    }
+}
+
 impl Default for RobustOptions {
     fn default() -> RobustOptions {
-        RobustOptions {
-            prior: Prior::population(),
-            reference_constant_sd_deg: 0.5,
-        }
+        RobustOptions::of_any_ship(REFERENCE_CONSTANT_SD_DEG)
     }
 }
 
@@ -105,6 +115,7 @@ pub fn fit_robust(
         rms_deg: Some((squares / samples_used.max(1) as f64).sqrt()),
         samples_used,
         samples_rejected: observations.len() as u64 - samples_used,
+        quality: Some(fitted.quality),
     };
     Ok(RobustFit {
         model,

@@ -7,7 +7,7 @@
 //! A change of what a field means takes the next number; a new
 //! field that may be absent does not.
 
-use super::{Covariance, Identifiable, Model, Parameters};
+use super::{Covariance, Identifiable, Model, Parameters, Quality};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -31,6 +31,8 @@ pub(super) struct Form {
     samples_used: u64,
     #[serde(default)]
     samples_rejected: u64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    quality: Option<Quality>,
 }
 
 fn version() -> u32 {
@@ -58,6 +60,7 @@ impl From<Form> for Model {
             rms_deg: form.rms_deg,
             samples_used: form.samples_used,
             samples_rejected: form.samples_rejected,
+            quality: form.quality,
         }
     }
 }
@@ -73,6 +76,7 @@ impl From<Model> for Form {
             rms_deg: model.rms_deg,
             samples_used: model.samples_used,
             samples_rejected: model.samples_rejected,
+            quality: model.quality,
         }
     }
 }

@@ -6,6 +6,8 @@
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
+#[allow(dead_code, reason = "only the studies ask for it")]
+pub(crate) mod bound;
 pub(crate) mod tally;
 
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
@@ -16,6 +18,9 @@ use binnacle_magnetics::time::Timestamp;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
+
+/// The gyro's share of the reference where both are read.
+const GYRO_SHARE_OF_BOTH: f64 = 0.7;
 
 /// How much of the range of magnetic latitudes a voyage sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +37,14 @@ pub(crate) enum Variety {
 pub(crate) struct Voyage {
     pub(crate) observations: Vec<Observation>,
     pub(crate) truth: Truth,
+    /// Its first minute.
+    #[allow(dead_code, reason = "only the bound asks")]
+    pub(crate) start: Timestamp,
+    /// The sizes of what went wrong on this ship.
+    pub(crate) sizes: Faults,
+    /// Minutes of the turns that upset the gyro.
+    #[allow(dead_code, reason = "only the bound asks")]
+    pub(crate) turns: Vec<i64>,
 }
 
 /// The ship as she is.
@@ -42,15 +55,32 @@ pub(crate) struct Truth {
     pub(crate) alignment_deg: f64,
     /// In every measured deviation, but not in the true one.
     pub(crate) gyro_constant_deg: f64,
+    /// The same of the satellite compass, where there is one.
+    pub(crate) satellite_constant_deg: f64,
     /// Field at the end of the voyage.
     pub(crate) h_nt: f64,
     pub(crate) z_nt: f64,
+}
+
+impl Voyage {
+    /// The constant error of the reference that the deviations were measured by.
+    pub(crate) fn reference_constant_deg(&self) -> f64 {
+        let truth = &self.truth;
+        if self.sizes.satellite {
+            f64::midpoint(truth.gyro_constant_deg, truth.satellite_constant_deg)
+        } else {
+            truth.gyro_constant_deg
+        }
+    }
 }
 
 /// The sizes of what goes wrong.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Faults {
     pub(crate) ship: f64,
+    /// How far ships differ: standard deviation of the logarithm of each size
+    /// of noise.
+    pub(crate) variety: f64,
     pub(crate) gyro_constant_deg: f64,
     pub(crate) schuler_deg: f64,
     pub(crate) slow_gyro_deg: f64,
@@ -61,12 +91,15 @@ pub(crate) struct Faults {
     pub(crate) storms_per_month: f64,
     /// Random walk of bx and by, standard deviation in thirty days.
     pub(crate) drift_nt: f64,
+    /// Whether a satellite compass is on board beside the gyro.
+    pub(crate) satellite: bool,
 }
 
 impl Faults {
     pub(crate) const USUAL: Faults = Faults {
         ship: 1.0,
-        gyro_constant_deg: 0.35,
+        variety: 0.3,
+        gyro_constant_deg: 0.5,
         schuler_deg: 0.35,
         slow_gyro_deg: 0.3,
         variation_deg: 0.2,
@@ -74,8 +107,22 @@ impl Faults {
         outliers: 0.003,
         speed_error: 0.1,
         storms_per_month: 0.5,
-        drift_nt: 0.0,
+        drift_nt: 60.0,
+        satellite: false,
     };
+
+    /// Those of one ship out of many.
+    fn of_one_ship(&self, rng: &mut ChaCha8Rng) -> Faults {
+        let mut vary = |size: f64| size * (self.variety * gauss(rng)).exp();
+        Faults {
+            schuler_deg: vary(self.schuler_deg),
+            slow_gyro_deg: vary(self.slow_gyro_deg),
+            variation_deg: vary(self.variation_deg),
+            swing_deg: vary(self.swing_deg),
+            drift_nt: vary(self.drift_nt),
+            ..*self
+        }
+    }
 }
 
 /// A standard Gaussian.
@@ -141,6 +188,9 @@ pub(crate) fn predicted(model: &Model, compass_deg: f64, h: f64, z: f64) -> (f64
 /// A ship's passage of `days`, one observation every ten minutes at sea.
 pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> Voyage {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let sizes = faults.of_one_ship(&mut rng);
+    let faults = &sizes;
+    let mut turns = Vec::new();
     let mut truth = Truth::of_any_ship(faults, &mut rng);
     let mut passage = Passage::new(variety, &mut rng);
     let mut errors = Errors::new(faults, &mut rng);
@@ -149,6 +199,9 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
     let mut observations = Vec::new();
     for minute in 0..(days * 1440.0) as i64 {
         let turned = passage.minute(&mut rng);
+        if turned.abs() > 20.0 {
+            turns.push(minute);
+        }
         if minute % 60 == 0 {
             let hourly = faults.drift_nt / 720.0_f64.sqrt();
             truth.parameters.bx_nt += hourly * gauss(&mut rng);
@@ -160,9 +213,8 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
             continue;
         }
         let (variation, h_nt, z_nt) = dipole(passage.lat, passage.lon);
-        let (compass, gyro) =
-            errors.read(&truth, &passage, minute, (variation, h_nt, z_nt), &mut rng);
-        let Some((mut compass, mut gyro)) = mean.add(passage.course, compass, gyro) else {
+        let read = errors.read(&truth, &passage, minute, (variation, h_nt, z_nt), &mut rng);
+        let Some([mut compass, mut gyro, satellite]) = mean.add(passage.course, read) else {
             continue;
         };
         if rng.random::<f64>() < faults.outliers {
@@ -171,15 +223,27 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
         if rng.random::<f64>() < faults.outliers {
             compass += 10.0 * gauss(&mut rng);
         }
+        // The two are centred on each other, as their check would do.
+        let apart = truth.gyro_constant_deg - truth.satellite_constant_deg;
+        let (gyro, satellite) = if faults.satellite {
+            (gyro - apart / 2.0, Some(satellite + apart / 2.0))
+        } else {
+            (gyro, None)
+        };
+        let (reference, gyro_share) = satellite.map_or((gyro, 1.0), |satellite| {
+            let share = GYRO_SHARE_OF_BOTH;
+            (satellite + share * wrap_180(gyro - satellite), share)
+        });
         observations.push(Observation {
             time: Some(start.plus_seconds(60.0 * minute as f64)),
             position: Some(Position::new(passage.lat, passage.lon).unwrap()),
             compass: CompassHeading::new(compass).unwrap(),
-            deviation: Deviation::new(gyro - variation - compass).unwrap(),
+            deviation: Deviation::new(reference - variation - compass).unwrap(),
             variation: Variation::new(variation).unwrap(),
             h_nt,
             z_nt,
-            gyro_share: 1.0,
+            gyro_share,
+            gyro_less_satellite_deg: satellite.map(|s| wrap_180(gyro - s)),
             sog_kn: Some(passage.speed_kn),
             windows: 55,
             weight: 1.0,
@@ -193,6 +257,9 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
             z_nt,
             ..truth
         },
+        start,
+        sizes,
+        turns,
     }
 }
 
@@ -203,6 +270,7 @@ impl Truth {
             parameters: Parameters::from_array(sd.map(|s| s * faults.ship * gauss(rng))),
             alignment_deg: 0.5 * gauss(rng),
             gyro_constant_deg: faults.gyro_constant_deg * gauss(rng),
+            satellite_constant_deg: faults.gyro_constant_deg * gauss(rng),
             h_nt: 0.0,
             z_nt: 0.0,
         }
@@ -286,6 +354,7 @@ pub(crate) struct Errors {
     storm: f64,
     storm_minutes: f64,
     speed_error: f64,
+    multipath: f64,
 }
 
 impl Errors {
@@ -299,6 +368,7 @@ impl Errors {
             storm: 0.0,
             storm_minutes: 0.0,
             speed_error: faults.speed_error * gauss(rng),
+            multipath: 0.0,
         }
     }
 
@@ -321,6 +391,7 @@ impl Errors {
         self.swing += self.rate;
         step(&mut self.slow, 1.0 / 4320.0, faults.slow_gyro_deg, rng);
         step(&mut self.compass_swing, 1.0 / 20.0, faults.swing_deg, rng);
+        step(&mut self.multipath, 1.0 / 30.0, 0.2, rng);
         if on.berth_minutes <= 0.0 {
             step(
                 &mut self.crust,
@@ -340,7 +411,7 @@ impl Errors {
         }
     }
 
-    /// What compass and gyro show in the field (variation, H, Z) of the models.
+    /// What compass, gyro and satellite compass show in the field (variation, H, Z) of the models.
     fn read(
         &self,
         truth: &Truth,
@@ -348,7 +419,7 @@ impl Errors {
         minute: i64,
         (variation, h, z): (f64, f64, f64),
         rng: &mut ChaCha8Rng,
-    ) -> (f64, f64) {
+    ) -> [f64; 3] {
         let true_heading = on.course + gauss(rng);
         let daily = 0.12 * (TAU * (minute as f64 / 1440.0 + on.lon / 360.0)).sin();
         let magnetic = true_heading - variation - (self.crust + daily + self.storm) * 24_000.0 / h;
@@ -362,27 +433,29 @@ impl Errors {
             + (self.swing + self.slow) / cos_lat
             + self.speed_error * northerly.to_degrees()
             + 0.15 * gauss(rng);
-        (compass, gyro)
+        let satellite =
+            true_heading + truth.satellite_constant_deg + self.multipath + 0.4 * gauss(rng);
+        [compass, gyro, satellite]
     }
 }
 
-/// The mean of ten readings on one course.
+/// The mean of ten readings of each instrument on one course.
 #[derive(Default)]
 struct Mean {
     count: u32,
-    compass: f64,
-    gyro: f64,
+    off: [f64; 3],
 }
 
 impl Mean {
-    fn add(&mut self, course: f64, compass: f64, gyro: f64) -> Option<(f64, f64)> {
+    fn add(&mut self, course: f64, read: [f64; 3]) -> Option<[f64; 3]> {
         self.count += 1;
-        self.compass += wrap_180(compass - course) / 10.0;
-        self.gyro += wrap_180(gyro - course) / 10.0;
+        for (sum, reading) in self.off.iter_mut().zip(read) {
+            *sum += wrap_180(reading - course) / 10.0;
+        }
         if self.count < 10 {
             return None;
         }
-        let mean = (course + self.compass, course + self.gyro);
+        let mean = self.off.map(|off| course + off);
         *self = Mean::default();
         Some(mean)
     }

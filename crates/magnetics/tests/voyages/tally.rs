@@ -1,83 +1,135 @@
 //! What many voyages came to: how often the band held the truth, and how far off
 //! the prediction was.
 
-use super::{Faults, Truth, Variety, predicted, sail, true_deviation};
+use super::{Faults, Truth, Variety, Voyage, dipole, predicted, sail, true_deviation};
 use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::fit::{RobustOptions, fit_robust};
+use binnacle_magnetics::fit::{REFERENCE_CONSTANT_SD_DEG, RobustOptions, fit_robust};
+use binnacle_magnetics::model::Model;
+
+/// Where else the band is looked at: latitude and longitude.
+const ELSEWHERE: [(f64, f64); 5] = [
+    (60.0, 0.0),
+    (30.0, -40.0),
+    (0.0, -30.0),
+    (-35.0, 20.0),
+    (-20.0, 100.0),
+];
+
+/// Predictions held against the truth.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Held {
+    pub(crate) headings: u32,
+    pub(crate) covered: u32,
+    pub(crate) squares: f64,
+    pub(crate) variances: f64,
+}
+
+impl Held {
+    fn add(&mut self, error: f64, se: f64) {
+        self.headings += 1;
+        self.covered += u32::from(error.abs() <= 1.96 * se);
+        self.squares += error * error;
+        self.variances += se * se;
+    }
+
+    fn merge(&mut self, other: Held) {
+        self.headings += other.headings;
+        self.covered += other.covered;
+        self.squares += other.squares;
+        self.variances += other.variances;
+    }
+
+    /// Part of the headings whose band held the truth.
+    pub(crate) fn share(&self) -> f64 {
+        f64::from(self.covered) / f64::from(self.headings.max(1))
+    }
+
+    /// Root mean square error, degrees.
+    pub(crate) fn rms(&self) -> f64 {
+        (self.squares / f64::from(self.headings.max(1))).sqrt()
+    }
+
+    /// Root mean square standard error, degrees.
+    #[allow(dead_code, reason = "only the study prints")]
+    pub(crate) fn se(&self) -> f64 {
+        (self.variances / f64::from(self.headings.max(1))).sqrt()
+    }
+}
 
 /// What a set of voyages came to.
-#[derive(Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) ships: u32,
     pub(crate) refused: u32,
     /// Ships whose band holds the truth on at least nine headings in ten.
     pub(crate) passed: u32,
-    pub(crate) headings: u32,
-    pub(crate) covered: u32,
-    pub(crate) squares: f64,
-    /// The same against the truth plus the gyro's constant, with the constant's
-    /// own part left out of the band.
-    pub(crate) shape_covered: u32,
-    pub(crate) shape_squares: f64,
-    pub(crate) shape_band_squares: f64,
-    pub(crate) bands: f64,
+    /// At the ship's own place, and at other magnetic latitudes.
+    pub(crate) own: Held,
+    pub(crate) away: Held,
+    /// The same against the truth plus the reference's constant, with the
+    /// constant's part left out of the band.
+    pub(crate) own_shape: Held,
+    pub(crate) away_shape: Held,
 }
 
 impl Tally {
-    pub(crate) fn add(&mut self, seed: u64, variety: Variety, days: f64, faults: &Faults) {
+    /// Sails a ship and fits her.
+    pub(crate) fn of(seed: u64, variety: Variety, days: f64, faults: &Faults) -> Tally {
         let voyage = sail(seed, variety, days, faults);
-        self.ships += 1;
-        let fitted = match fit_robust(&voyage.observations, &RobustOptions::default()) {
-            Ok(fitted) => fitted,
-            Err(error) => {
-                self.refused += 1;
-                println!("{seed}: {error}");
-                return;
-            }
+        let mut tally = Tally {
+            ships: 1,
+            ..Tally::default()
         };
-        let mut without = fitted.model.clone();
-        without.covariance.as_mut().unwrap()[7][7] -= 0.25;
-        let Truth {
-            h_nt,
-            z_nt,
-            gyro_constant_deg,
-            ..
-        } = voyage.truth;
-        let mut held = 0;
-        for heading in 0..36 {
-            let compass = f64::from(heading) * 10.0;
-            let truth = true_deviation(&voyage.truth, compass, h_nt, z_nt);
-            let (deviation, se) = predicted(&fitted.model, compass, h_nt, z_nt);
-            let error = wrap_180(deviation - truth);
-            held += u32::from(error.abs() <= 1.96 * se);
-            self.squares += error * error;
-            self.bands += 1.96 * se;
-            let (_, se) = predicted(&without, compass, h_nt, z_nt);
-            let error = error - gyro_constant_deg;
-            self.shape_covered += u32::from(error.abs() <= 1.96 * se);
-            self.shape_squares += error * error;
-            self.shape_band_squares += se * se;
+        match fit_robust(&voyage.observations, &options(faults)) {
+            Ok(fitted) => tally.judge(&voyage, &fitted.model),
+            Err(_) => tally.refused = 1,
         }
-        self.headings += 36;
-        self.covered += held;
-        self.passed += u32::from(held >= 33);
+        tally
     }
 
-    #[allow(dead_code, reason = "only the study prints")]
-    pub(crate) fn print(&self, name: &str) {
-        let n = f64::from(self.headings.max(1));
-        println!(
-            "{name:28} ships {:4} refused {} passed {:6.2} % covered {:5.1} % rms {:.3} band {:.2} | \
-             shape: covered {:5.1} % rms {:.3} se {:.3}",
-            self.ships,
-            self.refused,
-            100.0 * f64::from(self.passed) / f64::from(self.ships),
-            100.0 * f64::from(self.covered) / n,
-            (self.squares / n).sqrt(),
-            self.bands / n,
-            100.0 * f64::from(self.shape_covered) / n,
-            (self.shape_squares / n).sqrt(),
-            (self.shape_band_squares / n).sqrt(),
-        );
+    pub(crate) fn merge(&mut self, other: &Tally) {
+        self.ships += other.ships;
+        self.refused += other.refused;
+        self.passed += other.passed;
+        self.own.merge(other.own);
+        self.away.merge(other.away);
+        self.own_shape.merge(other.own_shape);
+        self.away_shape.merge(other.away_shape);
+    }
+
+    fn judge(&mut self, voyage: &Voyage, model: &Model) {
+        let mut shape = model.clone();
+        let constant_sd = options(&voyage.sizes).reference_constant_sd_deg;
+        shape.covariance.as_mut().unwrap()[7][7] -= constant_sd.powi(2);
+        let Truth { h_nt, z_nt, .. } = voyage.truth;
+        let own = (h_nt, z_nt);
+        look(voyage, model, own, 0.0, &mut self.own);
+        let constant = voyage.reference_constant_deg();
+        look(voyage, &shape, own, constant, &mut self.own_shape);
+        self.passed = u32::from(self.own.covered * 10 >= self.own.headings * 9);
+        for (lat, lon) in ELSEWHERE {
+            let (_, h, z) = dipole(lat, lon);
+            look(voyage, model, (h, z), 0.0, &mut self.away);
+            look(voyage, &shape, (h, z), constant, &mut self.away_shape);
+        }
+    }
+}
+
+/// What is known beforehand of the reference's constant.
+pub(crate) fn options(faults: &Faults) -> RobustOptions {
+    let one = REFERENCE_CONSTANT_SD_DEG;
+    RobustOptions::of_any_ship(if faults.satellite {
+        one / 2.0_f64.sqrt()
+    } else {
+        one
+    })
+}
+
+fn look(voyage: &Voyage, model: &Model, (h, z): (f64, f64), constant: f64, held: &mut Held) {
+    for heading in 0..36 {
+        let compass = f64::from(heading) * 10.0;
+        let truth = true_deviation(&voyage.truth, compass, h, z) + constant;
+        let (deviation, se) = predicted(model, compass, h, z);
+        held.add(wrap_180(deviation - truth), se);
     }
 }
