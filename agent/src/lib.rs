@@ -26,6 +26,7 @@ mod output;
 mod sentences;
 
 mod page;
+mod reports;
 mod status;
 
 mod replay;

@@ -1,23 +1,26 @@
-//! The local page: one HTML file, the status as JSON, and the hold buttons.
+//! The local page: one HTML file, the status as JSON, the hold buttons, and the
+//! logbook's form (see [`crate::reports`]).
 //!
 //! For the ship's own network, without a login. A foreign web site that an
-//! officer has open must not be able to press a button: a hold needs a header
-//! that no form can send, and names that resolve elsewhere are refused.
+//! officer has open must not be able to press a button: what changes something
+//! needs a header that no form can send, and names that resolve elsewhere are
+//! refused.
 
 use crate::hold::Hold;
+use crate::reports;
 use crate::spool::Spool;
 use crate::status::Status;
-use axum::extract::{Request, State};
+use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::header::{CONTENT_SECURITY_POLICY, HOST, ORIGIN};
 use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::{self, Next};
 use axum::response::{Html, IntoResponse, Response};
-use axum::routing::{get, post};
+use axum::routing::{get, post, put};
 use axum::{Json, Router};
 use serde::{Deserialize, Serialize};
 use std::net::IpAddr;
 use std::sync::Arc;
-use tokio::sync::watch;
+use tokio::sync::{Notify, watch};
 
 /// What the page's handlers work with.
 #[derive(Clone, Debug)]
@@ -25,9 +28,14 @@ pub(crate) struct Page {
     pub(crate) spool: Spool,
     pub(crate) status: watch::Receiver<Arc<Status>>,
     pub(crate) hold: watch::Sender<Option<Hold>>,
+    /// Rings when there is something to send.
+    pub(crate) news: Arc<Notify>,
 }
 
-/// The header that a hold must carry: no page of another site can send it.
+/// No request is longer: a report's note has at most 1000 characters.
+const MAX_BYTES: usize = 16 * 1024;
+
+/// The header that every change must carry: no page of another site can send it.
 pub(crate) const GUARD_HEADER: &str = "x-binnacle-request";
 
 /// What a hold button sends; `null` ends the hold.
@@ -44,13 +52,16 @@ pub(crate) fn router(page: Page) -> Router {
         .route("/", get(show))
         .route("/api/status", get(status))
         .route("/api/hold", post(set_hold))
+        .route("/api/reports", get(reports::list))
+        .route("/api/reports/{id}", put(reports::put))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
         .layer(middleware::from_fn(only_from_here))
         .with_state(page)
 }
 
 async fn show() -> impl IntoResponse {
     let policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
-                  connect-src 'self'; frame-ancestors 'none'";
+                  connect-src 'self'; form-action 'none'; frame-ancestors 'none'";
     (
         [(CONTENT_SECURITY_POLICY, policy)],
         Html(include_str!("page.html")),
@@ -66,12 +77,8 @@ async fn set_hold(
     headers: HeaderMap,
     Json(request): Json<HoldRequest>,
 ) -> Response {
-    if headers.get(GUARD_HEADER).is_none_or(|value| value != "1") {
-        return (
-            StatusCode::FORBIDDEN,
-            "the header X-Binnacle-Request: 1 is missing",
-        )
-            .into_response();
+    if let Err(refusal) = guarded(&headers) {
+        return refusal.into_response();
     }
     if let Err(error) = page.spool.set_hold(request.hold).await {
         tracing::error!(%error, "a hold cannot be stored");
@@ -83,6 +90,15 @@ async fn set_hold(
     }
     page.hold.send_replace(request.hold);
     Json(request).into_response()
+}
+
+/// Refuses a change that carries no guard header.
+pub(crate) fn guarded(headers: &HeaderMap) -> Result<(), (StatusCode, &'static str)> {
+    if headers.get(GUARD_HEADER).is_some_and(|value| value == "1") {
+        return Ok(());
+    }
+    let why = "the header X-Binnacle-Request: 1 is missing";
+    Err((StatusCode::FORBIDDEN, why))
 }
 
 /// Refuses requests that a browser was tricked into.
@@ -123,19 +139,20 @@ fn is_local_name(host: &str) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use axum::body::Body;
     use tempfile::TempDir;
     use tower::ServiceExt;
 
-    async fn page() -> (TempDir, Page, Router) {
+    pub(crate) async fn page() -> (TempDir, Page, Router) {
         let directory = TempDir::new().unwrap();
         let spool = Spool::open(directory.path()).await.unwrap();
         let page = Page {
             spool,
             status: watch::channel(Arc::new(Status::default())).1,
             hold: watch::Sender::new(None),
+            news: Arc::new(Notify::new()),
         };
         let router = router(page.clone());
         (directory, page, router)

@@ -107,7 +107,8 @@ impl Agent {
         let outputs = Outputs::open(&config.output, shutdown).await?;
         let hold = watch::Sender::new(hold);
         let status = watch::Sender::new(Arc::new(Status::default()));
-        let page = serve_page(&config, &spool, &status, &hold, shutdown).await?;
+        let sealed = Arc::new(Notify::new());
+        let page = serve_page(&config, &spool, &status, &hold, &sealed, shutdown).await?;
         let model = watch::Sender::new(model);
         let settings = watch::Sender::new(settings);
         let link = watch::Sender::new(LinkStatus {
@@ -116,7 +117,6 @@ impl Agent {
         });
         let (model_rx, settings_rx, link_rx) =
             (model.subscribe(), settings.subscribe(), link.subscribe());
-        let sealed = Arc::new(Notify::new());
         let uplink = Uplink {
             spool: spool.clone(),
             token: spool.identity().await?.map(|identity| identity.token),
@@ -131,6 +131,7 @@ impl Agent {
                 settings,
                 link,
             },
+            no_reports_before: None,
             sealed: sealed.clone(),
             rng: StdRng::from_rng(&mut rand::rng()),
         };
@@ -352,6 +353,7 @@ async fn serve_page(
     spool: &Spool,
     status: &watch::Sender<Arc<Status>>,
     hold: &watch::Sender<Option<Hold>>,
+    news: &Arc<Notify>,
     shutdown: &CancellationToken,
 ) -> anyhow::Result<Option<std::net::SocketAddr>> {
     let Some(page) = &config.page else {
@@ -367,6 +369,7 @@ async fn serve_page(
         spool: spool.clone(),
         status: status.subscribe(),
         hold: hold.clone(),
+        news: news.clone(),
     });
     let stopped = shutdown.clone().cancelled_owned();
     tokio::spawn(async move {

@@ -109,9 +109,18 @@ stale_s = 15
         eventually(format!("{} is ready", self.name), START, async || {
             ensure!(agent.is_running()?, "the agent has ended:\n{}", agent.log());
             let log = agent.log();
-            Ok(output_in(&log).ok_or(log))
+            Ok(address_in(&log, "output").ok_or(log))
         })
         .await
+    }
+
+    /// Where the local page of an agent that is ready is.
+    ///
+    /// # Errors
+    /// When it is not ready.
+    pub fn page(&mut self) -> Result<SocketAddr> {
+        let agent = self.agent.as_mut().context("the agent runs")?;
+        address_in(&agent.log(), "page").context("the agent is not ready")
     }
 
     /// What `status --json` says.
@@ -179,9 +188,9 @@ stale_s = 15
     }
 }
 
-/// The address in the line that says that the agent is ready.
-fn output_in(log: &str) -> Option<SocketAddr> {
+/// An address in the line that says that the agent is ready.
+fn address_in(log: &str, name: &str) -> Option<SocketAddr> {
     let line = log.lines().find(|line| line.contains(" ready "))?;
-    let (_, rest) = line.split_once("output=\"")?;
+    let (_, rest) = line.split_once(&format!("{name}=\""))?;
     rest.split('"').next()?.parse().ok()
 }

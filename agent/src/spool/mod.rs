@@ -8,6 +8,7 @@
 //!   without gaps, and sent again byte for byte until they are acknowledged.
 //! - A batch is deleted only when the shore acknowledged that very batch and
 //!   everything before it; a record of its number, size and checksum remains.
+//! - An officer's report is here until the shore has it.
 //! - Position and data are one thing: there is no ledger beside the rows that
 //!   could disagree with them.
 //! - What is not in here yet: samples of the last second or of the last
@@ -16,9 +17,13 @@
 
 mod batches;
 mod repair;
+mod reports;
 mod seal;
 
 pub(crate) use batches::{SealedBatch, Standing};
+#[cfg(test)]
+pub(crate) use reports::ReportStanding;
+pub(crate) use reports::{NotKept, StoredReport};
 pub(crate) use seal::{Pending, Seal};
 
 use crate::hold::Hold;
@@ -109,6 +114,11 @@ impl Spool {
     pub(crate) async fn enrol(&self, identity: &Identity) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         let before = get::<Identity>(&mut tx, IDENTITY).await?;
+        if let Some(before) = &before
+            && before.vessel_name != identity.vessel_name
+        {
+            reports::refuse_waiting(&mut tx, &before.vessel_name).await?;
+        }
         if before.is_some_and(|before| !before.is_same_compass(identity)) {
             sqlx::query("DELETE FROM state WHERE name IN ($1, $2)")
                 .bind(MODEL)

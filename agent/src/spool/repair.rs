@@ -2,9 +2,9 @@
 //! ship must not have to wait in port for somebody to delete a file.
 
 use super::seal::insert_batch;
-use super::{Spool, connect};
+use super::{Spool, connect, reports};
 use anyhow::Context;
-use sqlx::{Row, SqlitePool};
+use sqlx::{FromRow, Row, SqlitePool};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
@@ -154,13 +154,30 @@ async fn carry_over(aside: &Path, spool: &Spool) {
         let copied = insert_batch(&mut connection, seq.cast_unsigned(), &bytes, count).await;
         batches += usize::from(copied.is_ok());
     }
+    let reports = carry_reports_over(&damaged, spool).await;
     damaged.close().await;
     tracing::warn!(
         state,
         samples,
         batches,
+        reports,
         "carried over from the damaged spool"
     );
+}
+
+async fn carry_reports_over(damaged: &SqlitePool, spool: &Spool) -> usize {
+    let mut carried = 0;
+    let all = "SELECT id, report, written_micros, standing, problem FROM reports ORDER BY number";
+    for row in rows(damaged, all).await {
+        let Some(report) = reports::Row::from_row(&row).ok().and_then(reports::read) else {
+            continue;
+        };
+        let Ok(mut connection) = spool.pool.acquire().await else {
+            continue;
+        };
+        carried += usize::from(reports::put(&mut connection, &report).await.is_ok());
+    }
+    carried
 }
 
 /// The rows of a query up to the first that cannot be read.
@@ -191,6 +208,10 @@ mod tests {
                 .await
                 .unwrap();
         }
+        let report = serde_json::from_str(r#"{"kind":"shock","from":"2026-11-21T06:00:00Z"}"#);
+        let (id, report) = (uuid::Uuid::from_u128(1), report.unwrap());
+        let kept = spool.keep_report(id, report, String::new(), false, sample(0).time);
+        kept.await.unwrap();
         let rest: Vec<_> = (100..140).map(sample).collect();
         spool.store(&rest, &accepted(1), Seal::Full).await.unwrap();
         spool.close().await;
@@ -202,7 +223,7 @@ mod tests {
         const PAGE: usize = 4096;
         let directory = TempDir::new().unwrap();
         let whole = closed_spool(directory.path()).await;
-        let (mut kept_identity, mut kept_batches) = (0, 0);
+        let (mut kept_identity, mut kept_batches, mut kept_reports) = (0, 0, 0);
         let pages = whole.len() / PAGE;
         for page in 0..pages {
             let directory = TempDir::new().unwrap();
@@ -212,6 +233,7 @@ mod tests {
             let (spool, _lock) = Spool::open_for_agent(directory.path()).await.unwrap();
             kept_identity += usize::from(spool.identity().await.unwrap().is_some());
             kept_batches += usize::from(spool.next_batch().await.unwrap().is_some());
+            kept_reports += usize::from(spool.next_report().await.unwrap().is_some());
             spool
                 .store(&[sample(500)], &accepted(1), Seal::All)
                 .await
@@ -221,6 +243,7 @@ mod tests {
         assert!(pages > 5, "{pages}");
         assert!(kept_identity >= pages - 3, "{kept_identity} of {pages}");
         assert!(kept_batches >= pages - 4, "{kept_batches} of {pages}");
+        assert!(kept_reports >= pages - 4, "{kept_reports} of {pages}");
     }
 
     #[tokio::test]

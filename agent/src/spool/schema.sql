@@ -31,3 +31,11 @@ CREATE TABLE IF NOT EXISTS quarantine (
     bytes   BLOB NOT NULL,
     problem TEXT NOT NULL
 );
+CREATE TABLE IF NOT EXISTS reports (
+    number         INTEGER PRIMARY KEY,
+    id             TEXT NOT NULL UNIQUE,
+    report         TEXT NOT NULL,
+    written_micros BIGINT NOT NULL,
+    standing       TEXT NOT NULL CHECK (standing IN ('waiting', 'ashore', 'refused')),
+    problem        TEXT
+);

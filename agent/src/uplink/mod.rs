@@ -6,6 +6,8 @@
 //! - A batch counts as sent when the shore's answer has been read and kept, not
 //!   before. Until then it is sent again, byte for byte.
 //! - No failure loses data or stops the agent; each is on the page in words.
+//! - A report for the logbook goes before the batches: it is short, and changes how
+//!   they are read. One that the shore does not take keeps nothing else back.
 //! - A model or settings that arrive are kept first and then in effect at once.
 
 mod backoff;
@@ -14,7 +16,7 @@ mod shore;
 pub(crate) use backoff::Backoff;
 pub(crate) use shore::{Have, Shore, Trouble};
 
-use crate::spool::{Identity, SealedBatch, Spool};
+use crate::spool::{Identity, SealedBatch, Spool, StoredReport};
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::{Downlink, ModelDownlink, Settings};
 use rand::rngs::StdRng;
@@ -78,7 +80,9 @@ pub(crate) struct Uplink {
     pub(crate) tell: Tell,
     /// The token that the model and settings in effect came with.
     pub(crate) token: Option<String>,
-    /// Rings when a batch has been sealed.
+    /// A shore that knows no reports is not asked again before this.
+    pub(crate) no_reports_before: Option<Instant>,
+    /// Rings when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
     pub(crate) rng: StdRng,
 }
@@ -135,6 +139,9 @@ impl Uplink {
         if answered.is_none() {
             self.connecting();
         }
+        if let Some(report) = self.next_report().await? {
+            return self.send_report(&identity, &report).await;
+        }
         let have = Have {
             model: self.tell.model.borrow().as_ref().map(|model| model.id),
             settings: self.tell.settings.borrow().version,
@@ -158,6 +165,49 @@ impl Uplink {
         }
     }
 
+    async fn next_report(&self) -> sqlx::Result<Option<StoredReport>> {
+        if self
+            .no_reports_before
+            .is_some_and(|time| Instant::now() < time)
+        {
+            return Ok(None);
+        }
+        self.spool.next_report().await
+    }
+
+    async fn send_report(
+        &mut self,
+        identity: &Identity,
+        report: &StoredReport,
+    ) -> sqlx::Result<Next> {
+        match self.shore.put_report(identity, report).await {
+            Ok(answer) => {
+                if self.spool.identity().await?.as_ref() == Some(identity) {
+                    self.spool.report_answered(report, &answer).await?;
+                    tracing::info!(id = %report.id, "a report is ashore");
+                }
+                self.backoff.reset();
+                self.tell.link.send_modify(|link| {
+                    link.state = LinkState::Up;
+                    link.problem = None;
+                });
+                Ok(Next::GoOn)
+            }
+            Err(Trouble::Refused(problem)) => {
+                tracing::error!(id = %report.id, problem, "the shore refuses a report");
+                self.spool.report_refused(report, &problem).await?;
+                Ok(Next::GoOn)
+            }
+            // A token that is not known any more shows itself in what is sent next.
+            Err(Trouble::Unknown(problem)) => {
+                tracing::warn!(problem, "the shore does not take reports for now");
+                self.no_reports_before = Some(Instant::now() + self.poll);
+                Ok(Next::GoOn)
+            }
+            Err(trouble) => self.fail(identity, None, trouble).await,
+        }
+    }
+
     /// What the spool has is in effect: nothing of another compass, if it is one.
     async fn enrolled_anew(&mut self, identity: &Identity) -> sqlx::Result<()> {
         self.tell.model.send_replace(self.spool.model().await?);
@@ -165,6 +215,7 @@ impl Uplink {
             .settings
             .send_replace(self.spool.settings().await?);
         self.token = Some(identity.token.clone());
+        self.no_reports_before = None;
         Ok(())
     }
 

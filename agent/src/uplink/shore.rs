@@ -3,10 +3,12 @@
 //! Nothing counts as an answer but the JSON that the shore writes: the login
 //! page of a harbour's network, with whatever status, is a failure of the link.
 
-use crate::spool::{Identity, SealedBatch};
+use crate::spool::{Identity, SealedBatch, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::messages::{Downlink, EnrolAnswer, EnrolRequest, OpenStreamAnswer};
+use binnacle_wire::messages::{
+    Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, OpenStreamAnswer,
+};
 use reqwest::header::{CONTENT_TYPE, RETRY_AFTER};
 use reqwest::{RequestBuilder, Response, StatusCode, redirect};
 use serde::Deserialize;
@@ -144,6 +146,17 @@ impl Shore {
             .header(CONTENT_TYPE, "application/octet-stream")
             .body(batch.bytes.clone());
         answer(request).await
+    }
+
+    /// Sends a report for the logbook.
+    pub(crate) async fn put_report(
+        &self,
+        identity: &Identity,
+        report: &StoredReport,
+    ) -> Result<LogbookAnswer, Trouble> {
+        let url = format!("{}/api/v1/agents/logbook/{}", identity.server, report.id);
+        let request = self.http.put(url).bearer_auth(&identity.token);
+        answer(request.json(&report.sent)).await
     }
 
     /// Asks for news.

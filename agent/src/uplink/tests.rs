@@ -1,7 +1,7 @@
 //! The uplink against a made-up shore on a real socket.
 
 use super::*;
-use crate::spool::Seal;
+use crate::spool::{ReportStanding, Seal};
 use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
@@ -12,6 +12,7 @@ use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::StreamId;
+use binnacle_wire::messages::LogbookReport;
 use rand::SeedableRng;
 use serde_json::json;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -28,6 +29,8 @@ struct Fake {
     answers: VecDeque<Response>,
     settings: Option<Settings>,
     requests: u32,
+    reports: Vec<(Uuid, LogbookReport)>,
+    report_answers: VecDeque<Response>,
 }
 
 type Shared = Arc<Mutex<Fake>>;
@@ -63,6 +66,20 @@ async fn put_batch(
         return problem(StatusCode::CONFLICT, "stream-forked");
     }
     Json(downlink(&fake, stream)).into_response()
+}
+
+async fn put_report(
+    State(fake): State<Shared>,
+    Path(id): Path<Uuid>,
+    Json(report): Json<LogbookReport>,
+) -> Response {
+    let mut fake = fake.lock().unwrap();
+    let revision = report.revision;
+    fake.reports.push((id, report));
+    if let Some(answer) = fake.report_answers.pop_front() {
+        return answer;
+    }
+    Json(json!({ "revision": revision, "withdrawn": false })).into_response()
 }
 
 async fn get_downlink(State(fake): State<Shared>, Path(stream): Path<Uuid>) -> Json<Downlink> {
@@ -114,6 +131,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
         .route("/api/v1/streams/{stream}/batches/{seq}", put(put_batch))
         .route("/api/v1/streams/{stream}/downlink", get(get_downlink))
         .route("/api/v1/streams", post(open_stream))
+        .route("/api/v1/agents/logbook/{id}", put(put_report))
         .with_state(fake.clone());
     let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
     let server = format!("http://{}", listener.local_addr().unwrap());
@@ -146,6 +164,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
             settings: settings_tx,
             link: link_tx,
         },
+        no_reports_before: None,
         sealed: sealed.clone(),
         rng: StdRng::seed_from_u64(1),
     };
@@ -380,4 +399,87 @@ async fn an_agent_enrolled_for_another_compass_drops_what_the_first_was_told() {
     let in_effect = rig.settings.wait_for(|settings| settings.version == 0);
     let in_time = timeout(Duration::from_secs(20), in_effect).await;
     assert!(in_time.is_ok(), "the old settings are still in effect");
+}
+
+impl Rig {
+    /// Writes a report as the page does.
+    async fn report(&self, number: u128) {
+        let report = serde_json::from_value(json!({
+            "kind": "lightning", "from": "2026-11-21T06:00:00Z",
+        }));
+        let (id, reporter) = (Uuid::from_u128(number), "Li".to_owned());
+        self.spool
+            .keep_report(id, report.unwrap(), reporter, false, time())
+            .await
+            .unwrap();
+        self.sealed.notify_one();
+    }
+
+    /// Waits until no report waits.
+    async fn reports_settled(&self) {
+        let settled = async {
+            while self.spool.next_report().await.unwrap().is_some() {
+                tokio::task::yield_now().await;
+            }
+        };
+        let patience = timeout(Duration::from_secs(20), settled);
+        patience.await.expect("the reports are sent");
+    }
+
+    async fn standings(&self) -> Vec<ReportStanding> {
+        let reports = self.spool.reports().await.unwrap();
+        reports.iter().map(|report| report.standing).collect()
+    }
+}
+
+#[tokio::test]
+async fn a_report_is_sent_until_it_is_answered() {
+    let lost = || StatusCode::BAD_GATEWAY.into_response();
+    let busy = problem(StatusCode::SERVICE_UNAVAILABLE, "busy");
+    let fake = Fake {
+        report_answers: VecDeque::from([lost(), busy]),
+        ..Fake::default()
+    };
+    let mut rig = rig(1, fake).await;
+    rig.report(1).await;
+    rig.reports_settled().await;
+    rig.all_sent().await;
+    assert_eq!(rig.standings().await, [ReportStanding::Ashore]);
+    let sent = &rig.fake.lock().unwrap().reports;
+    assert_eq!(sent.len(), 3);
+    assert!(sent.iter().all(|report| *report == sent[0]), "{sent:?}");
+}
+
+#[tokio::test]
+async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes() {
+    let refused = problem(StatusCode::UNPROCESSABLE_ENTITY, "invalid");
+    let fake = Fake {
+        report_answers: VecDeque::from([refused]),
+        ..Fake::default()
+    };
+    let rig = rig(0, fake).await;
+    rig.report(1).await;
+    rig.reports_settled().await;
+    rig.report(2).await;
+    rig.reports_settled().await;
+    let (ashore, refused) = (ReportStanding::Ashore, ReportStanding::Refused);
+    assert_eq!(rig.standings().await, [ashore, refused]);
+    let reports = rig.spool.reports().await.unwrap();
+    assert_eq!(reports[1].problem.as_deref(), Some("422 invalid: why"));
+}
+
+#[tokio::test]
+async fn a_shore_that_knows_no_reports_gets_its_batches_all_the_same() {
+    let unknown = problem(StatusCode::NOT_FOUND, "not-found");
+    let fake = Fake {
+        report_answers: VecDeque::from([unknown]),
+        ..Fake::default()
+    };
+    let mut rig = rig(0, fake).await;
+    rig.report(1).await;
+    seal(&rig.spool, 0).await;
+    rig.sealed.notify_one();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1]);
+    assert_eq!(rig.standings().await, [ReportStanding::Waiting]);
 }

@@ -1,0 +1,356 @@
+//! What officers reported for the logbook, until it is ashore and for a while after.
+//!
+//! What always holds: a report keeps the id it was given on board; a change raises
+//! its revision and makes it wait again; an answer counts only for the revision
+//! that was sent.
+
+use super::Spool;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::logbook::Report;
+use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
+use serde::{Deserialize, Serialize};
+use sqlx::SqliteConnection;
+use uuid::Uuid;
+
+/// So many reports are shown; older ones that are ashore are forgotten.
+const REMEMBERED: i64 = 100;
+/// More reports than anybody writes on a voyage: whoever sends more means harm.
+const MOST_WAITING: i64 = 1000;
+
+/// A report and how far it has come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct StoredReport {
+    pub(crate) id: Uuid,
+    #[serde(flatten)]
+    pub(crate) sent: LogbookReport,
+    /// When it was last changed.
+    pub(crate) written_at: Timestamp,
+    pub(crate) standing: ReportStanding,
+    /// Why it was refused, or what became of it ashore.
+    pub(crate) problem: Option<String>,
+}
+
+/// How far a report has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(rename_all = "snake_case")]
+pub(crate) enum ReportStanding {
+    /// To be sent.
+    Waiting,
+    /// In the logbook.
+    Ashore,
+    /// The shore does not take it: the officer must change it.
+    Refused,
+}
+
+/// Why a report was not kept.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum NotKept {
+    /// It was taken back before.
+    #[error("this report was taken back; write another")]
+    TakenBack,
+    /// There are too many.
+    #[error("{MOST_WAITING} reports wait for the link already")]
+    TooMany,
+    /// The spool failed.
+    #[error("the report cannot be stored")]
+    Spool(#[from] sqlx::Error),
+}
+
+pub(super) type Row = (String, String, i64, ReportStanding, Option<String>);
+
+impl Spool {
+    /// Keeps a report, or a change of one; the same again changes nothing.
+    pub(crate) async fn keep_report(
+        &self,
+        id: Uuid,
+        report: Report,
+        reporter: String,
+        withdrawn: bool,
+        now: Timestamp,
+    ) -> Result<StoredReport, NotKept> {
+        let mut tx = self.write().await?;
+        let before = find(&mut tx, id).await?;
+        let revision = before.as_ref().map_or(0, |before| before.sent.revision) + 1;
+        let sent = LogbookReport {
+            revision,
+            reporter,
+            withdrawn,
+            report,
+        };
+        if let Some(before) = before {
+            let same = LogbookReport {
+                revision: before.sent.revision,
+                ..sent.clone()
+            };
+            if before.sent == same {
+                return Ok(before);
+            }
+            if before.sent.withdrawn {
+                return Err(NotKept::TakenBack);
+            }
+        } else if count_waiting(&mut tx).await? >= MOST_WAITING {
+            return Err(NotKept::TooMany);
+        }
+        let stored = StoredReport {
+            id,
+            sent,
+            written_at: now,
+            standing: ReportStanding::Waiting,
+            problem: None,
+        };
+        put(&mut tx, &stored).await?;
+        tx.commit().await?;
+        Ok(stored)
+    }
+
+    /// The latest reports, the latest first.
+    pub(crate) async fn reports(&self) -> sqlx::Result<Vec<StoredReport>> {
+        let rows: Vec<Row> = sqlx::query_as(
+            "SELECT id, report, written_micros, standing, problem FROM reports
+             ORDER BY number DESC LIMIT $1",
+        )
+        .bind(REMEMBERED)
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(rows.into_iter().filter_map(read).collect())
+    }
+
+    /// The first report that waits to be sent.
+    pub(crate) async fn next_report(&self) -> sqlx::Result<Option<StoredReport>> {
+        let rows: Vec<Row> = sqlx::query_as(
+            "SELECT id, report, written_micros, standing, problem FROM reports
+             WHERE standing = 'waiting' ORDER BY number",
+        )
+        .fetch_all(&self.pool)
+        .await?;
+        Ok(rows.into_iter().find_map(read))
+    }
+
+    /// The shore has answered to a revision of a report.
+    pub(crate) async fn report_answered(
+        &self,
+        sent: &StoredReport,
+        answer: &LogbookAnswer,
+    ) -> sqlx::Result<()> {
+        let withdrawn = answer.withdrawn && !sent.sent.withdrawn;
+        let problem = withdrawn.then_some("withdrawn ashore");
+        self.set_standing(sent, ReportStanding::Ashore, problem)
+            .await
+    }
+
+    /// The shore will never take this revision of a report.
+    pub(crate) async fn report_refused(
+        &self,
+        sent: &StoredReport,
+        problem: &str,
+    ) -> sqlx::Result<()> {
+        self.set_standing(sent, ReportStanding::Refused, Some(problem))
+            .await
+    }
+
+    async fn set_standing(
+        &self,
+        sent: &StoredReport,
+        standing: ReportStanding,
+        problem: Option<&str>,
+    ) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        // Changed meanwhile: then the answer is for what it was.
+        if find(&mut tx, sent.id).await?.as_ref() == Some(sent) {
+            let stored = StoredReport {
+                standing,
+                problem: problem.map(str::to_owned),
+                ..sent.clone()
+            };
+            put(&mut tx, &stored).await?;
+        }
+        sqlx::query(
+            "DELETE FROM reports WHERE standing = 'ashore'
+             AND number <= (SELECT MAX(number) FROM reports) - $1",
+        )
+        .bind(REMEMBERED)
+        .execute(&mut *tx)
+        .await?;
+        tx.commit().await
+    }
+}
+
+/// Stores a report in its place.
+pub(super) async fn put(tx: &mut SqliteConnection, stored: &StoredReport) -> sqlx::Result<()> {
+    let report = serde_json::to_string(&stored.sent).map_err(|e| sqlx::Error::Encode(e.into()))?;
+    sqlx::query(
+        "INSERT INTO reports (id, report, written_micros, standing, problem)
+         VALUES ($1, $2, $3, $4, $5)
+         ON CONFLICT (id) DO UPDATE
+         SET report = excluded.report, written_micros = excluded.written_micros,
+             standing = excluded.standing, problem = excluded.problem",
+    )
+    .bind(stored.id.to_string())
+    .bind(report)
+    .bind(stored.written_at.micros())
+    .bind(stored.standing)
+    .bind(&stored.problem)
+    .execute(tx)
+    .await?;
+    Ok(())
+}
+
+/// What waits was reported of another ship: it must not go into this one's logbook.
+pub(super) async fn refuse_waiting(tx: &mut SqliteConnection, ship: &str) -> sqlx::Result<()> {
+    sqlx::query("UPDATE reports SET standing = 'refused', problem = $1 WHERE standing = 'waiting'")
+        .bind(format!("reported on board {ship}"))
+        .execute(tx)
+        .await?;
+    Ok(())
+}
+
+async fn find(tx: &mut SqliteConnection, id: Uuid) -> sqlx::Result<Option<StoredReport>> {
+    let row: Option<Row> = sqlx::query_as(
+        "SELECT id, report, written_micros, standing, problem FROM reports WHERE id = $1",
+    )
+    .bind(id.to_string())
+    .fetch_optional(tx)
+    .await?;
+    Ok(row.and_then(read))
+}
+
+async fn count_waiting(tx: &mut SqliteConnection) -> sqlx::Result<i64> {
+    sqlx::query_scalar("SELECT COUNT(*) FROM reports WHERE standing = 'waiting'")
+        .fetch_one(tx)
+        .await
+}
+
+/// A row that does not read is reported and passed over: it must not stop the rest.
+pub(super) fn read((id, report, written_micros, standing, problem): Row) -> Option<StoredReport> {
+    let read = || -> anyhow::Result<StoredReport> {
+        Ok(StoredReport {
+            id: id.parse()?,
+            sent: serde_json::from_str(&report)?,
+            written_at: Timestamp::from_micros(written_micros)?,
+            standing,
+            problem,
+        })
+    };
+    let result = read();
+    if let Err(error) = &result {
+        tracing::error!(id, %error, "a report in the spool cannot be read");
+    }
+    result.ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::identity;
+    use super::*;
+    use crate::spool::Identity;
+    use serde_json::json;
+    use tempfile::TempDir;
+
+    const ID: Uuid = Uuid::from_u128(0xb1);
+
+    fn time() -> Timestamp {
+        Timestamp::parse("2026-11-21T07:00:00Z").unwrap()
+    }
+
+    fn lightning(note: &str) -> Report {
+        serde_json::from_value(json!({
+            "kind": "lightning", "from": "2026-11-21T06:00:00Z", "note": note,
+        }))
+        .unwrap()
+    }
+
+    async fn keep(spool: &Spool, note: &str, withdrawn: bool) -> Result<StoredReport, NotKept> {
+        let report = lightning(note);
+        spool
+            .keep_report(ID, report, "Li".to_owned(), withdrawn, time())
+            .await
+    }
+
+    fn taken(revision: u32) -> LogbookAnswer {
+        LogbookAnswer {
+            revision,
+            withdrawn: false,
+        }
+    }
+
+    #[tokio::test]
+    async fn a_report_outlives_the_agent_and_the_same_again_is_one() {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        let first = keep(&spool, "a", false).await.unwrap();
+        assert_eq!(keep(&spool, "a", false).await.unwrap(), first);
+        spool.close().await;
+        let spool = Spool::open(directory.path()).await.unwrap();
+        assert_eq!(spool.next_report().await.unwrap(), Some(first.clone()));
+        assert_eq!(spool.reports().await.unwrap(), [first]);
+    }
+
+    #[tokio::test]
+    async fn a_report_that_was_changed_while_it_was_sent_waits_again() {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        let sent = keep(&spool, "a", false).await.unwrap();
+        let changed = keep(&spool, "b", false).await.unwrap();
+        assert_eq!(changed.sent.revision, 2);
+        spool.report_answered(&sent, &taken(1)).await.unwrap();
+        assert_eq!(spool.next_report().await.unwrap(), Some(changed.clone()));
+        spool.report_answered(&changed, &taken(2)).await.unwrap();
+        assert_eq!(spool.next_report().await.unwrap(), None);
+        assert_eq!(
+            spool.reports().await.unwrap()[0].standing,
+            ReportStanding::Ashore
+        );
+    }
+
+    #[tokio::test]
+    async fn what_was_taken_back_stays_so() {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        keep(&spool, "a", false).await.unwrap();
+        let back = keep(&spool, "a", true).await.unwrap();
+        assert_eq!(keep(&spool, "a", true).await.unwrap(), back);
+        let error = keep(&spool, "b", false).await.unwrap_err();
+        assert!(matches!(error, NotKept::TakenBack));
+        assert_eq!(spool.next_report().await.unwrap(), Some(back));
+    }
+
+    #[tokio::test]
+    async fn a_report_does_not_go_into_another_ships_logbook() {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        spool.enrol(&identity(7)).await.unwrap();
+        keep(&spool, "a", false).await.unwrap();
+        spool.enrol(&identity(8)).await.unwrap();
+        assert!(
+            spool.next_report().await.unwrap().is_some(),
+            "the same ship"
+        );
+        let other = Identity {
+            vessel_name: "Kogge".to_owned(),
+            ..identity(9)
+        };
+        spool.enrol(&other).await.unwrap();
+        assert_eq!(spool.next_report().await.unwrap(), None);
+        let told = spool.reports().await.unwrap()[0].problem.clone();
+        assert_eq!(told.as_deref(), Some("reported on board Txori"));
+    }
+
+    #[tokio::test]
+    async fn reports_that_are_ashore_are_forgotten_in_time_and_others_never() {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        keep(&spool, "waits", false).await.unwrap();
+        for number in 0..120 {
+            let (id, reporter) = (Uuid::from_u128(1000 + number), String::new());
+            let report = lightning("x");
+            let stored = spool.keep_report(id, report, reporter, false, time());
+            spool
+                .report_answered(&stored.await.unwrap(), &taken(1))
+                .await
+                .unwrap();
+        }
+        assert_eq!(spool.reports().await.unwrap().len(), 100);
+        assert_eq!(spool.next_report().await.unwrap().unwrap().id, ID);
+    }
+}
