@@ -16,8 +16,9 @@ use crate::model::{Covariance, Identifiable, Parameters, Quality};
 use crate::ship::EarthField;
 use nalgebra::{SMatrix, SVector};
 
-/// Gauss–Newton steps at most; three suffice near the solution.
-const ITERATIONS: u32 = 12;
+/// Gauss–Newton steps at most; three suffice near the solution, thirty where the
+/// weights and the prior's tail move with it.
+const ITERATIONS: u32 = 40;
 /// Rounds of noise levels and parameters in turn: how often each level is moved,
 /// and the step, in population standard deviations, below which the parameters
 /// have settled.

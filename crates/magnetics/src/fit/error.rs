@@ -64,6 +64,15 @@ pub enum FitError {
         /// How far they may differ.
         allowed_deg: f64,
     },
+    /// The only reference repeated itself while the ship turned.
+    #[error(
+        "the reference repeats itself in {readings} readings while the compass turns: it is stuck, \
+         or the wrong source was taken for it"
+    )]
+    ReferenceStuck {
+        /// How many readings repeat.
+        readings: u64,
+    },
     /// The iteration did not settle.
     #[error("the fit did not settle: the samples contradict each other or any ship")]
     NotConverged,

@@ -76,11 +76,21 @@ struct Trust {
 ///
 /// # Errors
 /// [`FitError::ReferencesDisagree`] when the two differ throughout by more than
-/// any alignment explains.
+/// any alignment explains, [`FitError::ReferenceStuck`] when none ever moves.
 pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Referred, FitError> {
     let mut order: Vec<usize> = (0..readings.len()).collect();
     order.sort_by_key(|&i| readings[i].time);
     let mut trust = stuck::trust(readings, &order);
+    let stuck = readings
+        .iter()
+        .zip(&trust)
+        .filter(|(reading, trust)| reading.has_reference() && !reading.may_observe(**trust));
+    let stuck = stuck.count();
+    if stuck > 0 && stuck == readings.iter().filter(|r| r.has_reference()).count() {
+        return Err(FitError::ReferenceStuck {
+            readings: stuck as u64,
+        });
+    }
     let mut check = ReferenceCheck::new(
         differences(readings, &trust).map(|(_, difference)| difference),
         one_constant_sd_deg,
@@ -119,6 +129,16 @@ fn differences<'a>(
 }
 
 impl HeadingReading {
+    fn has_reference(&self) -> bool {
+        self.gyro.or(self.satellite).or(self.unnamed).is_some()
+    }
+
+    fn may_observe(&self, trust: Trust) -> bool {
+        let (gyro, satellite) = self.believed(trust);
+        let named = self.gyro.or(self.satellite);
+        gyro.or(satellite).is_some() || named.is_none()
+    }
+
     fn believed(&self, trust: Trust) -> (Option<TrueHeading>, Option<TrueHeading>) {
         (
             self.gyro.filter(|_| trust.gyro),

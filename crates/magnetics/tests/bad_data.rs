@@ -1,0 +1,224 @@
+//! Data that cannot be right: a named refusal or an honest wide band, never a
+//! NaN and never a panic.
+
+#![allow(clippy::unwrap_used)] // all of this is tests
+
+mod voyages;
+
+use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
+use binnacle_magnetics::fit::{
+    FitError, HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, refer,
+};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use voyages::{Faults, Truth, Variety, Voyage, predicted, sail, true_deviation};
+
+fn fit(observations: &[Observation]) -> Result<RobustFit, FitError> {
+    let fit = fit_robust(observations, &RobustOptions::default())?;
+    let covariance = fit.model.covariance.unwrap();
+    let numbers = fit.model.parameters_over_lambda.to_array();
+    assert!(
+        numbers
+            .iter()
+            .chain(covariance.as_flattened())
+            .all(|x| x.is_finite())
+    );
+    Ok(fit)
+}
+
+/// Part of the headings on which the band at the ship's place holds the truth.
+fn held(voyage: &Voyage, fit: &RobustFit) -> f64 {
+    let Truth { h_nt, z_nt, .. } = voyage.truth;
+    let held = (0..36).filter(|k| {
+        let compass = f64::from(*k) * 10.0;
+        let truth = true_deviation(&voyage.truth, compass, h_nt, z_nt);
+        let (deviation, se) = predicted(&fit.model, compass, h_nt, z_nt);
+        wrap_180(deviation - truth).abs() <= 1.96 * se
+    });
+    held.count() as f64 / 36.0
+}
+
+fn band(voyage: &Voyage, fit: &RobustFit) -> f64 {
+    let Truth { h_nt, z_nt, .. } = voyage.truth;
+    1.96 * predicted(&fit.model, 90.0, h_nt, z_nt).1
+}
+
+fn voyage(days: f64) -> Voyage {
+    sail(8000, Variety::Medium, days, &Faults::USUAL)
+}
+
+#[test]
+fn one_heading_all_the_way_is_refused_for_want_of_headings() {
+    let mut observations = voyage(20.0).observations;
+    for observation in &mut observations {
+        observation.compass = CompassHeading::new(73.0).unwrap();
+    }
+    let refused = fit(&observations).unwrap_err();
+    assert!(
+        matches!(refused, FitError::TooFewHeadings { found: 1, .. }),
+        "{refused}"
+    );
+}
+
+#[test]
+fn two_samples_are_refused_for_want_of_samples() {
+    let observations = voyage(20.0).observations;
+    let refused = fit(&observations[..2]).unwrap_err();
+    assert!(
+        matches!(refused, FitError::TooFewSamples { found: 2, .. }),
+        "{refused}"
+    );
+}
+
+/// A clock that stood still: a hundred rows of one time.
+#[test]
+fn rows_of_one_time_do_not_upset_the_fit() {
+    let voyage = voyage(30.0);
+    let mut observations = voyage.observations.clone();
+    let stopped = observations[500].time;
+    for observation in &mut observations[500..600] {
+        observation.time = stopped;
+    }
+    assert!(held(&voyage, &fit(&observations).unwrap()) > 0.9);
+    for observation in &mut observations {
+        observation.time = stopped;
+    }
+    let all_at_once = fit(&observations).unwrap();
+    assert!(band(&voyage, &all_at_once).is_finite());
+}
+
+/// What the ship was ten years ago says little of bx and by now.
+#[test]
+fn ten_years_without_a_sample_widen_the_band() {
+    let voyage = voyage(40.0);
+    let mut observations = voyage.observations.clone();
+    let half = observations.len() / 2;
+    for observation in &mut observations[..half] {
+        let before = observation.time.unwrap().micros() - 10 * 31_557_600_000_000;
+        observation.time = Some(Timestamp::from_micros(before).unwrap());
+    }
+    let together = fit(&voyage.observations).unwrap();
+    let apart = fit(&observations).unwrap();
+    assert!(held(&voyage, &apart) > 0.9);
+    assert!(band(&voyage, &apart) > band(&voyage, &together));
+}
+
+/// The same voyage where the variation is 180° more: every reference heading
+/// passes through south where it passed through north.
+#[test]
+fn variations_about_180_degrees_change_nothing() {
+    let voyage = voyage(20.0);
+    let readings = |turned: f64| -> Vec<HeadingReading> {
+        let of = |o: &Observation| {
+            let heading = o.compass.degrees()
+                + o.deviation.degrees_east()
+                + o.variation.degrees_east()
+                + turned;
+            HeadingReading {
+                time: o.time,
+                position: Some(Position::new(0.0, -30.0).unwrap()),
+                compass: o.compass,
+                gyro: TrueHeading::new(heading),
+                satellite: TrueHeading::new(heading + 0.1),
+                unnamed: None,
+                variation: Variation::new(o.variation.degrees_east() + turned).unwrap(),
+                h_nt: o.h_nt,
+                z_nt: o.z_nt,
+                sog_kn: None,
+                windows: 60,
+                weight: 1.0,
+            }
+        };
+        voyage.observations.iter().map(of).collect()
+    };
+    let model = |turned: f64| {
+        let referred = refer(&readings(turned), 0.5).unwrap();
+        let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
+        fit(&observations).unwrap().model
+    };
+    let (there, turned) = (model(0.0), model(180.0));
+    for heading in 0..36 {
+        let compass = f64::from(heading) * 10.0;
+        let Truth { h_nt, z_nt, .. } = voyage.truth;
+        let (a, b) = (
+            predicted(&there, compass, h_nt, z_nt).0,
+            predicted(&turned, compass, h_nt, z_nt).0,
+        );
+        assert!((a - b).abs() < 1e-3, "{compass}: {a} {b}");
+    }
+}
+
+#[test]
+fn a_reference_that_never_moves_is_refused_by_name() {
+    let voyage = voyage(20.0);
+    let readings: Vec<HeadingReading> = voyage
+        .observations
+        .iter()
+        .map(|o| HeadingReading {
+            time: o.time,
+            position: o.position,
+            compass: o.compass,
+            gyro: TrueHeading::new(123.4),
+            satellite: None,
+            unnamed: None,
+            variation: o.variation,
+            h_nt: o.h_nt,
+            z_nt: o.z_nt,
+            sog_kn: o.sog_kn,
+            windows: o.windows,
+            weight: 1.0,
+        })
+        .collect();
+    let refused = refer(&readings, 0.5).unwrap_err();
+    assert!(
+        matches!(refused, FitError::ReferenceStuck { .. }),
+        "{refused}"
+    );
+    // Without the check the fit finds no such ship.
+    let observations: Vec<Observation> = voyage
+        .observations
+        .iter()
+        .map(|o| Observation {
+            deviation: Deviation::new(123.4 - o.variation.degrees_east() - o.compass.degrees())
+                .unwrap(),
+            ..*o
+        })
+        .collect();
+    if let Ok(fit) = fit(&observations) {
+        assert!(band(&voyage, &fit) > 3.0, "an honest band is wide");
+    }
+}
+
+/// A gyro alone, wrong by little and by much for a week out of six.
+#[test]
+fn a_gyro_that_is_wrong_for_a_week_does_not_break_the_band() {
+    for wrong_deg in [2.0, 5.0, 15.0, 60.0] {
+        let voyage = voyage(42.0);
+        let mut observations = voyage.observations.clone();
+        let begin = voyage.start.plus_seconds(14.0 * 86_400.0);
+        for observation in &mut observations {
+            let days = observation.time.unwrap().seconds_since(begin) / 86_400.0;
+            if (0.0..7.0).contains(&days) {
+                let deviation = observation.deviation.degrees_east() + wrong_deg;
+                observation.deviation = Deviation::new(deviation).unwrap();
+            }
+        }
+        match fit(&observations) {
+            Ok(fit) => assert!(held(&voyage, &fit) > 0.9, "{wrong_deg}"),
+            Err(refused) => panic!("{wrong_deg}: {refused}"),
+        }
+    }
+}
+
+#[test]
+fn a_field_too_weak_for_a_compass_is_named() {
+    let mut observations = voyage(20.0).observations;
+    for observation in &mut observations {
+        observation.h_nt = 1500.0;
+    }
+    let refused = fit(&observations).unwrap_err();
+    assert!(
+        matches!(refused, FitError::FieldTooWeak { .. }),
+        "{refused}"
+    );
+}
