@@ -6,7 +6,7 @@ use super::noise::{STATES, Transition};
 use super::prior::scales;
 use crate::angle::{TrueHeading, wrap_180};
 use crate::deviation::Coefficients;
-use crate::fit::{Observation, gyro_speed_error_deg};
+use crate::fit::{Observation, northerly_speed_error_deg};
 use crate::model::Parameters;
 use crate::position::Position;
 use crate::ship::{EarthField, PARAMETERS};
@@ -19,6 +19,8 @@ pub(crate) const CONSTANT: usize = PARAMETERS;
 /// The gyro's leftover speed error, two of the daily variation, and what is left
 /// of the lasting difference of gyro and satellite compass.
 const NUISANCES: usize = 4;
+const SPEED_ERROR: usize = CONSTANT + 1;
+const OFFSET: usize = UNKNOWNS - 1;
 
 /// Standard deviation of what is left of a gyro's speed error, as a part of it.
 const SPEED_ERROR_SD: f64 = 0.15;
@@ -55,10 +57,15 @@ pub(crate) struct Station {
     gyro_error: f64,
     /// White variance in units of a full, unit-weight row's.
     pub(crate) white_factor: f64,
-    /// Columns of the nuisances in units of their prior's standard deviations.
-    nuisance: [f64; NUISANCES],
-    /// Gyro less satellite compass, where both were read, and its columns.
-    difference: Option<(f64, [f64; NUISANCES])>,
+    gyro_share: f64,
+    /// A gyro's whole speed error here on a northerly heading, degrees.
+    northerly_error: f64,
+    /// Columns of the other nuisances in units of their prior's standard
+    /// deviations: two of the daily swing, and what is left of the lasting
+    /// difference of both references.
+    nuisance: [f64; NUISANCES - 1],
+    /// Gyro less satellite compass, where both were read.
+    difference: Option<f64>,
 }
 
 /// A row at the current parameters.
@@ -70,6 +77,8 @@ pub(crate) struct Row {
     pub(crate) columns: [f64; UNKNOWNS],
     /// Its (negative) slopes by bx and by, degrees per nT.
     pub(crate) drift: [f64; 2],
+    /// The gyro's leftover speed error's column, were the reference all gyro's.
+    speed_error: f64,
     /// What is left of the difference of both references, where both were read.
     pub(crate) difference: Option<f64>,
 }
@@ -122,11 +131,10 @@ fn station(o: &Observation, transition: Transition, both: bool) -> Station {
     // rule is meant to hold.
     let lat_deg = o.position.map_or(0.0, Position::lat_deg);
     let per_cos_lat = 1.0 / lat_deg.to_radians().cos().max(0.17);
-    let heading = true_heading(o);
     let variation_load = (NOMINAL_H_NT / o.h_nt).clamp(0.5, 4.0);
-    let speed_error = o
+    let northerly_error = o
         .sog_kn
-        .map_or(0.0, |sog_kn| gyro_speed_error_deg(heading, sog_kn, lat_deg));
+        .map_or(0.0, |sog_kn| northerly_speed_error_deg(sog_kn, lat_deg));
     let (sin, cos) = match (o.time, o.position) {
         (Some(time), Some(position)) => {
             let day = time.micros().rem_euclid(86_400_000_000) as f64 / 86_400e6;
@@ -144,18 +152,14 @@ fn station(o: &Observation, transition: Transition, both: bool) -> Station {
         variation_load,
         gyro_error: per_cos_lat,
         white_factor: (1.0 + FULL_WINDOWS / windows) / (2.0 * o.weight),
+        gyro_share: o.gyro_share,
+        northerly_error,
         nuisance: [
-            SPEED_ERROR_SD * o.gyro_share * speed_error,
             DAILY_SD_DEG * variation_load * sin,
             DAILY_SD_DEG * variation_load * cos,
             OFFSET_SD_DEG * offset_share,
         ],
-        difference: o.gyro_less_satellite_deg.map(|value| {
-            (
-                value,
-                [SPEED_ERROR_SD * speed_error, 0.0, 0.0, OFFSET_SD_DEG],
-            )
-        }),
+        difference: o.gyro_less_satellite_deg,
     }
 }
 
@@ -172,9 +176,15 @@ pub(crate) fn in_own_units(unknowns: &Unknowns) -> ([f64; PARAMETERS], f64) {
     (parameters, unknowns[CONSTANT] * scale[CONSTANT])
 }
 
-/// Predicted deviation (degrees) as the compass's user sees it, with the needle
-/// it comes from, on the magnetic heading that compass and reference agree on.
-fn predict(o: &Observation, unknowns: &Unknowns, fusion: f64) -> (f64, Needle) {
+/// What is predicted on the magnetic heading that compass and reference agree on.
+struct Predicted {
+    magnetic_deg: f64,
+    /// As the compass's user sees it.
+    deviation_deg: f64,
+    needle: Needle,
+}
+
+fn predict(o: &Observation, unknowns: &Unknowns, fusion: f64) -> Predicted {
     let (parameters, constant) = in_own_units(unknowns);
     let p = Parameters::from_array(parameters);
     let earth = EarthField {
@@ -184,17 +194,25 @@ fn predict(o: &Observation, unknowns: &Unknowns, fusion: f64) -> (f64, Needle) {
     let at = |magnetic_deg: f64| {
         let needle = Needle::at(&p, (magnetic_deg - constant).to_radians(), earth);
         let deviation = magnetic_deg - needle.compass_rad().to_degrees();
-        (wrap_180(deviation), needle)
+        Predicted {
+            magnetic_deg,
+            deviation_deg: wrap_180(deviation),
+            needle,
+        }
     };
     let by_reference = o.compass.degrees() + o.deviation.degrees_east();
-    let disagreement = wrap_180(o.deviation.degrees_east() - at(by_reference).0)
+    let disagreement = wrap_180(o.deviation.degrees_east() - at(by_reference).deviation_deg)
         .clamp(-FUSION_LIMIT_DEG, FUSION_LIMIT_DEG);
     at(by_reference - (1.0 - fusion) * disagreement)
 }
 
 /// The row of `o` at `unknowns`; `fusion` is the reference's share in its heading.
 pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns, fusion: f64) -> Row {
-    let (predicted, needle) = predict(o, unknowns, fusion);
+    let Predicted {
+        magnetic_deg,
+        deviation_deg,
+        needle,
+    } = predict(o, unknowns, fusion);
     let gradient = needle.gradient();
     let scale = scales();
     // The heading of the row moves with the parameters too.
@@ -204,19 +222,26 @@ pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns, fusio
         columns[j] = gradient[j].to_degrees() * scale[j] * follows;
     }
     columns[CONSTANT] = needle.compass_per_magnetic() * scale[CONSTANT] * follows;
-    columns[CONSTANT + 1..].copy_from_slice(&station.nuisance);
-    let mut residual = wrap_180(o.deviation.degrees_east() - predicted);
+    // At the heading of the row like all else: at the reference's own it would
+    // lean on the reference's error.
+    let northerly = (magnetic_deg + o.variation.degrees_east())
+        .to_radians()
+        .cos();
+    let speed_error = SPEED_ERROR_SD * station.northerly_error * northerly;
+    columns[SPEED_ERROR] = speed_error * station.gyro_share;
+    columns[SPEED_ERROR + 1..].copy_from_slice(&station.nuisance);
+    let mut residual = wrap_180(o.deviation.degrees_east() - deviation_deg);
     for j in CONSTANT + 1..UNKNOWNS {
         residual -= columns[j] * unknowns[j];
     }
-    let difference = station.difference.map(|(value, columns)| {
-        let known = columns.iter().zip(&unknowns[CONSTANT + 1..]);
-        value - known.map(|(c, u)| c * u).sum::<f64>()
+    let difference = station.difference.map(|value| {
+        value - speed_error * unknowns[SPEED_ERROR] - OFFSET_SD_DEG * unknowns[OFFSET]
     });
     Row {
         residual,
         columns,
         drift: [gradient[0].to_degrees(), gradient[2].to_degrees()],
+        speed_error,
         difference,
     }
 }
@@ -233,7 +258,7 @@ pub(crate) fn plain_residual(o: &Observation, unknowns: &Unknowns) -> f64 {
         .ok()
         .and_then(|coefficients| coefficients.deviation_at_compass_rad(o.compass.radians()))
         .map(|deviation| deviation.to_degrees() + constant);
-    let predicted = by_compass.unwrap_or_else(|| predict(o, unknowns, USUAL_FUSION).0);
+    let predicted = by_compass.unwrap_or_else(|| predict(o, unknowns, USUAL_FUSION).deviation_deg);
     wrap_180(o.deviation.degrees_east() - predicted)
 }
 
@@ -255,11 +280,11 @@ impl Station {
 
     /// Columns and loads of the difference of both references, where both were
     /// read: the ship has no part in it.
-    pub(crate) fn difference(&self) -> Option<([f64; UNKNOWNS], [f64; STATES])> {
-        let (_, nuisance) = self.difference?;
+    pub(crate) fn difference(&self, row: &Row) -> ([f64; UNKNOWNS], [f64; STATES]) {
         let mut columns = [0.0; UNKNOWNS];
-        columns[CONSTANT + 1..].copy_from_slice(&nuisance);
+        columns[SPEED_ERROR] = row.speed_error;
+        columns[OFFSET] = OFFSET_SD_DEG;
         let gyro = self.gyro_error;
-        Some((columns, [gyro, 0.0, gyro, 0.0, 0.0, -1.0, 0.0, 0.0]))
+        (columns, [gyro, 0.0, gyro, 0.0, 0.0, -1.0, 0.0, 0.0])
     }
 }

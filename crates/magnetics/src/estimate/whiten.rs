@@ -228,7 +228,8 @@ pub(crate) fn whiten(
     let difference_white = levels.difference_deg.powi(2);
     for (index, (station, row)) in stations.iter().zip(rows).enumerate() {
         filter.advance(&station.transition);
-        if let Some((residual, (columns, load))) = row.difference.zip(station.difference()) {
+        if let Some(residual) = row.difference {
+            let (columns, load) = station.difference(row);
             let scalar = Scalar {
                 series: series_of(residual, &columns),
                 load,

@@ -16,6 +16,7 @@ pub use error::FitError;
 pub use observation::Observation;
 pub use ols::fit_ols;
 pub use paper::fit_paper;
+pub(crate) use reference::northerly_speed_error_deg;
 pub use reference::{
     GyroSpeedError, HeadingReading, ReferenceCheck, Referred, gyro_speed_error_deg, refer,
 };

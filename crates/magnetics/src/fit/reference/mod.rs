@@ -15,6 +15,7 @@ mod stuck;
 mod vote;
 
 pub use check::ReferenceCheck;
+pub(crate) use speed_error::northerly_speed_error_deg;
 pub use speed_error::{GyroSpeedError, gyro_speed_error_deg};
 
 use super::{FitError, Observation};

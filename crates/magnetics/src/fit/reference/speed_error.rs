@@ -22,10 +22,20 @@ pub enum GyroSpeedError {
 /// A gyro's speed error in degrees, to be taken off its reading: positive on
 /// northerly headings.
 pub fn gyro_speed_error_deg(gyro: TrueHeading, sog_kn: f64, lat_deg: f64) -> f64 {
+    let sine = northerly_sine(sog_kn, lat_deg) * gyro.radians().cos();
+    sine.clamp(-1.0, 1.0).asin().to_degrees()
+}
+
+/// The same on a northerly heading.
+pub(crate) fn northerly_speed_error_deg(sog_kn: f64, lat_deg: f64) -> f64 {
+    let sine = northerly_sine(sog_kn, lat_deg);
+    sine.clamp(-1.0, 1.0).asin().to_degrees()
+}
+
+fn northerly_sine(sog_kn: f64, lat_deg: f64) -> f64 {
     // At the pole itself the rule has no meaning, and the gyro no north.
     let turn_kn = (EARTH_TURN_KN * lat_deg.to_radians().cos()).max(1.0);
-    let sine = sog_kn * gyro.radians().cos() / turn_kn;
-    sine.clamp(-1.0, 1.0).asin().to_degrees()
+    sog_kn / turn_kn
 }
 
 #[cfg(test)]
