@@ -11,7 +11,7 @@ use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_wire::messages::ModelDownlink;
+use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use serde::{Deserialize, Serialize};
 
 /// What the ship says that the correction needs.
@@ -25,6 +25,8 @@ pub(crate) struct Ingredients<'a> {
     pub(crate) time: Option<Timestamp>,
     /// The last model from shore.
     pub(crate) model: Option<&'a ModelDownlink>,
+    /// Why that model holds no more; the shore has no other one yet.
+    pub(crate) withdrawn: Option<&'a CardWithdrawn>,
 }
 
 /// One heading in three ways, as far as they can be told.
@@ -80,6 +82,10 @@ fn fill(corrected: &mut Corrected, from: Ingredients<'_>) -> Result<(), String> 
     }
     let compass = from.compass.ok_or("the compass is silent")?;
     let model = from.model.ok_or("there is no model yet")?;
+    // Better no heading than one by magnetism that the ship no longer has.
+    if let Some(withdrawn) = from.withdrawn {
+        return Err(withdrawn.in_words());
+    }
     let foretold = model
         .model
         .deviation(compass, earth)
@@ -98,7 +104,7 @@ pub(crate) fn card(from: Ingredients<'_>) -> Vec<CardRow> {
     let (Ok((earth, _)), Some(model)) = (earth_at(from), from.model) else {
         return Vec::new();
     };
-    if earth.h_nt < LEAST_H_NT {
+    if earth.h_nt < LEAST_H_NT || from.withdrawn.is_some() {
         return Vec::new();
     }
     let row = |step: u32| {
@@ -162,6 +168,7 @@ mod tests {
             position: Position::new(43.3, -3.0).ok(),
             time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
             model,
+            withdrawn: None,
         }
     }
 
@@ -193,6 +200,27 @@ mod tests {
         let card = card(ingredients(Some(&model)));
         assert_eq!(card.len(), 24);
         assert!(card.iter().all(|row| row.band95_deg.is_some()));
+    }
+
+    #[test]
+    fn a_card_that_was_withdrawn_corrects_nothing_and_says_why() {
+        let model = model(2_400.0, None);
+        let withdrawn = CardWithdrawn {
+            since: Timestamp::parse("2026-11-21T06:00:00Z").unwrap(),
+            reason: "corrector_change".to_owned(),
+        };
+        let from = Ingredients {
+            withdrawn: Some(&withdrawn),
+            ..ingredients(Some(&model))
+        };
+        let corrected = correct(from);
+        assert!(corrected.compass_deg.is_some() && corrected.variation_deg.is_some());
+        assert_eq!((corrected.deviation_deg, corrected.true_deg), (None, None));
+        assert_eq!(
+            corrected.problem.as_deref(),
+            Some("the card has not held since 2026-11-21T06:00:00Z (corrector change)")
+        );
+        assert!(card(from).is_empty());
     }
 
     #[test]

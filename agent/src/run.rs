@@ -22,7 +22,7 @@ use crate::uplink::{Backoff, LinkState, LinkStatus, Shore, Tell, Uplink};
 use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_wire::messages::{ModelDownlink, Settings};
+use binnacle_wire::messages::{CardWithdrawn, ModelDownlink, Settings};
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 use std::sync::Arc;
@@ -63,6 +63,7 @@ struct Agent {
     outputs: Outputs,
     interval: Duration,
     model: watch::Receiver<Option<ModelDownlink>>,
+    withdrawn: watch::Receiver<Option<CardWithdrawn>>,
     settings: watch::Receiver<Settings>,
     link: watch::Receiver<LinkStatus>,
     hold: watch::Sender<Option<Hold>>,
@@ -110,6 +111,8 @@ impl Agent {
         let sealed = Arc::new(Notify::new());
         let page = serve_page(&config, &spool, &status, &hold, &sealed, shutdown).await?;
         let model = watch::Sender::new(model);
+        let withdrawn = watch::Sender::new(spool.card_withdrawn().await?);
+        let withdrawn_rx = withdrawn.subscribe();
         let settings = watch::Sender::new(settings);
         let link = watch::Sender::new(LinkStatus {
             last_contact: spool.last_contact().await?,
@@ -128,6 +131,7 @@ impl Agent {
             poll: config.uplink.poll_s.duration(),
             tell: Tell {
                 model,
+                withdrawn,
                 settings,
                 link,
             },
@@ -156,6 +160,7 @@ impl Agent {
             outputs,
             interval: config.output.interval_s.duration(),
             model: model_rx,
+            withdrawn: withdrawn_rx,
             settings: settings_rx,
             link: link_rx,
             hold,
@@ -290,6 +295,7 @@ impl Agent {
 
     fn correct(&self) -> (Corrected, Vec<corrected::CardRow>) {
         let model = self.model.borrow();
+        let withdrawn = self.withdrawn.borrow();
         let now = Instant::now();
         let readings = &self.ship.readings;
         let from = Ingredients {
@@ -297,6 +303,7 @@ impl Agent {
             position: Latest::within(readings.position, POSITION_SERVES, now),
             time: self.ship.time(),
             model: model.as_ref(),
+            withdrawn: withdrawn.as_ref(),
         };
         (corrected::correct(from), corrected::card(from))
     }
@@ -318,6 +325,7 @@ impl Agent {
             version: model.version,
             data_until: model.data_until,
             age_days: Some(now.seconds_since(model.data_until).max(0.0) / 86_400.0),
+            withdrawn: self.withdrawn.borrow().clone(),
         })
     }
 
@@ -392,6 +400,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
     } else {
         LinkState::NotEnrolled
     };
+    let withdrawn = spool.card_withdrawn().await?;
     Ok(Status {
         agent_version: env!("CARGO_PKG_VERSION").to_owned(),
         vessel_name: identity
@@ -402,6 +411,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
             version: model.version,
             data_until: model.data_until,
             age_days: None,
+            withdrawn,
         }),
         hold: spool.hold().await?,
         link: LinkStatus {

@@ -7,6 +7,7 @@ use crate::spool::Standing;
 use crate::uplink::LinkStatus;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -47,6 +48,9 @@ pub(crate) struct ModelStatus {
     pub(crate) data_until: Timestamp,
     /// Since then, by the ship's time.
     pub(crate) age_days: Option<f64>,
+    /// Why it holds no more; nothing is corrected by it then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) withdrawn: Option<CardWithdrawn>,
 }
 
 /// How an input is doing; counts are since the agent started.
@@ -139,6 +143,9 @@ impl Status {
                     "model      version {}, data until {}{age}",
                     model.version, model.data_until
                 )?;
+                if let Some(withdrawn) = &model.withdrawn {
+                    writeln!(out, "           {}: not in use", withdrawn.in_words())?;
+                }
             }
             None => writeln!(out, "model      none")?,
         }

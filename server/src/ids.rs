@@ -56,4 +56,7 @@ id!(AgentId, "An installation of the agent.");
 id!(ModelId, "A version of a compass's model.");
 id!(JobId, "A piece of work in the queue.");
 id!(EntryId, "An entry of a vessel's logbook.");
+id!(AlertId, "Something that people must know of.");
+id!(WebhookId, "Where an operator's programs want to be told.");
+id!(DeliveryId, "What a webhook is told: the id of the event.");
 id!(EventId, "Something a dashboard is told.");

@@ -35,6 +35,7 @@ pub mod vessels;
 pub mod enrolment;
 pub mod streams;
 
+pub mod alerts;
 pub mod analysis;
 pub mod deviation;
 pub mod events;

@@ -30,7 +30,7 @@ use crate::hold::Hold;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::messages::{Downlink, ModelDownlink, Settings};
+use binnacle_wire::messages::{CardWithdrawn, Downlink, ModelDownlink, Settings};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
@@ -77,6 +77,7 @@ const IDENTITY: &str = "identity";
 const NEXT_SEQ: &str = "next_seq";
 const CONTIGUOUS_SEQ: &str = "contiguous_seq";
 const MODEL: &str = "model";
+const WITHDRAWN: &str = "card_withdrawn";
 const SETTINGS: &str = "settings";
 const HOLD: &str = "hold";
 const PAGE: &str = "page";
@@ -120,8 +121,9 @@ impl Spool {
             reports::refuse_waiting(&mut tx, &before.vessel_name).await?;
         }
         if before.is_some_and(|before| !before.is_same_compass(identity)) {
-            sqlx::query("DELETE FROM state WHERE name IN ($1, $2)")
+            sqlx::query("DELETE FROM state WHERE name IN ($1, $2, $3)")
                 .bind(MODEL)
+                .bind(WITHDRAWN)
                 .bind(SETTINGS)
                 .execute(&mut *tx)
                 .await?;
@@ -134,6 +136,11 @@ impl Spool {
     /// The last model from shore.
     pub(crate) async fn model(&self) -> sqlx::Result<Option<ModelDownlink>> {
         self.get(MODEL).await
+    }
+
+    /// Why that model holds no more.
+    pub(crate) async fn card_withdrawn(&self) -> sqlx::Result<Option<CardWithdrawn>> {
+        self.get(WITHDRAWN).await
     }
 
     /// The last settings from shore, or the built-in ones.
@@ -250,11 +257,23 @@ async fn put<T: Serialize>(
     Ok(())
 }
 
+async fn forget(connection: &mut SqliteConnection, name: &str) -> sqlx::Result<()> {
+    sqlx::query("DELETE FROM state WHERE name = $1")
+        .bind(name)
+        .execute(connection)
+        .await?;
+    Ok(())
+}
+
 async fn keep_downlink(connection: &mut SqliteConnection, downlink: &Downlink) -> sqlx::Result<()> {
     put(connection, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
     put(connection, LAST_CONTACT, &downlink.server_time).await?;
     if let Some(model) = &downlink.model {
         put(connection, MODEL, model).await?;
+    }
+    match &downlink.card_withdrawn {
+        Some(withdrawn) => put(connection, WITHDRAWN, withdrawn).await?,
+        None => forget(connection, WITHDRAWN).await?,
     }
     if let Some(settings) = &downlink.settings {
         put(connection, SETTINGS, settings).await?;

@@ -36,6 +36,7 @@ fn downlink(contiguous_seq: u64) -> Downlink {
     Downlink {
         contiguous_seq,
         model: None,
+        card_withdrawn: None,
         settings: None,
         server_time: sample(0).time,
     }
@@ -237,6 +238,32 @@ async fn everything_is_there_after_opening_again() {
     assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 1);
     spool.set_hold(None).await.unwrap();
     assert_eq!(spool.hold().await.unwrap(), None);
+}
+
+#[tokio::test]
+async fn a_withdrawn_card_stays_so_until_the_shore_says_otherwise() {
+    let (directory, spool) = enrolled().await;
+    let withdrawn = CardWithdrawn {
+        since: sample(1).time,
+        reason: "adjustment".to_owned(),
+    };
+    let told = Downlink {
+        card_withdrawn: Some(withdrawn.clone()),
+        ..downlink(0)
+    };
+    spool.keep_downlink(&told).await.unwrap();
+    drop(spool);
+    let spool = Spool::open(directory.path()).await.unwrap();
+    assert_eq!(spool.card_withdrawn().await.unwrap(), Some(withdrawn));
+    spool.keep_downlink(&downlink(0)).await.unwrap();
+    assert_eq!(spool.card_withdrawn().await.unwrap(), None);
+    spool.keep_downlink(&told).await.unwrap();
+    let other = Identity {
+        vessel_name: "Arrano".to_owned(),
+        ..identity(9)
+    };
+    spool.enrol(&other).await.unwrap();
+    assert_eq!(spool.card_withdrawn().await.unwrap(), None);
 }
 
 #[cfg(unix)]

@@ -18,7 +18,7 @@ pub(crate) use shore::{Have, Shore, Trouble};
 
 use crate::spool::{Identity, SealedBatch, Spool, StoredReport};
 use binnacle_magnetics::time::Timestamp;
-use binnacle_wire::messages::{Downlink, ModelDownlink, Settings};
+use binnacle_wire::messages::{CardWithdrawn, Downlink, ModelDownlink, Settings};
 use rand::rngs::StdRng;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -63,6 +63,8 @@ pub(crate) enum LinkState {
 pub(crate) struct Tell {
     /// The model to steer by.
     pub(crate) model: watch::Sender<Option<ModelDownlink>>,
+    /// Why that model holds no more.
+    pub(crate) withdrawn: watch::Sender<Option<CardWithdrawn>>,
     /// How to sample and send.
     pub(crate) settings: watch::Sender<Settings>,
     /// How the link is.
@@ -212,6 +214,9 @@ impl Uplink {
     async fn enrolled_anew(&mut self, identity: &Identity) -> sqlx::Result<()> {
         self.tell.model.send_replace(self.spool.model().await?);
         self.tell
+            .withdrawn
+            .send_replace(self.spool.card_withdrawn().await?);
+        self.tell
             .settings
             .send_replace(self.spool.settings().await?);
         self.token = Some(identity.token.clone());
@@ -261,6 +266,15 @@ impl Uplink {
             tracing::info!(version = model.version, "a new model is in effect");
             self.tell.model.send_replace(Some(model));
         }
+        // Only now: the model before must not hold again for a moment.
+        let withdrawn = downlink.card_withdrawn;
+        if let Some(withdrawn) = withdrawn
+            .as_ref()
+            .filter(|_| *self.tell.withdrawn.borrow() != withdrawn)
+        {
+            tracing::warn!("{}", withdrawn.in_words());
+        }
+        self.tell.withdrawn.send_replace(withdrawn);
         if let Some(settings) = downlink.settings {
             tracing::info!(version = settings.version, "new settings are in effect");
             self.tell.settings.send_replace(settings);

@@ -12,7 +12,7 @@ use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::messages::LogbookReport;
+use binnacle_wire::messages::{CardWithdrawn, LogbookReport};
 use rand::SeedableRng;
 use serde_json::json;
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -28,6 +28,7 @@ struct Fake {
     queries: Vec<HashMap<String, String>>,
     answers: VecDeque<Response>,
     settings: Option<Settings>,
+    withdrawn: Option<CardWithdrawn>,
     requests: u32,
     reports: Vec<(Uuid, LogbookReport)>,
     report_answers: VecDeque<Response>,
@@ -98,6 +99,7 @@ fn downlink(fake: &Fake, stream: Uuid) -> Downlink {
     Downlink {
         contiguous_seq: contiguous_seq.last().unwrap_or(0),
         model: None,
+        card_withdrawn: fake.withdrawn.clone(),
         settings: fake.settings.clone(),
         server_time: time(),
     }
@@ -108,6 +110,7 @@ struct Rig {
     spool: Spool,
     link: watch::Receiver<LinkStatus>,
     settings: watch::Receiver<Settings>,
+    withdrawn: watch::Receiver<Option<CardWithdrawn>>,
     sealed: Arc<Notify>,
     shutdown: CancellationToken,
     _directory: TempDir,
@@ -152,6 +155,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
     }
     let (link_tx, link) = watch::channel(LinkStatus::default());
     let (settings_tx, settings) = watch::channel(Settings::default());
+    let (withdrawn_tx, withdrawn) = watch::channel(None);
     let sealed = Arc::new(Notify::new());
     let uplink = Uplink {
         spool: spool.clone(),
@@ -161,6 +165,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
         poll: Duration::from_hours(1),
         tell: Tell {
             model: watch::channel(None).0,
+            withdrawn: withdrawn_tx,
             settings: settings_tx,
             link: link_tx,
         },
@@ -175,6 +180,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
         spool,
         link,
         settings,
+        withdrawn,
         sealed,
         shutdown,
         _directory: directory,
@@ -348,6 +354,26 @@ async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
         .unwrap();
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);
+}
+
+#[tokio::test]
+async fn a_card_is_withdrawn_at_once_and_given_back() {
+    let withdrawn = CardWithdrawn {
+        since: time(),
+        reason: "adjustment".to_owned(),
+    };
+    let fake = Fake {
+        withdrawn: Some(withdrawn.clone()),
+        ..Fake::default()
+    };
+    let mut rig = rig(1, fake).await;
+    rig.all_sent().await;
+    assert_eq!(*rig.withdrawn.borrow_and_update(), Some(withdrawn));
+    rig.fake.lock().unwrap().withdrawn = None;
+    seal(&rig.spool, 1).await;
+    rig.sealed.notify_one();
+    rig.withdrawn.wait_for(Option::is_none).await.unwrap();
+    assert_eq!(rig.spool.card_withdrawn().await.unwrap(), None);
 }
 
 #[tokio::test]

@@ -53,6 +53,10 @@ pub struct Downlink {
     /// The current model, when it is not the one the agent has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelDownlink>,
+    /// Why the model that the agent has holds no more, while nothing has taken its
+    /// place; when absent, the model holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub card_withdrawn: Option<CardWithdrawn>,
     /// The current settings, when they are not those the agent has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub settings: Option<Settings>,
@@ -71,6 +75,28 @@ pub struct ModelDownlink {
     pub data_until: Timestamp,
     /// The fit itself.
     pub model: Model,
+}
+
+/// That the last model holds no more: the ship's magnetism, or the compass, was
+/// altered since, and there is no model yet of how it is now.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CardWithdrawn {
+    /// Since when.
+    pub since: Timestamp,
+    /// What altered it, in a word: a kind of logbook entry, or a cause that was
+    /// found. Words may be added.
+    pub reason: String,
+}
+
+impl CardWithdrawn {
+    /// The same as a sentence without a full stop.
+    pub fn in_words(&self) -> String {
+        format!(
+            "the card has not held since {} ({})",
+            self.since,
+            self.reason.replace('_', " ")
+        )
+    }
 }
 
 /// `PUT /api/v1/agents/logbook/{id}` with the agent's token: what an officer
@@ -172,6 +198,19 @@ mod tests {
         assert_eq!(serde_json::from_value::<Downlink>(again).unwrap(), downlink);
         let model = downlink.model.unwrap();
         assert_eq!((model.version, model.model.samples_used), (4, 0));
+    }
+
+    #[test]
+    fn a_downlink_says_why_the_card_holds_no_more() {
+        let sent = json!({
+            "contiguous_seq": 12, "server_time": "2026-11-21T07:00:00Z",
+            "card_withdrawn": { "since": "2026-11-20T00:00:00Z", "reason": "corrector_change" },
+        });
+        let withdrawn = assert_comes_back::<Downlink>(&sent).card_withdrawn.unwrap();
+        assert_eq!(
+            withdrawn.in_words(),
+            "the card has not held since 2026-11-20T00:00:00Z (corrector change)"
+        );
     }
 
     #[test]

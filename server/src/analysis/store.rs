@@ -1,5 +1,6 @@
 //! What an analysis leaves in the database.
 
+use crate::alerts::Findings;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::Result;
 use crate::events::{self, Event, Kind};
@@ -9,6 +10,7 @@ use crate::time::Time;
 use binnacle_magnetics::advice::SailNext;
 use binnacle_magnetics::analyse::{Analysis, SampleDiagnostic};
 use binnacle_magnetics::coverage::Coverage;
+use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -22,6 +24,7 @@ pub(super) struct Found {
     pub(super) input_hash: String,
     pub(super) analysis: Analysis,
     pub(super) covered: Covered,
+    pub(super) findings: Findings,
 }
 
 /// Where a compass's samples lie, and where more would tell most.
@@ -109,22 +112,28 @@ pub async fn chunks(
 }
 
 /// Stores what was found in place of what was found before; a new model is the
-/// compass's next version. Answers with an event if there is one.
+/// compass's next version. Answers with an event if there is one, or the card holds
+/// no more.
 pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
     let refusal = analysis
         .current_epoch()
         .and_then(|epoch| epoch.refusal.as_ref())
         .map(ToString::to_string);
+    let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
+    let withdrawn = withdrawal(analysis)?;
     execute!(
         &mut *tx,
         "INSERT INTO analyses (vessel_id, compass_id, input_hash, estimator, analysed_at, refusal,
-                               epochs, coverage)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)
+                               epochs, coverage, findings, card_withdrawn_at,
+                               card_withdrawn_by)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
          ON CONFLICT (vessel_id, compass_id) DO UPDATE
          SET input_hash = excluded.input_hash, estimator = excluded.estimator,
              analysed_at = excluded.analysed_at, refusal = excluded.refusal,
-             epochs = excluded.epochs, coverage = excluded.coverage",
+             epochs = excluded.epochs, coverage = excluded.coverage,
+             findings = excluded.findings, card_withdrawn_at = excluded.card_withdrawn_at,
+             card_withdrawn_by = excluded.card_withdrawn_by",
         found.vessel_id,
         found.compass_id,
         found.input_hash.as_str(),
@@ -132,15 +141,39 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
         now,
         refusal,
         serde_json::to_string(&analysis.epochs)?,
-        serde_json::to_string(&found.covered)?
+        serde_json::to_string(&found.covered)?,
+        serde_json::to_string(&found.findings)?,
+        withdrawn.as_ref().map(|withdrawn| Time(withdrawn.since)),
+        withdrawn
+            .as_ref()
+            .map(|withdrawn| withdrawn.reason.as_str())
     )?;
     save_diagnostics(tx, found).await?;
     let Some(model) = next_model(found, now) else {
-        return Ok(None);
+        if withdrawn == withdrawn_before {
+            return Ok(None);
+        }
+        let event = events::insert(tx, found.vessel_id, Kind::Model, now).await?;
+        return Ok(Some(event));
     };
     models::insert(tx, &model).await?;
     let event = events::insert(tx, found.vessel_id, Kind::Model, now).await?;
     Ok(Some(event))
+}
+
+/// Whether the card of an epoch before holds no more while the current one has none.
+fn withdrawal(analysis: &Analysis) -> Result<Option<CardWithdrawn>> {
+    let Some(epoch) = analysis.current_epoch() else {
+        return Ok(None);
+    };
+    let Some(since) = epoch.from.filter(|_| epoch.model.is_none()) else {
+        return Ok(None);
+    };
+    let begun_by = serde_json::to_value(epoch.begun_by)?;
+    Ok(Some(CardWithdrawn {
+        since,
+        reason: begun_by.as_str().unwrap_or("change").to_owned(),
+    }))
 }
 
 async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {

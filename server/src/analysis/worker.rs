@@ -3,10 +3,10 @@
 use super::store::{Covered, Found};
 use super::{input, queue, store};
 use crate::app::App;
-use crate::compasses;
 use crate::error::{Error, Result};
 use crate::events;
 use crate::ids::{CompassId, VesselId};
+use crate::{alerts, compasses, settings};
 use binnacle_magnetics::advice::sail_next;
 use binnacle_magnetics::analyse::analyse;
 use metrics::{counter, histogram};
@@ -109,9 +109,11 @@ async fn keep_lease(app: &App, job: queue::Job) -> Infallible {
 /// Analyses a vessel's compasses and stores what is new.
 async fn work(app: &App, job: queue::Job) -> Result<usize> {
     let mut news = Vec::new();
-    for compass in compasses::of_vessel(&app.db, job.vessel_id).await? {
+    let compasses = compasses::of_vessel(&app.db, job.vessel_id).await?;
+    for compass in &compasses {
         news.extend(analyse_compass(app, job.vessel_id, compass.id).await?);
     }
+    let limits = settings::find(&app.db, job.vessel_id).await?.alerts;
     let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
     if !queue::finish(&mut tx, job).await? {
@@ -120,6 +122,11 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     let mut events = Vec::new();
     for found in &news {
         events.extend(store::save(&mut tx, found, now).await?);
+    }
+    // Also where nothing new was found: the limits may be others.
+    for compass in &compasses {
+        let told = alerts::after_analysis(&mut tx, job.vessel_id, compass.id, &limits, now);
+        events.extend(told.await?);
     }
     tx.commit().await?;
     for event in events {
@@ -151,6 +158,7 @@ async fn analyse_compass(
             vessel_id,
             compass_id,
             input_hash,
+            findings: alerts::findings_of(&analysis),
             analysis,
             covered,
         }))

@@ -4,7 +4,7 @@ use crate::app::App;
 use crate::clock::Clock;
 use crate::config::{Database, Serve};
 use crate::db::Db;
-use crate::{analysis, events, http, operations};
+use crate::{alerts, analysis, events, http, operations};
 use anyhow::{Context, Result};
 use std::future::Future;
 use std::io::Write;
@@ -53,6 +53,9 @@ pub async fn run(app: App, listener: TcpListener) -> Result<()> {
     }
     for _ in 0..app.config.analysis_workers {
         parts.spawn(analysis::run(app.clone()));
+    }
+    if app.config.analysis_workers > 0 {
+        parts.spawn(alerts::watch(app.clone()));
     }
     parts.spawn(stop_on_signal(app.clone()));
     let stopping = app.stopping.clone();

@@ -2,7 +2,7 @@
 
 mod predict;
 
-pub use predict::{HandbookSchema, Row, Worst, handbook, table, worst};
+pub use predict::{HandbookSchema, Row, Worst, handbook, table, worst, worst_of};
 
 use crate::access::Reader;
 use crate::app::App;

@@ -5,7 +5,7 @@ use binnacle_magnetics::deviation::DeviationError;
 use binnacle_magnetics::handbook::Handbook;
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::ship::EarthField;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// Deviation on one compass heading.
@@ -24,7 +24,7 @@ pub struct Row {
 }
 
 /// The heading with the greatest deviation.
-#[derive(Clone, Copy, Debug, Serialize, ToSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
 #[schema(as = WorstHeading)]
 pub struct Worst {
     /// Compass heading.
@@ -84,7 +84,11 @@ fn row(model: &Model, earth: EarthField, compass_deg: f64) -> Result<Row, Deviat
 /// The heading with the greatest deviation, to 5°; none where headings are
 /// ambiguous.
 pub fn worst(model: &Model, earth: EarthField) -> Option<Worst> {
-    let rows = table(model, earth, 5.0).ok()?;
+    worst_of(&table(model, earth, 5.0).ok()?)
+}
+
+/// The row with the greatest deviation.
+pub fn worst_of(rows: &[Row]) -> Option<Worst> {
     let worst = rows
         .iter()
         .max_by(|x, y| x.deviation_deg.abs().total_cmp(&y.deviation_deg.abs()))?;

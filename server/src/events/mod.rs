@@ -48,6 +48,8 @@ pub enum Kind {
     Model,
     /// Something was reported, amended or withdrawn.
     Logbook,
+    /// An alert was raised, says something else, was acknowledged or cleared.
+    Alert,
 }
 
 /// An event, with those who may know of it.

@@ -43,7 +43,8 @@ fn add_problems(operation: &mut Operation) {
             RefOr::Ref(_) => None,
         })
     };
-    let fleet = operation.tags.iter().flatten().any(|tag| tag == "fleet");
+    let mut tags = operation.tags.iter().flatten();
+    let fleet = tags.any(|tag| tag == "fleet" || tag == "alerts");
     let query = parameters().any(|found| found.parameter_in == ParameterIn::Query);
     let body = operation.request_body.is_some();
     // A batch's frame is taken whatever its media type is called.

@@ -3,7 +3,7 @@
 use super::headers;
 use crate::app::App;
 use crate::{
-    compasses, dashboard, deviation, enrolment, error, events, logbook, models, operations,
+    alerts, compasses, dashboard, deviation, enrolment, error, events, logbook, models, operations,
     samples, session, settings, streams, tokens, vessels,
 };
 use axum::Router;
@@ -41,6 +41,7 @@ const PATIENCE: Duration = Duration::from_mins(2);
         (name = "session", description = "Signing in; API tokens"),
         (name = "agents", description = "What the agents aboard talk to"),
         (name = "fleet", description = "Vessels, compasses, models"),
+        (name = "alerts", description = "What people must know of, and how they are told"),
         (name = "operations", description = "Health and metrics"),
     )
 )]
@@ -82,6 +83,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(models::router())
         .merge(deviation::router())
         .merge(samples::router())
+        .merge(alerts::router())
         .merge(events::router())
 }
 

@@ -8,6 +8,7 @@ use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::events::{self, Kind};
 use crate::ids::{CompassId, EntryId, UserId, VesselId};
+use crate::session;
 use crate::time::Time;
 use anyhow::Context;
 use binnacle_magnetics::analyse;
@@ -100,17 +101,10 @@ impl<'a> Change<'a> {
 
 impl Author {
     pub(super) async fn user(tx: &mut Tx, id: UserId, at: Time) -> Result<Author> {
-        let (name,) = row!(
-            in tx,
-            (String,),
-            "SELECT name FROM users WHERE id = $1 ORDER BY id",
-            id
-        )?
-        .ok_or_else(|| anyhow::anyhow!("user {id} is missing"))?;
         Ok(Author {
             kind: AuthorKind::User,
             id: id.0,
-            name,
+            name: session::name_of(tx, id).await?,
             at,
             board_revision: None,
         })

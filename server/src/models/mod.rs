@@ -1,10 +1,13 @@
-//! The models of a vessel's compasses: every version, the highest is current.
+//! The models of a vessel's compasses: every version is kept, the highest is current,
+//! but while a change has ended its epoch and no other model has taken its place.
 
 mod schema;
 mod store;
 
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
-pub use store::{StoredModel, current, current_of_fleet, current_of_vessel, insert};
+pub use store::{
+    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, insert, withdrawn,
+};
 
 use crate::access::Reader;
 use crate::app::App;
@@ -150,9 +153,12 @@ pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Resul
         return Ok(model);
     }
     let refusal = analysis::refusal(&app.db, vessel, compass).await?;
-    Err(Error::NoModelYet(refusal.unwrap_or_else(|| {
-        "no samples have been analysed yet".to_owned()
-    })))
+    let missing = refusal.unwrap_or_else(|| "no samples have been analysed yet".to_owned());
+    let withdrawn = card_withdrawn(&app.db, vessel, compass).await?;
+    Err(Error::NoModelYet(match withdrawn {
+        Some(withdrawn) => format!("{}: {missing}", withdrawn.in_words()),
+        None => missing,
+    }))
 }
 
 impl StoredModel {

@@ -4,6 +4,7 @@ use super::ModelJson;
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::ids::{CompassId, ModelId, OperatorId, VesselId};
 use crate::time::Time;
+use binnacle_wire::messages::CardWithdrawn;
 
 /// A row of `models`.
 #[derive(Clone, Debug, sqlx::FromRow)]
@@ -30,14 +31,17 @@ pub struct StoredModel {
     pub model: ModelJson,
 }
 
-/// The current model of a compass.
+/// The current model of a compass; none while its card is withdrawn.
 pub async fn current(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<StoredModel>> {
     row!(
         db,
         StoredModel,
-        "SELECT * FROM models
-         WHERE vessel_id = $1 AND compass_id = $2
-         ORDER BY version DESC
+        "SELECT m.* FROM models m
+         WHERE m.vessel_id = $1 AND m.compass_id = $2
+           AND NOT EXISTS (SELECT 1 FROM analyses a
+                           WHERE a.vessel_id = m.vessel_id AND a.compass_id = m.compass_id
+                             AND a.card_withdrawn_at IS NOT NULL)
+         ORDER BY m.version DESC
          LIMIT 1",
         vessel,
         compass
@@ -51,6 +55,9 @@ pub async fn current_of_vessel(db: &Db, vessel: VesselId) -> Result<Vec<StoredMo
         StoredModel,
         "SELECT m.* FROM models m
          WHERE m.vessel_id = $1
+           AND NOT EXISTS (SELECT 1 FROM analyses a
+                           WHERE a.vessel_id = m.vessel_id AND a.compass_id = m.compass_id
+                             AND a.card_withdrawn_at IS NOT NULL)
            AND m.version = (SELECT MAX(n.version) FROM models n
                             WHERE n.vessel_id = m.vessel_id AND n.compass_id = m.compass_id)
          ORDER BY m.compass_id",
@@ -71,6 +78,9 @@ pub async fn current_of_fleet(
         "SELECT m.* FROM models m
          JOIN vessels v ON v.id = m.vessel_id
          WHERE v.operator_id = $1 AND v.id BETWEEN $2 AND $3
+           AND NOT EXISTS (SELECT 1 FROM analyses a
+                           WHERE a.vessel_id = m.vessel_id AND a.compass_id = m.compass_id
+                             AND a.card_withdrawn_at IS NOT NULL)
            AND m.version = (SELECT MAX(n.version) FROM models n
                             WHERE n.vessel_id = m.vessel_id AND n.compass_id = m.compass_id)
          ORDER BY m.vessel_id, m.compass_id",
@@ -100,6 +110,49 @@ pub(super) async fn list(
         before.unwrap_or(i64::MAX),
         limit
     )
+}
+
+/// Since when, and why, the compass's last card holds no more; none while it holds.
+pub async fn card_withdrawn(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<CardWithdrawn>> {
+    let found = row!(
+        db,
+        (Option<Time>, Option<String>),
+        "SELECT card_withdrawn_at, card_withdrawn_by FROM analyses
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    Ok(found.and_then(read_withdrawn))
+}
+
+/// The same within a transaction.
+pub async fn withdrawn(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<CardWithdrawn>> {
+    let found = row!(
+        in tx,
+        (Option<Time>, Option<String>),
+        "SELECT card_withdrawn_at, card_withdrawn_by FROM analyses
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    Ok(found.and_then(read_withdrawn))
+}
+
+fn read_withdrawn((since, reason): (Option<Time>, Option<String>)) -> Option<CardWithdrawn> {
+    Some(CardWithdrawn {
+        since: since?.0,
+        reason: reason?,
+    })
 }
 
 /// Stores a model as the compass's next version, whatever its `version` says.

@@ -7,7 +7,7 @@
 mod store;
 mod throttle;
 
-pub use store::{Role, User, create_user, find_user};
+pub use store::{Role, User, create_user, find_user, name_of};
 
 use crate::access::Caller;
 use crate::app::App;

@@ -1,6 +1,7 @@
 //! Users and their sessions in the database.
 
 use crate::db::{Db, Result, Tx, execute, row};
+use crate::error;
 use crate::ids::{OperatorId, UserId};
 use crate::secret;
 use crate::time::Time;
@@ -73,6 +74,21 @@ pub async fn find_user(db: &Db, token_hash: &[u8], now: Time) -> Result<Option<U
         token_hash,
         now
     )
+}
+
+/// A user's name.
+///
+/// # Errors
+/// When there is no such user.
+pub async fn name_of(tx: &mut Tx, id: UserId) -> error::Result<String> {
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT name FROM users WHERE id = $1 ORDER BY id",
+        id
+    )?;
+    let (name,) = found.ok_or_else(|| anyhow::anyhow!("user {id} is missing"))?;
+    Ok(name)
 }
 
 pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, String)>> {

@@ -1,5 +1,5 @@
-//! What an operator decides for a vessel: how her agents sample and send, and how
-//! her samples are read.
+//! What an operator decides for a vessel: how her agents sample and send, how her
+//! samples are read, and from when on there are alerts.
 //!
 //! What always holds: a change makes a new version, which agents get with their
 //! next downlink, and a new analysis. Without a row the defaults hold, version 0.
@@ -9,6 +9,7 @@ mod store;
 pub use store::find;
 
 use crate::access::{Reader, Writer};
+use crate::alerts::AlertLimits;
 use crate::analysis;
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
@@ -38,6 +39,9 @@ pub struct VesselSettings {
     /// How her samples are read.
     #[schema(value_type = ReadingSettings)]
     pub analysis: AnalysisSettings,
+    /// From when on alerts are raised; the defaults if not said.
+    #[serde(default)]
+    pub alerts: AlertLimits,
 }
 
 /// How an agent samples and sends.
@@ -140,6 +144,7 @@ async fn change_settings(
             ),
         });
     }
+    wanted.alerts.checked()?;
     let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
     store::change(&mut tx, id, &wanted, now).await?;

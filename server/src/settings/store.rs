@@ -1,6 +1,7 @@
 //! Settings in the database.
 
 use super::VesselSettings;
+use crate::alerts::AlertLimits;
 use crate::db::{Db, Tx, execute, row};
 use crate::error::Result;
 use crate::ids::VesselId;
@@ -12,16 +13,17 @@ use binnacle_wire::messages::Settings;
 pub async fn find(db: &Db, vessel: VesselId) -> Result<VesselSettings> {
     let stored = row!(
         db,
-        (i64, String, String),
-        "SELECT version, agent, analysis FROM vessel_settings
+        (i64, String, String, String),
+        "SELECT version, agent, analysis, alerts FROM vessel_settings
          WHERE vessel_id = $1
          ORDER BY vessel_id",
         vessel
     )?;
-    let Some((version, agent, analysis)) = stored else {
+    let Some((version, agent, analysis, alerts)) = stored else {
         return Ok(VesselSettings {
             agent: Settings::default(),
             analysis: AnalysisSettings::default(),
+            alerts: AlertLimits::default(),
         });
     };
     let mut agent: Settings = serde_json::from_str(&agent)?;
@@ -29,6 +31,7 @@ pub async fn find(db: &Db, vessel: VesselId) -> Result<VesselSettings> {
     Ok(VesselSettings {
         agent,
         analysis: serde_json::from_str(&analysis)?,
+        alerts: serde_json::from_str(&alerts)?,
     })
 }
 
@@ -41,14 +44,16 @@ pub(super) async fn change(
 ) -> Result<()> {
     execute!(
         tx,
-        "INSERT INTO vessel_settings (vessel_id, version, agent, analysis, changed_at)
-         VALUES ($1, 1, $2, $3, $4)
+        "INSERT INTO vessel_settings (vessel_id, version, agent, analysis, alerts, changed_at)
+         VALUES ($1, 1, $2, $3, $4, $5)
          ON CONFLICT (vessel_id) DO UPDATE
          SET version = vessel_settings.version + 1, agent = excluded.agent,
-             analysis = excluded.analysis, changed_at = excluded.changed_at",
+             analysis = excluded.analysis, alerts = excluded.alerts,
+             changed_at = excluded.changed_at",
         vessel,
         serde_json::to_string(&settings.agent)?,
         serde_json::to_string(&settings.analysis)?,
+        serde_json::to_string(&settings.alerts)?,
         now
     )?;
     Ok(())

@@ -33,6 +33,9 @@ pub(super) struct DownlinkSchema {
     /// The current model, when the agent has another one or none.
     #[schema(required = false)]
     model: Option<ModelDownlinkSchema>,
+    /// Since when the card that the agent has holds no more; none while it holds.
+    #[schema(required = false)]
+    card_withdrawn: Option<CardWithdrawnSchema>,
     /// The current settings, when the agent has others.
     #[schema(required = false)]
     settings: Option<AgentSettings>,
@@ -51,6 +54,18 @@ pub(super) struct ModelDownlinkSchema {
     /// The time of the last sample in it.
     data_until: Time,
     model: ModelSchema,
+}
+
+/// That the last card holds no more.
+#[derive(ToSchema)]
+#[schema(as = CardWithdrawn)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
+pub(super) struct CardWithdrawnSchema {
+    /// Since when.
+    since: Time,
+    /// What altered the ship's magnetism or the compass: a kind of logbook entry.
+    #[schema(example = "adjustment")]
+    reason: String,
 }
 
 /// A stream just opened.
@@ -77,6 +92,10 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
     )?
     .ok_or(Error::NotFound("stream"))?;
     let current = models::current(&app.db, agent.vessel_id, agent.compass_id).await?;
+    let card_withdrawn = match has.model {
+        Some(_) => models::card_withdrawn(&app.db, agent.vessel_id, agent.compass_id).await?,
+        None => None,
+    };
     let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
     Ok(Downlink {
         contiguous_seq: contiguous_seq as u64,
@@ -92,6 +111,7 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
                     ..model.model.0
                 },
             }),
+        card_withdrawn,
         settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
         server_time: app.clock.now(),
     })

@@ -8,6 +8,7 @@ mod store;
 pub use store::{find_row, must_be_in_fleet};
 
 use crate::access::{Reader, Writer};
+use crate::alerts::{self, Severity, Standing};
 use crate::app::App;
 use crate::compasses::{self, Compass};
 use crate::deviation::Worst;
@@ -65,6 +66,9 @@ pub struct Vessel {
     pub worst: Option<Worst>,
     /// Alerts that nobody has acknowledged.
     pub open_alerts: u32,
+    /// The worst of her alerts that are not cleared.
+    #[schema(required)]
+    pub worst_alert: Option<Severity>,
 }
 
 /// Where a vessel was last known to be.
@@ -122,10 +126,11 @@ async fn list_vessels(
     let (operator, first, last) = (reader.operator, first.id, last.id);
     let compasses = compasses::of_fleet(&app.db, operator, first, last).await?;
     let models = models::current_of_fleet(&app.db, operator, first, last).await?;
+    let standing = alerts::standing(&app.db, operator, first, last).await?;
     let items = listed
         .items
         .into_iter()
-        .map(|row| row.with(&compasses, &models))
+        .map(|row| row.with(&compasses, &models, &standing))
         .collect();
     Ok(Json(VesselList {
         items,
@@ -178,7 +183,8 @@ async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vesse
     let row = must_be_in_fleet(&app.db, operator, id).await?;
     let compasses = compasses::of_vessel(&app.db, id).await?;
     let models = models::current_of_vessel(&app.db, id).await?;
-    Ok(row.with(&compasses, &models))
+    let standing = alerts::standing(&app.db, operator, id, id).await?;
+    Ok(row.with(&compasses, &models, &standing))
 }
 
 impl NewVessel {
@@ -208,8 +214,11 @@ impl NewVessel {
 }
 
 impl store::Row {
-    /// Puts a vessel together from all compasses and current models at hand.
-    fn with(self, compasses: &[Compass], models: &[StoredModel]) -> Vessel {
+    /// Puts a vessel together from all compasses, current models and counts of
+    /// alerts at hand.
+    fn with(self, compasses: &[Compass], models: &[StoredModel], standing: &[Standing]) -> Vessel {
+        let hers = standing.iter().filter(|alerts| alerts.vessel_id == self.id);
+        let (open_alerts, worst_alert) = alerts::sum(hers);
         let compasses: Vec<Compass> = compasses
             .iter()
             .filter(|compass| compass.vessel_id == self.id)
@@ -232,7 +241,8 @@ impl store::Row {
             model: model.map(StoredModel::summary),
             worst: model.and_then(StoredModel::worst),
             compasses,
-            open_alerts: 0,
+            open_alerts,
+            worst_alert,
         }
     }
 }

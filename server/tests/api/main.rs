@@ -8,6 +8,7 @@
 
 mod support;
 
+mod alerts;
 mod analysis;
 mod commands;
 mod dashboard;

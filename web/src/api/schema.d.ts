@@ -42,6 +42,81 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/alerts": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List the fleet's alerts */
+        get: operations["list_alerts"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alerts/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See an alert */
+        get: operations["find_alert"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alerts/{id}/acknowledge": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Acknowledge an alert
+         * @description Someone knows and sees to it. Acknowledging it again changes nothing.
+         */
+        post: operations["acknowledge_alert"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alerts/{id}/clear": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Clear an alert
+         * @description It comes back only when its cause does, or gets worse. Clearing it again changes
+         *     nothing.
+         */
+        post: operations["clear_alert"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/events": {
         parameters: {
             query?: never;
@@ -524,6 +599,14 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /** @description That someone knows. */
+        Acknowledgement: {
+            /**
+             * @description In that person's words.
+             * @example Master informed; azimuth taken
+             */
+            note?: string | null;
+        };
         /** @description How an agent samples and sends. */
         AgentSettings: {
             /**
@@ -605,6 +688,105 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
+        /** @description An alert. */
+        Alert: {
+            acknowledged_at: components["schemas"]["Time"] | null;
+            /** @description Who. */
+            acknowledged_by: string | null;
+            /** @description In that person's words. */
+            acknowledgement_note: string | null;
+            /** @description What to do. */
+            advice: string;
+            /** @description What it is about. */
+            cause: components["schemas"]["AlertCause"];
+            cleared_at: components["schemas"]["Time"] | null;
+            /** @description Who cleared it; none when it cleared itself. */
+            cleared_by: string | null;
+            /** @description Why. */
+            clearing_reason: string | null;
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /**
+             * @description The compass's name.
+             * @example Standard compass
+             */
+            compass_name: string;
+            /** @description What shows it, a sentence each. */
+            evidence: string[];
+            /** @description The alert's id. */
+            id: components["schemas"]["AlertId"];
+            /** @description When it was raised. */
+            raised_at: components["schemas"]["Time"];
+            /** @description How bad it is. */
+            severity: components["schemas"]["Severity"];
+            /** @description When its cause began, as far as that is known. */
+            since: components["schemas"]["Time"];
+            /** @description How far people have come with it. */
+            state: components["schemas"]["AlertState"];
+            /**
+             * @description What is so, in a sentence.
+             * @example Deviation is 7.4° E on compass heading 095°, over the limit of 5°.
+             */
+            summary: string;
+            /** @description When it last said something new. */
+            updated_at: components["schemas"]["Time"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /**
+             * @description Her name.
+             * @example Nao Victoria
+             */
+            vessel_name: string;
+        };
+        /**
+         * @description What an alert is about: one compass has at most one open alert of each.
+         * @enum {string}
+         */
+        AlertCause: "deviation_over_limit" | "reference_fault" | "silent_agent" | "no_model" | "wide_band";
+        /**
+         * Format: uuid
+         * @description Something that people must know of.
+         */
+        AlertId: string;
+        /**
+         * @description Limits of a vessel. A flag state may ask for others: AMSA and the Marshall
+         *     Islands (MN 2-011-32) have the compass adjusted above 5° on any heading.
+         */
+        AlertLimits: {
+            /**
+             * Format: double
+             * @description The greatest half width of the 95 % band that is no alert, degrees.
+             * @default 3
+             * @example 3
+             */
+            band95_deg: number;
+            /**
+             * Format: double
+             * @description The greatest deviation that is no alert, degrees.
+             * @default 5
+             * @example 5
+             */
+            deviation_deg: number;
+            /**
+             * Format: double
+             * @description Days without a batch that are no alert.
+             * @default 3
+             * @example 3
+             */
+            silent_days: number;
+        };
+        /** @description A page of alerts. */
+        AlertList: {
+            /** @description The newest first. */
+            items: components["schemas"]["Alert"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /**
+         * @description How far people have come with it.
+         * @enum {string}
+         */
+        AlertState: "raised" | "acknowledged" | "cleared";
         /** @description Half the width of the 95 % band over all headings in some waters, degrees. */
         Band: {
             /**
@@ -646,6 +828,16 @@ export interface components {
             /** @description Whether the entry counts no more, taken back on board or ashore. */
             withdrawn: boolean;
         };
+        /** @description That the last card holds no more. */
+        CardWithdrawn: {
+            /**
+             * @description What altered the ship's magnetism or the compass: a kind of logbook entry.
+             * @example adjustment
+             */
+            reason: string;
+            /** @description Since when. */
+            since: components["schemas"]["Time"];
+        };
         /**
          * @description What a magnetic cargo consists of.
          * @enum {string}
@@ -663,6 +855,14 @@ export interface components {
              * @description The weakest horizontal field, nT.
              */
             h_nt: number;
+        };
+        /** @description That an alert is over. */
+        Clearing: {
+            /**
+             * @description Why.
+             * @example Adjusted at Algeciras
+             */
+            reason: string;
         };
         /** @description A magnetic element aboard. */
         Compass: {
@@ -807,6 +1007,7 @@ export interface components {
         };
         /** @description The acknowledgement, and what the agent does not have. */
         Downlink: {
+            card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
             /**
              * Format: int64
              * @description Every batch up to this one is durable; 0 for none.
@@ -854,7 +1055,7 @@ export interface components {
          * @description What happened to a vessel.
          * @enum {string}
          */
-        EventKind: "batch" | "model" | "logbook";
+        EventKind: "batch" | "model" | "logbook" | "alert";
         /**
          * @description The model of the earth's field.
          * @enum {string}
@@ -1505,6 +1706,11 @@ export interface components {
          * @enum {string}
          */
         SampleReason: "no_reference" | "reference_failed" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "outlier" | "no_model";
+        /**
+         * @description How bad it is.
+         * @enum {string}
+         */
+        Severity: "notice" | "warning" | "critical";
         /** @description What a user signs in with. */
         SignIn: {
             /**
@@ -1585,6 +1791,7 @@ export interface components {
              */
             open_alerts: number;
             worst: components["schemas"]["WorstHeading"] | null;
+            worst_alert: components["schemas"]["Severity"] | null;
         };
         /** @description The data of an event. */
         VesselEvent: {
@@ -1612,6 +1819,8 @@ export interface components {
              *     ignored in a request.
              */
             agent: components["schemas"]["AgentSettings"];
+            /** @description From when on alerts are raised; the defaults if not said. */
+            alerts?: components["schemas"]["AlertLimits"];
             /** @description How her samples are read. */
             analysis: components["schemas"]["ReadingSettings"];
         };
@@ -1761,6 +1970,302 @@ export interface operations {
             };
             /** @description Unauthorized */
             401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_alerts: {
+        parameters: {
+            query?: {
+                /** @description Only of this vessel. */
+                vessel?: components["schemas"]["VesselId"];
+                /** @description Only in this state. */
+                state?: components["schemas"]["AlertState"];
+                /** @description Whether only those that are not cleared (`true`), or only those that are. */
+                open?: boolean;
+                /** @description Only as bad as this or worse. */
+                severity?: components["schemas"]["Severity"];
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlertList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_alert: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["AlertId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Alert"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    acknowledge_alert: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["AlertId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Acknowledgement"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Alert"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The alert is cleared */
+            410: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    clear_alert: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["AlertId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Clearing"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Alert"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
                 headers: {
                     [name: string]: unknown;
                 };

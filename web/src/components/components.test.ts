@@ -253,6 +253,7 @@ test('the list shows side, heading and band, and what is not there yet', () => {
     last_position: { lat: -33.9, lon: 18.4, at: '2026-11-01T06:00:00Z' },
     compasses: [],
     open_alerts: 0,
+    worst_alert: null,
     worst: { compass_deg: 45, deviation_deg: -6.2, band95_deg: 0.4 },
   };
   const shown = words(render(VesselTable, { props: { vessels: [vessel] } }));

@@ -94,6 +94,16 @@ impl Shore {
         }
     }
 
+    /// The kinds of all live events there were, in order.
+    pub(crate) async fn events(&self) -> Vec<String> {
+        let sql = "SELECT kind FROM events ORDER BY id";
+        match &self.app.db {
+            Db::Sqlite { readers, .. } => sqlx::query_scalar(sql).fetch_all(readers).await,
+            Db::Postgres(pool) => sqlx::query_scalar(sql).fetch_all(pool).await,
+        }
+        .unwrap()
+    }
+
     /// Does every job that is due now.
     pub(crate) async fn work(&self) -> Vec<Worked> {
         let mut done = Vec::new();

@@ -1,0 +1,213 @@
+//! What an alert says.
+
+use crate::ids::{AlertId, CompassId, VesselId};
+use crate::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+
+/// What an alert is about: one compass has at most one open alert of each.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, sqlx::Type,
+)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = AlertCause)]
+pub enum Cause {
+    /// The deviation exceeds the vessel's limit on some heading.
+    DeviationOverLimit,
+    /// Gyro and satellite compass contradict each other.
+    ReferenceFault,
+    /// Nothing has come from the vessel for too long.
+    SilentAgent,
+    /// There is no model although samples have come for a while.
+    NoModel,
+    /// The model is less certain than the vessel's limit asks.
+    WideBand,
+}
+
+/// How bad it is.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, sqlx::Type,
+)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+pub enum Severity {
+    /// To be known.
+    Notice,
+    /// To be acted on.
+    Warning,
+    /// The compass must not be relied on.
+    Critical,
+}
+
+/// How far people have come with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = AlertState)]
+pub enum State {
+    /// Nobody has acknowledged it.
+    Raised,
+    /// Someone knows; its cause goes on.
+    Acknowledged,
+    /// It is over, or someone said so.
+    Cleared,
+}
+
+/// An alert that ought to be open.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlertWanted {
+    /// What it is about.
+    pub cause: Cause,
+    /// How bad it is.
+    pub severity: Severity,
+    /// When its cause began, as far as that is known.
+    pub since: Time,
+    /// What is so, in a sentence.
+    pub summary: String,
+    /// What to do.
+    pub advice: &'static str,
+    /// What shows it.
+    pub evidence: Evidence,
+}
+
+/// What shows something, a sentence each.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Evidence(pub Vec<String>);
+
+impl TryFrom<String> for Evidence {
+    type Error = serde_json::Error;
+
+    fn try_from(text: String) -> std::result::Result<Evidence, serde_json::Error> {
+        serde_json::from_str(&text).map(Evidence)
+    }
+}
+
+/// An alert.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+pub struct Alert {
+    /// The alert's id.
+    pub id: AlertId,
+    /// The vessel.
+    pub vessel_id: VesselId,
+    /// Her name.
+    #[schema(example = "Nao Victoria")]
+    pub vessel_name: String,
+    /// The compass.
+    pub compass_id: CompassId,
+    /// The compass's name.
+    #[schema(example = "Standard compass")]
+    pub compass_name: String,
+    /// What it is about.
+    pub cause: Cause,
+    /// How bad it is.
+    pub severity: Severity,
+    /// How far people have come with it.
+    pub state: State,
+    /// When its cause began, as far as that is known.
+    pub since: Time,
+    /// What is so, in a sentence.
+    #[schema(example = "Deviation is 7.4° E on compass heading 095°, over the limit of 5°.")]
+    pub summary: String,
+    /// What to do.
+    pub advice: String,
+    /// What shows it, a sentence each.
+    #[sqlx(try_from = "String")]
+    #[schema(value_type = Vec<String>)]
+    pub evidence: Evidence,
+    /// When it was raised.
+    pub raised_at: Time,
+    /// When it last said something new.
+    pub updated_at: Time,
+    /// When someone acknowledged it.
+    #[schema(required)]
+    pub acknowledged_at: Option<Time>,
+    /// Who.
+    #[schema(required)]
+    pub acknowledged_by: Option<String>,
+    /// In that person's words.
+    #[schema(required)]
+    pub acknowledgement_note: Option<String>,
+    /// When it was cleared.
+    #[schema(required)]
+    pub cleared_at: Option<Time>,
+    /// Who cleared it; none when it cleared itself.
+    #[schema(required)]
+    pub cleared_by: Option<String>,
+    /// Why.
+    #[schema(required)]
+    pub clearing_reason: Option<String>,
+}
+
+/// A page of alerts.
+#[derive(Serialize, ToSchema)]
+pub(super) struct AlertList {
+    /// The newest first.
+    pub items: Vec<Alert>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub next: Option<String>,
+}
+
+/// Which alerts.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub(super) struct Filter {
+    /// Only of this vessel.
+    pub vessel: Option<VesselId>,
+    /// Only in this state.
+    pub state: Option<State>,
+    /// Whether only those that are not cleared (`true`), or only those that are.
+    pub open: Option<bool>,
+    /// Only as bad as this or worse.
+    pub severity: Option<Severity>,
+}
+
+/// That someone knows.
+#[derive(Debug, Default, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Acknowledgement {
+    /// In that person's words.
+    #[schema(max_length = 200, example = "Master informed; azimuth taken")]
+    pub note: Option<String>,
+}
+
+/// That an alert is over.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Clearing {
+    /// Why.
+    #[schema(min_length = 1, max_length = 200, example = "Adjusted at Algeciras")]
+    pub reason: String,
+}
+
+impl Severity {
+    /// This one and all that are worse, the last one repeated: as many as a query
+    /// has places for.
+    pub(super) fn and_worse(self) -> [Severity; 3] {
+        match self {
+            Severity::Notice => [Severity::Notice, Severity::Warning, Severity::Critical],
+            Severity::Warning => [Severity::Warning, Severity::Critical, Severity::Critical],
+            Severity::Critical => [Severity::Critical; 3],
+        }
+    }
+}
+
+impl Cause {
+    /// Whether the clock finds it rather than an analysis.
+    pub fn is_of_the_clock(self) -> bool {
+        self == Cause::SilentAgent
+    }
+
+    /// The cause in a few words, for a mail's subject.
+    pub fn words(self) -> &'static str {
+        match self {
+            Cause::DeviationOverLimit => "deviation over the limit",
+            Cause::ReferenceFault => "gyro and satellite compass disagree",
+            Cause::SilentAgent => "no word from the vessel",
+            Cause::NoModel => "no model of the compass yet",
+            Cause::WideBand => "the model is too uncertain",
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! What of an analysis alerts are made from: small enough to be kept beside it, so
+//! that other limits make other alerts without another analysis.
+
+use crate::deviation::{self, Worst};
+use binnacle_magnetics::analyse::{Analysis, Epoch, SampleDiagnostic};
+use binnacle_magnetics::angle::wrap_180;
+use binnacle_magnetics::fit::FitError;
+use binnacle_magnetics::ship::EarthField;
+use binnacle_magnetics::time::Timestamp;
+use serde::{Deserialize, Serialize};
+
+/// How far back `lately` reaches from the last sample, seconds.
+const LATELY_S: f64 = 86_400.0;
+
+/// What one compass's analysis found, in short.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Findings {
+    /// Time of the last sample.
+    pub data_until: Option<Timestamp>,
+    /// The current epoch's first sample.
+    pub epoch_data_from: Option<Timestamp>,
+    /// The greatest deviation by the current epoch's model, at the last place.
+    pub worst: Option<Worst>,
+    /// The widest half of the 95 % band there, over all headings, degrees.
+    pub widest_band95_deg: Option<f64>,
+    /// Why the current epoch has no model.
+    pub refusal: Option<String>,
+    /// Gyro and satellite compass throughout, when they differ by more than any
+    /// alignment explains: gyro less satellite compass, degrees.
+    pub references_disagree_deg: Option<f64>,
+    /// How they compared lately; none unless one of them failed.
+    pub failed_lately: Option<FailedLately>,
+}
+
+/// Samples in which gyro and satellite compass departed from their usual
+/// difference, within a day before the last sample.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FailedLately {
+    /// The first of them.
+    pub from: Timestamp,
+    /// How many there are.
+    pub samples: u64,
+    /// Among so many that had both.
+    pub of: u64,
+    /// The last one's departure from the usual difference, degrees.
+    pub departure_deg: f64,
+    /// In the current epoch the gyro was dropped so often,
+    pub gyro_dropped: u64,
+    /// and the satellite compass so often.
+    pub satellite_dropped: u64,
+}
+
+/// What the alerts of a compass are made from.
+pub fn findings_of(analysis: &Analysis) -> Findings {
+    let Some(epoch) = analysis.current_epoch() else {
+        return Findings::default();
+    };
+    let at_last_place = epoch.model.as_ref().zip(analysis.last_place);
+    let rows = at_last_place.and_then(|(model, place)| {
+        let earth = EarthField {
+            h_nt: place.h_nt,
+            z_nt: place.z_nt,
+        };
+        deviation::table(model, earth, 5.0).ok()
+    });
+    Findings {
+        data_until: analysis.data_until,
+        epoch_data_from: epoch.data_from,
+        worst: rows.as_deref().and_then(deviation::worst_of),
+        widest_band95_deg: rows
+            .iter()
+            .flatten()
+            .filter_map(|row| row.band95_deg)
+            .reduce(f64::max),
+        refusal: epoch.refusal.as_ref().map(ToString::to_string),
+        references_disagree_deg: match epoch.refusal {
+            Some(FitError::ReferencesDisagree { offset_deg, .. }) => Some(offset_deg),
+            _ => None,
+        },
+        failed_lately: failed_lately(epoch, &analysis.samples),
+    }
+}
+
+fn failed_lately(epoch: &Epoch, samples: &[SampleDiagnostic]) -> Option<FailedLately> {
+    let check = epoch.references?;
+    if check.gyro_dropped + check.satellite_dropped == 0 {
+        return None;
+    }
+    let usual_deg = check.offset_deg?;
+    let last = samples.last()?.sample.time;
+    let since = epoch.from.into_iter().chain([last.plus_seconds(-LATELY_S)]);
+    let since = since.max()?;
+    let (mut pairs, mut failed) = (0, Vec::new());
+    for diagnostic in samples {
+        let sample = &diagnostic.sample;
+        let Some((gyro, satellite)) = sample.gyro.zip(sample.satellite) else {
+            continue;
+        };
+        if sample.time < since {
+            continue;
+        }
+        pairs += 1;
+        let departure_deg = wrap_180(gyro.degrees() - satellite.degrees() - usual_deg);
+        if departure_deg.abs() > check.failed_beyond_deg {
+            failed.push((sample.time, departure_deg));
+        }
+    }
+    let (from, _) = *failed.first()?;
+    let (_, departure_deg) = *failed.last()?;
+    Some(FailedLately {
+        from,
+        samples: failed.len() as u64,
+        of: pairs,
+        departure_deg,
+        gyro_dropped: check.gyro_dropped,
+        satellite_dropped: check.satellite_dropped,
+    })
+}

@@ -1,0 +1,232 @@
+//! Brings a compass's alerts in line with what ought to be open, and tells of what
+//! is new.
+//!
+//! What always holds: whoever changes a compass's alerts holds its lock until the
+//! transaction ends, and every change of an alert is told in that transaction.
+
+use super::alert::{AlertWanted, Cause, Severity, State};
+use super::findings::Findings;
+use super::limits::AlertLimits;
+use super::store::{self, Known};
+use super::wanted::{alerts_of, silence};
+use crate::app::App;
+use crate::db::Tx;
+use crate::error::Result;
+use crate::events::{self, Event};
+use crate::ids::{AlertId, CompassId, VesselId};
+use crate::time::Time;
+use serde::{Deserialize, Serialize};
+use std::time::Duration;
+use tracing::{error, info};
+use utoipa::ToSchema;
+
+/// How often to look for silent agents.
+const LOOK_EVERY: Duration = Duration::from_mins(1);
+
+/// What became of an alert.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub enum Became {
+    /// It is new, or was acknowledged and got worse.
+    #[serde(rename = "alert.raised")]
+    Raised,
+    /// It is worse or less bad than it was.
+    #[serde(rename = "alert.updated")]
+    Updated,
+    /// Someone knows.
+    #[serde(rename = "alert.acknowledged")]
+    Acknowledged,
+    /// It is over.
+    #[serde(rename = "alert.cleared")]
+    Cleared,
+}
+
+/// A change of an alert: what became of it, or only other words.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct News {
+    pub(super) alert: AlertId,
+    pub(super) became: Option<Became>,
+}
+
+/// Holds a compass's alerts against its last analysis.
+pub async fn after_analysis(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+    limits: &AlertLimits,
+    now: Time,
+) -> Result<Option<Event>> {
+    store::lock(tx, vessel, compass).await?;
+    let Some(findings) = store::findings(tx, vessel, compass).await? else {
+        return Ok(None);
+    };
+    let findings: Findings = serde_json::from_str(&findings)?;
+    let mut known = store::known(tx, vessel, compass).await?;
+    known.retain(|alert| !alert.cause.is_of_the_clock());
+    let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();
+    let wanted = alerts_of(&findings, limits, &open);
+    let news = bring_in_line(tx, vessel, compass, &known, &wanted, now).await?;
+    tell(tx, vessel, &news, now).await
+}
+
+/// Looks which agents have fallen silent, and which have not.
+///
+/// # Errors
+/// When the database cannot be asked.
+pub async fn for_silence(app: &App) -> Result<()> {
+    let now: Time = app.clock.now().into();
+    for heard in store::heard(&app.db).await? {
+        let limits = match &heard.limits {
+            Some(text) => serde_json::from_str(text)?,
+            None => AlertLimits::default(),
+        };
+        let wanted = silence(heard.last_at, &limits, now);
+        if wanted.is_some() == (heard.alerts > 0) {
+            continue;
+        }
+        let (vessel, compass) = (heard.vessel_id, heard.compass_id);
+        let mut tx = app.db.begin().await?;
+        store::lock(&mut tx, vessel, compass).await?;
+        let mut known = store::known(&mut tx, vessel, compass).await?;
+        known.retain(|alert| alert.cause.is_of_the_clock());
+        let wanted: Vec<AlertWanted> = wanted.into_iter().collect();
+        let news = bring_in_line(&mut tx, vessel, compass, &known, &wanted, now).await?;
+        let event = tell(&mut tx, vessel, &news, now).await?;
+        tx.commit().await?;
+        if let Some(event) = event {
+            app.publish(event);
+        }
+    }
+    Ok(())
+}
+
+/// Looks after silent agents until the server stops.
+pub async fn watch(app: App) {
+    while !app.stopping.is_cancelled() {
+        if let Err(error) = for_silence(&app).await {
+            error!(?error, "silent agents cannot be looked for");
+        }
+        tokio::select! {
+            () = app.stopping.cancelled() => {}
+            () = tokio::time::sleep(LOOK_EVERY) => {}
+        }
+    }
+}
+
+async fn bring_in_line(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+    known: &[Known],
+    wanted: &[AlertWanted],
+    now: Time,
+) -> Result<Vec<News>> {
+    let mut news = Vec::new();
+    for alert in known {
+        if wanted.iter().any(|wanted| wanted.cause == alert.cause) {
+            continue;
+        }
+        store::end(tx, vessel, alert.id, now).await?;
+        if alert.state != State::Cleared {
+            news.push(News::of(alert.id, Became::Cleared));
+        }
+    }
+    for wanted in wanted {
+        let known = known.iter().find(|alert| alert.cause == wanted.cause);
+        news.extend(open_or_update(tx, vessel, compass, known, wanted, now).await?);
+    }
+    Ok(news)
+}
+
+async fn open_or_update(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+    known: Option<&Known>,
+    wanted: &AlertWanted,
+    now: Time,
+) -> Result<Option<News>> {
+    let raised = |alert| Some(News::of(alert, Became::Raised));
+    let Some(known) = known else {
+        let id = store::insert(tx, vessel, compass, wanted, now).await?;
+        return Ok(raised(id));
+    };
+    let worse = wanted.severity > known.severity;
+    if known.state == State::Cleared {
+        // A person cleared it, and its cause goes on: only if it gets worse.
+        if !worse {
+            return Ok(None);
+        }
+        store::end(tx, vessel, known.id, now).await?;
+        let id = store::insert(tx, vessel, compass, wanted, now).await?;
+        return Ok(raised(id));
+    }
+    if known.says(wanted) {
+        return Ok(None);
+    }
+    store::update(tx, vessel, known, wanted, now).await?;
+    let became = match known.state {
+        _ if wanted.severity == known.severity => None,
+        State::Acknowledged if worse => Some(Became::Raised),
+        _ => Some(Became::Updated),
+    };
+    Ok(Some(News {
+        alert: known.id,
+        became,
+    }))
+}
+
+/// Tells dashboards, within the transaction, and whoever else wants to know.
+pub(super) async fn tell(
+    tx: &mut Tx,
+    vessel: VesselId,
+    news: &[News],
+    now: Time,
+) -> Result<Option<Event>> {
+    if news.is_empty() {
+        return Ok(None);
+    }
+    for News { alert, became } in news {
+        if let Some(became) = became {
+            info!(%vessel, %alert, ?became, "an alert changed");
+        }
+    }
+    let event = events::insert(tx, vessel, events::Kind::Alert, now).await?;
+    Ok(Some(event))
+}
+
+impl News {
+    pub(super) fn of(alert: AlertId, became: Became) -> News {
+        News {
+            alert,
+            became: Some(became),
+        }
+    }
+}
+
+impl Known {
+    fn says(&self, wanted: &AlertWanted) -> bool {
+        (
+            self.severity,
+            &self.summary,
+            self.advice.as_str(),
+            &self.evidence,
+        ) == (
+            wanted.severity,
+            &wanted.summary,
+            wanted.advice,
+            &wanted.evidence,
+        )
+    }
+}
+
+/// The worst of some severities, with how many alerts nobody has acknowledged.
+pub fn sum<'a>(standing: impl Iterator<Item = &'a store::Standing>) -> (u32, Option<Severity>) {
+    let (mut raised, mut worst) = (0, None);
+    for of_a_kind in standing {
+        worst = worst.max(Some(of_a_kind.severity));
+        if of_a_kind.state == State::Raised {
+            raised += of_a_kind.alerts as u32;
+        }
+    }
+    (raised, worst)
+}

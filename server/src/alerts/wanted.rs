@@ -1,0 +1,337 @@
+//! Which alerts a compass's analysis calls for.
+//!
+//! What always holds: [`alerts_of`] is a pure function of what was found, the
+//! vessel's limits and what is open already; it names each cause once. A limit that
+//! was passed is left only [`SLACK_DEG`] below it, so that an alert does not come
+//! and go with every batch.
+
+use super::alert::{AlertWanted, Cause, Evidence, Severity};
+use super::findings::{FailedLately, Findings};
+use super::limits::AlertLimits;
+use crate::deviation::Worst;
+use crate::time::Time;
+use binnacle_magnetics::time::Timestamp;
+
+/// An open alert stays until the figure is so far below its limit, degrees.
+const SLACK_DEG: f64 = 0.5;
+/// So long a ship may need to make the headings that a model asks for, seconds.
+const PATIENCE_S: f64 = 7.0 * 86_400.0;
+/// Of the samples of the last day, so large a part with a failed reference is more
+/// than a drop-out,
+const FAILED_SHARE: f64 = 0.1;
+/// if there are so many of them.
+const FAILED_SAMPLES: u64 = 3;
+
+/// The alerts that ought to be open; `open` are the causes that are.
+pub fn alerts_of(findings: &Findings, limits: &AlertLimits, open: &[Cause]) -> Vec<AlertWanted> {
+    let slack_deg = |cause| {
+        if open.contains(&cause) {
+            SLACK_DEG
+        } else {
+            0.0
+        }
+    };
+    let Some(data_until) = findings.data_until else {
+        return Vec::new();
+    };
+    let allowed_deg = limits.deviation_deg - slack_deg(Cause::DeviationOverLimit);
+    let band_allowed_deg = limits.band95_deg - slack_deg(Cause::WideBand);
+    let over = findings
+        .worst
+        .filter(|worst| worst.deviation_deg.abs() > allowed_deg)
+        .map(|worst| over_limit(worst, limits, data_until));
+    let waited_since = findings
+        .epoch_data_from
+        .filter(|from| data_until.seconds_since(*from) >= PATIENCE_S);
+    let uncertain = waited_since.and_then(|from| match &findings.refusal {
+        Some(refusal) => Some(no_model(refusal, from)),
+        None => findings
+            .widest_band95_deg
+            .filter(|band_deg| *band_deg > band_allowed_deg)
+            .map(|band_deg| wide_band(band_deg, limits, from)),
+    });
+    let references = match (findings.references_disagree_deg, &findings.failed_lately) {
+        (Some(offset_deg), _) => Some(disagree(offset_deg, findings, data_until)),
+        (None, Some(failed)) if failed.is_more_than_a_drop_out() => Some(one_failed(failed)),
+        _ => None,
+    };
+    [over, references, uncertain]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// What calls for an alert when nothing has come since `last`.
+pub fn silence(last: Time, limits: &AlertLimits, now: Time) -> Option<AlertWanted> {
+    let days = now.0.seconds_since(last.0) / 86_400.0;
+    (days > limits.silent_days).then(|| AlertWanted {
+        cause: Cause::SilentAgent,
+        severity: Severity::Notice,
+        since: last,
+        summary: format!(
+            "Nothing has come from the vessel's agent for more than {} days.",
+            limits.silent_days
+        ),
+        advice: "Ask the ship whether the agent's computer is on and what its page says of the \
+                 link. What it sampled meanwhile is kept aboard and comes by itself.",
+        evidence: Evidence(vec![format!("The last batch came at {}.", last.0)]),
+    })
+}
+
+fn over_limit(worst: Worst, limits: &AlertLimits, data_until: Timestamp) -> AlertWanted {
+    let size_deg = worst.deviation_deg.abs();
+    let surely = size_deg - worst.band95_deg.unwrap_or(0.0) > limits.deviation_deg;
+    let severity = if size_deg > 2.0 * limits.deviation_deg {
+        Severity::Critical
+    } else if surely {
+        Severity::Warning
+    } else {
+        Severity::Notice
+    };
+    let side = if worst.deviation_deg < 0.0 { "W" } else { "E" };
+    let mut evidence = vec![format!(
+        "By the model of the samples up to {data_until}, at the place of the last one."
+    )];
+    evidence.extend(
+        worst
+            .band95_deg
+            .map(|band_deg| format!("Its 95 % band there is ±{band_deg:.1}°.")),
+    );
+    AlertWanted {
+        cause: Cause::DeviationOverLimit,
+        severity,
+        since: data_until.into(),
+        summary: format!(
+            "Deviation is {size_deg:.1}° {side} on compass heading {:03.0}°, over the limit of {}°.",
+            worst.compass_deg, limits.deviation_deg
+        ),
+        advice: "Steer by the corrected heading or the gyro, check the compass error by azimuth \
+                 once a watch, and have the compass adjusted.",
+        evidence: Evidence(evidence),
+    }
+}
+
+fn no_model(refusal: &str, from: Timestamp) -> AlertWanted {
+    AlertWanted {
+        cause: Cause::NoModel,
+        severity: Severity::Notice,
+        since: from.into(),
+        summary: "Samples have come for more than a week, but no model could be made of them."
+            .to_owned(),
+        advice: "Use no deviation card of earlier date. Take azimuths, and let the ship lie on \
+                 the headings that are missing where the passage allows.",
+        evidence: Evidence(vec![format!("What is missing: {refusal}.")]),
+    }
+}
+
+fn wide_band(band_deg: f64, limits: &AlertLimits, from: Timestamp) -> AlertWanted {
+    AlertWanted {
+        cause: Cause::WideBand,
+        severity: Severity::Notice,
+        since: from.into(),
+        summary: format!(
+            "On some heading the deviation is known only to ±{band_deg:.1}°; the limit is ±{}°.",
+            limits.band95_deg
+        ),
+        advice: "Take an azimuth before relying on the card on a heading that she seldom lies \
+                 on. The vessel's page says which headings would tell most.",
+        evidence: Evidence(vec![format!("Samples have come since {from}.")]),
+    }
+}
+
+const TRUST_NEITHER: &str = "Check both against an azimuth, and the alignment and the speed and \
+     latitude settings of the gyro. Until then take neither as the compass's true heading; the \
+     magnetic compass itself is not suspected.";
+
+fn disagree(offset_deg: f64, findings: &Findings, data_until: Timestamp) -> AlertWanted {
+    AlertWanted {
+        cause: Cause::ReferenceFault,
+        severity: Severity::Warning,
+        since: findings.epoch_data_from.unwrap_or(data_until).into(),
+        summary: format!(
+            "Gyro and satellite compass differ by {:.1}° throughout, more than any alignment \
+             explains: one of them is wrong.",
+            offset_deg.abs()
+        ),
+        advice: TRUST_NEITHER,
+        evidence: Evidence(
+            findings
+                .refusal
+                .iter()
+                .map(|text| format!("{text}."))
+                .collect(),
+        ),
+    }
+}
+
+fn one_failed(failed: &FailedLately) -> AlertWanted {
+    AlertWanted {
+        cause: Cause::ReferenceFault,
+        severity: Severity::Warning,
+        since: failed.from.into(),
+        summary: format!(
+            "Gyro and satellite compass parted: lately they departed by {:.1}° from their usual \
+             difference.",
+            failed.departure_deg.abs()
+        ),
+        advice: TRUST_NEITHER,
+        evidence: Evidence(vec![
+            format!(
+                "So it was in {} of the {} samples of the last day that had both.",
+                failed.samples, failed.of
+            ),
+            format!(
+                "Since the compass was last altered the gyro was left out {} times, the satellite \
+                 compass {} times.",
+                failed.gyro_dropped, failed.satellite_dropped
+            ),
+        ]),
+    }
+}
+
+impl FailedLately {
+    fn is_more_than_a_drop_out(&self) -> bool {
+        self.samples >= FAILED_SAMPLES && self.samples as f64 >= FAILED_SHARE * self.of as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(text: &str) -> Timestamp {
+        Timestamp::parse(text).unwrap()
+    }
+
+    fn found() -> Findings {
+        Findings {
+            data_until: Some(at("2026-11-20T00:00:00Z")),
+            epoch_data_from: Some(at("2026-11-10T00:00:00Z")),
+            ..Findings::default()
+        }
+    }
+
+    fn with_worst(deviation_deg: f64, band95_deg: f64) -> Findings {
+        Findings {
+            worst: Some(Worst {
+                compass_deg: 95.0,
+                deviation_deg,
+                band95_deg: Some(band95_deg),
+            }),
+            widest_band95_deg: Some(band95_deg),
+            ..found()
+        }
+    }
+
+    fn causes(findings: &Findings, open: &[Cause]) -> Vec<(Cause, Severity)> {
+        let wanted = alerts_of(findings, &AlertLimits::default(), open);
+        wanted
+            .iter()
+            .map(|alert| (alert.cause, alert.severity))
+            .collect()
+    }
+
+    #[test]
+    fn deviation_over_the_limit_is_as_bad_as_it_is_certain_and_large() {
+        use Severity::{Critical, Notice, Warning};
+        for (deviation_deg, severity) in [
+            (4.9, None),
+            (-4.9, None),
+            (5.1, Some(Notice)),
+            (6.1, Some(Warning)),
+            (-6.1, Some(Warning)),
+            (-10.1, Some(Critical)),
+        ] {
+            let expected: Vec<_> = severity
+                .map(|severity| (Cause::DeviationOverLimit, severity))
+                .into_iter()
+                .collect();
+            let findings = with_worst(deviation_deg, 1.0);
+            assert_eq!(causes(&findings, &[]), expected, "{deviation_deg}");
+        }
+        let wanted = alerts_of(&with_worst(-6.1, 1.0), &AlertLimits::default(), &[]);
+        assert!(
+            wanted[0].summary.contains("6.1° W on compass heading 095°"),
+            "{wanted:?}"
+        );
+    }
+
+    #[test]
+    fn an_open_alert_stays_until_the_figure_is_well_below_its_limit() {
+        let open = [Cause::DeviationOverLimit];
+        assert_eq!(causes(&with_worst(4.8, 1.0), &open).len(), 1);
+        assert_eq!(causes(&with_worst(4.4, 1.0), &open), []);
+    }
+
+    #[test]
+    fn a_ship_has_a_week_to_make_the_headings_for_a_model() {
+        let mut findings = Findings {
+            refusal: Some("3 usable samples; at least 8 are needed".to_owned()),
+            ..found()
+        };
+        assert_eq!(causes(&findings, &[]), [(Cause::NoModel, Severity::Notice)]);
+        findings.epoch_data_from = Some(at("2026-11-14T00:00:00Z"));
+        assert_eq!(causes(&findings, &[]), []);
+        // An epoch without samples waits for them, not for a person.
+        findings.epoch_data_from = None;
+        assert_eq!(causes(&findings, &[]), []);
+    }
+
+    #[test]
+    fn a_wide_band_is_an_alert_after_a_week() {
+        let mut findings = with_worst(2.0, 3.5);
+        assert_eq!(
+            causes(&findings, &[]),
+            [(Cause::WideBand, Severity::Notice)]
+        );
+        findings.epoch_data_from = Some(at("2026-11-14T00:00:00Z"));
+        assert_eq!(causes(&findings, &[]), []);
+    }
+
+    #[test]
+    fn references_that_disagree_are_one_alert_and_a_drop_out_is_none() {
+        let failed = |samples| Findings {
+            failed_lately: Some(FailedLately {
+                from: at("2026-11-19T10:00:00Z"),
+                samples,
+                of: 100,
+                departure_deg: -7.0,
+                gyro_dropped: samples,
+                satellite_dropped: 0,
+            }),
+            ..found()
+        };
+        assert_eq!(causes(&failed(2), &[]), []);
+        assert_eq!(
+            causes(&failed(10), &[]),
+            [(Cause::ReferenceFault, Severity::Warning)]
+        );
+        let throughout = Findings {
+            references_disagree_deg: Some(-20.0),
+            refusal: Some("gyro and satellite compass differ".to_owned()),
+            epoch_data_from: Some(at("2026-11-19T00:00:00Z")),
+            ..failed(10)
+        };
+        assert_eq!(
+            causes(&throughout, &[]),
+            [(Cause::ReferenceFault, Severity::Warning)]
+        );
+    }
+
+    #[test]
+    fn nothing_found_calls_for_nothing() {
+        assert_eq!(causes(&Findings::default(), &[]), []);
+    }
+
+    #[test]
+    fn silence_is_an_alert_only_after_its_days() {
+        let last = Time(at("2026-11-17T00:00:00Z"));
+        let limits = AlertLimits::default();
+        assert_eq!(
+            silence(last, &limits, Time(at("2026-11-19T23:00:00Z"))),
+            None
+        );
+        let wanted = silence(last, &limits, Time(at("2026-11-20T01:00:00Z"))).unwrap();
+        assert_eq!((wanted.cause, wanted.since), (Cause::SilentAgent, last));
+    }
+}
