@@ -4,7 +4,9 @@
 //! The processes are those of docs/science.md, §7; the means are eq. 16.
 
 use crate::coverage::magnetic_latitude_deg;
-use crate::estimate::NoiseLevels;
+use crate::estimate::{
+    COMPASS_SWING_S, NoiseLevels, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, VARIATION_NM,
+};
 use crate::ship::EarthField;
 use nalgebra::{Complex, Matrix3};
 
@@ -38,14 +40,12 @@ impl Memory {
         }
     }
 
-    /// The Schuler swing: 84.4 minutes, a fifth of critical damping.
+    /// The Schuler swing.
     fn schuler() -> Memory {
-        let per_s = std::f64::consts::TAU / (84.4 * 60.0);
-        let damping: f64 = 0.2;
-        let damped = (1.0 - damping * damping).sqrt();
+        let damped = (1.0 - SCHULER_DAMPING * SCHULER_DAMPING).sqrt();
         Memory {
-            start: Complex::new(1.0, -damping / damped),
-            rate_per_s: Complex::new(damping * per_s, -damped * per_s),
+            start: Complex::new(1.0, -SCHULER_DAMPING / damped),
+            rate_per_s: Complex::new(SCHULER_DAMPING, -damped) * SCHULER_PER_S,
         }
     }
 
@@ -85,11 +85,11 @@ pub(super) fn errors_of_watches(
             noise.schuler_deg.hypot(noise.turn_deg) * gyro,
             Memory::schuler(),
         ),
-        (noise.slow_gyro_deg * gyro, Memory::fading(3.0 * DAY_S)),
-        (noise.compass_swing_deg, Memory::fading(20.0 * 60.0)),
+        (noise.slow_gyro_deg * gyro, Memory::fading(SLOW_GYRO_S)),
+        (noise.compass_swing_deg, Memory::fading(COMPASS_SWING_S)),
         (
             noise.variation_deg * variation,
-            Memory::fading(60.0 / SPEED_KN * 3600.0),
+            Memory::fading(VARIATION_NM / SPEED_KN * 3600.0),
         ),
     ];
     let sum = |of: &dyn Fn(Memory) -> f64| -> f64 {

@@ -31,6 +31,9 @@ mod start;
 mod whiten;
 
 pub use noise::NoiseLevels;
+pub(crate) use noise::{
+    COMPASS_SWING_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, VARIATION_NM,
+};
 pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
 pub(crate) use solve::{Options, estimate};

@@ -15,17 +15,17 @@ pub(crate) const DRIFT: usize = 6;
 pub(crate) const LEVELS: usize = 9;
 
 /// Schuler's period, 84.4 minutes, as an angular frequency.
-const SCHULER_PER_S: f64 = TAU / (84.4 * 60.0);
+pub(crate) const SCHULER_PER_S: f64 = TAU / (84.4 * 60.0);
 /// A gyro's north-settling damps the swing by about this part of critical.
-const SCHULER_DAMPING: f64 = 0.2;
+pub(crate) const SCHULER_DAMPING: f64 = 0.2;
 /// How long the gyro's settling point stays where it is.
-const SLOW_GYRO_S: f64 = 3.0 * 86_400.0;
+pub(crate) const SLOW_GYRO_S: f64 = 3.0 * 86_400.0;
 /// How long the compass swings about a wrong mean after disturbance.
-const COMPASS_SWING_S: f64 = 20.0 * 60.0;
+pub(crate) const COMPASS_SWING_S: f64 = 20.0 * 60.0;
 /// How long a satellite compass's antennas hear the same reflections.
 const SATELLITE_S: f64 = 30.0 * 60.0;
 /// How far the crust's own field stays the same.
-const VARIATION_NM: f64 = 60.0;
+pub(crate) const VARIATION_NM: f64 = 60.0;
 /// The days in which drift is counted.
 const DRIFT_S: f64 = 30.0 * 86_400.0;
 /// A turn lies no further back than this when the ship has settled again.
