@@ -1,5 +1,6 @@
 //! The command line, and with it every setting: flags, or `BINNACLE_*` variables.
 
+use crate::webhooks::Reach;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -75,10 +76,33 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_ANALYSIS_WORKERS", default_value_t = 1,
           value_parser = clap::value_parser!(u16).range(0..=64))]
     pub analysis_workers: u16,
+    /// How webhooks are sent.
+    #[command(flatten)]
+    pub webhooks: Webhooks,
     /// Log as JSON lines
     #[arg(long, env = "BINNACLE_LOG_JSON", default_value_t = false,
           num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub log_json: bool,
+}
+
+/// How webhooks are sent.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct Webhooks {
+    /// Let webhooks reach private and loopback addresses, and go over plain http
+    #[arg(long, env = "BINNACLE_WEBHOOKS_TO_PRIVATE", default_value_t = false,
+          num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
+    pub webhooks_to_private: bool,
+}
+
+impl Webhooks {
+    /// Where messages may go.
+    pub fn reach(self) -> Reach {
+        if self.webhooks_to_private {
+            Reach::Anywhere
+        } else {
+            Reach::Public
+        }
+    }
 }
 
 /// `admin`.

@@ -41,6 +41,7 @@ pub mod deviation;
 pub mod events;
 pub mod models;
 pub mod samples;
+pub mod webhooks;
 
 pub mod dashboard;
 pub mod http;

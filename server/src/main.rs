@@ -1,12 +1,15 @@
 //! The shore server.
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use binnacle_server::command;
 use binnacle_server::config::{Cli, Command};
 use clap::Parser;
 use std::process::ExitCode;
 
 fn main() -> Result<ExitCode> {
+    rustls::crypto::ring::default_provider()
+        .install_default()
+        .map_err(|_| anyhow!("another TLS provider is installed"))?;
     match Cli::parse().command {
         Command::Serve(serve) => command::serve(serve),
         Command::Migrate(database) => command::migrate(&database),

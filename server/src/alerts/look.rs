@@ -13,38 +13,21 @@ use crate::app::App;
 use crate::db::Tx;
 use crate::error::Result;
 use crate::events::{self, Event};
-use crate::ids::{AlertId, CompassId, VesselId};
+use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
 use crate::time::Time;
-use serde::{Deserialize, Serialize};
+use crate::webhooks::{self, Kind, Message};
+use serde_json::json;
 use std::time::Duration;
 use tracing::{error, info};
-use utoipa::ToSchema;
 
 /// How often to look for silent agents.
 const LOOK_EVERY: Duration = Duration::from_mins(1);
-
-/// What became of an alert.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub enum Became {
-    /// It is new, or was acknowledged and got worse.
-    #[serde(rename = "alert.raised")]
-    Raised,
-    /// It is worse or less bad than it was.
-    #[serde(rename = "alert.updated")]
-    Updated,
-    /// Someone knows.
-    #[serde(rename = "alert.acknowledged")]
-    Acknowledged,
-    /// It is over.
-    #[serde(rename = "alert.cleared")]
-    Cleared,
-}
 
 /// A change of an alert: what became of it, or only other words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct News {
     pub(super) alert: AlertId,
-    pub(super) became: Option<Became>,
+    pub(super) became: Option<Kind>,
 }
 
 /// Holds a compass's alerts against its last analysis.
@@ -127,7 +110,7 @@ async fn bring_in_line(
         }
         store::end(tx, vessel, alert.id, now).await?;
         if alert.state != State::Cleared {
-            news.push(News::of(alert.id, Became::Cleared));
+            news.push(News::of(alert.id, Kind::AlertCleared));
         }
     }
     for wanted in wanted {
@@ -145,7 +128,7 @@ async fn open_or_update(
     wanted: &AlertWanted,
     now: Time,
 ) -> Result<Option<News>> {
-    let raised = |alert| Some(News::of(alert, Became::Raised));
+    let raised = |alert| Some(News::of(alert, Kind::AlertRaised));
     let Some(known) = known else {
         let id = store::insert(tx, vessel, compass, wanted, now).await?;
         return Ok(raised(id));
@@ -166,8 +149,8 @@ async fn open_or_update(
     store::update(tx, vessel, known, wanted, now).await?;
     let became = match known.state {
         _ if wanted.severity == known.severity => None,
-        State::Acknowledged if worse => Some(Became::Raised),
-        _ => Some(Became::Updated),
+        State::Acknowledged if worse => Some(Kind::AlertRaised),
+        _ => Some(Kind::AlertUpdated),
     };
     Ok(Some(News {
         alert: known.id,
@@ -185,17 +168,27 @@ pub(super) async fn tell(
     if news.is_empty() {
         return Ok(None);
     }
+    let mut messages = Vec::new();
     for News { alert, became } in news {
-        if let Some(became) = became {
-            info!(%vessel, %alert, ?became, "an alert changed");
-        }
+        let Some(kind) = *became else {
+            continue;
+        };
+        info!(%vessel, %alert, ?kind, "an alert changed");
+        let id = DeliveryId::new();
+        let alert = store::read(tx, vessel, *alert).await?;
+        messages.push(Message {
+            id,
+            kind,
+            body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
+        });
     }
     let event = events::insert(tx, vessel, events::Kind::Alert, now).await?;
+    webhooks::announce(tx, event.operator_id, &messages, now).await?;
     Ok(Some(event))
 }
 
 impl News {
-    pub(super) fn of(alert: AlertId, became: Became) -> News {
+    pub(super) fn of(alert: AlertId, became: Kind) -> News {
         News {
             alert,
             became: Some(became),

@@ -20,7 +20,7 @@ mod wanted;
 pub use alert::{Alert, AlertWanted, Cause, Severity, State};
 pub use findings::{Findings, findings_of};
 pub use limits::AlertLimits;
-pub use look::{Became, after_analysis, for_silence, sum, watch};
+pub use look::{after_analysis, for_silence, sum, watch};
 pub use store::{Standing, standing};
 pub use wanted::{alerts_of, silence};
 
@@ -30,6 +30,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, text};
 use crate::ids::AlertId;
 use crate::session;
+use crate::webhooks::Kind;
 use alert::{Acknowledgement, AlertList, Clearing, Filter};
 use axum::extract::State as Shared;
 use look::News;
@@ -92,7 +93,7 @@ async fn acknowledge_alert(
 ) -> Result<Json<Alert>> {
     let note = acknowledgement.note.filter(|note| !note.trim().is_empty());
     let note = note.map(|note| text("note", &note)).transpose()?;
-    let alert = change(&app, writer, id, note, Became::Acknowledged).await?;
+    let alert = change(&app, writer, id, note, Kind::AlertAcknowledged).await?;
     if alert.state == State::Cleared {
         return Err(Error::Gone("this alert is cleared"));
     }
@@ -115,7 +116,7 @@ async fn clear_alert(
 ) -> Result<Json<Alert>> {
     let reason = Some(text("reason", &clearing.reason)?);
     Ok(Json(
-        change(&app, writer, id, reason, Became::Cleared).await?,
+        change(&app, writer, id, reason, Kind::AlertCleared).await?,
     ))
 }
 
@@ -125,7 +126,7 @@ async fn change(
     writer: Writer,
     id: AlertId,
     words: Option<String>,
-    became: Became,
+    became: Kind,
 ) -> Result<Alert> {
     let alert = store::must_find(&app.db, writer.operator, id).await?;
     let now = app.clock.now().into();
@@ -138,7 +139,7 @@ async fn change(
     };
     store::lock(&mut tx, vessel, alert.compass_id).await?;
     let changed = match became {
-        Became::Acknowledged => store::acknowledge(&mut tx, vessel, id, &word).await?,
+        Kind::AlertAcknowledged => store::acknowledge(&mut tx, vessel, id, &word).await?,
         _ => store::clear(&mut tx, vessel, id, &word).await?,
     };
     if changed {

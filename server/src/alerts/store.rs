@@ -83,6 +83,23 @@ pub(super) async fn must_find(db: &Db, operator: OperatorId, id: AlertId) -> Res
     .ok_or(Error::NotFound("alert"))
 }
 
+/// The same within a transaction, of a vessel that is known.
+pub(super) async fn read(tx: &mut Tx, vessel: VesselId, id: AlertId) -> Result<Alert> {
+    let found = row!(
+        in tx,
+        Alert,
+        "SELECT a.*, v.name AS vessel_name, c.name AS compass_name
+         FROM alerts a
+         JOIN vessels v ON v.id = a.vessel_id
+         JOIN compasses c ON c.vessel_id = a.vessel_id AND c.id = a.compass_id
+         WHERE a.vessel_id = $1 AND a.id = $2
+         ORDER BY a.id",
+        vessel,
+        id
+    )?;
+    found.ok_or(Error::NotFound("alert"))
+}
+
 /// Lets nobody else change a compass's alerts until the transaction ends.
 pub(super) async fn lock(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> DbResult<()> {
     execute!(

@@ -4,7 +4,7 @@ use crate::app::App;
 use crate::clock::Clock;
 use crate::config::{Database, Serve};
 use crate::db::Db;
-use crate::{alerts, analysis, events, http, operations};
+use crate::{alerts, analysis, events, http, operations, webhooks};
 use anyhow::{Context, Result};
 use std::future::Future;
 use std::io::Write;
@@ -56,6 +56,8 @@ pub async fn run(app: App, listener: TcpListener) -> Result<()> {
     }
     if app.config.analysis_workers > 0 {
         parts.spawn(alerts::watch(app.clone()));
+        let sender = webhooks::Sender::new(app.config.webhooks.reach())?;
+        parts.spawn(webhooks::run(app.clone(), sender));
     }
     parts.spawn(stop_on_signal(app.clone()));
     let stopping = app.stopping.clone();

@@ -4,7 +4,7 @@ use super::headers;
 use crate::app::App;
 use crate::{
     alerts, compasses, dashboard, deviation, enrolment, error, events, logbook, models, operations,
-    samples, session, settings, streams, tokens, vessels,
+    samples, session, settings, streams, tokens, vessels, webhooks,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -84,6 +84,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(deviation::router())
         .merge(samples::router())
         .merge(alerts::router())
+        .merge(webhooks::router())
         .merge(events::router())
 }
 

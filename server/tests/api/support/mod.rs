@@ -130,7 +130,13 @@ impl Shore {
 
 fn config(url: &str) -> Serve {
     let arguments = ["binnacle-server", "serve", "--database-url", url];
-    let more = ["--listen", "127.0.0.1:0", "--analysis-workers", "0"];
+    let more = [
+        "--listen",
+        "127.0.0.1:0",
+        "--analysis-workers",
+        "0",
+        "--webhooks-to-private",
+    ];
     let Command::Serve(serve) = Cli::parse_from(arguments.into_iter().chain(more)).command else {
         unreachable!("serve was asked for");
     };

@@ -1,0 +1,226 @@
+//! Webhooks: telling an operator's programs of what happened.
+//!
+//! What always holds:
+//!
+//! - A message is queued in the transaction that makes it true, and sent at least
+//!   once; its id tells a receiver that it had it before.
+//! - Each webhook gets its messages in order: the next is not sent before this one
+//!   was delivered, or given up after a day of tries.
+//! - Each try is signed with the webhook's secret over its time and its body.
+//! - Nothing is sent to an address that is not one of the public internet, unless
+//!   the server was told to.
+
+mod address;
+mod deliveries;
+mod send;
+mod store;
+mod webhook;
+mod worker;
+
+pub use deliveries::{Message, announce};
+pub use send::{Reach, SIGNATURE_HEADER, Sender};
+pub use webhook::Kind;
+pub use worker::{Sent, run, step};
+
+use crate::access::{Reader, Writer};
+use crate::app::App;
+use crate::error::{Problem, Result};
+use crate::http::{Id, Json, Page, Params, Valid};
+use crate::idempotency::{self, Key};
+use crate::ids::{DeliveryId, WebhookId};
+use crate::secret;
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde_json::json;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use webhook::{Delivery, DeliveryList, Filter, MadeWebhook, NewWebhook, Webhook, WebhookList};
+
+/// What a webhook's secret begins with.
+const SECRET_PREFIX: &str = "bns_";
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_webhooks, create_webhook))
+        .routes(routes!(find_webhook, change_webhook, delete_webhook))
+        .routes(routes!(test_webhook))
+        .routes(routes!(list_deliveries))
+        .routes(routes!(send_delivery_again))
+}
+
+/// List the webhooks
+#[utoipa::path(get, path = "/webhooks", tag = "alerts", params(Page),
+    responses((status = 200, body = WebhookList), (status = 401, body = Problem)))]
+async fn list_webhooks(
+    State(app): State<App>,
+    reader: Reader,
+    page: Page,
+) -> Result<Json<WebhookList>> {
+    let found = store::list(&app.db, reader.operator, page.after_id()?, page.fetch()).await?;
+    let listed = page.cut(found, |webhook| webhook.id.to_string());
+    Ok(Json(WebhookList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// Make a webhook
+///
+/// The answer shows, this once, the secret that its messages are signed with:
+/// `Binnacle-Signature: t=SECONDS,v1=HEX`, HMAC-SHA-256 over `SECONDS.BODY`.
+#[utoipa::path(post, path = "/webhooks", tag = "alerts", params(Key), request_body = NewWebhook,
+    responses((status = 201, body = MadeWebhook), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn create_webhook(
+    State(app): State<App>,
+    writer: Writer,
+    key: Key,
+    Valid(new): Valid<NewWebhook>,
+) -> Result<(StatusCode, Json<MadeWebhook>)> {
+    let request = idempotency::request_hash("webhook", &new)?;
+    let new = new.checked(app.config.webhooks.reach())?;
+    let now = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    let wanted = WebhookId::new();
+    let made = key
+        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .await?;
+    if made == wanted.0 {
+        let secret = format!("{SECRET_PREFIX}{}", secret::new_token());
+        store::insert(&mut tx, writer.operator, wanted, &new, &secret, now).await?;
+    }
+    let id = WebhookId(made);
+    let secret = store::secret(&mut tx, writer.operator, id).await?;
+    tx.commit().await?;
+    let about = store::must_find(&app.db, writer.operator, id).await?;
+    Ok((StatusCode::CREATED, Json(MadeWebhook { about, secret })))
+}
+
+/// See a webhook
+#[utoipa::path(get, path = "/webhooks/{id}", tag = "alerts", params(("id" = WebhookId, Path)),
+    responses((status = 200, body = Webhook), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_webhook(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<WebhookId>,
+) -> Result<Json<Webhook>> {
+    Ok(Json(store::must_find(&app.db, reader.operator, id).await?))
+}
+
+/// Change a webhook
+///
+/// Its secret stays. While it is not enabled nothing is queued, and what waits goes
+/// on waiting.
+#[utoipa::path(put, path = "/webhooks/{id}", tag = "alerts", params(("id" = WebhookId, Path)),
+    request_body = NewWebhook,
+    responses((status = 200, body = Webhook), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn change_webhook(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<WebhookId>,
+    Valid(wanted): Valid<NewWebhook>,
+) -> Result<Json<Webhook>> {
+    store::must_find(&app.db, writer.operator, id).await?;
+    let wanted = wanted.checked(app.config.webhooks.reach())?;
+    let mut tx = app.db.begin().await?;
+    store::change(&mut tx, writer.operator, id, &wanted).await?;
+    tx.commit().await?;
+    Ok(Json(store::must_find(&app.db, writer.operator, id).await?))
+}
+
+/// Remove a webhook
+///
+/// What it was to be told is forgotten.
+#[utoipa::path(delete, path = "/webhooks/{id}", tag = "alerts", params(("id" = WebhookId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn delete_webhook(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<WebhookId>,
+) -> Result<StatusCode> {
+    let mut tx = app.db.begin().await?;
+    store::delete(&mut tx, writer.operator, id).await?;
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Send a webhook a test
+///
+/// It is queued like any other message.
+#[utoipa::path(post, path = "/webhooks/{id}/test", tag = "alerts",
+    params(("id" = WebhookId, Path)),
+    responses((status = 202, body = Delivery), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem)))]
+async fn test_webhook(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<WebhookId>,
+) -> Result<(StatusCode, Json<Delivery>)> {
+    store::must_find(&app.db, writer.operator, id).await?;
+    let now = app.clock.now();
+    let message = DeliveryId::new();
+    let body = json!({ "id": message, "kind": Kind::Test, "at": now }).to_string();
+    let message = Message {
+        id: message,
+        kind: Kind::Test,
+        body,
+    };
+    let mut tx = app.db.begin().await?;
+    deliveries::queue(&mut tx, id, &message, now.into()).await?;
+    tx.commit().await?;
+    let queued = deliveries::must_find(&app.db, id, message.id).await?;
+    Ok((StatusCode::ACCEPTED, Json(queued)))
+}
+
+/// List a webhook's deliveries
+///
+/// With `state=dead`, the dead letters. What is done with is kept for 30 days.
+#[utoipa::path(get, path = "/webhooks/{id}/deliveries", tag = "alerts",
+    params(("id" = WebhookId, Path), Filter, Page),
+    responses((status = 200, body = DeliveryList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_deliveries(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<WebhookId>,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<DeliveryList>> {
+    store::must_find(&app.db, reader.operator, id).await?;
+    let before = page.after_number()?;
+    let found = deliveries::list(&app.db, id, filter.state, before, page.fetch()).await?;
+    let listed = page.cut(found, |(number, _)| number.to_string());
+    Ok(Json(DeliveryList {
+        items: listed
+            .items
+            .into_iter()
+            .map(|(_, delivery)| delivery)
+            .collect(),
+        next: listed.next,
+    }))
+}
+
+/// Send a delivery again
+///
+/// At once and, if need be, for another day, with the same id and body.
+#[utoipa::path(post, path = "/webhooks/{id}/deliveries/{delivery}/resend", tag = "alerts",
+    params(("id" = WebhookId, Path), ("delivery" = DeliveryId, Path)),
+    responses((status = 202, body = Delivery), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem)))]
+async fn send_delivery_again(
+    State(app): State<App>,
+    writer: Writer,
+    Id((id, delivery)): Id<(WebhookId, DeliveryId)>,
+) -> Result<(StatusCode, Json<Delivery>)> {
+    store::must_find(&app.db, writer.operator, id).await?;
+    let mut tx = app.db.begin().await?;
+    deliveries::send_again(&mut tx, id, delivery, app.clock.now().into()).await?;
+    tx.commit().await?;
+    let queued = deliveries::must_find(&app.db, id, delivery).await?;
+    Ok((StatusCode::ACCEPTED, Json(queued)))
+}
