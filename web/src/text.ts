@@ -3,7 +3,14 @@
  * value in it is a function; values come in already written by `format.ts`.
  */
 
-import type { CargoKind, LogbookKind, ParameterName } from './api/types';
+import type {
+  AlertCause,
+  CargoKind,
+  LogbookKind,
+  ParameterName,
+  Severity,
+  WebhookEventKind,
+} from './api/types';
 
 export const text = {
   product: 'Binnacle',
@@ -58,6 +65,87 @@ export const text = {
     notFound: 'There is no such page, or it belongs to another fleet.',
     toVessels: 'To the vessels',
     title: 'This could not be shown',
+  },
+
+  alerts: {
+    title: 'Alerts',
+    navigation: 'Pages',
+    badge: ' alerts that nobody has acknowledged',
+    lead: 'What someone should know of or act on. An alert clears itself when its cause is over.',
+    unacknowledged: (n: number) => (n === 0 ? 'acknowledged' : `${n} to acknowledge`),
+    emptyTitle: 'Nothing to see to',
+    empty: 'No vessel has an open alert.',
+    severity: {
+      notice: 'Notice',
+      warning: 'Warning',
+      critical: 'Critical',
+    } satisfies Record<Severity, string>,
+    cause: {
+      deviation_over_limit: 'Deviation over the limit',
+      reference_fault: 'Gyro and satellite compass disagree',
+      silent_agent: 'No word from the vessel',
+      no_model: 'No model of the compass yet',
+      wide_band: 'The model is too uncertain',
+    } satisfies Record<AlertCause, string>,
+    since: (when: string) => `since ${when}`,
+    todo: 'What to do',
+    evidence: 'What shows it',
+    acknowledged: (who: string, when: string) => `Acknowledged by ${who}, ${when}`,
+    cleared: (who: string | null, when: string) =>
+      who === null ? `Over since ${when}` : `Cleared by ${who}, ${when}`,
+    acknowledge: 'Acknowledge',
+    note: 'Note',
+    clear: 'Clear',
+    clearReason: 'Why it is over',
+    clearMissing: 'Say why it is over.',
+    confirmAcknowledge: 'Acknowledge the alert',
+    confirmClear: 'Clear the alert',
+    saidAcknowledged: 'The alert is acknowledged.',
+    saidCleared: 'The alert is cleared.',
+    clearedTitle: 'Cleared lately',
+    toWebhooks: 'Webhooks',
+  },
+
+  webhooks: {
+    title: 'Webhooks',
+    lead: 'Programs of yours that are told of alerts. Each message is signed; how to verify it stands in docs/webhooks.md.',
+    none: 'No program is told of alerts yet.',
+    noneViewer: 'An administrator of your company makes webhooks.',
+    add: 'Add a webhook',
+    url: 'Address',
+    kinds: 'Told of',
+    kind: {
+      'alert.raised': 'Alert raised',
+      'alert.updated': 'Severity changed',
+      'alert.acknowledged': 'Alert acknowledged',
+      'alert.cleared': 'Alert cleared',
+      test: 'Test',
+    } satisfies Record<WebhookEventKind, string>,
+    urlMissing: 'Enter an address that begins with https://.',
+    kindsMissing: 'Choose at least one.',
+    create: 'Make the webhook',
+    secretTitle: 'Its secret',
+    secretLead: 'Copy it now: it is not shown again. Messages are signed with it.',
+    done: 'Done',
+    off: 'Off',
+    on: 'On',
+    switchOff: 'Switch off',
+    switchOn: 'Switch on',
+    test: 'Send a test',
+    tested: 'A test is on its way.',
+    remove: 'Remove',
+    removeQuestion: 'Remove this webhook, with what it was still to be told?',
+    removeConfirm: 'Remove the webhook',
+    pending: (n: number) => `${n} waiting`,
+    dead: (n: number) => `${n} given up`,
+    deliveries: 'Latest deliveries',
+    noDeliveries: 'Nothing was sent yet.',
+    when: 'Written',
+    what: 'What',
+    state: 'State',
+    states: { pending: 'waiting', delivered: 'delivered', dead: 'given up' },
+    attempts: (n: number) => (n === 1 ? '1 try' : `${n} tries`),
+    again: 'Send again',
   },
 
   vessels: {
@@ -445,5 +533,7 @@ export const text = {
     vessel: (name: string) => `${name} · Binnacle`,
     signIn: 'Sign in · Binnacle',
     notFound: 'Nothing here · Binnacle',
+    alerts: 'Alerts · Binnacle',
+    webhooks: 'Webhooks · Binnacle',
   },
 };

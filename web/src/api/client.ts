@@ -7,7 +7,7 @@ import createClient from 'openapi-fetch';
 import { text } from '../text';
 import { Problem, readProblem } from './problem';
 import type { paths } from './schema';
-import type { LogbookEntry, NewEntry, NewVessel, Sample } from './types';
+import type { Alert, LogbookEntry, NewEntry, NewVessel, NewWebhook, Sample } from './types';
 
 /** A place and a time at which to show the deviation. */
 export interface Place {
@@ -142,6 +142,62 @@ export const createEnrolmentCode = (id: string, compass_id: string) =>
     client.POST('/api/v1/vessels/{id}/agents', {
       params: { path: { id } },
       body: { compass_id, valid_for_s: null },
+    }),
+  );
+
+/** Every alert that is not cleared. */
+export const listOpenAlerts = () =>
+  everyPage((after) =>
+    answer(
+      client.GET('/api/v1/alerts', {
+        params: { query: { open: true, ...page(longestPage, after) } },
+      }),
+    ),
+  );
+
+/** The alerts that were cleared, the newest first; at most so many. */
+export async function listClearedAlerts(most: number): Promise<Alert[]> {
+  const query = { open: false, ...page(most) };
+  const found = await answer(client.GET('/api/v1/alerts', { params: { query } }));
+  return found.items;
+}
+
+export const acknowledgeAlert = (id: string, note: string) =>
+  answer(
+    client.POST('/api/v1/alerts/{id}/acknowledge', { params: { path: { id } }, body: { note } }),
+  );
+
+export const clearAlert = (id: string, reason: string) =>
+  answer(client.POST('/api/v1/alerts/{id}/clear', { params: { path: { id } }, body: { reason } }));
+
+export const listWebhooks = () =>
+  everyPage((after) =>
+    answer(client.GET('/api/v1/webhooks', { params: { query: page(longestPage, after) } })),
+  );
+
+export const createWebhook = (body: NewWebhook, key: string) =>
+  answer(client.POST('/api/v1/webhooks', { params: { header: { 'Idempotency-Key': key } }, body }));
+
+export const changeWebhook = (id: string, body: NewWebhook) =>
+  answer(client.PUT('/api/v1/webhooks/{id}', { params: { path: { id } }, body }));
+
+export const deleteWebhook = (id: string) =>
+  answer(client.DELETE('/api/v1/webhooks/{id}', { params: { path: { id } } }));
+
+export const testWebhook = (id: string) =>
+  answer(client.POST('/api/v1/webhooks/{id}/test', { params: { path: { id } } }));
+
+/** A webhook's latest deliveries; at most so many. */
+export async function listDeliveries(id: string, most: number) {
+  const params = { path: { id }, query: page(most) };
+  const found = await answer(client.GET('/api/v1/webhooks/{id}/deliveries', { params }));
+  return found.items;
+}
+
+export const sendDeliveryAgain = (id: string, delivery: string) =>
+  answer(
+    client.POST('/api/v1/webhooks/{id}/deliveries/{delivery}/resend', {
+      params: { path: { id, delivery } },
     }),
   );
 

@@ -15,7 +15,7 @@ export interface News {
   kind: (typeof kinds)[number] | 'all';
 }
 
-const kinds = ['batch', 'model', 'logbook'] as const;
+const kinds = ['batch', 'model', 'logbook', 'alert'] as const;
 
 type Listener = (news: News) => void;
 

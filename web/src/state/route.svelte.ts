@@ -1,16 +1,20 @@
 /** Which page the address names, and moving between pages without reloading. */
 
-export type Route = { page: 'vessels' } | { page: 'vessel'; id: string } | { page: 'not-found' };
+export type Route =
+  { page: 'vessels' | 'alerts' | 'webhooks' | 'not-found' } | { page: 'vessel'; id: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
   if (first === undefined) return { page: 'vessels' };
+  if (second === undefined && (first === 'alerts' || first === 'webhooks')) return { page: first };
   if (first !== 'vessels' || rest.length > 0) return { page: 'not-found' };
   return second === undefined ? { page: 'vessels' } : { page: 'vessel', id: second };
 }
 
 export const vesselPath = (id: string): string => `/vessels/${encodeURIComponent(id)}`;
 export const vesselsPath = '/';
+export const alertsPath = '/alerts';
+export const webhooksPath = '/webhooks';
 
 class RouteState {
   current = $state<Route>({ page: 'vessels' });

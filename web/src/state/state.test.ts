@@ -9,6 +9,9 @@ describe('addresses', () => {
     expect(parseRoute('/')).toEqual({ page: 'vessels' });
     expect(parseRoute('/vessels/')).toEqual({ page: 'vessels' });
     expect(parseRoute('/vessels/abc')).toEqual({ page: 'vessel', id: 'abc' });
+    expect(parseRoute('/alerts')).toEqual({ page: 'alerts' });
+    expect(parseRoute('/webhooks/')).toEqual({ page: 'webhooks' });
+    expect(parseRoute('/alerts/else')).toEqual({ page: 'not-found' });
     expect(parseRoute('/vessels/abc/else')).toEqual({ page: 'not-found' });
     expect(parseRoute('/elsewhere')).toEqual({ page: 'not-found' });
   });

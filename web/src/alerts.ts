@@ -1,0 +1,22 @@
+/** How alerts are put in order: the worst first, those that nobody knows of before. */
+
+import type { Alert, Severity } from './api/types';
+
+const rank: Record<Severity, number> = { critical: 0, warning: 1, notice: 2 };
+
+/** The order in which someone should see to them. */
+export function inOrder(alerts: readonly Alert[]): Alert[] {
+  const known = (alert: Alert) => (alert.state === 'raised' ? 0 : 1);
+  return [...alerts].sort(
+    (a, b) =>
+      known(a) - known(b) ||
+      rank[a.severity] - rank[b.severity] ||
+      b.raised_at.localeCompare(a.raised_at),
+  );
+}
+
+/** The worst of the alerts that nobody has acknowledged. */
+export function worstRaised(alerts: readonly Alert[]): Severity | null {
+  const first = inOrder(alerts).find((alert) => alert.state === 'raised');
+  return first?.severity ?? null;
+}
