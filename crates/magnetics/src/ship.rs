@@ -76,7 +76,11 @@ impl Parameters {
     /// The horizontal field at the compass over λ, nT: `[forward, starboard]`,
     /// on a magnetic heading.
     pub fn field_over_lambda(&self, magnetic_rad: f64, earth: EarthField) -> [f64; 2] {
-        let [hx, hy, z] = earth.in_ship_axes(magnetic_rad);
+        self.of_ship_axes(earth.in_ship_axes(magnetic_rad))
+    }
+
+    /// The same of an earth's field in ship axes.
+    pub(crate) fn of_ship_axes(&self, [hx, hy, z]: [f64; 3]) -> [f64; 2] {
         let d = self.chi11_minus_chi22 / 2.0;
         [
             (1.0 + d) * hx + self.chi12 * hy + self.chi13 * z + self.bx_nt,
@@ -94,7 +98,7 @@ impl Parameters {
     /// [`Coefficients::check_unambiguous`]: crate::deviation::Coefficients::check_unambiguous
     pub fn linearised_at_magnetic(&self, magnetic_rad: f64, earth: EarthField) -> Linearised {
         let [hx, hy, z] = earth.in_ship_axes(magnetic_rad);
-        let [forward, starboard] = self.field_over_lambda(magnetic_rad, earth);
+        let [forward, starboard] = self.of_ship_axes([hx, hy, z]);
         let squared = forward * forward + starboard * starboard;
         let s = -starboard / squared;
         let c = forward / squared;

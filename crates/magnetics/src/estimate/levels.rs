@@ -57,16 +57,26 @@ pub(crate) fn fit_levels(
         pass.loss - score.dot(&factor.solve(&score)) + log_determinant + prior
     };
     let mut logs = levels.to_array().map(f64::ln);
+    let shown = shown(stations);
     let mut best = objective(&logs);
     for _ in 0..sweeps {
         for k in 0..LEVELS {
-            // A level of zero (its logarithm is not finite) stays zero.
-            if logs[k].is_finite() {
+            // A level of zero (its logarithm is not finite) stays zero, and one
+            // that no row shows stays what it usually is.
+            if logs[k].is_finite() && shown[k] {
                 best = improve(&objective, &mut logs, k, best);
             }
         }
     }
     NoiseLevels::from_array(logs.map(f64::exp))
+}
+
+/// Which levels have a part in the rows at all, in the order of [`NoiseLevels`].
+fn shown(stations: &[Station]) -> [bool; LEVELS] {
+    let gyro = stations.iter().any(Station::reads_gyro);
+    let satellite = stations.iter().any(Station::reads_satellite);
+    let both = stations.iter().any(Station::reads_both);
+    [true, gyro, gyro, gyro, true, true, true, satellite, both]
 }
 
 /// What part of the rows' noise is the compass's, of what tells rows apart: the

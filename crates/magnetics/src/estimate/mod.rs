@@ -24,6 +24,7 @@ mod levels;
 mod needle;
 mod noise;
 mod prior;
+mod products;
 mod quality;
 mod row;
 mod solve;

@@ -9,7 +9,8 @@ use crate::ship::{EarthField, PARAMETERS, compass_rad};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Needle {
     earth: [f64; 3],
-    strength: f64,
+    /// Sine and cosine of the compass heading over the strength, per nT.
+    direction: [f64; 2],
     compass_rad: f64,
     compass_per_magnetic: f64,
 }
@@ -19,10 +20,10 @@ impl Needle {
     pub(crate) fn at(p: &Parameters, magnetic_rad: f64, field: EarthField) -> Needle {
         let earth = field.in_ship_axes(magnetic_rad);
         let [hx, hy, _] = earth;
-        let [ux, uy] = p.field_over_lambda(magnetic_rad, field);
+        let [ux, uy] = p.of_ship_axes(earth);
         // A needle with no force at all has no direction, and any small number
         // keeps the arithmetic finite.
-        let strength = ux.hypot(uy).max(1.0);
+        let squared = (ux * ux + uy * uy).max(1.0);
         let half = p.chi11_minus_chi22 / 2.0;
         let (dux, duy) = (
             (1.0 + half) * hy - p.chi12 * hx,
@@ -30,9 +31,9 @@ impl Needle {
         );
         Needle {
             earth,
-            strength,
+            direction: [-uy / squared, ux / squared],
             compass_rad: compass_rad(ux, uy),
-            compass_per_magnetic: (uy * dux - ux * duy) / (strength * strength),
+            compass_per_magnetic: (uy * dux - ux * duy) / squared,
         }
     }
 
@@ -50,8 +51,7 @@ impl Needle {
     /// magnetic heading (docs/science.md, eq. 9): from dζ = −(sin ζ dux + cos ζ duy)/|u|.
     pub(crate) fn gradient(&self) -> [f64; PARAMETERS] {
         let [hx, hy, z] = self.earth;
-        let (sin, cos) = self.compass_rad.sin_cos();
-        let (s, c) = (sin / self.strength, cos / self.strength);
+        let [s, c] = self.direction;
         [s, z * s, c, z * c, (hx * s - hy * c) / 2.0, hy * s, hx * c]
     }
 }

@@ -3,6 +3,7 @@
 
 use super::needle::Needle;
 use super::prior::scales;
+use super::products::Products;
 use super::row::{CONSTANT, Row, UNKNOWNS};
 use crate::model::{Caution, FromData, Identifiable, Parameters, Quality};
 use crate::ship::{EarthField, PARAMETERS};
@@ -85,13 +86,13 @@ pub(crate) fn quality(evidence: &Evidence<'_>) -> (Quality, Identifiable) {
 /// How many rows with independent errors of the same size would tell the curve
 /// at the last place as well as all rows do together.
 fn effective_samples(evidence: &Evidence<'_>) -> f64 {
-    let mut independent = Matrix::zeros();
+    let mut independent = Products::new();
     let mut count = 0.0;
     for (row, weight) in evidence.rows.iter().zip(evidence.weights) {
-        let columns = SVector::from(row.columns);
-        independent += columns * columns.transpose() * (weight / evidence.row_variance);
+        independent.add(&row.columns, weight / evidence.row_variance);
         count += weight;
     }
+    let mut independent = independent.to_matrix();
     // Independent errors have no nuisances.
     for j in CONSTANT + 1..UNKNOWNS {
         independent[(j, j)] += KNOWN;

@@ -263,6 +263,21 @@ pub(crate) fn plain_residual(o: &Observation, unknowns: &Unknowns) -> f64 {
 }
 
 impl Station {
+    /// Whether a gyro's errors stand in the row.
+    pub(crate) fn reads_gyro(&self) -> bool {
+        self.gyro_load != 0.0 || self.reads_both()
+    }
+
+    /// Whether a satellite compass's errors stand in the row.
+    pub(crate) fn reads_satellite(&self) -> bool {
+        self.satellite_load != 0.0 || self.reads_both()
+    }
+
+    /// Whether their difference was read beside the row.
+    pub(crate) fn reads_both(&self) -> bool {
+        self.difference.is_some()
+    }
+
     /// How the states add to the residual of `row`: the filter's measurement
     /// vector.
     pub(crate) fn loads(&self, row: &Row) -> [f64; STATES] {

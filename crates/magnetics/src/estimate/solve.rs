@@ -4,13 +4,14 @@
 use super::levels::{Pull, compass_share, fit_levels, looked_at};
 use super::noise::NoiseLevels;
 use super::prior::{Prior, scales, tail};
+use super::products::Products;
 use super::quality::{Evidence, quality, widely};
 use super::row::{
     CONSTANT, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, in_own_units, plain_residual, row,
     stations,
 };
 use super::start::start;
-use super::whiten::{Measured, Pass, whiten};
+use super::whiten::{Measured, Pass, Whitened, whiten};
 use crate::fit::Observation;
 use crate::model::{Covariance, Identifiable, Parameters, Quality};
 use crate::ship::EarthField;
@@ -249,8 +250,7 @@ impl<'a> Problem<'a> {
                 if measured == Measured::Deviation {
                     weights.push(whitened.weight);
                 }
-                let columns = Vector::from(whitened.columns);
-                blocks.add(index, &columns, whitened.weight, whitened.innovation);
+                blocks.add(index, whitened);
             },
         );
         let covariance = (pass.information + solution.prior_information)
@@ -340,7 +340,14 @@ fn compass_part_of_white(observations: &[Observation]) -> f64 {
 /// each stretch's score would vary as its information says.
 struct Blocks<'a> {
     observations: &'a [Observation],
-    of: Vec<(i64, Vector, Matrix)>,
+    of: Vec<Block>,
+}
+
+struct Block {
+    /// Its place among all stretches since 1970.
+    number: i64,
+    score: [f64; UNKNOWNS],
+    information: Products<UNKNOWNS>,
 }
 
 impl<'a> Blocks<'a> {
@@ -351,28 +358,38 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    fn add(&mut self, index: usize, columns: &Vector, weight: f64, innovation: f64) {
+    fn add(&mut self, index: usize, whitened: &Whitened) {
         let Some(time) = self.observations[index].time else {
             return;
         };
-        let block = (time.micros() as f64 / 1e6 / BLOCK_S).floor() as i64;
-        if self.of.last().is_none_or(|last| last.0 != block) {
-            self.of.push((block, Vector::zeros(), Matrix::zeros()));
+        let number = (time.micros() as f64 / 1e6 / BLOCK_S).floor() as i64;
+        if self.of.last().is_none_or(|last| last.number != number) {
+            self.of.push(Block {
+                number,
+                score: [0.0; UNKNOWNS],
+                information: Products::new(),
+            });
         }
         let last = self
             .of
             .last_mut()
             .expect("one was pushed if there was none");
-        last.1 += columns * (weight * innovation);
-        last.2 += columns * columns.transpose() * weight;
+        let columns = whitened.columns();
+        let weight = whitened.weight_per_variance;
+        let pull = weight * whitened.innovation();
+        for (sum, column) in last.score.iter_mut().zip(&columns) {
+            *sum += pull * column;
+        }
+        last.information.add(&columns, weight);
     }
 
     /// How many times larger the scores' squares are than the noise model says,
     /// at least 1, the fit's own part taken off.
     fn inflation(&self, covariance: &Matrix) -> f64 {
         let (mut seen, mut expected) = (0.0, 0.0);
-        for (_, score, information) in &self.of {
-            let share = information * covariance;
+        for block in &self.of {
+            let score = Vector::from(block.score);
+            let share = block.information.to_matrix() * covariance;
             seen += score.dot(&(covariance * score));
             expected += share.trace() - (share * share).trace();
         }

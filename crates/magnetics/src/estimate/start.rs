@@ -1,6 +1,7 @@
 //! A first fit that outliers cannot lead astray: Huber weights on rows taken
 //! for independent, their spread from the median of the residuals.
 
+use super::products::Products;
 use super::row::{Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row};
 use crate::fit::Observation;
 use nalgebra::{SMatrix, SVector};
@@ -39,15 +40,15 @@ pub(crate) fn start(
             .map(|(o, s)| row(o, s, &unknowns, USUAL_FUSION))
             .collect();
         sd = robust_sd(rows.iter().map(|r| r.residual));
-        let mut information = *prior_information;
+        let mut information = Products::new();
         let mut score = prior_information * (SVector::from(*prior_mean) - SVector::from(unknowns));
         for (r, s) in rows.iter().zip(&stations) {
             let own_sd = sd * s.white_factor.sqrt();
             let weight = huber_weight(r.residual / own_sd) / (own_sd * own_sd);
-            let columns = SVector::from(r.columns);
-            information += columns * columns.transpose() * weight;
-            score += columns * (r.residual * weight);
+            information.add(&r.columns, weight);
+            score += SVector::from(r.columns) * (r.residual * weight);
         }
+        let information = information.to_matrix() + prior_information;
         let Some(factor) = information.cholesky() else {
             break;
         };

@@ -5,11 +5,12 @@
 //! the residual and every column.
 
 use super::noise::{DRIFT, NoiseLevels, STATES, Transition};
+use super::products::Products;
 use super::row::{Row, Station, UNKNOWNS};
 use nalgebra::{SMatrix, SVector};
 
-/// The residual (first) and the columns.
-const SERIES: usize = 1 + UNKNOWNS;
+/// The residual (first), the columns, and a zero that makes their number even.
+const SERIES: usize = (1 + UNKNOWNS).next_multiple_of(2);
 
 /// Innovations beyond so many standard deviations have their variance raised:
 /// large enough that Gaussian noise loses nothing worth naming.
@@ -55,17 +56,6 @@ pub(crate) enum Measured {
     Difference,
 }
 
-/// What a row came to.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Whitened {
-    /// The innovation in standard deviations.
-    pub(crate) innovation: f64,
-    /// Its weight, 0 to 1.
-    pub(crate) weight: f64,
-    /// The whitened columns.
-    pub(crate) columns: [f64; UNKNOWNS],
-}
-
 /// The state of the filter between rows.
 struct Filter {
     covariance: [[f64; STATES]; STATES],
@@ -82,6 +72,31 @@ struct Scalar {
     series: [f64; SERIES],
     load: [f64; STATES],
     white: f64,
+}
+
+/// What a scalar came to.
+pub(crate) struct Whitened {
+    /// Innovations, the residual's first.
+    innovations: [f64; SERIES],
+    variance: f64,
+    /// The residual's innovation over its standard deviation, squared.
+    z_squared: f64,
+    /// The scalar's weight, 0 to 1.
+    pub(crate) weight: f64,
+    /// Weight over variance.
+    pub(crate) weight_per_variance: f64,
+}
+
+impl Whitened {
+    /// The residual's innovation, degrees.
+    pub(crate) fn innovation(&self) -> f64 {
+        self.innovations[0]
+    }
+
+    /// The columns' innovations.
+    pub(crate) fn columns(&self) -> [f64; UNKNOWNS] {
+        columns_of(&self.innovations)
+    }
 }
 
 impl Filter {
@@ -103,8 +118,7 @@ impl Filter {
     fn advance(&mut self, t: &Transition) {
         advance_rows(&mut self.series, t);
         advance_rows(&mut self.covariance, t);
-        self.covariance = transposed(&self.covariance);
-        advance_rows(&mut self.covariance, t);
+        advance_columns(&mut self.covariance, t);
         // What the stationary process lost in the step comes in as new noise.
         let [[a, b], [c, d]] = t.schuler;
         let swing = self.stationary[0];
@@ -128,47 +142,47 @@ impl Filter {
         }
     }
 
-    /// Takes a scalar in; gives its innovations (residual first), their variance
-    /// and the residual's weight.
-    fn update(&mut self, scalar: &Scalar) -> ([f64; SERIES], f64, f64) {
-        let mut innovation = scalar.series;
-        let load = &scalar.load;
+    /// Takes a scalar in.
+    fn update(&mut self, scalar: &Scalar) -> Whitened {
+        let mut innovations = scalar.series;
         let mut gain = [0.0; STATES];
-        let mut variance = scalar.white;
-        for s in 0..STATES {
-            for (value, state) in innovation.iter_mut().zip(&self.series[s]) {
-                *value -= load[s] * state;
+        for (s, load) in loaded(&scalar.load) {
+            for (value, state) in innovations.iter_mut().zip(&self.series[s]) {
+                *value -= load * state;
             }
-            gain[s] = self.covariance[s]
-                .iter()
-                .zip(load)
-                .map(|(c, l)| c * l)
-                .sum();
-            variance += load[s] * gain[s];
+            for (sum, covariance) in gain.iter_mut().zip(&self.covariance[s]) {
+                *sum += load * covariance;
+            }
         }
-        let weight = weight(innovation[0] / variance.sqrt());
-        let raised = variance / weight;
-        for s in 0..STATES {
-            let step = gain[s] / raised;
-            for (state, value) in self.series[s].iter_mut().zip(&innovation) {
+        let told: f64 = gain.iter().zip(&scalar.load).map(|(g, l)| g * l).sum();
+        let variance = scalar.white + told;
+        let per_variance = 1.0 / variance;
+        let z_squared = innovations[0] * innovations[0] * per_variance;
+        let weight = weight(z_squared);
+        let weight_per_variance = weight * per_variance;
+        for (s, gain_of_s) in loaded(&gain) {
+            let step = gain_of_s * weight_per_variance;
+            for (state, value) in self.series[s].iter_mut().zip(&innovations) {
                 *state += step * value;
             }
             for (covariance, other) in self.covariance[s].iter_mut().zip(&gain) {
                 *covariance -= step * other;
             }
         }
-        (innovation, variance, weight)
+        Whitened {
+            innovations,
+            variance,
+            z_squared,
+            weight,
+            weight_per_variance,
+        }
     }
 
     fn drift(&self) -> Drift {
         let states = [&self.series[DRIFT], &self.series[DRIFT + 1]];
         Drift {
             nt: states.map(|series| series[0]),
-            per_unknown: states.map(|series| {
-                let mut columns = [0.0; UNKNOWNS];
-                columns.copy_from_slice(&series[1..]);
-                columns
-            }),
+            per_unknown: states.map(columns_of),
             covariance: [0, 1].map(|i| [0, 1].map(|j| self.covariance[DRIFT + i][DRIFT + j])),
         }
     }
@@ -187,31 +201,44 @@ fn advance_rows<const N: usize>(rows: &mut [[f64; N]; STATES], t: &Transition) {
     }
 }
 
-fn transposed(m: &[[f64; STATES]; STATES]) -> [[f64; STATES]; STATES] {
-    let mut out = [[0.0; STATES]; STATES];
-    for (i, row) in m.iter().enumerate() {
-        for (j, value) in row.iter().enumerate() {
-            out[j][i] = *value;
+/// What [`advance_rows`] does, to the columns.
+fn advance_columns(covariance: &mut [[f64; STATES]; STATES], t: &Transition) {
+    let [[a, b], [c, d]] = t.schuler;
+    for [swing, rate, slow @ .., _, _] in covariance {
+        (*swing, *rate) = (a * *swing + b * *rate, c * *swing + d * *rate);
+        for (value, decay) in slow.iter_mut().zip(t.decay) {
+            *value *= decay;
         }
     }
-    out
 }
 
-/// 1 up to [`DOUBTED`] standard deviations, then falling as 1/z²: the wilder an
-/// innovation, the less it moves the fit.
-pub(crate) fn weight(z: f64) -> f64 {
-    let beyond = (z.abs() / DOUBTED).max(1.0);
-    1.0 / (beyond * beyond)
+/// The states that have a part in something, with their parts.
+fn loaded(parts: &[f64; STATES]) -> impl Iterator<Item = (usize, f64)> {
+    let parts = parts.iter().copied().enumerate();
+    parts.filter(|(_, part)| *part != 0.0)
+}
+
+/// The weight of an innovation by its size in standard deviations, squared: 1 up
+/// to [`DOUBTED`], then falling with the square, so that the wilder an innovation,
+/// the less it moves the fit.
+fn weight(z_squared: f64) -> f64 {
+    let bound = DOUBTED * DOUBTED;
+    if z_squared <= bound {
+        1.0
+    } else {
+        bound / z_squared
+    }
 }
 
 /// The loss whose slope is twice the weighted innovation, but no more than at
 /// [`GROSS`]: however wild a few rows are, the levels are for the others.
-fn loss_of(z: f64) -> f64 {
-    let size = z.abs().min(GROSS);
-    if size <= DOUBTED {
-        size * size
+fn loss_of(z_squared: f64) -> f64 {
+    let square = z_squared.min(GROSS * GROSS);
+    let bound = DOUBTED * DOUBTED;
+    if square <= bound {
+        square
     } else {
-        DOUBTED * DOUBTED * (1.0 + 2.0 * (size / DOUBTED).ln())
+        bound * (1.0 + (square / bound).ln())
     }
 }
 
@@ -220,10 +247,10 @@ pub(crate) fn whiten(
     stations: &[Station],
     rows: &[Row],
     levels: &NoiseLevels,
-    mut each: impl FnMut(usize, Measured, Whitened),
+    mut each: impl FnMut(usize, Measured, &Whitened),
 ) -> Pass {
     let mut filter = Filter::new(levels);
-    let mut sums = Sums::default();
+    let mut sums = Sums::new();
     let white = levels.white_deg.powi(2);
     let difference_white = levels.difference_deg.powi(2);
     for (index, (station, row)) in stations.iter().zip(rows).enumerate() {
@@ -235,20 +262,25 @@ pub(crate) fn whiten(
                 load,
                 white: difference_white * station.white_factor,
             };
-            each(index, Measured::Difference, sums.take(&mut filter, &scalar));
+            each(
+                index,
+                Measured::Difference,
+                &sums.take(&mut filter, &scalar),
+            );
         }
         let scalar = Scalar {
             series: series_of(row.residual, &row.columns),
             load: station.loads(row),
             white: white * station.white_factor,
         };
-        each(index, Measured::Deviation, sums.take(&mut filter, &scalar));
+        each(index, Measured::Deviation, &sums.take(&mut filter, &scalar));
     }
+    let log_variance = sums.log_variance();
     Pass {
-        information: SMatrix::from_fn(|i, j| sums.normal[i.max(j) + 1][i.min(j) + 1]),
-        score: SVector::from_fn(|i, _| sums.normal[i + 1][0]),
-        loss: sums.loss + sums.log_variance,
-        log_variance: sums.log_variance,
+        information: SMatrix::from_fn(|i, j| sums.normal.at(i + 1, j + 1)),
+        score: SVector::from_fn(|i, _| sums.normal.at(i + 1, 0)),
+        loss: sums.loss + log_variance,
+        log_variance,
         drift: filter.drift(),
     }
 }
@@ -256,41 +288,52 @@ pub(crate) fn whiten(
 fn series_of(residual: f64, columns: &[f64; UNKNOWNS]) -> [f64; SERIES] {
     let mut series = [0.0; SERIES];
     series[0] = residual;
-    series[1..].copy_from_slice(columns);
+    series[1..=UNKNOWNS].copy_from_slice(columns);
     series
 }
 
+fn columns_of(series: &[f64; SERIES]) -> [f64; UNKNOWNS] {
+    let mut columns = [0.0; UNKNOWNS];
+    columns.copy_from_slice(&series[1..=UNKNOWNS]);
+    columns
+}
+
 /// What has been added up so far.
-#[derive(Default)]
 struct Sums {
-    /// Products of the whitened series, the lower triangle.
-    normal: [[f64; SERIES]; SERIES],
+    /// Products of the whitened series.
+    normal: Products<SERIES>,
     loss: f64,
+    /// Sum of log variance, but for what is in `variances`.
     log_variance: f64,
+    /// A product of variances: one logarithm serves many.
+    variances: f64,
 }
 
 impl Sums {
+    fn new() -> Sums {
+        Sums {
+            normal: Products::new(),
+            loss: 0.0,
+            log_variance: 0.0,
+            variances: 1.0,
+        }
+    }
+
     fn take(&mut self, filter: &mut Filter, scalar: &Scalar) -> Whitened {
-        let (innovation, variance, weight) = filter.update(scalar);
-        let deviation = variance.sqrt();
-        let z = innovation[0] / deviation;
-        self.loss += loss_of(z);
-        self.log_variance += variance.ln();
-        let per_variance = weight / variance;
-        for (i, row) in self.normal.iter_mut().enumerate() {
-            let scaled = innovation[i] * per_variance;
-            for (sum, other) in row[..=i].iter_mut().zip(&innovation) {
-                *sum += scaled * other;
-            }
+        let whitened = filter.update(scalar);
+        self.loss += loss_of(whitened.z_squared);
+        self.variances *= whitened.variance;
+        // Far from where the product would leave what a number can hold.
+        if !(1e-100..1e100).contains(&self.variances) {
+            self.log_variance += self.variances.ln();
+            self.variances = 1.0;
         }
-        let mut columns = [0.0; UNKNOWNS];
-        for (column, value) in columns.iter_mut().zip(&innovation[1..]) {
-            *column = value / deviation;
-        }
-        Whitened {
-            innovation: z,
-            weight,
-            columns,
-        }
+        let weight = whitened.weight_per_variance;
+        self.normal.add(&whitened.innovations, weight);
+        whitened
+    }
+
+    fn log_variance(&self) -> f64 {
+        self.log_variance + self.variances.ln()
     }
 }

@@ -185,8 +185,21 @@ pub(crate) fn predicted(model: &Model, compass_deg: f64, h: f64, z: f64) -> (f64
     (centre + model.constant_deg, variance.sqrt())
 }
 
-/// A ship's passage of `days`, one observation every ten minutes at sea.
+/// A ship's passage of `days`, one observation every ten minutes at sea, on an
+/// earth that is a dipole.
 pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> Voyage {
+    sail_on(|lat, lon, _| dipole(lat, lon), seed, variety, days, faults)
+}
+
+/// The same on an earth whose declination, H and Z follow from latitude,
+/// longitude and time.
+pub(crate) fn sail_on(
+    earth: impl Fn(f64, f64, Timestamp) -> (f64, f64, f64),
+    seed: u64,
+    variety: Variety,
+    days: f64,
+    faults: &Faults,
+) -> Voyage {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let sizes = faults.of_one_ship(&mut rng);
     let faults = &sizes;
@@ -212,7 +225,8 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
             mean = Mean::default();
             continue;
         }
-        let (variation, h_nt, z_nt) = dipole(passage.lat, passage.lon);
+        let time = start.plus_seconds(60.0 * minute as f64);
+        let (variation, h_nt, z_nt) = earth(passage.lat, passage.lon, time);
         let read = errors.read(&truth, &passage, minute, (variation, h_nt, z_nt), &mut rng);
         let Some([mut compass, mut gyro, satellite]) = mean.add(passage.course, read) else {
             continue;
@@ -235,7 +249,7 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
             (satellite + share * wrap_180(gyro - satellite), share)
         });
         observations.push(Observation {
-            time: Some(start.plus_seconds(60.0 * minute as f64)),
+            time: Some(time),
             position: Some(Position::new(passage.lat, passage.lon).unwrap()),
             compass: CompassHeading::new(compass).unwrap(),
             deviation: Deviation::new(reference - variation - compass).unwrap(),
@@ -249,7 +263,8 @@ pub(crate) fn sail(seed: u64, variety: Variety, days: f64, faults: &Faults) -> V
             weight: 1.0,
         });
     }
-    let (_, h_nt, z_nt) = dipole(passage.lat, passage.lon);
+    let end = start.plus_seconds(days * 86_400.0);
+    let (_, h_nt, z_nt) = earth(passage.lat, passage.lon, end);
     Voyage {
         observations,
         truth: Truth {
