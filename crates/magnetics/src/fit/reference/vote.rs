@@ -10,6 +10,8 @@ use crate::ship::EarthField;
 const SPELL_S: f64 = 6.0 * 3600.0;
 /// The failed reference must be so many times further off than the sound one.
 const FURTHER: f64 = 2.0;
+/// More observations than this tell the third vote no better.
+const ENOUGH: usize = 2000;
 
 /// Takes trust from the references that failed; `order` is that of time.
 pub(super) fn settle(
@@ -26,8 +28,10 @@ pub(super) fn settle(
     if quarrels.is_empty() {
         return;
     }
-    let sound: Vec<Observation> = (0..readings.len())
-        .filter(|&i| !failed[i])
+    let sound = order.iter().copied().filter(|&i| !failed[i]);
+    let every = (readings.len() - quarrels.len()).div_ceil(ENOUGH).max(1);
+    let sound: Vec<Observation> = sound
+        .step_by(every)
         .filter_map(|i| observe(&readings[i], trust[i], check))
         .collect();
     let third = fit_robust(&sound, &RobustOptions::default()).ok();
