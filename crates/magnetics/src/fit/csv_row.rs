@@ -8,6 +8,7 @@ use crate::angle::{CompassHeading, TrueHeading, Variation};
 use crate::field::{FieldAt, FieldModel};
 use crate::position::Position;
 use crate::time::Timestamp;
+use std::cmp::Ordering;
 
 /// One row: every column that such a table may have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -120,8 +121,10 @@ pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<()
     need("lon")
 }
 
-/// Makes readings of rows. Where a row has both a field and a place, the field
-/// as given is used.
+/// Makes readings of rows, in order of time and then of everything else, so that
+/// the order of the rows leaves no trace. A row that says the same as another of
+/// the same time is that row again and counts once; rows without times may well
+/// be alike. Where a row has both a field and a place, the field as given is used.
 ///
 /// # Errors
 /// With the first row and column that are empty or invalid. A row without any
@@ -131,9 +134,41 @@ pub fn readings_from_csv(
     gyro_speed_error: GyroSpeedError,
 ) -> Result<Vec<HeadingReading>, CsvRowError> {
     let indexed = rows.iter().enumerate();
-    indexed
+    let mut readings: Vec<HeadingReading> = indexed
         .map(|(index, row)| reading(row, index, gyro_speed_error))
-        .collect()
+        .collect::<Result<_, _>>()?;
+    readings.sort_by(in_order);
+    readings.dedup_by(|a, b| a.time.is_some() && in_order(a, b).is_eq());
+    Ok(readings)
+}
+
+fn in_order(a: &HeadingReading, b: &HeadingReading) -> Ordering {
+    let numbers = |r: &HeadingReading| {
+        // Nothing sorts before anything.
+        let or_first = |x: Option<f64>| x.unwrap_or(f64::NEG_INFINITY);
+        [
+            or_first(r.position.map(Position::lat_deg)),
+            or_first(r.position.map(Position::lon_deg)),
+            r.compass.degrees(),
+            or_first(r.gyro.map(TrueHeading::degrees)),
+            or_first(r.satellite.map(TrueHeading::degrees)),
+            or_first(r.unnamed.map(TrueHeading::degrees)),
+            r.variation.degrees_east(),
+            r.h_nt,
+            r.z_nt,
+            or_first(r.sog_kn),
+            f64::from(r.windows),
+            r.weight,
+        ]
+    };
+    let by_number = || {
+        let pairs = numbers(a).into_iter().zip(numbers(b));
+        pairs
+            .map(|(a, b)| a.total_cmp(&b))
+            .find(|order| order.is_ne())
+            .unwrap_or(Ordering::Equal)
+    };
+    a.time.cmp(&b.time).then_with(by_number)
 }
 
 fn reading(

@@ -200,3 +200,25 @@ fn a_missing_column_is_named() {
         );
     }
 }
+
+#[test]
+fn rows_count_once_and_in_any_order_alike() {
+    let at = |minute: i64, compass: f64| CsvRow {
+        time: Timestamp::from_micros(1_780_000_000_000_000 + minute * 60_000_000).ok(),
+        compass_deg: Some(compass),
+        ..row()
+    };
+    let read = |rows: &[CsvRow]| readings_from_csv(rows, GyroSpeedError::Corrected).unwrap();
+    let once = read(&[at(0, 10.0), at(0, 11.0), at(5, 12.0)]);
+    let again = read(&[
+        at(5, 12.0),
+        at(0, 11.0),
+        at(0, 10.0),
+        at(5, 12.0),
+        at(0, 11.0),
+    ]);
+    assert_eq!(once.len(), 3);
+    assert_eq!(once, again);
+    // Without times two rows may be alike and still be two.
+    assert_eq!(read(&[row(), row()]).len(), 2);
+}
