@@ -30,6 +30,23 @@ async function openVessel(page) {
 const chart = (page) => page.getByTestId('deviation-chart');
 const curve = (page) => chart(page).locator('svg [aria-label="line"] path').last();
 
+/** The first vessel that has a model, by the API. */
+async function withModel(page) {
+  const listed = await (await page.request.get('/api/v1/vessels')).json();
+  return listed.items.find((vessel) => vessel.model);
+}
+
+/** Sets the limits of a vessel's alerts. */
+async function limit(page, id, limits) {
+  const path = `/api/v1/vessels/${id}/settings`;
+  const found = await (await page.request.get(path)).json();
+  const answer = await page.request.put(path, {
+    headers: { 'X-Binnacle-Request': '1' },
+    data: { ...found, alerts: { band95_deg: 45, ...limits } },
+  });
+  assert.ok(answer.ok(), await answer.text());
+}
+
 async function fitsItsWidth(page) {
   const excess = await page.evaluate(
     () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
@@ -201,6 +218,105 @@ export const scenarios = {
       await page.getByText('No agent has been enrolled').waitFor();
       await fitsItsWidth(page);
       await shoot('new-vessel', { fullPage: true });
+    },
+  },
+
+  'an alert comes live, is acknowledged and cleared': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await page.getByRole('heading', { name: 'Alerts', level: 1 }).waitFor();
+      const vessel = await withModel(page);
+      // A limit that she surely exceeds; what follows comes through the live events.
+      await limit(page, vessel.id, { deviation_deg: 1 });
+      const card = page
+        .getByRole('article')
+        .filter({ hasText: `${vessel.name}: Deviation over the limit` });
+      await card.getByText('over the limit of 1°').waitFor();
+      await page.getByTestId('alert-badge').waitFor();
+      await shoot('alerts', { fullPage: true });
+
+      await card.getByRole('button', { name: 'Acknowledge' }).click();
+      await card.getByLabel(/^Note/).fill('Azimuth taken');
+      await card.getByRole('button', { name: 'Acknowledge the alert' }).click();
+      await card.getByText('Acknowledged by Test Officer').waitFor();
+      await card.getByText('What shows it').click();
+      await card.getByText('By the model of the samples').waitFor();
+      await page.getByRole('link', { name: 'Binnacle' }).click();
+      await page
+        .getByRole('row')
+        .filter({ hasText: vessel.name })
+        .getByText('acknowledged')
+        .waitFor();
+      await shoot('vessels-alerts');
+      await page.goBack();
+
+      await card.getByRole('button', { name: 'Clear' }).click();
+      await card.getByRole('button', { name: 'Clear the alert' }).click();
+      await card.getByRole('alert').getByText('Say why it is over').waitFor();
+      await card.getByLabel('Why it is over').fill('A test');
+      await card.getByRole('button', { name: 'Clear the alert' }).click();
+      await page.getByText('Cleared lately').click();
+      await page
+        .getByText(/^Cleared by Test Officer.*: A test$/)
+        .first()
+        .waitFor();
+      await limit(page, vessel.id, { deviation_deg: 45 });
+    },
+  },
+
+  'a webhook is made, tested and removed': {
+    allowedErrors: [notSignedIn, /status of 422 .*\/api\/v1\/webhooks\b/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await page.getByRole('link', { name: 'Webhooks' }).click();
+      await page.getByText('No program is told of alerts yet').waitFor();
+      await page.getByRole('button', { name: 'Add a webhook' }).click();
+      const made = page.getByRole('button', { name: 'Make the webhook' });
+      await made.click();
+      await page.getByRole('alert').getByText('Enter an address').waitFor();
+      await page.getByLabel('Address').fill('https://127.0.0.1/hook');
+      await made.click();
+      await page.getByRole('alert').getByText('not an address of the public internet').waitFor();
+      // A name that no resolver knows (RFC 2606).
+      await page.getByLabel('Address').fill('https://hooks.invalid/binnacle');
+      await made.click();
+      await page.getByText(/^bns_/).waitFor();
+      await page.getByRole('button', { name: 'Done' }).click();
+      const card = page.getByRole('article').filter({ hasText: 'hooks.invalid' });
+      await card.getByRole('button', { name: 'Send a test' }).click();
+      await card.getByTestId('deliveries').getByText('waiting').waitFor();
+      await card.getByTestId('deliveries').getByText('1 try').waitFor();
+      await shoot('webhooks', { fullPage: true });
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('webhooks-phone', { fullPage: true });
+      await card.getByRole('button', { name: 'Remove' }).click();
+      await card.getByRole('button', { name: 'Remove the webhook' }).click();
+      await page.getByText('No program is told of alerts yet').waitFor();
+    },
+  },
+
+  'a phone shows the alerts, by night too': {
+    viewport: phone,
+    colorScheme: 'dark',
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await withModel(page);
+      await limit(page, vessel.id, { deviation_deg: 1.5 });
+      await page.getByTestId('alert-badge').waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessels-alerts-phone', { fullPage: true });
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await page.getByRole('article').first().waitFor();
+      await fitsItsWidth(page);
+      await shoot('alerts-phone', { fullPage: true });
+      await limit(page, vessel.id, { deviation_deg: 45 });
+      await page.getByTestId('no-alerts').waitFor();
+      await shoot('no-alerts-phone', { fullPage: true });
     },
   },
 

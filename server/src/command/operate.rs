@@ -13,11 +13,14 @@ use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::task::JoinSet;
-use tracing::{info, warn};
+use tracing::{error, info, warn};
 use tracing_subscriber::EnvFilter;
 
 /// What is under way when the server is told to stop gets so long to finish.
 const GRACE: Duration = Duration::from_secs(20);
+
+/// So many webhooks are told at once: one that is slow keeps back only its own.
+const WEBHOOK_SENDERS: usize = 4;
 
 /// Serves until told to stop.
 ///
@@ -56,8 +59,15 @@ pub async fn run(app: App, listener: TcpListener) -> Result<()> {
     }
     if app.config.analysis_workers > 0 {
         parts.spawn(alerts::watch(app.clone()));
-        let sender = webhooks::Sender::new(app.config.webhooks.reach())?;
-        parts.spawn(webhooks::run(app.clone(), sender));
+        match webhooks::Sender::new(app.config.webhooks.reach()) {
+            Ok(sender) => {
+                for _ in 0..WEBHOOK_SENDERS {
+                    parts.spawn(webhooks::run(app.clone(), sender.clone()));
+                }
+            }
+            // A machine without certificates can still take batches.
+            Err(error) => error!(error = format!("{error:#}"), "webhooks cannot be sent"),
+        }
     }
     parts.spawn(stop_on_signal(app.clone()));
     let stopping = app.stopping.clone();

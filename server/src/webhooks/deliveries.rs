@@ -160,6 +160,10 @@ pub(super) async fn claim(db: &Db, now: Time) -> DbResult<Option<Claimed>> {
          JOIN webhooks w ON w.id = d.webhook_id AND w.enabled
          WHERE d.state = 'pending' AND d.next_attempt_at <= $1
            AND (d.lease_until IS NULL OR d.lease_until <= $1)
+           AND NOT EXISTS (
+               SELECT 1 FROM webhook_deliveries e
+               WHERE e.webhook_id = d.webhook_id AND e.state = 'pending'
+                 AND e.number < d.number)
          ORDER BY d.next_attempt_at
          LIMIT 1",
         now
