@@ -2,10 +2,15 @@
 //!
 //! What always holds: what went wrong inside is logged here, once, and never sent.
 
+use crate::analysis::RefusalSchema;
+use crate::models::NoModel;
+use crate::streams::CardWithdrawnSchema;
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use binnacle_magnetics::fit::FitError;
+use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use tracing::error;
 use utoipa::ToSchema;
@@ -18,7 +23,7 @@ pub enum Error {
     NotFound(&'static str),
     /// The compass has no model yet, for the reason given.
     #[error("{0}")]
-    NoModelYet(String),
+    NoModelYet(NoModel),
     /// No valid session or token came with the request.
     #[error("sign in, or send a valid token")]
     Unauthenticated,
@@ -85,6 +90,15 @@ pub struct Problem {
     pub status: u16,
     /// What is wrong this time.
     pub detail: String,
+    /// What a model is refused for; only in `no-model-yet`, and not before the
+    /// first samples have been analysed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, value_type = Option<RefusalSchema>)]
+    pub refusal: Option<FitError>,
+    /// That the last model holds no more; only in `no-model-yet`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
+    pub card_withdrawn: Option<CardWithdrawn>,
 }
 
 impl Error {
@@ -149,11 +163,17 @@ impl IntoResponse for Error {
         if let Error::Internal(cause) = &self {
             error!(error = format!("{cause:#}"), "a request failed");
         }
+        let (refusal, card_withdrawn) = match &self {
+            Error::NoModelYet(none) => (none.refusal.clone(), none.card_withdrawn.clone()),
+            _ => (None, None),
+        };
         let problem = Problem {
             kind: format!("/problems/{kind}"),
             title: title.to_owned(),
             status: status.as_u16(),
             detail: self.to_string(),
+            refusal,
+            card_withdrawn,
         };
         let mut response = (status, Json(problem)).into_response();
         let headers = response.headers_mut();

@@ -13,10 +13,12 @@
 
 mod input;
 mod queue;
+mod refusal;
 mod store;
 mod worker;
 
 pub use input::{Input, input_hash};
 pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};
+pub use refusal::RefusalSchema;
 pub use store::{Covered, chunks, coverage, refusal};
 pub use worker::{Worked, run, step};

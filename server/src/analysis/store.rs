@@ -10,6 +10,7 @@ use crate::time::Time;
 use binnacle_magnetics::advice::SailNext;
 use binnacle_magnetics::analyse::{Analysis, SampleDiagnostic};
 use binnacle_magnetics::coverage::Coverage;
+use binnacle_magnetics::fit::{FitError, ReferenceCheck};
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -27,7 +28,8 @@ pub(super) struct Found {
     pub(super) findings: Findings,
 }
 
-/// Where a compass's samples lie, and where more would tell most.
+/// Where a compass's samples lie, where more would tell most, and how gyro and
+/// satellite compass compare in them.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Covered {
     /// Counts of samples.
@@ -36,6 +38,10 @@ pub struct Covered {
     /// None without a model, and in what was stored before there was advice.
     #[serde(default)]
     pub sail_next: Option<SailNext>,
+    /// None where they could not be compared, and in what was stored before they
+    /// were.
+    #[serde(default)]
+    pub references: Option<ReferenceCheck>,
 }
 
 /// The input of the compass's last analysis.
@@ -55,17 +61,25 @@ pub(super) async fn last_hash(
     Ok(found.map(|(hash,)| hash))
 }
 
-/// Why the compass's current epoch has no model.
-pub async fn refusal(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<String>> {
+/// Why the compass's current epoch has no model; none before the first analysis.
+pub async fn refusal(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<FitError>> {
+    #[derive(Deserialize)]
+    struct Refused {
+        refusal: Option<FitError>,
+    }
     let found = row!(
         db,
-        (Option<String>,),
-        "SELECT refusal FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+        (String,),
+        "SELECT epochs FROM analyses WHERE vessel_id = $1 AND compass_id = $2
          ORDER BY compass_id",
         vessel,
         compass
     )?;
-    Ok(found.and_then(|(refusal,)| refusal))
+    let Some((text,)) = found else {
+        return Ok(None);
+    };
+    let mut epochs: Vec<Refused> = serde_json::from_str(&text)?;
+    Ok(epochs.pop().and_then(|epoch| epoch.refusal))
 }
 
 /// Where a compass's samples lie; empty before the first analysis.
@@ -82,6 +96,7 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
         return Ok(Covered {
             coverage: binnacle_magnetics::coverage::coverage([]),
             sail_next: None,
+            references: None,
         });
     };
     Ok(serde_json::from_str(&text)?)

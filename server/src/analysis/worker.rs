@@ -153,6 +153,7 @@ async fn analyse_compass(
         let covered = Covered {
             coverage: analysis.coverage.clone(),
             sail_next: sail_next(&analysis),
+            references: analysis.current_epoch().and_then(|epoch| epoch.references),
         };
         Ok(Some(Found {
             vessel_id,

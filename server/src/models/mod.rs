@@ -1,9 +1,11 @@
 //! The models of a vessel's compasses: every version is kept, the highest is current,
 //! but while a change has ended its epoch and no other model has taken its place.
 
+mod missing;
 mod schema;
 mod store;
 
+pub use missing::NoModel;
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
 pub use store::{
     StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, insert, withdrawn,
@@ -108,7 +110,7 @@ pub struct ModelVersionList {
 #[utoipa::path(get, path = "/vessels/{id}/model", tag = "fleet",
     params(("id" = VesselId, Path), WhichCompass),
     responses((status = 200, body = ModelVersion), (status = 401, body = Problem),
-              (status = 404, description = "Also when there is no model yet: the detail says what is missing", body = Problem)))]
+              (status = 404, description = "Also when there is no model yet: detail and refusal say what is missing", body = Problem)))]
 async fn current_model(
     State(app): State<App>,
     reader: Reader,
@@ -152,12 +154,9 @@ pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Resul
     if let Some(model) = current(&app.db, vessel, compass).await? {
         return Ok(model);
     }
-    let refusal = analysis::refusal(&app.db, vessel, compass).await?;
-    let missing = refusal.unwrap_or_else(|| "no samples have been analysed yet".to_owned());
-    let withdrawn = card_withdrawn(&app.db, vessel, compass).await?;
-    Err(Error::NoModelYet(match withdrawn {
-        Some(withdrawn) => format!("{}: {missing}", withdrawn.in_words()),
-        None => missing,
+    Err(Error::NoModelYet(NoModel {
+        refusal: analysis::refusal(&app.db, vessel, compass).await?,
+        card_withdrawn: card_withdrawn(&app.db, vessel, compass).await?,
     }))
 }
 

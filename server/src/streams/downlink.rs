@@ -60,7 +60,7 @@ pub(super) struct ModelDownlinkSchema {
 #[derive(ToSchema)]
 #[schema(as = CardWithdrawn)]
 #[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
-pub(super) struct CardWithdrawnSchema {
+pub struct CardWithdrawnSchema {
     /// Since when.
     since: Time,
     /// What altered the ship's magnetism or the compass: a kind of logbook entry.

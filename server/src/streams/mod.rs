@@ -25,6 +25,7 @@ use axum::http::StatusCode;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
 use binnacle_wire::messages::{Downlink, OpenStreamAnswer};
+pub use downlink::CardWithdrawnSchema;
 use downlink::{DownlinkSchema, Has, OpenStreamSchema};
 use metrics::counter;
 use utoipa_axum::router::OpenApiRouter;

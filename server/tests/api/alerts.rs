@@ -341,8 +341,9 @@ async fn after_an_adjustment_the_old_card_is_withdrawn_at_once(shore: Shore) {
             (&Value::Null, &Value::Null)
         );
     }
-    let told = nao.downlink(&has).await;
     let withdrawn = json!({ "since": "2026-11-18T06:00:00Z", "reason": "adjustment" });
+    assert_eq!(answer.json()["card_withdrawn"], withdrawn);
+    let told = nao.downlink(&has).await;
     assert_eq!(told["card_withdrawn"], withdrawn);
     assert_eq!(nao.downlink("").await.get("card_withdrawn"), None);
     let missed = shore.events().await;

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 on_both!(
     a_passage_becomes_a_model_that_foretells_the_deviation,
     without_enough_headings_the_answer_says_what_is_missing,
+    gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal,
     many_batches_make_one_job_that_waits_for_more,
     the_same_input_makes_no_second_version,
     another_estimator_analyses_every_vessel_again_at_the_start,
@@ -87,9 +88,55 @@ async fn without_enough_headings_the_answer_says_what_is_missing(shore: Shore) {
         assert_eq!(answer.problem(), "no-model-yet");
         let detail = answer.json()["detail"].as_str().unwrap().to_owned();
         assert!(detail.contains("needed"), "{detail}");
+        let refusal = &answer.json()["refusal"];
+        assert_eq!(refusal["reason"], "too_few_samples");
+        assert_eq!(refusal["found"], 3);
+        let needed = refusal["needed"].as_u64().unwrap();
+        assert!(detail.contains(&needed.to_string()), "{detail}");
     }
     let listed = ada.get(&nao.path("/samples")).await.good();
     assert_eq!(listed["items"].as_array().unwrap().len(), 3);
+    shore.finish().await;
+}
+
+async fn gyro_and_satellite_compass_are_compared_and_their_quarrel_is_a_refusal(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    for (satellite_behind_deg, refused) in [(0.4, false), (12.0, true)] {
+        let nao = shore.ship(&ada, "Nao").await;
+        let none = ada.get(&nao.path("/coverage")).await.good();
+        assert_eq!(none["references"], json!(null));
+        let before = ada.get(&nao.path("/model")).await;
+        assert_eq!(before.problem(), "no-model-yet");
+        assert!(before.json().get("refusal").is_none());
+        let mut samples = passage(DAY, 300);
+        for sample in &mut samples {
+            let gyro_deg = sample.gyro.unwrap().degrees();
+            sample.satellite = TrueHeading::new(gyro_deg - satellite_behind_deg);
+        }
+        // For three hours the gyro is far off.
+        for sample in &mut samples[100..118] {
+            let gyro_deg = sample.gyro.unwrap().degrees();
+            sample.gyro = TrueHeading::new(gyro_deg + 20.0);
+        }
+        nao.put(1, &samples).await.good();
+        shore.advance(A_WHILE_S);
+        shore.work().await;
+        let references = ada.get(&nao.path("/coverage")).await.good()["references"].take();
+        let model = ada.get(&nao.path("/model")).await;
+        if refused {
+            assert_eq!(references, json!(null));
+            assert_eq!(model.problem(), "no-model-yet");
+            let refusal = &model.json()["refusal"];
+            assert_eq!(refusal["reason"], "references_disagree");
+            assert!((refusal["offset_deg"].as_f64().unwrap() - 12.0).abs() < 0.1);
+        } else {
+            assert_eq!(model.good()["version"], 1);
+            assert!((references["offset_deg"].as_f64().unwrap() - 0.4).abs() < 0.05);
+            assert_eq!(references["pairs"], 300);
+            assert_eq!(references["gyro_dropped"], 18);
+            assert_eq!(references["satellite_dropped"], 0);
+        }
+    }
     shore.finish().await;
 }
 

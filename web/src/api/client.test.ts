@@ -50,7 +50,11 @@ describe('a call', () => {
       status: 404,
       kind: 'no-model-yet',
       message: '3 samples, 20 needed',
+      refusal: undefined,
     });
+    const refusal = { reason: 'too_few_samples', found: 3, needed: 20 };
+    serve(json({ type: '/problems/no-model-yet', detail: '3 samples', refusal }, 404));
+    await expect(findModel('v')).rejects.toMatchObject({ refusal });
   });
 
   test('that nobody answers is offline, whatever a proxy says of itself', async () => {

@@ -1,6 +1,7 @@
 /** What went wrong with a call, as RFC 9457 problem documents say it. */
 
 import { text } from '../text';
+import type { Refusal } from './types';
 
 /** What the server refused, or `offline` when it could not be reached. */
 export class Problem extends Error {
@@ -9,6 +10,8 @@ export class Problem extends Error {
     /** The last word of the problem's type, such as `no-model-yet`. */
     readonly kind: string,
     detail: string,
+    /** Why there is no model, in `no-model-yet` once samples have been analysed. */
+    readonly refusal?: Refusal,
   ) {
     super(detail);
   }
@@ -26,7 +29,12 @@ export function readProblem(status: number, body: unknown): Problem {
     'detail' in about && typeof about.detail === 'string' && about.detail !== ''
       ? about.detail
       : text.problem.unexpected(status);
-  return new Problem(status, type.split('/').at(-1) ?? '', detail);
+  return new Problem(status, type.split('/').at(-1) ?? '', detail, refusalIn(about));
+}
+
+function refusalIn(about: object): Refusal | undefined {
+  if (!('refusal' in about) || typeof about.refusal !== 'object') return undefined;
+  return (about.refusal as Refusal | null) ?? undefined;
 }
 
 /** Any error as a problem: what is not one is a fault of ours, and is logged. */

@@ -1016,6 +1016,7 @@ export interface components {
              * @description Width of a band of magnetic latitude, degrees.
              */
             magnetic_latitude_step_deg: number;
+            references: components["schemas"]["References"] | null;
             sail_next: components["schemas"]["SailNext"] | null;
         };
         /** @description The range of fields in one band of magnetic latitude. */
@@ -1696,8 +1697,10 @@ export interface components {
         };
         /** @description An error as it is sent (RFC 9457). */
         Problem: {
+            card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
             /** @description What is wrong this time. */
             detail: string;
+            refusal?: components["schemas"]["Refusal"] | null;
             /**
              * Format: int32
              * @description The HTTP status.
@@ -1738,6 +1741,130 @@ export interface components {
              * @description Standard deviation of a reference's constant error, degrees.
              */
             reference_constant_sd_deg: number;
+        };
+        /**
+         * @description How gyro and satellite compass compare over the samples since the ship or the
+         *     compass was last changed.
+         */
+        References: {
+            /**
+             * Format: double
+             * @description Standard deviation of the constant error that is left in the reference,
+             *     degrees.
+             */
+            constant_sd_deg: number;
+            /**
+             * Format: double
+             * @description One of the two has failed where their difference departs further than this
+             *     from the usual, degrees.
+             */
+            failed_beyond_deg: number;
+            /**
+             * Format: int64
+             * @description Samples whose gyro was dropped.
+             */
+            gyro_dropped: number;
+            /**
+             * Format: double
+             * @description Gyro less satellite compass, usually, degrees; none without enough pairs.
+             */
+            offset_deg: number | null;
+            /**
+             * Format: int64
+             * @description Samples with both.
+             */
+            pairs: number;
+            /**
+             * Format: int64
+             * @description Samples whose satellite compass was dropped.
+             */
+            satellite_dropped: number;
+        };
+        /** @description What a model is refused for. */
+        Refusal: {
+            /**
+             * Format: int64
+             * @description How many there are.
+             */
+            found: number;
+            /**
+             * Format: int64
+             * @description How many there must be.
+             */
+            needed: number;
+            /** @enum {string} */
+            reason: "too_few_samples";
+        } | {
+            /**
+             * Format: double
+             * @description The widest such range that is allowed, degrees.
+             */
+            allowed_gap_deg: number;
+            /**
+             * Format: int32
+             * @description Sectors of 15° with at least one sample.
+             */
+            found: number;
+            /**
+             * Format: int32
+             * @description How many there must be.
+             */
+            needed: number;
+            /** @enum {string} */
+            reason: "too_few_headings";
+            /**
+             * Format: double
+             * @description The widest range of headings without a sample, degrees.
+             */
+            widest_gap_deg: number;
+        } | {
+            /**
+             * Format: double
+             * @description What there must be, nT.
+             */
+            needed_nt: number;
+            /** @enum {string} */
+            reason: "field_too_weak";
+            /**
+             * Format: double
+             * @description The strongest among them, nT.
+             */
+            strongest_nt: number;
+        } | {
+            /**
+             * Format: double
+             * @description The horizontal field at which it does, nT.
+             */
+            h_nt: number;
+            /** @enum {string} */
+            reason: "ambiguous_headings";
+        } | {
+            /** @enum {string} */
+            reason: "one_magnetic_latitude";
+        } | {
+            /**
+             * Format: double
+             * @description How far they may differ, degrees.
+             */
+            allowed_deg: number;
+            /**
+             * Format: double
+             * @description Gyro less satellite compass, degrees.
+             */
+            offset_deg: number;
+            /** @enum {string} */
+            reason: "references_disagree";
+        } | {
+            /**
+             * Format: int64
+             * @description How many readings repeat.
+             */
+            readings: number;
+            /** @enum {string} */
+            reason: "reference_stuck";
+        } | {
+            /** @enum {string} */
+            reason: "not_converged";
         };
         /** @description An entry as it is, and as it was. */
         RevisedEntry: components["schemas"]["LogbookEntry"] & {
@@ -4144,7 +4271,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Also when there is no model yet: the detail says what is missing */
+            /** @description Also when there is no model yet: detail and refusal say what is missing */
             404: {
                 headers: {
                     [name: string]: unknown;

@@ -132,6 +132,7 @@ test('coverage names the headings that are missing, and says when one band is al
     magnetic_latitude_step_deg: 10,
     bands: [],
     sail_next: null,
+    references: null,
     cells: Array.from({ length: 20 }, (_, i) => ({
       heading_from_deg: i * 15,
       magnetic_latitude_from_deg: 40,

@@ -141,6 +141,7 @@ describe('coverage', () => {
     magnetic_latitude_step_deg: 10,
     bands: [],
     sail_next: null,
+    references: null,
     cells: cells.map(([magnetic_latitude_from_deg, heading_from_deg, samples]) => ({
       magnetic_latitude_from_deg,
       heading_from_deg,

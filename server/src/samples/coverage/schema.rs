@@ -1,5 +1,5 @@
-//! How the OpenAPI document describes coverage and advice; both are the science
-//! crate's.
+//! How the OpenAPI document describes coverage, advice and the references'
+//! comparison; all are the science crate's.
 
 use utoipa::ToSchema;
 
@@ -19,6 +19,36 @@ pub(super) struct CoverageSchema {
     /// What to sail next to narrow the 95 % band most; none without a model.
     #[schema(required)]
     sail_next: Option<SailNextSchema>,
+    /// How gyro and satellite compass compare; none before the first analysis and
+    /// where a model is refused because they disagree.
+    #[schema(required)]
+    references: Option<ReferencesSchema>,
+}
+
+/// How gyro and satellite compass compare over the samples since the ship or the
+/// compass was last changed.
+#[derive(ToSchema)]
+#[schema(as = References)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_magnetics::fit::ReferenceCheck"
+)]
+struct ReferencesSchema {
+    /// Samples with both.
+    pairs: u64,
+    /// Gyro less satellite compass, usually, degrees; none without enough pairs.
+    #[schema(required)]
+    offset_deg: Option<f64>,
+    /// One of the two has failed where their difference departs further than this
+    /// from the usual, degrees.
+    failed_beyond_deg: f64,
+    /// Standard deviation of the constant error that is left in the reference,
+    /// degrees.
+    constant_sd_deg: f64,
+    /// Samples whose gyro was dropped.
+    gyro_dropped: u64,
+    /// Samples whose satellite compass was dropped.
+    satellite_dropped: u64,
 }
 
 /// The range of fields in one band of magnetic latitude.
