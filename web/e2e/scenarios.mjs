@@ -107,6 +107,30 @@ export const scenarios = {
       await page.getByTestId('coverage-table').waitFor();
       const advice = await page.getByTestId('sail-next').innerText();
       assert.match(advice, /(would narrow the band|narrows the band by more than) .*\d\.\d/);
+      const trust = page.getByRole('region', { name: 'How far to trust the curve' });
+      const trusted = await trust.innerText();
+      assert.match(trusted, /In these waters\s+±\s\d+\.\d°\s+(at worst, on \d{3}°|on every)/);
+      assert.match(trusted, /In other waters, up to\s+±\s\d+\.\d°/);
+      assert.match(trusted, /samples, worth \d+ with independent errors/);
+      assert.match(trusted, /Gyro and satellite compass\s+\d\.\d° apart|Only one/);
+      assert.equal(
+        await trust
+          .getByRole('row')
+          .filter({ hasText: /\bhere\b/ })
+          .count(),
+        1,
+      );
+      await shoot('trust', {}, trust);
+      const magnetism = page.getByRole('region', { name: 'The ship’s magnetism' });
+      const parameters = magnetism.getByRole('row');
+      assert.equal(await parameters.count(), 9);
+      assert.match(
+        await parameters.nth(1).innerText(),
+        /Permanent fore-and-aft magnetism[^]*± \d+\.\d\d\sµT[^]*(her own|ships at large)/,
+      );
+      await magnetism.getByText('What some are known for only together').press('Enter');
+      await magnetism.getByText('Headings cannot tell the constant from A').waitFor();
+      await shoot('parameters', {}, magnetism);
       await page.getByRole('heading', { name: 'Coefficients' }).waitFor();
       await page.getByText('accepted', { exact: true }).first().waitFor();
       await fitsItsWidth(page);
@@ -129,6 +153,16 @@ export const scenarios = {
       await page.getByRole('button', { name: 'Show', exact: true }).click();
       await page.getByText('At 62° 30.5′ N, 005° 12.0′ E', { exact: false }).first().waitFor();
       assert.notEqual(await curve(page).getAttribute('d'), before);
+      const trust = page.getByTestId('trust');
+      await trust.getByText('At the place chosen').waitFor();
+      // North of where ships usually sail: no row of the table is hers.
+      assert.equal(
+        await trust
+          .getByRole('row')
+          .filter({ hasText: /\bhere\b/ })
+          .count(),
+        0,
+      );
     },
   },
 
@@ -214,6 +248,7 @@ export const scenarios = {
       await page.getByRole('button', { name: 'Add vessel' }).click();
       await page.getByRole('link', { name: 'Browser Test' }).first().click();
       await page.getByTestId('no-model').getByText('No model yet').waitFor();
+      await page.getByTestId('no-model').getByText('No sample has been analysed yet').waitFor();
       await page.getByText('No samples yet.').waitFor();
       await page.getByText('No agent has been enrolled').waitFor();
       await fitsItsWidth(page);
@@ -356,6 +391,8 @@ export const scenarios = {
       await page.getByTestId('coverage-table').waitFor();
       await fitsItsWidth(page);
       await shoot('vessel-phone', { fullPage: true });
+      await shoot('trust-phone', {}, page.locator('#trust'));
+      await shoot('parameters-phone', {}, page.locator('#parameters'));
       const logbook = page.getByRole('region', { name: 'Logbook' });
       await logbook.getByRole('button', { name: 'Report' }).click();
       await fitsItsWidth(page);

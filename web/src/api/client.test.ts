@@ -54,7 +54,7 @@ describe('a call', () => {
     });
     const refusal = { reason: 'too_few_samples', found: 3, needed: 20 };
     serve(json({ type: '/problems/no-model-yet', detail: '3 samples', refusal }, 404));
-    await expect(findModel('v')).rejects.toMatchObject({ refusal });
+    await expect(findModel('v')).rejects.toMatchObject({ refusal, cardWithdrawn: undefined });
   });
 
   test('that nobody answers is offline, whatever a proxy says of itself', async () => {

@@ -1,7 +1,7 @@
 /** What went wrong with a call, as RFC 9457 problem documents say it. */
 
 import { text } from '../text';
-import type { Refusal } from './types';
+import type { CardWithdrawn, Refusal } from './types';
 
 /** What the server refused, or `offline` when it could not be reached. */
 export class Problem extends Error {
@@ -12,6 +12,8 @@ export class Problem extends Error {
     detail: string,
     /** Why there is no model, in `no-model-yet` once samples have been analysed. */
     readonly refusal?: Refusal,
+    /** Since when and why the last model holds no more, in `no-model-yet`. */
+    readonly cardWithdrawn?: CardWithdrawn,
   ) {
     super(detail);
   }
@@ -29,12 +31,15 @@ export function readProblem(status: number, body: unknown): Problem {
     'detail' in about && typeof about.detail === 'string' && about.detail !== ''
       ? about.detail
       : text.problem.unexpected(status);
-  return new Problem(status, type.split('/').at(-1) ?? '', detail, refusalIn(about));
+  return new Problem(status, type.split('/').at(-1) ?? '', detail, ...reasonsIn(about));
 }
 
-function refusalIn(about: object): Refusal | undefined {
-  if (!('refusal' in about) || typeof about.refusal !== 'object') return undefined;
-  return (about.refusal as Refusal | null) ?? undefined;
+function reasonsIn(about: object): [Refusal | undefined, CardWithdrawn | undefined] {
+  const { refusal, card_withdrawn } = about as {
+    refusal?: Refusal | null;
+    card_withdrawn?: CardWithdrawn | null;
+  };
+  return [refusal ?? undefined, card_withdrawn ?? undefined];
 }
 
 /** Any error as a problem: what is not one is a fault of ours, and is logged. */

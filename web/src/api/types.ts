@@ -10,6 +10,7 @@ export type Alert = Schemas['Alert'];
 export type AlertCause = Schemas['AlertCause'];
 export type Band = Schemas['Band'];
 export type CargoKind = Schemas['CargoKind'];
+export type CardWithdrawn = Schemas['CardWithdrawn'];
 export type Caution = Schemas['Caution'];
 export type Compass = Schemas['Compass'];
 export type Coverage = Schemas['Coverage'];

@@ -6,7 +6,9 @@
  * D = (χ11−χ22)/2λ, E = (χ21+χ12)/2λ.
  */
 
-import type { Model } from '../api/types';
+import type { Model, ParameterName } from '../api/types';
+import { standardError } from './band';
+import { parameterOrder } from './parameters';
 
 export type CoefficientName = 'A' | 'B' | 'C' | 'D' | 'E';
 export const coefficientNames: CoefficientName[] = ['A', 'B', 'C', 'D', 'E'];
@@ -29,5 +31,27 @@ export function exactCoefficients(
     C: ((p.by_nt + p.chi23 * z_nt) / h_nt) * degreesPerRadian,
     D: (p.chi11_minus_chi22 / 2) * degreesPerRadian,
     E: ((p.chi21 + p.chi12) / 2) * degreesPerRadian,
+  };
+}
+
+/** Standard errors of the coefficients, degrees; none without a covariance. */
+export function coefficientErrors(
+  model: Pick<Model, 'covariance'>,
+  h_nt: number,
+  z_nt: number,
+): Record<CoefficientName, number | null> {
+  const half = degreesPerRadian / 2;
+  const force = degreesPerRadian / h_nt;
+  const error = (factors: Partial<Record<ParameterName, number>>) =>
+    standardError(
+      model.covariance,
+      parameterOrder.map((name) => factors[name] ?? 0),
+    );
+  return {
+    A: error({ chi21: half, chi12: -half, constant_deg: 1 }),
+    B: error({ bx_nt: force, chi13: force * z_nt }),
+    C: error({ by_nt: force, chi23: force * z_nt }),
+    D: error({ chi11_minus_chi22: half }),
+    E: error({ chi21: half, chi12: half }),
   };
 }

@@ -14,35 +14,51 @@ export const parameterOrder: ParameterName[] = [
   'constant_deg',
 ];
 
-export type Basis = 'data' | 'prior' | 'unknown';
+/** Whether a value is from the ship's own headings or from ships at large. */
+export type Basis = 'own' | 'mostly' | 'little' | 'ships' | 'unknown';
 
 export interface ParameterRow {
   name: ParameterName;
   /** In nT, 1 or degrees, as the name says. */
   value: number;
-  /** Half the width of the 95 % interval, in the same unit; none without a covariance. */
-  error95: number | null;
+  /** Standard error, in the same unit; none without a covariance. */
+  error: number | null;
   basis: Basis;
+  /** How much of what is known is from her own headings, 0 to 1; none if not stated. */
+  share: number | null;
 }
 
-/** Two-sided 95 % of the normal distribution. */
-const normal95 = 1.96;
+/** From these shares on a value is called her own, mostly so, or a little. */
+const [own, mostly, little] = [0.9, 0.5, 0.1];
 
 export function parameterRows(model: Model): ParameterRow[] {
-  return parameterOrder.map((name, index) => ({
-    name,
-    value: name === 'constant_deg' ? model.constant_deg : model.parameters_over_lambda[name],
-    error95: error95(model.covariance?.[index]?.[index]),
-    basis: basis(model.identifiable?.[name]),
-  }));
+  return parameterOrder.map((name, index) => {
+    const share = model.quality?.from_data[name] ?? null;
+    return {
+      name,
+      value: name === 'constant_deg' ? model.constant_deg : model.parameters_over_lambda[name],
+      error: root(model.covariance?.[index]?.[index]),
+      basis: basisOf(model.identifiable?.[name], share),
+      share,
+    };
+  });
 }
 
-function error95(variance: number | undefined): number | null {
+/**
+ * A parameter that her data do not tell apart from another is never called her
+ * own, however much their sum has taken from its variance.
+ */
+export function basisOf(identifiable: boolean | undefined, share: number | null): Basis {
+  if (share === null) {
+    if (identifiable === undefined) return 'unknown';
+    return identifiable ? 'own' : 'ships';
+  }
+  if (share >= own && identifiable !== false) return 'own';
+  if (share >= mostly) return 'mostly';
+  return share >= little ? 'little' : 'ships';
+}
+
+function root(variance: number | undefined): number | null {
   if (variance === undefined || !(variance >= 0)) return null;
-  return normal95 * Math.sqrt(variance);
-}
-
-function basis(fromData: boolean | undefined): Basis {
-  if (fromData === undefined) return 'unknown';
-  return fromData ? 'data' : 'prior';
+  return Math.sqrt(variance);
 }

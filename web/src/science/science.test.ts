@@ -1,10 +1,10 @@
 import { describe, expect, test } from 'vitest';
 import type { Coverage, Model, Sample } from '../api/types';
-import { exactCoefficients } from './coefficients';
+import { coefficientErrors, exactCoefficients } from './coefficients';
 import { headingRange, latitudeRange, widths } from './advice';
 import { coverageTable, gaps } from './coverage';
 import { closed, deviationAt, everyStep, extremes, grade } from './curve';
-import { parameterRows } from './parameters';
+import { basisOf, parameterRows } from './parameters';
 import { byInterval, residualsOf, thinned } from './residuals';
 
 const model: Model = {
@@ -49,6 +49,35 @@ describe('coefficients', () => {
     expect(south.B).toBeGreaterThan(north.B);
     expect(south.D).toBe(north.D);
   });
+
+  test('of a sum that is known have a smaller error than its parts', () => {
+    const covariance = Array.from({ length: 8 }, () => Array.from({ length: 8 }, () => 0));
+    const set = (i: number, j: number, value: number) => {
+      for (const [row, column] of [
+        [i, j],
+        [j, i],
+      ] as const) {
+        const cells = covariance[row];
+        if (cells) cells[column] = value;
+      }
+    };
+    // bx = 400 nT and chi13 = 0.01 uncertain, their sum at Z 40000 nT not at all.
+    set(0, 0, 400 ** 2);
+    set(1, 1, 0.01 ** 2);
+    set(0, 1, -400 * 0.01);
+    set(6, 6, 0.004 ** 2);
+    set(7, 7, 0.3 ** 2);
+    const errors = coefficientErrors({ covariance }, 20_000, 40_000);
+    expect(errors.B).toBeCloseTo(0, 6);
+    expect(coefficientErrors({ covariance }, 20_000, -40_000).B).toBeCloseTo(
+      (800 / 20_000) * 57.29578,
+      4,
+    );
+    expect(errors.A).toBeCloseTo(Math.hypot(0.3, 0.002 * 57.29578), 6);
+    expect(errors.E).toBeCloseTo(0.002 * 57.29578, 6);
+    expect([errors.C, errors.D]).toEqual([0, 0]);
+    expect(coefficientErrors({ covariance: null }, 20_000, 40_000).A).toBeNull();
+  });
 });
 
 describe('parameters', () => {
@@ -59,12 +88,28 @@ describe('parameters', () => {
     const rows = parameterRows({ ...model, covariance });
     expect(rows.map((r) => r.name)[0]).toBe('bx_nt');
     expect(rows[7]).toMatchObject({ name: 'constant_deg', value: 0.5 });
-    expect(rows[7]?.error95).toBeCloseTo(8 * 1.96, 9);
+    expect(rows[7]?.error).toBeCloseTo(8, 9);
   });
 
   test('without a covariance have no error, not an error of zero', () => {
-    expect(parameterRows(model).every((r) => r.error95 === null)).toBe(true);
+    expect(parameterRows(model).every((r) => r.error === null)).toBe(true);
     expect(parameterRows(model).every((r) => r.basis === 'unknown')).toBe(true);
+  });
+
+  test('are called her own only where her data tell them apart', () => {
+    expect([1, 0.9, 0.89, 0.5, 0.49, 0.1, 0.09, 0].map((share) => basisOf(true, share))).toEqual([
+      'own',
+      'own',
+      'mostly',
+      'mostly',
+      'little',
+      'little',
+      'ships',
+      'ships',
+    ]);
+    // Its sum with another is well known, itself it is not.
+    expect(basisOf(false, 0.95)).toBe('mostly');
+    expect([basisOf(true, null), basisOf(false, null)]).toEqual(['own', 'ships']);
   });
 });
 

@@ -1,0 +1,98 @@
+/** How far a model can be trusted, in an officer's words. */
+
+import type { Caution, DeviationRow, Model, References } from '../api/types';
+import { count, degrees, heading, microtesla } from '../format';
+import { text } from '../text';
+import { size } from './advice';
+import { normal95 } from './band';
+import { magneticLatitude } from './coverage';
+import { goodDeg, goodRanges, worstWaters, type Range, type Waters } from './reach';
+
+/** A figure to take in at a glance, and what it means. */
+export interface Statement {
+  figure: string;
+  meaning: string;
+}
+
+const t = text.trust;
+
+/** The band at the place of a table; none where the model came without one. */
+export function here(rows: DeviationRow[]): Statement | null {
+  const banded = rows.flatMap(({ compass_deg, band95_deg }) =>
+    typeof band95_deg === 'number' ? [{ compass_deg, band95_deg }] : [],
+  );
+  const [first] = banded;
+  if (!first) return null;
+  const widest = banded.reduce((a, b) => (b.band95_deg > a.band95_deg ? b : a), first);
+  const narrowest = banded.reduce((a, b) => (b.band95_deg < a.band95_deg ? b : a), first);
+  const [most, least] = [size(widest.band95_deg), size(narrowest.band95_deg)];
+  if (most === least) return { figure: most, meaning: t.hereEven };
+  return {
+    figure: most,
+    meaning: t.here(heading(widest.compass_deg), least, heading(narrowest.compass_deg)),
+  };
+}
+
+/** Where the model is good, and how far it may be off where it is not. */
+export function elsewhere(waters: Waters[]): Statement | null {
+  const worst = worstWaters(waters);
+  if (!worst) return null;
+  const figure = size(worst.widest.band95_deg);
+  const good = goodRanges(waters);
+  const limit = size(goodDeg, 0);
+  const at = rangeWords(worst);
+  if (good.length === 0) return { figure, meaning: t.nowhereGood(limit, at) };
+  const ranges = list(good.map(rangeWords));
+  if (waters.every(({ widest }) => widest && widest.band95_deg <= goodDeg)) {
+    return { figure, meaning: t.everywhereGood(limit, ranges) };
+  }
+  return { figure, meaning: t.elsewhere(limit, ranges, figure, at) };
+}
+
+/** What the samples are worth; none in a model that came without. */
+export function worth(model: Model): Statement | null {
+  if (!model.quality) return null;
+  const { effective_samples: effective } = model.quality;
+  return {
+    figure: count(effective),
+    meaning: t.worth(count(model.samples_used), count(effective)),
+  };
+}
+
+export function cautionWords(caution: Caution): string {
+  return caution.caution === 'weak_field'
+    ? t.weakField(microtesla(caution.h_nt))
+    : t.oneMagneticLatitude;
+}
+
+/** How gyro and satellite compass compare. */
+export function references(found: References): Statement {
+  const left = size(normal95 * found.constant_sd_deg);
+  if (found.pairs === 0) return { figure: t.oneReference, meaning: t.oneReferenceLong(left) };
+  const pairs = count(found.pairs);
+  if (typeof found.offset_deg !== 'number') {
+    return { figure: t.notCompared, meaning: t.notComparedLong(pairs, left) };
+  }
+  const apart = degrees(Math.abs(found.offset_deg));
+  const usual = found.offset_deg < 0 ? t.gyroBehind(apart, pairs) : t.gyroAhead(apart, pairs);
+  return { figure: t.apart(apart), meaning: `${usual} ${t.constantLeft(left)}` };
+}
+
+/** How many readings were not believed, and why; empty where all were. */
+export function dropped(found: References): string {
+  if (found.gyro_dropped + found.satellite_dropped === 0) return '';
+  const counts = t.dropped(count(found.gyro_dropped), count(found.satellite_dropped));
+  if (typeof found.offset_deg !== 'number') return `${counts} ${t.droppedStuck}`;
+  return `${counts} ${t.droppedWhy(degrees(found.failed_beyond_deg))}`;
+}
+
+function rangeWords({ fromDeg, toDeg }: Range): string {
+  // A latitude is never broken over two lines.
+  const shown = (value: number) => magneticLatitude(value).replace(' ', '\u00a0');
+  return t.between(shown(fromDeg), shown(toDeg));
+}
+
+function list(words: string[]): string {
+  if (words.length < 2) return words.join('');
+  return text.sailNext.and(words.slice(0, -1).join(', '), words.at(-1) ?? '');
+}
