@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench study methods clean
+.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-peer study methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -51,6 +51,9 @@ study: setup ## Measure the estimator on many voyages: coverage, error over the 
 
 methods: setup ## Compare the published fit, least squares, Huber and Binnacle on voyages
 	$(CARGO) run --locked --release -p binnacle-magnetics --example methods
+
+bench-peer: setup ## Compare the fit with the same model in NumPy, in pairs
+	scripts/bench-peer
 
 clean: ## Remove what was built (tools in .tools are kept)
 	rm -rf target web/dist web/node_modules .demo tests/artefacts

@@ -1,0 +1,34 @@
+"""Says whether both sides found the same ship, and how their times compare.
+
+`compare.py FOLDER PAIRS` with what `scripts/bench-peer` left there; fails when an
+unknown differs by more than a thousandth of its standard error.
+"""
+
+import json
+import pathlib
+import statistics
+import sys
+
+folder, pairs = pathlib.Path(sys.argv[1]), int(sys.argv[2])
+
+
+def read(side, pair):
+    return json.loads((folder / f"{side}-{pair}.json").read_text())
+
+
+ratios, product_seconds, peer_seconds = [], [], []
+for pair in range(1, pairs + 1):
+    product, peer = read("product", pair), read("peer", pair)
+    for k, (ours, theirs) in enumerate(zip(product["unknowns"], peer["unknowns"])):
+        standard_error = product["covariance"][k][k] ** 0.5
+        if abs(ours - theirs) > 1e-3 * standard_error:
+            sys.exit(f"unknown {k}: {ours} by the product, {theirs} by NumPy")
+    product_seconds.append(product["processor_seconds"])
+    peer_seconds.append(peer["processor_seconds"])
+    ratios.append(peer["processor_seconds"] / product["processor_seconds"])
+
+print(f"{product['observations']} observations, the same ship by both, {pairs} pairs")
+print(f"product {statistics.median(product_seconds):.3f} s of processor, median")
+print(f"NumPy {statistics.median(peer_seconds):.3f} s of processor, median")
+low, middle, high = min(ratios), statistics.median(ratios), max(ratios)
+print(f"ratio {low:.0f} to {high:.0f}, median {middle:.0f}")
