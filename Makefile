@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-peer study methods clean
+.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-peer study study-changes methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -48,6 +48,9 @@ bench: setup ## Run the benchmarks of BENCHMARKS.md
 
 study: setup ## Measure the estimator on many voyages: coverage, error over the bound
 	$(CARGO) run --locked --release -p binnacle-magnetics --example study
+
+study-changes: setup ## Measure how changes are found on simulated fleets: delay, false alarms
+	$(CARGO) run --locked --release -p binnacle-magnetics --example changes_study
 
 methods: setup ## Compare the published fit, least squares, Huber and Binnacle on voyages
 	$(CARGO) run --locked --release -p binnacle-magnetics --example methods

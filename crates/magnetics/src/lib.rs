@@ -25,6 +25,7 @@ pub mod ship;
 pub mod advice;
 pub mod analyse;
 pub mod berth;
+pub mod change;
 pub mod coverage;
 pub mod estimate;
 pub mod fit;

@@ -118,6 +118,7 @@ enum SampleReasonSchema {
     FieldTooWeak,
     MagneticCargo,
     Berth,
+    Disturbance,
     Outlier,
     NoModel,
 }

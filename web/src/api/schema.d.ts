@@ -2011,7 +2011,7 @@ export interface components {
          * @description Why a sample was left out, or counted for less.
          * @enum {string}
          */
-        SampleReason: "no_reference" | "reference_failed" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "outlier" | "no_model";
+        SampleReason: "no_reference" | "reference_failed" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
         /**
          * @description How bad it is.
          * @enum {string}

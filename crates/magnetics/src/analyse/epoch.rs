@@ -2,12 +2,16 @@
 
 use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
+use super::reading::heading_reading;
 use super::settings::AnalysisSettings;
 use super::{Epoch, SampleReason};
 use crate::estimate::Prior;
-use crate::fit::{HeadingReading, REJECTED_BELOW, RobustFit, RobustOptions, fit_robust, refer};
+use crate::fit::{
+    HeadingReading, REJECTED_BELOW, RobustFit, RobustOptions, fit_known_ship, fit_robust, refer,
+};
 use crate::model::Model;
 use crate::time::Timestamp;
+use std::ops::Range;
 
 /// The epochs that the logbook tells of, in order of time and without gaps.
 pub(super) fn epochs(logbook: &[LogbookEntry]) -> Vec<Epoch> {
@@ -28,11 +32,13 @@ pub(super) fn epochs(logbook: &[LogbookEntry]) -> Vec<Epoch> {
     epochs
 }
 
-fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>) -> Epoch {
+pub(super) fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>) -> Epoch {
     Epoch {
         from,
         to: None,
         begun_by,
+        begun_by_change: None,
+        resumes: None,
         data_from: None,
         data_until: None,
         references: None,
@@ -44,35 +50,41 @@ fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>) -> Epoch 
 
 /// What the epoch before tells of this one: nothing after correctors or the
 /// compass itself were moved, for then everything may be another.
-fn prior(epoch: &Epoch, before: Option<&Model>, reference_constant_sd_deg: f64) -> Prior {
-    let upset = match epoch.begun_by {
-        Some(kind) if kind.leaves_the_iron() => {
-            before.and_then(|model| Prior::after_upset(model, reference_constant_sd_deg))
-        }
-        _ => None,
+pub(super) fn prior(
+    epoch: &Epoch,
+    before: Option<&Model>,
+    reference_constant_sd_deg: f64,
+) -> Prior {
+    let leaves_the_iron = match epoch.begun_by {
+        Some(kind) => kind.leaves_the_iron(),
+        None => epoch.begun_by_change.is_some(),
     };
-    upset.unwrap_or_else(|| Prior::population(reference_constant_sd_deg))
+    before
+        .filter(|_| leaves_the_iron)
+        .and_then(|model| Prior::after_upset(model, reference_constant_sd_deg))
+        .unwrap_or_else(|| Prior::population(reference_constant_sd_deg))
 }
 
-/// Fits an epoch's model to its readings and notes in each what became of it;
-/// `before` is the model of the epoch before.
+/// Fits an epoch's model to the readings in `own`, and those in `earlier` in which
+/// the ship was the same, and notes in each of its own what became of it; `before`
+/// is the model of the epoch before.
 pub(super) fn fit_epoch(
     epoch: &mut Epoch,
     before: Option<&Model>,
     readings: &mut [Reading],
+    (earlier, own): (&[Range<usize>], Range<usize>),
     settings: &AnalysisSettings,
 ) {
-    epoch.data_from = readings.first().map(|r| r.sample.time);
-    epoch.data_until = readings.last().map(|r| r.sample.time);
-    let (indices, heading_readings): (Vec<usize>, Vec<HeadingReading>) = readings
-        .iter()
-        .enumerate()
-        .filter_map(|(index, reading)| Some((index, heading_reading(reading)?)))
+    epoch.data_from = readings[own.clone()].first().map(|r| r.sample.time);
+    epoch.data_until = readings[own.clone()].last().map(|r| r.sample.time);
+    let all = earlier.iter().cloned().flatten().chain(own.clone());
+    let (indices, heading_readings): (Vec<usize>, Vec<HeadingReading>) = all
+        .filter_map(|index| Some((index, heading_reading(&readings[index])?)))
         .unzip();
     let referred = match refer(&heading_readings, settings.reference_constant_sd_deg) {
         Ok(referred) => referred,
         Err(refusal) => {
-            for index in indices {
+            for index in indices.into_iter().filter(|index| own.contains(index)) {
                 let reason = &mut readings[index].diagnostic.reason;
                 *reason = reason.or(Some(SampleReason::ReferenceFailed));
             }
@@ -80,12 +92,22 @@ pub(super) fn fit_epoch(
             return;
         }
     };
+    let constant_sd_deg = referred.check.constant_sd_deg;
     epoch.references = Some(referred.check);
 
     let mut taken = Vec::new();
     let mut observations = Vec::new();
     for (index, observation) in indices.into_iter().zip(referred.observations) {
         let diagnostic = &mut readings[index].diagnostic;
+        if !own.contains(&index) {
+            // An earlier fit may have doubted it; this one judges for itself.
+            let usable = matches!(diagnostic.reason, None | Some(SampleReason::Outlier));
+            if let Some(observation) = observation.filter(|_| usable) {
+                taken.push(index);
+                observations.push(observation);
+            }
+            continue;
+        }
         let Some(observation) = observation else {
             diagnostic.reason = diagnostic.reason.or(Some(SampleReason::ReferenceFailed));
             continue;
@@ -97,19 +119,25 @@ pub(super) fn fit_epoch(
         }
     }
     let options = RobustOptions {
-        prior: prior(epoch, before, referred.check.constant_sd_deg),
-        reference_constant_sd_deg: referred.check.constant_sd_deg,
+        prior: prior(epoch, before, constant_sd_deg),
+        reference_constant_sd_deg: constant_sd_deg,
     };
-    match fit_robust(&observations, &options) {
+    let fitted = if epoch.begun_by_change.is_some() && before.is_some() {
+        fit_known_ship(&observations, &options)
+    } else {
+        fit_robust(&observations, &options)
+    };
+    match fitted {
         Ok(fit) => {
-            note(&fit, &taken, readings);
+            note(&fit, &taken, &own, readings);
             let mut model = fit.model;
-            model.samples_rejected = readings.len() as u64 - model.samples_used;
+            let offered = earlier.iter().map(ExactSizeIterator::len).sum::<usize>() + own.len();
+            model.samples_rejected = offered as u64 - model.samples_used;
             epoch.model = Some(model);
             epoch.noise = Some(fit.noise);
         }
         Err(refusal) => {
-            for index in taken {
+            for index in taken.into_iter().filter(|index| own.contains(index)) {
                 readings[index].diagnostic.reason = Some(SampleReason::NoModel);
             }
             epoch.refusal = Some(refusal);
@@ -117,31 +145,11 @@ pub(super) fn fit_epoch(
     }
 }
 
-/// What the reading says of headings; none without a reference or a field.
-fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
-    let sample = &reading.sample;
-    let (variation, earth) = reading.variation.zip(reading.earth)?;
-    if reading.gyro.is_none() && sample.satellite.is_none() {
-        return None;
-    }
-    Some(HeadingReading {
-        time: Some(sample.time),
-        position: Some(sample.position),
-        compass: sample.compass,
-        gyro: reading.gyro,
-        satellite: sample.satellite,
-        unnamed: None,
-        variation,
-        h_nt: earth.h_nt,
-        z_nt: earth.z_nt,
-        sog_kn: sample.sog_kn,
-        windows: sample.windows,
-        weight: 1.0,
-    })
-}
-
-fn note(fit: &RobustFit, taken: &[usize], readings: &mut [Reading]) {
+fn note(fit: &RobustFit, taken: &[usize], own: &Range<usize>, readings: &mut [Reading]) {
     for (&index, row) in taken.iter().zip(&fit.rows) {
+        if !own.contains(&index) {
+            continue;
+        }
         let diagnostic = &mut readings[index].diagnostic;
         diagnostic.residual_deg = row.residual_deg;
         diagnostic.predicted_deg = diagnostic

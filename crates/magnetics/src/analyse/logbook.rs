@@ -150,6 +150,24 @@ impl LogbookKind {
         )
     }
 
+    /// As a sentence names it.
+    pub(super) fn in_words(self) -> &'static str {
+        match self {
+            LogbookKind::Adjustment => "the compass was adjusted",
+            LogbookKind::CorrectorChange => "a corrector was moved",
+            LogbookKind::CompassMoved => "the compass was moved",
+            LogbookKind::Repair => "structural or electrical work",
+            LogbookKind::DryDocking => "a stay in dock",
+            LogbookKind::Welding => "welding",
+            LogbookKind::Degaussing => "degaussing",
+            LogbookKind::Lightning => "lightning",
+            LogbookKind::Shock => "a heavy blow",
+            LogbookKind::MagneticCargo => "magnetic cargo",
+            LogbookKind::Berth => "a berth",
+            LogbookKind::Note => "a note",
+        }
+    }
+
     /// Why samples taken during such an entry are left out; none when they are not.
     pub(super) fn excludes(self) -> Option<SampleReason> {
         match self {

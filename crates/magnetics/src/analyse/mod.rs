@@ -6,6 +6,7 @@
 //! without a reason; and a set of samples that does not carry a model yields a
 //! refusal that says what is missing.
 
+mod changes;
 mod epoch;
 mod logbook;
 mod reading;
@@ -15,6 +16,7 @@ pub use crate::fit::GyroSpeedError;
 pub use logbook::{Cargo, LogbookEntry, LogbookError, LogbookKind};
 pub use settings::AnalysisSettings;
 
+use crate::change::{Cause, CauseProbability, Change};
 use crate::coverage::{Coverage, coverage};
 use crate::estimate::NoiseLevels;
 use crate::fit::{FitError, ReferenceCheck};
@@ -22,13 +24,15 @@ use crate::model::Model;
 use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
-use epoch::{epochs, fit_epoch};
+use changes::{Found, find, sharpen};
+use epoch::{empty_epoch, epochs, fit_epoch, prior};
 use reading::{Reading, readings};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-2";
+pub const ESTIMATOR: &str = "state-space-3";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,6 +41,9 @@ pub struct Analysis {
     pub estimator: String,
     /// The intervals of constant magnetism in order of time; at least one.
     pub epochs: Vec<Epoch>,
+    /// What changed the ship's magnetism, or seemed to, in order of time.
+    #[serde(default)]
+    pub changes: Vec<Change>,
     /// Every distinct sample in order of time, with what became of it.
     pub samples: Vec<SampleDiagnostic>,
     /// Headings and magnetic latitudes of the samples with a deviation.
@@ -80,8 +87,16 @@ pub struct Epoch {
     pub from: Option<Timestamp>,
     /// Its end; none for the last, which goes on.
     pub to: Option<Timestamp>,
-    /// What ended the epoch before; none for the first.
+    /// The entry of the logbook that ended the epoch before; none for the first,
+    /// and where a change ended it that the samples show.
     pub begun_by: Option<LogbookKind>,
+    /// The likeliest cause of the change by which it began, where the samples show
+    /// one; also where that change was over.
+    #[serde(default)]
+    pub begun_by_change: Option<Cause>,
+    /// The place in the list of the earlier epoch whose magnetism it is again.
+    #[serde(default)]
+    pub resumes: Option<usize>,
     /// Time of its first sample.
     pub data_from: Option<Timestamp>,
     /// Time of its last sample.
@@ -139,6 +154,8 @@ pub enum SampleReason {
     MagneticCargo,
     /// Taken alongside.
     Berth,
+    /// Taken in a magnetic storm, over a local anomaly, or near other iron.
+    Disturbance,
     /// It disagrees with the rest: its weight was lowered by more than half.
     Outlier,
     /// Its epoch has no model.
@@ -152,14 +169,16 @@ pub fn analyse(
     settings: &AnalysisSettings,
 ) -> Analysis {
     let mut readings = readings(samples, logbook, settings);
-    let mut epochs = epochs(logbook);
-    let mut before: Option<Model> = None;
-    for epoch in &mut epochs {
-        let begin = readings.partition_point(|r| epoch.from.is_some_and(|t| r.sample.time < t));
-        let end = readings.partition_point(|r| epoch.to.is_none_or(|t| r.sample.time < t));
-        fit_epoch(epoch, before.as_ref(), &mut readings[begin..end], settings);
-        before = epoch.model.clone();
+    let mut course = Course::default();
+    for epoch in epochs(logbook) {
+        course.follow(epoch, &mut readings, logbook, settings);
     }
+    let Course {
+        epochs,
+        mut changes,
+        ..
+    } = course;
+    changes.sort_by_key(|change| (change.from, change.detected_at));
     let with_deviation = readings
         .iter()
         .filter(|r| r.diagnostic.deviation_deg.is_some());
@@ -173,6 +192,158 @@ pub fn analyse(
         last_place: readings.iter().rev().find_map(Reading::place),
         coverage,
         epochs,
+        changes,
         samples: readings.into_iter().map(|r| r.diagnostic).collect(),
+    }
+}
+
+/// The epochs so far, with the readings of each.
+#[derive(Default)]
+struct Course {
+    epochs: Vec<Epoch>,
+    ranges: Vec<Range<usize>>,
+    changes: Vec<Change>,
+}
+
+impl Course {
+    /// One epoch of the logbook, with the changes that its samples show.
+    fn follow(
+        &mut self,
+        epoch: Epoch,
+        readings: &mut [Reading],
+        logbook: &[LogbookEntry],
+        settings: &AnalysisSettings,
+    ) {
+        let place = |time: Timestamp| readings.partition_point(|r| r.sample.time < time);
+        let begin = epoch.from.map_or(0, place);
+        let end = epoch.to.map_or(readings.len(), place);
+        let before = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
+        let one_sd_deg = settings.reference_constant_sd_deg;
+        let known = prior(&epoch, before, one_sd_deg);
+        let mut found = find(&mut readings[begin..end], logbook, &known, one_sd_deg);
+        let expected = self.expect(&epoch, begin, end);
+        let first = self.epochs.len();
+        if found.boundaries.is_empty() {
+            self.add(epoch, None, begin..end, readings, settings);
+            self.changes.append(&mut found.changes);
+        } else {
+            self.split(epoch, found, (begin, end), readings, settings);
+        }
+        if let Some(mut change) = expected {
+            let sides = first.checked_sub(1).map(|i| &self.epochs[i]);
+            if let Some((old, new)) = sides.zip(self.epochs.get(first)) {
+                sharpen(&mut change, old, new, readings);
+            }
+            self.changes.push(change);
+        }
+    }
+
+    /// Fits the parts into which changes divide an epoch of the logbook.
+    fn split(
+        &mut self,
+        mut epoch: Epoch,
+        mut found: Found,
+        (begin, end): (usize, usize),
+        readings: &mut [Reading],
+        settings: &AnalysisSettings,
+    ) {
+        let until = epoch.to;
+        let boundaries = std::mem::take(&mut found.boundaries);
+        // The epoch in which each change happened.
+        let mut happened_in = vec![None; found.changes.len()];
+        let mut resumes = None;
+        let mut from = begin;
+        for boundary in boundaries {
+            let at = boundary.at;
+            let is_later = epoch.from.is_none_or(|begun| begun < at);
+            if !is_later || until.is_some_and(|until| until <= at) {
+                continue;
+            }
+            let to = readings
+                .partition_point(|r| r.sample.time < at)
+                .clamp(from, end);
+            let mut next = empty_epoch(Some(at), None);
+            next.begun_by_change = Some(found.changes[boundary.change].cause);
+            epoch.to = Some(at);
+            self.add(epoch, resumes, from..to, readings, settings);
+            if boundary.resumes {
+                resumes = happened_in[boundary.change];
+            } else {
+                happened_in[boundary.change] = Some(self.epochs.len() - 1);
+                resumes = None;
+            }
+            (epoch, from) = (next, to);
+        }
+        epoch.to = until;
+        self.add(epoch, resumes, from..end, readings, settings);
+        for (change, happened_in) in found.changes.iter_mut().zip(happened_in) {
+            let sides = happened_in.and_then(|i| self.epochs.get(i).zip(self.epochs.get(i + 1)));
+            if let Some((old, new)) = sides {
+                sharpen(change, old, new, readings);
+            }
+        }
+        self.changes.append(&mut found.changes);
+    }
+
+    /// Fits one more epoch, together with the one that it resumes.
+    fn add(
+        &mut self,
+        mut epoch: Epoch,
+        resumes: Option<usize>,
+        own: Range<usize>,
+        readings: &mut [Reading],
+        settings: &AnalysisSettings,
+    ) {
+        if epoch.begun_by_change == Some(Cause::MagneticCargo) && resumes.is_none() {
+            // They tell of nothing but the ship with her cargo: of this epoch.
+            for reading in &mut readings[own.clone()] {
+                let reason = &mut reading.diagnostic.reason;
+                *reason = reason.filter(|reason| *reason != SampleReason::MagneticCargo);
+            }
+        }
+        epoch.resumes = resumes;
+        let mut earlier = Vec::new();
+        let mut same = resumes;
+        while let Some(place) = same {
+            earlier.insert(0, self.ranges[place].clone());
+            same = self.epochs[place].resumes;
+        }
+        let before = match resumes {
+            // It is fitted to all that its prior would come from.
+            Some(_) => None,
+            None => self.epochs.last().and_then(|epoch| epoch.model.clone()),
+        };
+        fit_epoch(
+            &mut epoch,
+            before.as_ref(),
+            readings,
+            (&earlier, own.clone()),
+            settings,
+        );
+        self.epochs.push(epoch);
+        self.ranges.push(own);
+    }
+
+    /// The change that the logbook tells of where an epoch begins, if there are
+    /// samples on both sides.
+    fn expect(&self, epoch: &Epoch, begin: usize, end: usize) -> Option<Change> {
+        let (at, kind) = (epoch.from?, epoch.begun_by?);
+        let has_before = self.ranges.last().is_some_and(|range| !range.is_empty());
+        (has_before && begin < end).then(|| Change {
+            from: at,
+            from_earliest: at,
+            from_latest: at,
+            detected_at: at,
+            confirmed: true,
+            cause: Cause::AdjustmentOrRepair,
+            causes: vec![CauseProbability {
+                cause: Cause::AdjustmentOrRepair,
+                probability: 1.0,
+            }],
+            evidence: vec![format!("the logbook says so: {}", kind.in_words())],
+            deviation_change_deg: None,
+            step: None,
+            ended: None,
+        })
     }
 }

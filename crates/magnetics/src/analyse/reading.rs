@@ -5,7 +5,7 @@ use super::settings::AnalysisSettings;
 use super::{LastPlace, SampleDiagnostic, SampleReason};
 use crate::angle::{TrueHeading, Variation};
 use crate::field::{FieldAt, FieldModel};
-use crate::fit::{GyroSpeedError, WEAKEST_H_NT, gyro_speed_error_deg};
+use crate::fit::{GyroSpeedError, HeadingReading, WEAKEST_H_NT, gyro_speed_error_deg};
 use crate::sample::Sample;
 use crate::ship::EarthField;
 use crate::time::Timestamp;
@@ -102,6 +102,29 @@ fn corrected_gyro(sample: &Sample, speed_error: GyroSpeedError) -> Option<TrueHe
     };
     let error = gyro_speed_error_deg(gyro, sog_kn, sample.position.lat_deg());
     TrueHeading::new(gyro.degrees() - error).or(Some(gyro))
+}
+
+/// What the reading says of headings; none without a reference or a field.
+pub(super) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
+    let sample = &reading.sample;
+    let (variation, earth) = reading.variation.zip(reading.earth)?;
+    if reading.gyro.is_none() && sample.satellite.is_none() {
+        return None;
+    }
+    Some(HeadingReading {
+        time: Some(sample.time),
+        position: Some(sample.position),
+        compass: sample.compass,
+        gyro: reading.gyro,
+        satellite: sample.satellite,
+        unnamed: None,
+        variation,
+        h_nt: earth.h_nt,
+        z_nt: earth.z_nt,
+        sog_kn: sample.sog_kn,
+        windows: sample.windows,
+        weight: 1.0,
+    })
 }
 
 /// The field model at noon of the day that was asked for last: over half a day

@@ -33,8 +33,12 @@ mod whiten;
 
 pub use noise::NoiseLevels;
 pub(crate) use noise::{
-    COMPASS_SWING_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, VARIATION_NM,
+    COMPASS_SWING_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, Transition, VARIATION_NM,
 };
 pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
+pub(crate) use row::{
+    CONSTANT, OFFSET_SD_DEG, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,
+};
 pub(crate) use solve::{Options, estimate};
+pub(crate) use whiten::{loss_of, weight};

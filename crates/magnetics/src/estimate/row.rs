@@ -28,7 +28,7 @@ const SPEED_ERROR_SD: f64 = 0.15;
 const DAILY_SD_DEG: f64 = 0.08;
 /// Standard deviation of what is left, degrees, of the lasting difference of
 /// gyro and satellite compass when their usual difference is taken off.
-const OFFSET_SD_DEG: f64 = 0.3;
+pub(crate) const OFFSET_SD_DEG: f64 = 0.3;
 /// A change of heading beyond this upsets a gyro.
 const TURN_DEG: f64 = 20.0;
 /// Where H is this, an error of variation has its nominal size.

@@ -221,7 +221,7 @@ fn loaded(parts: &[f64; STATES]) -> impl Iterator<Item = (usize, f64)> {
 /// The weight of an innovation by its size in standard deviations, squared: 1 up
 /// to [`DOUBTED`], then falling with the square, so that the wilder an innovation,
 /// the less it moves the fit.
-fn weight(z_squared: f64) -> f64 {
+pub(crate) fn weight(z_squared: f64) -> f64 {
     let bound = DOUBTED * DOUBTED;
     if z_squared <= bound {
         1.0
@@ -232,7 +232,7 @@ fn weight(z_squared: f64) -> f64 {
 
 /// The loss whose slope is twice the weighted innovation, but no more than at
 /// [`GROSS`]: however wild a few rows are, the levels are for the others.
-fn loss_of(z_squared: f64) -> f64 {
+pub(crate) fn loss_of(z_squared: f64) -> f64 {
     let square = z_squared.min(GROSS * GROSS);
     let bound = DOUBTED * DOUBTED;
     if square <= bound {

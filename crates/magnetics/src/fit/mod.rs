@@ -22,5 +22,5 @@ pub use reference::{
 };
 pub use robust::{
     REFERENCE_CONSTANT_SD_DEG, REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, WEAKEST_H_NT,
-    fit_robust,
+    fit_known_ship, fit_robust,
 };

@@ -12,6 +12,8 @@ use crate::ship::EarthField;
 pub const REFERENCE_CONSTANT_SD_DEG: f64 = 0.5;
 /// Fewer samples than this carry no fit of eight unknowns worth having.
 const NEEDED_SAMPLES: u64 = 12;
+/// The same where the ship is known but for her permanent magnetism.
+const NEEDED_OF_A_KNOWN_SHIP: u64 = 6;
 /// Sectors of 15° of heading that must hold samples.
 const NEEDED_SECTORS: u32 = 6;
 /// With a wider gap the deviation beyond it would be the prior's alone.
@@ -74,22 +76,52 @@ pub fn fit_robust(
     observations: &[Observation],
     options: &RobustOptions,
 ) -> Result<RobustFit, FitError> {
-    let usable: Vec<usize> = (0..observations.len())
-        .filter(|&i| observations[i].h_nt >= WEAKEST_H_NT && observations[i].weight > 0.0)
-        .collect();
+    let usable = usable(observations);
     let rows: Vec<Observation> = usable.iter().map(|&i| observations[i]).collect();
     check_field(observations, &rows)?;
-    check_number(&rows)?;
+    check_number(&rows, NEEDED_SAMPLES)?;
     check_headings(&rows)?;
+    fit_usable(observations, &usable, &rows, options)
+}
+
+/// Fits a model of a ship of which much is known beforehand, so that few
+/// observations on few headings do: the prior says the rest, and the band how well.
+///
+/// # Errors
+/// When the observations cannot carry a model, with what is missing.
+pub fn fit_known_ship(
+    observations: &[Observation],
+    options: &RobustOptions,
+) -> Result<RobustFit, FitError> {
+    let usable = usable(observations);
+    let rows: Vec<Observation> = usable.iter().map(|&i| observations[i]).collect();
+    check_field(observations, &rows)?;
+    check_number(&rows, NEEDED_OF_A_KNOWN_SHIP)?;
+    fit_usable(observations, &usable, &rows, options)
+}
+
+/// Those in a field that a compass can work in.
+fn usable(observations: &[Observation]) -> Vec<usize> {
+    (0..observations.len())
+        .filter(|&i| observations[i].h_nt >= WEAKEST_H_NT && observations[i].weight > 0.0)
+        .collect()
+}
+
+fn fit_usable(
+    observations: &[Observation],
+    usable: &[usize],
+    rows: &[Observation],
+    options: &RobustOptions,
+) -> Result<RobustFit, FitError> {
     let fitted = estimate(
-        &rows,
+        rows,
         &Options {
             prior: &options.prior,
             reference_constant_sd_deg: options.reference_constant_sd_deg,
         },
     )
     .ok_or(FitError::NotConverged)?;
-    check_needle(&fitted.parameters, &rows)?;
+    check_needle(&fitted.parameters, rows)?;
 
     let mut outcomes = vec![
         RowOutcome {
@@ -135,15 +167,12 @@ fn check_field(all: &[Observation], usable: &[Observation]) -> Result<(), FitErr
     }
 }
 
-fn check_number(rows: &[Observation]) -> Result<(), FitError> {
+fn check_number(rows: &[Observation], needed: u64) -> Result<(), FitError> {
     let found = rows.len() as u64;
-    if found >= NEEDED_SAMPLES {
+    if found >= needed {
         return Ok(());
     }
-    Err(FitError::TooFewSamples {
-        found,
-        needed: NEEDED_SAMPLES,
-    })
+    Err(FitError::TooFewSamples { found, needed })
 }
 
 pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {

@@ -8,6 +8,8 @@
 
 #[allow(dead_code, reason = "only the studies ask for it")]
 pub(crate) mod bound;
+#[allow(dead_code, reason = "only what is about changes asks for it")]
+pub(crate) mod fleet;
 pub(crate) mod tally;
 
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};

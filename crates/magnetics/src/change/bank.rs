@@ -1,0 +1,220 @@
+//! What else may have happened, and since when: copies of the filter that began
+//! from it at different times, each with one thing upset.
+//!
+//! What always holds: at most [`CAPACITY`] times are kept, their ages spaced
+//! about geometrically; the time of the likeliest copy of every kind is among them.
+
+use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES};
+use crate::estimate::OFFSET_SD_DEG;
+use crate::ship::PARAMETERS;
+
+/// Times that are kept.
+const CAPACITY: usize = 16;
+/// A copy older than this is given up, rows.
+const OLDEST: usize = 4320;
+/// Standard deviation of a step in bx and by, in population units (1500 nT), and
+/// in what is induced.
+const STEP: f64 = 0.8;
+const STEP_INDUCED: f64 = 0.3;
+/// Of a step of either reference, degrees.
+const REFERENCE_DEG: f64 = 5.0;
+/// Of the variation in a storm or over an anomaly, degrees where H is 24 µT, how
+/// long it stays the same, and how long it may go on.
+const BURST_DEG: f64 = 1.2;
+const BURST_MEMORY_S: f64 = 3600.0;
+pub(super) const BURST_S: f64 = 36.0 * 3600.0;
+/// A burst that leads by less is not worth supposing to be over, nats.
+const WORTH: f64 = 3.0;
+/// How far a ship that is herself again may differ from what she was, in
+/// population units.
+const SLACK: f64 = 0.06;
+
+/// What may have happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// The ship's magnetism changed.
+    Step,
+    /// A reference's error changed.
+    Reference,
+    /// The earth's field went astray for hours.
+    Burst,
+    /// The ship's magnetism is again what it was before.
+    Return,
+    /// The field that had gone astray is itself again.
+    Over,
+}
+
+pub(super) const KINDS: [Kind; 5] = [
+    Kind::Step,
+    Kind::Reference,
+    Kind::Burst,
+    Kind::Return,
+    Kind::Over,
+];
+
+/// A time at which something may have happened.
+#[derive(Clone, Debug)]
+pub(super) struct Spawn {
+    /// The first row after it.
+    pub(super) at: usize,
+    /// The filter then.
+    pub(super) origin: Filter,
+    /// The first row of the burst that may be over.
+    pub(super) astray_from: Option<usize>,
+    /// Whether the ship lay in port just before.
+    pub(super) at_port: bool,
+    copies: [Option<Filter>; KINDS.len()],
+    age_s: f64,
+}
+
+impl Spawn {
+    pub(super) fn copy(&self, kind: Kind) -> Option<&Filter> {
+        self.copies[kind as usize].as_ref()
+    }
+}
+
+/// By how much a copy is likelier than the filter that knows of nothing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lead {
+    pub(super) nats: f64,
+    /// The copy's place in the bank.
+    pub(super) spawn: usize,
+}
+
+#[derive(Default)]
+pub(super) struct Bank {
+    /// From the oldest to the latest.
+    pub(super) spawns: Vec<Spawn>,
+}
+
+impl Bank {
+    /// New copies of `now`, which are to begin with row `at`.
+    pub(super) fn spawn(&mut self, at: usize, at_port: bool, now: &Filter, base: Option<&Filter>) {
+        self.thin(at, now);
+        let astray = self.lead(Kind::Burst, now).filter(|lead| lead.nats > WORTH);
+        let astray = astray.map(|lead| &self.spawns[lead.spawn]);
+        let astray_from = astray.map(|spawn| spawn.at);
+        let over = astray.and_then(|spawn| spawn.copy(Kind::Burst).cloned());
+        self.spawns.push(Spawn {
+            at,
+            astray_from,
+            at_port,
+            origin: now.clone(),
+            copies: [
+                Some(upset(now, Kind::Step)),
+                Some(upset(now, Kind::Reference)),
+                Some(upset(now, Kind::Burst)),
+                base.map(|base| set_back(now, base)),
+                over,
+            ],
+            age_s: 0.0,
+        });
+    }
+
+    pub(super) fn take(&mut self, m: &Measurement, noise: &Noise) {
+        for spawn in &mut self.spawns {
+            let bursting = (spawn.age_s < BURST_S).then_some(BURST);
+            spawn.age_s += m.seconds;
+            for (copy, kind) in spawn.copies.iter_mut().zip(KINDS) {
+                let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
+                if let Some(copy) = copy {
+                    copy.take(m, noise, burst);
+                }
+            }
+        }
+    }
+
+    /// The likeliest copy of a kind.
+    pub(super) fn lead(&self, kind: Kind, null: &Filter) -> Option<Lead> {
+        let copies = self.spawns.iter().enumerate();
+        copies
+            .filter_map(|(spawn, s)| {
+                let nats = s.copy(kind)?.log_likelihood - null.log_likelihood;
+                Some(Lead { nats, spawn })
+            })
+            .max_by(|a, b| a.nats.total_cmp(&b.nats))
+    }
+
+    /// The likeliest copy of those in which the field goes or went astray.
+    pub(super) fn passing(&self, null: &Filter) -> Option<Lead> {
+        let kinds = [Kind::Burst, Kind::Over].into_iter();
+        kinds
+            .filter_map(|kind| self.lead(kind, null))
+            .max_by(|a, b| a.nats.total_cmp(&b.nats))
+    }
+
+    /// Makes room for one more.
+    fn thin(&mut self, at: usize, null: &Filter) {
+        self.spawns.retain(|s| at - s.at <= OLDEST);
+        if self.spawns.len() < CAPACITY {
+            return;
+        }
+        let leaders = KINDS.map(|kind| self.lead(kind, null).map(|lead| lead.spawn));
+        let age = |i: usize| (at - self.spawns[i].at) as f64;
+        let closest = (1..self.spawns.len() - 1)
+            .filter(|&i| !leaders.contains(&Some(i)))
+            .min_by(|&i, &j| {
+                let gap = |i: usize| age(i - 1) / age(i + 1);
+                gap(i).total_cmp(&gap(j))
+            });
+        if let Some(closest) = closest {
+            self.spawns.remove(closest);
+        }
+    }
+}
+
+pub(super) const BURST: Burst = Burst {
+    variance: BURST_DEG * BURST_DEG,
+    memory_s: BURST_MEMORY_S,
+};
+
+/// The filter with that having happened just now, by how much not being known.
+pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
+    let mut copy = now.clone();
+    let p = &mut copy.covariance;
+    match kind {
+        Kind::Step => {
+            for (j, row) in p.iter_mut().enumerate().take(PARAMETERS) {
+                let step = if matches!(j, 0 | 2) {
+                    STEP
+                } else {
+                    STEP_INDUCED
+                };
+                row[j] += step * step;
+            }
+        }
+        // A gyro's step moves both its difference from the satellite compass and, by
+        // half, their mean; alone, it is the constant's.
+        Kind::Reference => {
+            let steps = [
+                (CONSTANT_STATE, REFERENCE_DEG / 2.0),
+                (OFFSET, REFERENCE_DEG / OFFSET_SD_DEG),
+            ];
+            for (i, a) in steps {
+                for (j, b) in steps {
+                    p[i][j] += a * b;
+                }
+            }
+        }
+        // It sets in as it goes on: within its memory, not at once.
+        Kind::Burst | Kind::Return | Kind::Over => {}
+    }
+    copy
+}
+
+/// The filter with the ship's own parameters as `base` had them.
+pub(super) fn set_back(now: &Filter, base: &Filter) -> Filter {
+    let mut copy = now.clone();
+    for i in 0..PARAMETERS {
+        copy.mean[i] = base.mean[i];
+        for j in 0..STATES {
+            copy.covariance[i][j] = 0.0;
+            copy.covariance[j][i] = 0.0;
+        }
+        copy.covariance[i][..PARAMETERS].copy_from_slice(&base.covariance[i][..PARAMETERS]);
+    }
+    for j in [0, 2] {
+        copy.covariance[j][j] += SLACK * SLACK;
+    }
+    copy
+}

@@ -1,0 +1,138 @@
+//! Why: Bayes' rule over what is known of a change's circumstances.
+//!
+//! Every cause has a rate before any evidence, and every circumstance a
+//! probability under each cause. They are judgements, kept in one table so that
+//! they can be argued with (docs/science.md, §9).
+
+use super::detect::What;
+use super::found::{Cause, CauseProbability};
+
+/// Leads are of models that are only nearly right: they count for this much.
+const TEMPER: f64 = 0.5;
+/// How much likelier a cause is that people reported at the time.
+const REPORTED: f64 = 100.0;
+/// Bursts longer than this are hardly a place's, shorter hardly a storm's.
+const LONG_S: f64 = 3.0 * 3600.0;
+/// Changes that took longer to be told apart from nothing than this crept in.
+const SLOW_S: f64 = 20.0 * 86_400.0;
+
+/// What is known of a change beside its size.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Circumstances {
+    /// Leads by kind, nats.
+    pub(crate) leads: [f64; 4],
+    /// Whether it began at a port call; none where that cannot be told.
+    pub(crate) at_port: Option<bool>,
+    /// Whether the ship became herself again, and whether at a port call.
+    pub(crate) ended_at_port: Option<bool>,
+    /// How long a burst lasted.
+    pub(crate) burst_s: Option<f64>,
+    /// From the change to the row that told.
+    pub(crate) told_after_s: f64,
+    /// What people reported at the time.
+    pub(crate) reported: Vec<Cause>,
+}
+
+/// Rate a vessel-year, and the probabilities of: beginning at a port call; ending
+/// again, at a port call or at sea; being told late.
+struct Kind {
+    cause: Cause,
+    rate: f64,
+    at_port: f64,
+    ends_at_port: f64,
+    ends_at_sea: f64,
+    told_late: f64,
+}
+
+const fn kind(cause: Cause, numbers: [f64; 5]) -> Kind {
+    let [rate, at_port, ends_at_port, ends_at_sea, told_late] = numbers;
+    Kind {
+        cause,
+        rate,
+        at_port,
+        ends_at_port,
+        ends_at_sea,
+        told_late,
+    }
+}
+
+const LASTING: [Kind; 5] = [
+    kind(Cause::LightningOrShock, [0.2, 0.1, 0.02, 0.05, 0.05]),
+    kind(Cause::MagneticCargo, [1.0, 0.97, 0.8, 0.03, 0.1]),
+    kind(Cause::AdjustmentOrRepair, [0.2, 0.9, 0.02, 0.01, 0.05]),
+    kind(Cause::Drift, [0.1, 0.1, 0.02, 0.02, 0.8]),
+    kind(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2]),
+];
+
+/// The causes of an event, the likeliest first.
+pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability> {
+    let [step, reference, burst, _] = known.leads.map(|lead| TEMPER * lead);
+    let most = step.max(reference).max(burst);
+    let mut weights: Vec<(Cause, f64)> = Vec::new();
+    for kind in &LASTING {
+        weights.push((kind.cause, kind.weight(known) * (step - most).exp()));
+    }
+    weights.push((Cause::ReferenceFault, 0.5 * (reference - most).exp()));
+    let passing = (burst - most).exp();
+    let length = known.burst_s;
+    let long = length.map_or(0.5, |s| f64::from(u8::from(s > LONG_S)));
+    weights.push((Cause::MagneticStorm, 6.0 * passing * (0.1 + 0.8 * long)));
+    weights.push((Cause::LocalAnomaly, 3.0 * passing * (0.9 - 0.8 * long)));
+    let alongside = if known.at_port == Some(true) {
+        1.0
+    } else {
+        0.01
+    };
+    weights.push((
+        Cause::BerthSteel,
+        3.0 * passing * alongside * (0.9 - 0.8 * long),
+    ));
+    for (cause, weight) in &mut weights {
+        *weight *= possible(what, *cause);
+        if known.reported.contains(cause) {
+            *weight *= REPORTED;
+        }
+    }
+    let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
+    let mut causes: Vec<CauseProbability> = weights
+        .into_iter()
+        .map(|(cause, weight)| CauseProbability {
+            cause,
+            probability: weight / sum,
+        })
+        .filter(|c| c.probability >= 0.005)
+        .collect();
+    let kept: f64 = causes.iter().map(|c| c.probability).sum();
+    for c in &mut causes {
+        c.probability /= kept;
+    }
+    causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    causes
+}
+
+impl Kind {
+    fn weight(&self, known: &Circumstances) -> f64 {
+        let of = |holds: bool, share: f64| if holds { share } else { 1.0 - share };
+        let mut weight = self.rate;
+        if let Some(at_port) = known.at_port {
+            weight *= of(at_port, self.at_port);
+        }
+        // What has not ended may yet end: silence says little.
+        weight *= match known.ended_at_port {
+            Some(true) => self.ends_at_port,
+            Some(false) => self.ends_at_sea,
+            None => 1.0 - 0.3 * (self.ends_at_port + self.ends_at_sea),
+        };
+        weight * of(known.told_after_s > SLOW_S, self.told_late)
+    }
+}
+
+/// What the search decided is hardly undone by circumstances.
+fn possible(what: What, cause: Cause) -> f64 {
+    let agrees = match what {
+        What::Step | What::Return(_) => cause.is_the_ships(),
+        What::Reference => cause == Cause::ReferenceFault,
+        What::Burst => !cause.is_the_ships() && cause != Cause::ReferenceFault,
+    };
+    if agrees { 1.0 } else { 0.02 }
+}

@@ -1,0 +1,249 @@
+//! One Kalman filter over everything at once: the ship, her instruments' lasting
+//! errors and their passing ones.
+//!
+//! What always holds: the covariance stays symmetric, and two filters that have
+//! taken in the same measurements can be compared by their log likelihoods.
+
+use crate::estimate::{
+    CONSTANT, NoiseLevels, POPULATION_SD, Prior, Station, Transition, UNKNOWNS, Unknowns, loss_of,
+    weight,
+};
+use crate::ship::PARAMETERS;
+
+/// States: the seven parameters in population units, the constant, the gyro's
+/// leftover speed error, what is left of the references' usual difference; then
+/// Schuler swing and rate, slow gyro error, compass swing, variation error and
+/// satellite compass's error, degrees.
+pub(super) const STATES: usize = 16;
+/// Those that the row's prediction depends on.
+pub(super) const LASTING: usize = 10;
+pub(super) const SPEED: usize = 8;
+pub(super) const OFFSET: usize = 9;
+const SWING: usize = 10;
+const RATE: usize = 11;
+const SLOW: usize = 12;
+pub(super) const VARIATION: usize = 14;
+const SATELLITE: usize = 15;
+/// Where the offset stands among the estimator's unknowns.
+const OFFSET_UNKNOWN: usize = UNKNOWNS - 1;
+const DRIFTING: [usize; 2] = [0, 2];
+
+/// What the filter takes in at one time: the deviation and, where both references
+/// were read, their difference.
+pub(super) struct Measurement {
+    pub(super) transition: Transition,
+    pub(super) seconds: f64,
+    pub(super) deviation: Scalar,
+    pub(super) difference: Option<Scalar>,
+}
+
+/// One number measured, degrees.
+pub(super) struct Scalar {
+    /// What was measured, were all states zero.
+    pub(super) value: f64,
+    pub(super) load: [f64; STATES],
+    pub(super) variance: f64,
+}
+
+/// The sizes of noise as the filter uses them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Noise {
+    pub(super) white: f64,
+    pub(super) difference_white: f64,
+    stationary: [f64; STATES - LASTING],
+    turn: f64,
+    drift: f64,
+}
+
+impl Noise {
+    pub(super) fn new(levels: &NoiseLevels) -> Noise {
+        let squared = |sd: f64| sd * sd;
+        Noise {
+            white: squared(levels.white_deg),
+            difference_white: squared(levels.difference_deg),
+            stationary: [
+                squared(levels.schuler_deg),
+                squared(levels.schuler_deg),
+                squared(levels.slow_gyro_deg),
+                squared(levels.compass_swing_deg),
+                squared(levels.variation_deg),
+                squared(levels.satellite_deg),
+            ],
+            turn: squared(levels.turn_deg),
+            drift: squared(levels.drift_nt / POPULATION_SD[0]),
+        }
+    }
+}
+
+/// Variation that is off by much more than usual, and otherwise every hour.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Burst {
+    /// Variance, degrees squared.
+    pub(super) variance: f64,
+    pub(super) memory_s: f64,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Filter {
+    pub(super) mean: [f64; STATES],
+    pub(super) covariance: [[f64; STATES]; STATES],
+    pub(super) log_likelihood: f64,
+}
+
+impl Filter {
+    /// Before the first measurement; none when the prior is no prior.
+    pub(super) fn new(prior: &Prior, noise: &Noise) -> Filter {
+        let mut scale = [1.0; PARAMETERS + 1];
+        scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
+        let mut mean = [0.0; STATES];
+        let mut covariance = [[0.0; STATES]; STATES];
+        for i in 0..=PARAMETERS {
+            mean[i] = prior.mean[i] / scale[i];
+            for j in 0..=PARAMETERS {
+                covariance[i][j] = prior.covariance[i][j] / (scale[i] * scale[j]);
+            }
+        }
+        covariance[SPEED][SPEED] = 1.0;
+        covariance[OFFSET][OFFSET] = 1.0;
+        for (s, variance) in noise.stationary.iter().enumerate() {
+            covariance[LASTING + s][LASTING + s] = *variance;
+        }
+        Filter {
+            mean,
+            covariance,
+            log_likelihood: 0.0,
+        }
+    }
+
+    /// The lasting states as the estimator's unknowns.
+    pub(super) fn unknowns(&self) -> Unknowns {
+        let mut unknowns = [0.0; UNKNOWNS];
+        unknowns[..=SPEED].copy_from_slice(&self.mean[..=SPEED]);
+        unknowns[OFFSET_UNKNOWN] = self.mean[OFFSET];
+        unknowns
+    }
+
+    /// Takes in what was measured; `burst` is what the variation does meanwhile, if
+    /// not the usual.
+    pub(super) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) {
+        self.advance(m, noise, burst);
+        if let Some(difference) = &m.difference {
+            self.update(difference);
+        }
+        self.update(&m.deviation);
+    }
+
+    fn advance(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) {
+        let t = &m.transition;
+        let mut decay = t.decay;
+        let mut stationary = noise.stationary;
+        if let Some(burst) = burst {
+            decay[VARIATION - SLOW] = (-m.seconds / burst.memory_s).exp();
+            stationary[VARIATION - LASTING] = burst.variance;
+        }
+        let [[a, b], [c, d]] = t.schuler;
+        let turn = |row: &mut [f64; STATES]| {
+            (row[SWING], row[RATE]) = (
+                a * row[SWING] + b * row[RATE],
+                c * row[SWING] + d * row[RATE],
+            );
+            for (value, keep) in row[SLOW..].iter_mut().zip(decay) {
+                *value *= keep;
+            }
+        };
+        turn(&mut self.mean);
+        for row in &mut self.covariance {
+            turn(row);
+        }
+        let [.., swings, rates, slow0, slow1, slow2, slow3] = &mut self.covariance;
+        for (swing, rate) in swings.iter_mut().zip(rates) {
+            (*swing, *rate) = (a * *swing + b * *rate, c * *swing + d * *rate);
+        }
+        for (row, keep) in [slow0, slow1, slow2, slow3].into_iter().zip(decay) {
+            for value in row {
+                *value *= keep;
+            }
+        }
+        // What the stationary processes lost in the step comes in as new noise.
+        let p = &mut self.covariance;
+        let swing = stationary[0];
+        let cross = -swing * (a * c + b * d);
+        p[SWING][SWING] += swing * (1.0 - a * a - b * b);
+        p[RATE][RATE] += swing * (1.0 - c * c - d * d);
+        p[SWING][RATE] += cross;
+        p[RATE][SWING] += cross;
+        for (s, keep) in (SLOW..=SATELLITE).zip(decay) {
+            p[s][s] += stationary[s - LASTING] * (1.0 - keep * keep);
+        }
+        for s in DRIFTING {
+            p[s][s] += noise.drift * t.drift_share;
+        }
+        if let Some(kick) = t.since_turn {
+            for (i, a) in kick.iter().enumerate() {
+                for (j, b) in kick.iter().enumerate() {
+                    p[SWING + i][SWING + j] += noise.turn * a * b;
+                }
+            }
+        }
+    }
+
+    fn update(&mut self, scalar: &Scalar) {
+        let load = &scalar.load;
+        let mut gain = [0.0; STATES];
+        for (row, l) in self.covariance.iter().zip(load) {
+            for (g, c) in gain.iter_mut().zip(row) {
+                *g += l * c;
+            }
+        }
+        let mut innovation = scalar.value;
+        let mut variance = scalar.variance;
+        for s in 0..STATES {
+            innovation -= load[s] * self.mean[s];
+            variance += load[s] * gain[s];
+        }
+        let z_squared = innovation * innovation / variance;
+        self.log_likelihood -= 0.5 * (loss_of(z_squared) + variance.ln());
+        let raised = variance / weight(z_squared);
+        for s in 0..STATES {
+            let step = gain[s] / raised;
+            self.mean[s] += step * innovation;
+            for (c, other) in self.covariance[s].iter_mut().zip(&gain) {
+                *c -= step * other;
+            }
+        }
+    }
+}
+
+/// What `station` and `row` measure, as a filter takes it in.
+pub(super) fn measurement(
+    station: &Station,
+    row: &crate::estimate::Row,
+    at: &Unknowns,
+    seconds: f64,
+    noise: &Noise,
+) -> Measurement {
+    let scalar = |residual: f64, columns: &[f64; UNKNOWNS], loads: &[f64], variance: f64| {
+        let mut load = [0.0; STATES];
+        load[..=SPEED].copy_from_slice(&columns[..=SPEED]);
+        load[OFFSET] = columns[OFFSET_UNKNOWN];
+        load[LASTING..].copy_from_slice(&loads[..STATES - LASTING]);
+        let known: f64 = columns.iter().zip(at).map(|(c, u)| c * u).sum();
+        Scalar {
+            value: residual + known,
+            load,
+            variance: variance * station.white_factor,
+        }
+    };
+    Measurement {
+        transition: station.transition,
+        seconds,
+        deviation: scalar(row.residual, &row.columns, &station.loads(row), noise.white),
+        difference: row.difference.map(|residual| {
+            let (columns, loads) = station.difference(row);
+            scalar(residual, &columns, &loads, noise.difference_white)
+        }),
+    }
+}
+
+/// The constant's place among the states is its place among the unknowns.
+pub(super) const CONSTANT_STATE: usize = CONSTANT;

@@ -1,0 +1,260 @@
+//! Changes of a ship's magnetism: found, dated, named, and not made up.
+
+#![allow(clippy::unwrap_used)] // all of this is tests
+
+#[allow(dead_code, unused_imports)]
+mod voyages;
+
+use binnacle_magnetics::analyse::{
+    Analysis, AnalysisSettings, LogbookEntry, LogbookKind, SampleReason, analyse,
+};
+use binnacle_magnetics::angle::CompassHeading;
+use binnacle_magnetics::change::{Cause, Change};
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use voyages::fleet::{Event, Log, Name, Plan, sail_log};
+use voyages::{Faults, Variety};
+
+const HOUR_S: f64 = 3600.0;
+
+/// A ship to which nothing happens but what is planned.
+fn calm(event: Event) -> Plan {
+    let usual = Plan::of(event, Variety::Medium);
+    Plan {
+        days: 45.0,
+        event_day: 25.0,
+        anomalies: 0.0,
+        gyro_faults: 0.0,
+        faults: Faults {
+            storms_per_month: 0.0,
+            ..usual.faults
+        },
+        ..usual
+    }
+}
+
+fn run(samples: &[Sample]) -> Analysis {
+    analyse(samples, &[], &AnalysisSettings::default())
+}
+
+fn of_the_ship(analysis: &Analysis) -> Vec<&Change> {
+    let changes = analysis.changes.iter();
+    changes
+        .filter(|c| c.confirmed && c.cause.is_the_ships())
+        .collect()
+}
+
+fn began(log: &Log, what: Name) -> Timestamp {
+    log.happened.iter().find(|h| h.what == what).unwrap().from
+}
+
+fn entry(kind: LogbookKind, from: Timestamp, to: Option<Timestamp>) -> LogbookEntry {
+    LogbookEntry {
+        from,
+        to,
+        kind,
+        cargo: None,
+        note: String::new(),
+    }
+}
+
+/// Every probability between 0 and 1, their sum 1, every date in order.
+fn is_sound(analysis: &Analysis) {
+    for c in &analysis.changes {
+        let sum: f64 = c.causes.iter().map(|cause| cause.probability).sum();
+        assert!((sum - 1.0).abs() < 1e-9, "{c:?}");
+        assert_eq!(c.cause, c.causes[0].cause);
+        assert!(
+            c.from_earliest <= c.from && c.from <= c.from_latest,
+            "{c:?}"
+        );
+        assert!(!c.evidence.is_empty());
+        let sizes = c
+            .step
+            .map_or([0.0; 4], |s| [s.bx_nt, s.by_nt, s.bx_se_nt, s.by_se_nt]);
+        assert!(sizes.iter().all(|x| x.is_finite()), "{c:?}");
+    }
+    for pair in analysis.epochs.windows(2) {
+        assert_eq!(pair[0].to, pair[1].from);
+        assert!(pair[0].from.is_none_or(|from| Some(from) < pair[1].from));
+    }
+}
+
+#[test]
+fn a_step_of_two_microtesla_is_found_within_hours_and_dated() {
+    for seed in 1..4 {
+        let log = sail_log(seed, &calm(Event::Step(2000.0)));
+        let stepped = began(&log, Name::Step);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let found = of_the_ship(&analysis);
+        assert_eq!(found.len(), 1, "seed {seed}: {found:?}");
+        let delay_h = found[0].detected_at.seconds_since(stepped) / HOUR_S;
+        assert!((0.0..24.0).contains(&delay_h), "seed {seed}: {delay_h} h");
+        let off_h = found[0].from.seconds_since(stepped).abs() / HOUR_S;
+        assert!(off_h < 1.0, "seed {seed}: off by {off_h} h");
+        assert_eq!(found[0].cause, Cause::LightningOrShock);
+        let step = found[0].step.unwrap();
+        let size = step.bx_nt.hypot(step.by_nt);
+        assert!((1200.0..2800.0).contains(&size), "seed {seed}: {size} nT");
+        assert_eq!(analysis.epochs.len(), 2);
+        assert_eq!(analysis.epochs[1].from, Some(found[0].from));
+        assert!(analysis.epochs[1].model.is_some());
+    }
+}
+
+#[test]
+fn on_a_quiet_voyage_nothing_changes() {
+    for seed in 10..13 {
+        let analysis = run(&sail_log(seed, &calm(Event::Nothing)).samples);
+        assert_eq!(analysis.changes, []);
+        assert_eq!(analysis.epochs.len(), 1);
+    }
+}
+
+#[test]
+fn a_storm_is_no_step_and_its_samples_are_left_out() {
+    let mut plan = calm(Event::Nothing);
+    plan.faults.storms_per_month = 6.0;
+    let mut stormy = 0;
+    for seed in 20..23 {
+        let log = sail_log(seed, &plan);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
+        let causes = analysis.changes.iter().map(|c| c.cause);
+        stormy += causes
+            .filter(|cause| *cause == Cause::MagneticStorm)
+            .count();
+        let left_out = analysis.samples.iter();
+        let left_out = left_out.filter(|s| s.reason == Some(SampleReason::Disturbance));
+        assert!(left_out.count() > 0, "seed {seed}");
+    }
+    assert!(stormy > 3, "{stormy}");
+}
+
+#[test]
+fn a_gyro_fault_with_a_satellite_compass_on_board_is_named_at_once() {
+    let log = sail_log(31, &calm(Event::GyroFault(4.0)));
+    let broke = began(&log, Name::GyroFault);
+    let analysis = run(&log.samples);
+    is_sound(&analysis);
+    assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
+    let fault = analysis.changes.iter().find(|c| c.detected_at >= broke);
+    let fault = fault.unwrap();
+    assert_eq!(fault.cause, Cause::ReferenceFault);
+    let delay_h = fault.detected_at.seconds_since(broke) / HOUR_S;
+    assert!(delay_h < 2.0, "{delay_h} h");
+    assert_eq!(analysis.epochs.len(), 1);
+}
+
+#[test]
+fn after_discharge_the_base_model_is_resumed() {
+    let mut plan = calm(Event::Cargo);
+    plan.days = 90.0;
+    let log = sail_log(40, &plan);
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
+    let analysis = run(&log.samples);
+    is_sound(&analysis);
+    let found = of_the_ship(&analysis);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].cause, Cause::MagneticCargo);
+    let ended = found[0].ended.unwrap();
+    let off_days = ended.seconds_since(cargo.to.unwrap()).abs() / 86_400.0;
+    assert!(off_days < 1.5, "{off_days} days");
+    assert_eq!(analysis.epochs.len(), 3);
+    assert_eq!(analysis.epochs[2].resumes, Some(0));
+    let used = |i: usize| analysis.epochs[i].model.as_ref().unwrap().samples_used;
+    assert!(used(2) > used(0), "the base's samples count again");
+}
+
+#[test]
+fn the_order_of_arrival_changes_nothing() {
+    let log = sail_log(1, &calm(Event::Step(2000.0)));
+    let expected = serde_json::to_string(&run(&log.samples)).unwrap();
+    let mut shuffled: Vec<Sample> = log.samples.iter().rev().copied().collect();
+    shuffled.rotate_left(1234);
+    shuffled.extend_from_slice(&log.samples[50..90]);
+    assert_eq!(serde_json::to_string(&run(&shuffled)).unwrap(), expected);
+}
+
+/// Turns every compass reading from a time on by so much.
+fn turned(samples: &mut [Sample], from: Timestamp, degrees: f64) {
+    for sample in samples.iter_mut().filter(|s| s.time >= from) {
+        sample.compass = CompassHeading::new(sample.compass.degrees() + degrees).unwrap();
+    }
+}
+
+#[test]
+fn three_changes_in_a_day_end_the_search_and_are_told() {
+    let mut samples = sail_log(50, &calm(Event::Nothing)).samples;
+    let day = samples[samples.len() / 2].time;
+    for (hour, degrees) in [(0.0, 6.0), (8.0, -12.0), (16.0, 9.0)] {
+        turned(&mut samples, day.plus_seconds(hour * HOUR_S), degrees);
+    }
+    let analysis = run(&samples);
+    is_sound(&analysis);
+    assert!(!analysis.changes.is_empty());
+    assert!(analysis.changes.len() < 12, "{:?}", analysis.changes);
+}
+
+#[test]
+fn a_change_inside_a_gap_is_dated_within_it() {
+    let log = sail_log(2, &calm(Event::Step(3000.0)));
+    let stepped = began(&log, Name::Step);
+    let gap_s = 1.5 * 86_400.0;
+    let outside = |s: &&Sample| s.time.seconds_since(stepped).abs() > gap_s;
+    let samples: Vec<Sample> = log.samples.iter().filter(outside).copied().collect();
+    let analysis = run(&samples);
+    is_sound(&analysis);
+    let found = of_the_ship(&analysis);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].from_earliest <= stepped && stepped <= found[0].from_latest);
+}
+
+#[test]
+fn entries_that_overlap_or_precede_the_first_sample_are_taken_as_they_come() {
+    let log = sail_log(3, &calm(Event::Step(2000.0)));
+    let stepped = began(&log, Name::Step);
+    let day = |days: f64| stepped.plus_seconds(86_400.0 * days);
+    let logbook = [
+        entry(LogbookKind::Lightning, day(0.1), None),
+        entry(LogbookKind::Lightning, day(-100.0), None),
+        entry(LogbookKind::MagneticCargo, day(-200.0), Some(day(-190.0))),
+        entry(LogbookKind::MagneticCargo, day(-10.0), Some(day(-8.0))),
+        entry(LogbookKind::MagneticCargo, day(-9.0), Some(day(-7.0))),
+        entry(LogbookKind::Note, day(0.0), None),
+    ];
+    let analysis = analyse(&log.samples, &logbook, &AnalysisSettings::default());
+    is_sound(&analysis);
+    let found = of_the_ship(&analysis);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].cause, Cause::LightningOrShock);
+    assert!(found[0].causes[0].probability > 0.9);
+    assert!(found[0].evidence.iter().any(|e| e.contains("logbook")));
+}
+
+#[test]
+fn an_adjustment_is_told_as_expected() {
+    let log = sail_log(10, &calm(Event::Nothing));
+    let at = log.samples[log.samples.len() / 2].time;
+    let logbook = [entry(LogbookKind::Adjustment, at, None)];
+    let analysis = analyse(&log.samples, &logbook, &AnalysisSettings::default());
+    is_sound(&analysis);
+    assert_eq!(analysis.changes.len(), 1, "{:?}", analysis.changes);
+    assert_eq!(analysis.changes[0].cause, Cause::AdjustmentOrRepair);
+    assert!(analysis.changes[0].step.is_some());
+}
+
+#[test]
+fn a_compass_that_sticks_ends_in_words_and_not_in_a_panic() {
+    let mut samples = sail_log(60, &calm(Event::Nothing)).samples;
+    let from = samples.len() / 2;
+    let stuck = samples[from].compass;
+    for sample in &mut samples[from..] {
+        sample.compass = stuck;
+    }
+    let analysis = run(&samples);
+    is_sound(&analysis);
+    assert!(!analysis.changes.is_empty());
+}
