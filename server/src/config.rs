@@ -1,5 +1,6 @@
 //! The command line, and with it every setting: flags, or `BINNACLE_*` variables.
 
+use crate::tls::Certificate;
 use crate::webhooks::Reach;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::net::SocketAddr;
@@ -60,7 +61,13 @@ pub struct Serve {
     /// Address and port to listen on; port 0 for any free one
     #[arg(long, env = "BINNACLE_LISTEN", default_value = "127.0.0.1:8080")]
     pub listen: SocketAddr,
-    /// Give cookies only to https, as behind a TLS proxy
+    /// Speak https, with this certificate chain (PEM); SIGHUP reads it anew
+    #[arg(long, env = "BINNACLE_TLS_CERT", requires = "tls_key")]
+    pub tls_cert: Option<PathBuf>,
+    /// The certificate's private key (PEM)
+    #[arg(long, env = "BINNACLE_TLS_KEY", requires = "tls_cert")]
+    pub tls_key: Option<PathBuf>,
+    /// Give cookies only to https, as behind a TLS proxy; so it is with --tls-cert
     #[arg(long, env = "BINNACLE_SECURE_COOKIES", default_value_t = false,
           num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub secure_cookies: bool,
@@ -83,6 +90,14 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_LOG_JSON", default_value_t = false,
           num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub log_json: bool,
+}
+
+impl Serve {
+    /// Where the certificate is kept, if https is spoken.
+    pub fn certificate(&self) -> Option<Certificate> {
+        let (chain, key) = (self.tls_cert.clone()?, self.tls_key.clone()?);
+        Some(Certificate { chain, key })
+    }
 }
 
 /// How webhooks are sent.

@@ -46,5 +46,6 @@ pub mod webhooks;
 pub mod dashboard;
 pub mod http;
 pub mod operations;
+pub mod tls;
 
 pub mod command;

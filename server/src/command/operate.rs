@@ -4,10 +4,13 @@ use crate::app::App;
 use crate::clock::Clock;
 use crate::config::{Database, Serve};
 use crate::db::Db;
+use crate::tls::TlsListener;
 use crate::{alerts, analysis, events, http, operations, webhooks};
 use anyhow::{Context, Result};
+use axum::serve::Listener;
 use std::future::Future;
 use std::io::Write;
+use std::net::SocketAddr;
 use std::process::ExitCode;
 use std::time::Duration;
 use tokio::net::TcpListener;
@@ -34,9 +37,16 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
         let listener = TcpListener::bind(config.listen)
             .await
             .with_context(|| format!("cannot listen on {}", config.listen))?;
+        let certificate = config.certificate();
         let app = App::new(db, Clock::System, config, operations::install_metrics()?);
-        announce(&listener)?;
-        run(app, listener).await?;
+        if let Some(certificate) = certificate {
+            let listener = TlsListener::new(listener, certificate)?;
+            announce("https", &listener)?;
+            run(app, listener).await?;
+        } else {
+            announce("http", &listener)?;
+            run(app, listener).await?;
+        }
         Ok(ExitCode::SUCCESS)
     })
 }
@@ -46,7 +56,10 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
 ///
 /// # Errors
 /// When the listener fails.
-pub async fn run(app: App, listener: TcpListener) -> Result<()> {
+pub async fn run<L>(app: App, listener: L) -> Result<()>
+where
+    L: Listener<Addr = SocketAddr>,
+{
     let mut parts = JoinSet::new();
     let line = events::Line::open(&app.db).await?;
     parts.spawn(line.listen(app.clone()));
@@ -103,9 +116,9 @@ async fn stop_on_signal(app: App) {
 }
 
 /// Tells whoever started us where to reach us.
-fn announce(listener: &TcpListener) -> Result<()> {
+fn announce(scheme: &str, listener: &impl Listener<Addr = SocketAddr>) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "listening on http://{}", listener.local_addr()?)?;
+    writeln!(out, "listening on {scheme}://{}", listener.local_addr()?)?;
     out.flush()?;
     Ok(())
 }

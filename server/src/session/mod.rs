@@ -130,7 +130,7 @@ async fn password_matches(
 }
 
 fn set_cookie(app: &App, token: &str, max_age_s: u64) -> HeaderMap {
-    let secure = if app.config.secure_cookies {
+    let secure = if app.config.secure_cookies || app.config.tls_cert.is_some() {
         "; Secure"
     } else {
         ""

@@ -21,6 +21,7 @@ mod ingest;
 mod logbook;
 mod sessions;
 mod tenants;
+mod tls;
 mod webhooks;
 
 /// Runs each test on SQLite and on PostgreSQL.

@@ -1,0 +1,112 @@
+//! A listener whose connections have shaken hands already.
+
+use super::Certificate;
+use anyhow::Result;
+use axum::serve::Listener;
+use rustls::ServerConfig;
+use std::io;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::signal::unix::{SignalKind, signal};
+use tokio::sync::{Semaphore, mpsc, watch};
+use tokio::task::AbortHandle;
+use tokio::time::timeout;
+use tokio_rustls::TlsAcceptor;
+use tokio_rustls::server::TlsStream;
+use tracing::{debug, error, info};
+
+/// Over a satellite that loses packets a handshake takes up to half a minute.
+const HANDSHAKE: Duration = Duration::from_mins(1);
+/// So many hands are shaken at once; others wait in the system's queue.
+const HANDSHAKES: usize = 1024;
+
+type Connection = (TlsStream<TcpStream>, SocketAddr);
+
+/// Takes TLS connections on a TCP listener. SIGHUP has the certificate read anew.
+#[derive(Debug)]
+pub struct TlsListener {
+    ready: mpsc::Receiver<Connection>,
+    address: SocketAddr,
+    tasks: [AbortHandle; 2],
+}
+
+impl TlsListener {
+    /// Begins to take connections.
+    ///
+    /// # Errors
+    /// When the certificate cannot be used, or signals cannot be had.
+    pub fn new(listener: TcpListener, certificate: Certificate) -> Result<TlsListener> {
+        let address = listener.local_addr()?;
+        let (config, in_use) = watch::channel(certificate.load()?);
+        let mut hang_up = signal(SignalKind::hangup())?;
+        let reload = tokio::spawn(async move {
+            while hang_up.recv().await.is_some() {
+                match certificate.load() {
+                    Ok(new) => {
+                        config.send_replace(new);
+                        info!("the TLS certificate was read anew");
+                    }
+                    Err(error) => {
+                        let error = format!("{error:#}");
+                        error!(error, "the TLS certificate before stays in use");
+                    }
+                }
+            }
+        });
+        let (done, ready) = mpsc::channel(HANDSHAKES);
+        let accept = tokio::spawn(accept(listener, in_use, done));
+        Ok(TlsListener {
+            ready,
+            address,
+            tasks: [reload.abort_handle(), accept.abort_handle()],
+        })
+    }
+}
+
+impl Drop for TlsListener {
+    fn drop(&mut self) {
+        for task in &self.tasks {
+            task.abort();
+        }
+    }
+}
+
+impl Listener for TlsListener {
+    type Io = TlsStream<TcpStream>;
+    type Addr = SocketAddr;
+
+    async fn accept(&mut self) -> Connection {
+        match self.ready.recv().await {
+            Some(connection) => connection,
+            // Nobody takes connections any more: the runtime is stopping.
+            None => std::future::pending().await,
+        }
+    }
+
+    fn local_addr(&self) -> io::Result<SocketAddr> {
+        Ok(self.address)
+    }
+}
+
+async fn accept(
+    mut listener: TcpListener,
+    in_use: watch::Receiver<Arc<ServerConfig>>,
+    done: mpsc::Sender<Connection>,
+) {
+    let free = Arc::new(Semaphore::new(HANDSHAKES));
+    while let Ok(place) = free.clone().acquire_owned().await {
+        let (stream, peer) = Listener::accept(&mut listener).await;
+        let acceptor = TlsAcceptor::from(in_use.borrow().clone());
+        let done = done.clone();
+        tokio::spawn(async move {
+            match timeout(HANDSHAKE, acceptor.accept(stream)).await {
+                Ok(Ok(stream)) => drop(done.send((stream, peer)).await),
+                Ok(Err(error)) => debug!(%peer, %error, "no TLS"),
+                Err(_) => debug!(%peer, "the TLS handshake took too long"),
+            }
+            drop(place);
+        });
+    }
+}

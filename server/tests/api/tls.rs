@@ -1,0 +1,128 @@
+//! The server's own TLS.
+
+use axum::Router;
+use axum::routing::get;
+use binnacle_server::tls::{Certificate, TlsListener};
+use rcgen::{CertifiedKey, generate_simple_self_signed};
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+use tempfile::TempDir;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::task::AbortHandle;
+use tokio::time::timeout;
+
+const PATIENCE: Duration = Duration::from_mins(1);
+
+/// A server that answers "ashore", with its certificate in a folder of its own.
+struct Served {
+    folder: TempDir,
+    url: String,
+    port: u16,
+    serving: AbortHandle,
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.serving.abort();
+    }
+}
+
+fn certificate(folder: &Path) -> Certificate {
+    Certificate {
+        chain: folder.join("chain.pem"),
+        key: folder.join("key.pem"),
+    }
+}
+
+/// Writes a new certificate that is its own authority, and returns it.
+fn renew(folder: &Path) -> String {
+    let CertifiedKey { cert, signing_key } =
+        generate_simple_self_signed(["localhost".to_owned()]).unwrap();
+    let files = certificate(folder);
+    fs::write(files.key, signing_key.serialize_pem()).unwrap();
+    fs::write(files.chain, cert.pem()).unwrap();
+    cert.pem()
+}
+
+async fn serve(folder: TempDir) -> Served {
+    let _ = rustls::crypto::ring::default_provider().install_default();
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let listener = TlsListener::new(listener, certificate(folder.path())).unwrap();
+    let router = Router::new().route("/", get(async || "ashore"));
+    let serving = tokio::spawn(async move { axum::serve(listener, router).await });
+    Served {
+        folder,
+        url: format!("https://localhost:{port}/"),
+        port,
+        serving: serving.abort_handle(),
+    }
+}
+
+/// What somebody gets who believes only `authority`.
+async fn ask(url: &str, authority: &str) -> reqwest::Result<String> {
+    let authority = reqwest::Certificate::from_pem(authority.as_bytes())?;
+    let client = reqwest::Client::builder().tls_certs_only([authority]);
+    client.build()?.get(url).send().await?.text().await
+}
+
+#[tokio::test]
+async fn who_believes_its_authority_is_answered_and_plain_http_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let authority = renew(folder.path());
+    let stranger = renew(tempfile::tempdir().unwrap().path());
+    let served = serve(folder).await;
+    assert_eq!(ask(&served.url, &authority).await.unwrap(), "ashore");
+    assert!(ask(&served.url, &stranger).await.is_err());
+    let plain = format!("http://localhost:{}/", served.port);
+    assert!(ask(&plain, &authority).await.is_err());
+}
+
+#[tokio::test]
+async fn a_handshake_that_never_ends_keeps_nobody_waiting() {
+    let folder = tempfile::tempdir().unwrap();
+    let authority = renew(folder.path());
+    let served = serve(folder).await;
+    let address = ("127.0.0.1", served.port);
+    let _silent = TcpStream::connect(address).await.unwrap();
+    let asked = timeout(PATIENCE, ask(&served.url, &authority)).await;
+    assert_eq!(asked.unwrap().unwrap(), "ashore");
+}
+
+#[tokio::test]
+async fn a_hang_up_has_the_certificate_read_anew_unless_it_cannot_be_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = renew(folder.path());
+    let served = serve(folder).await;
+    let hang_up = || {
+        let this = rustix::process::getpid();
+        rustix::process::kill_process(this, rustix::process::Signal::HUP).unwrap();
+    };
+    fs::write(certificate(served.folder.path()).key, "no key").unwrap();
+    hang_up();
+    assert_eq!(ask(&served.url, &first).await.unwrap(), "ashore");
+    let second = renew(served.folder.path());
+    hang_up();
+    let renewed = async { while ask(&served.url, &second).await.is_err() {} };
+    timeout(PATIENCE, renewed).await.unwrap();
+    assert!(ask(&served.url, &first).await.is_err());
+}
+
+#[tokio::test]
+async fn a_certificate_that_cannot_be_used_is_refused_with_its_files_name() {
+    let _ = rustls::crypto::ring::default_provider().install_default();
+    let folder = tempfile::tempdir().unwrap();
+    let files = certificate(folder.path());
+    let refusal = || format!("{:#}", files.load().unwrap_err());
+    assert!(refusal().contains("chain.pem"), "{}", refusal());
+    renew(folder.path());
+    let chain = fs::read(&files.chain).unwrap();
+    fs::write(&files.chain, "").unwrap();
+    assert!(refusal().contains("chain.pem: there is no certificate in it"));
+    renew(folder.path());
+    fs::write(&files.chain, chain).unwrap();
+    assert!(refusal().contains("key.pem: not the certificate's key"));
+    fs::write(&files.key, "").unwrap();
+    assert!(refusal().contains("key.pem"), "{}", refusal());
+}
