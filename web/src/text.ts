@@ -83,6 +83,13 @@ export const text = {
     cause: {
       deviation_over_limit: 'Deviation over the limit',
       reference_fault: 'Gyro and satellite compass disagree',
+      lightning_or_shock: 'Magnetism changed: lightning or a shock',
+      magnetic_cargo: 'Magnetism changed: magnetic cargo',
+      drift: 'Magnetism drifts',
+      local_anomaly: 'Local anomaly',
+      magnetic_storm: 'Magnetic storm',
+      berth_steel: 'Steel at the berth',
+      unknown_change: 'Magnetism changed: cause unknown',
       silent_agent: 'No word from the vessel',
       no_model: 'No model of the compass yet',
       wide_band: 'The model is too uncertain',

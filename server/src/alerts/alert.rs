@@ -17,6 +17,20 @@ pub enum Cause {
     DeviationOverLimit,
     /// Gyro and satellite compass contradict each other.
     ReferenceFault,
+    /// A strike, or a heavy blow to the hull.
+    LightningOrShock,
+    /// Steel, scrap or the like on board.
+    MagneticCargo,
+    /// The ship's magnetism wandered off.
+    Drift,
+    /// The earth's crust, at a place.
+    LocalAnomaly,
+    /// The sun, for hours.
+    MagneticStorm,
+    /// The quay's and its cranes' iron.
+    BerthSteel,
+    /// A change of which no cause is likely.
+    UnknownChange,
     /// Nothing has come from the vessel for too long.
     SilentAgent,
     /// There is no model although samples have come for a while.
@@ -200,11 +214,26 @@ impl Cause {
         self == Cause::SilentAgent
     }
 
-    /// The cause in a few words, for a mail's subject.
+    /// Whether later samples date its beginning better.
+    pub(super) fn is_dated_anew(self) -> bool {
+        matches!(
+            self,
+            Cause::LightningOrShock | Cause::MagneticCargo | Cause::Drift | Cause::UnknownChange
+        )
+    }
+
+    /// The cause in a few words.
     pub fn words(self) -> &'static str {
         match self {
             Cause::DeviationOverLimit => "deviation over the limit",
             Cause::ReferenceFault => "gyro and satellite compass disagree",
+            Cause::LightningOrShock => "lightning or a shock",
+            Cause::MagneticCargo => "magnetic cargo",
+            Cause::Drift => "drift of the ship's magnetism",
+            Cause::LocalAnomaly => "a local anomaly",
+            Cause::MagneticStorm => "a magnetic storm",
+            Cause::BerthSteel => "steel at the berth",
+            Cause::UnknownChange => "a change of unknown cause",
             Cause::SilentAgent => "no word from the vessel",
             Cause::NoModel => "no model of the compass yet",
             Cause::WideBand => "the model is too uncertain",

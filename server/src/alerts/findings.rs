@@ -4,6 +4,7 @@
 use crate::deviation::{self, Worst};
 use binnacle_magnetics::analyse::{Analysis, Epoch, SampleDiagnostic};
 use binnacle_magnetics::angle::wrap_180;
+use binnacle_magnetics::change::Change;
 use binnacle_magnetics::fit::FitError;
 use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
@@ -30,6 +31,12 @@ pub struct Findings {
     pub references_disagree_deg: Option<f64>,
     /// How they compared lately; none unless one of them failed.
     pub failed_lately: Option<FailedLately>,
+    /// What changed the ship's magnetism, or seemed to, in order of time.
+    #[serde(default)]
+    pub changes: Vec<Change>,
+    /// When the current epoch began.
+    #[serde(default)]
+    pub epoch_from: Option<Timestamp>,
 }
 
 /// Samples in which gyro and satellite compass departed from their usual
@@ -78,6 +85,8 @@ pub fn findings_of(analysis: &Analysis) -> Findings {
             _ => None,
         },
         failed_lately: failed_lately(epoch, &analysis.samples),
+        changes: analysis.changes.clone(),
+        epoch_from: epoch.from,
     }
 }
 

@@ -11,6 +11,7 @@
 //! - Every change is stored together with what tells people of it.
 
 mod alert;
+mod changed;
 mod findings;
 mod limits;
 mod look;

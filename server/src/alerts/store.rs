@@ -167,7 +167,8 @@ pub(super) async fn update(
 ) -> Result<()> {
     execute!(
         &mut *tx,
-        "UPDATE alerts SET severity = $3, summary = $4, advice = $5, evidence = $6, updated_at = $7
+        "UPDATE alerts SET severity = $3, summary = $4, advice = $5, evidence = $6, updated_at = $7,
+                           since = COALESCE($8, since)
          WHERE vessel_id = $1 AND id = $2",
         vessel,
         known.id,
@@ -175,7 +176,8 @@ pub(super) async fn update(
         wanted.summary.as_str(),
         wanted.advice,
         serde_json::to_string(&wanted.evidence)?,
-        now
+        now,
+        Some(wanted.since).filter(|_| wanted.cause.is_dated_anew())
     )?;
     if wanted.severity > known.severity && known.state == State::Acknowledged {
         execute!(

@@ -6,6 +6,7 @@
 //! and go with every batch.
 
 use super::alert::{AlertWanted, Cause, Evidence, Severity};
+use super::changed::changed;
 use super::findings::{FailedLately, Findings};
 use super::limits::AlertLimits;
 use crate::deviation::Worst;
@@ -55,10 +56,14 @@ pub fn alerts_of(findings: &Findings, limits: &AlertLimits, open: &[Cause]) -> V
         (None, Some(failed)) if failed.is_more_than_a_drop_out() => Some(one_failed(failed)),
         _ => None,
     };
-    [over, references, uncertain]
-        .into_iter()
-        .flatten()
-        .collect()
+    let mut wanted = changed(findings, limits);
+    for alert in [over, references, uncertain].into_iter().flatten() {
+        // What the detector says of a cause is the better word.
+        if wanted.iter().all(|known| known.cause != alert.cause) {
+            wanted.push(alert);
+        }
+    }
+    wanted
 }
 
 /// What calls for an alert when nothing has come since `last`.

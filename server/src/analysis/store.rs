@@ -184,7 +184,10 @@ fn withdrawal(analysis: &Analysis) -> Result<Option<CardWithdrawn>> {
     let Some(since) = epoch.from.filter(|_| epoch.model.is_none()) else {
         return Ok(None);
     };
-    let begun_by = serde_json::to_value(epoch.begun_by)?;
+    let begun_by = match epoch.begun_by {
+        Some(reported) => serde_json::to_value(reported)?,
+        None => serde_json::to_value(epoch.begun_by_change)?,
+    };
     Ok(Some(CardWithdrawn {
         since,
         reason: begun_by.as_str().unwrap_or("change").to_owned(),
