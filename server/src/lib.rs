@@ -37,6 +37,7 @@ pub mod streams;
 
 pub mod alerts;
 pub mod analysis;
+pub mod changes;
 pub mod deviation;
 pub mod events;
 pub mod models;

@@ -67,9 +67,9 @@ fn alert(change: &Change, cause: Cause, limits: &AlertLimits) -> AlertWanted {
         .iter()
         .filter(|other| other.probability >= 0.01);
     let likely: Vec<String> = likely
-        .filter_map(|other| {
+        .map(|other| {
             let words = cause_of(other.cause).map_or("work on ship or compass", Cause::words);
-            Some(format!("{words} {:.0} %", 100.0 * other.probability))
+            format!("{words} {:.0} %", 100.0 * other.probability)
         })
         .collect();
     if !likely.is_empty() {

@@ -2,7 +2,7 @@
 //! that other limits make other alerts without another analysis.
 
 use crate::deviation::{self, Worst};
-use binnacle_magnetics::analyse::{Analysis, Epoch, SampleDiagnostic};
+use binnacle_magnetics::analyse::{Analysis, Epoch, LastPlace, SampleDiagnostic};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::change::Change;
 use binnacle_magnetics::fit::FitError;
@@ -37,6 +37,9 @@ pub struct Findings {
     /// When the current epoch began.
     #[serde(default)]
     pub epoch_from: Option<Timestamp>,
+    /// Where the last sample was taken.
+    #[serde(default)]
+    pub last_place: Option<LastPlace>,
 }
 
 /// Samples in which gyro and satellite compass departed from their usual
@@ -87,6 +90,7 @@ pub fn findings_of(analysis: &Analysis) -> Findings {
         failed_lately: failed_lately(epoch, &analysis.samples),
         changes: analysis.changes.clone(),
         epoch_from: epoch.from,
+        last_place: analysis.last_place,
     }
 }
 

@@ -16,6 +16,7 @@ mod schema;
 mod store;
 
 pub use aboard::router as agent_router;
+pub use schema::KindSchema as LogbookKindSchema;
 pub use store::of_compass;
 
 use crate::access::{Reader, Writer};

@@ -37,7 +37,7 @@ pub(super) struct ReportSchema {
     dead_code,
     reason = "describes binnacle_magnetics::analyse::LogbookKind"
 )]
-pub(super) enum KindSchema {
+pub enum KindSchema {
     /// The compass was adjusted.
     Adjustment,
     /// A magnet, a sphere or the Flinders bar was moved without an adjustment.

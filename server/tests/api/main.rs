@@ -10,6 +10,7 @@ mod support;
 
 mod alerts;
 mod analysis;
+mod changes;
 mod commands;
 mod dashboard;
 mod document;

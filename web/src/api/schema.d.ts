@@ -325,6 +325,29 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/vessels/{id}/changes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See what changed a compass's deviation, when and why
+         * @description The whole of it, in order of time: the epochs of constant magnetism with their
+         *     deviation on 36 headings where the ship was last, and the changes that were
+         *     found, also what passed again or was a reference's fault. Before the first
+         *     analysis both lists are empty.
+         */
+        get: operations["list_changes"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/vessels/{id}/compasses": {
         parameters: {
             query?: never;
@@ -951,6 +974,16 @@ export interface components {
          * @enum {string}
          */
         CargoKind: "steel" | "scrap" | "containers" | "other";
+        /** @description A cause and how likely it is. */
+        CauseProbability: {
+            cause: components["schemas"]["ChangeCause"];
+            /**
+             * Format: double
+             * @description From 0 to 1.
+             * @example 0.93
+             */
+            probability: number;
+        };
         /** @description What a model should not be trusted for. */
         Caution: {
             /** @enum {string} */
@@ -964,6 +997,54 @@ export interface components {
              */
             h_nt: number;
         };
+        /** @description Something that changed what the compass shows, or seemed to. */
+        Change: {
+            /** @description The likeliest cause. */
+            cause: components["schemas"]["ChangeCause"];
+            /** @description All causes that may be, the likeliest first. */
+            causes: components["schemas"]["CauseProbability"][];
+            /** @description Whether it is certain enough to act on; if not, more samples will tell. */
+            confirmed: boolean;
+            /** @description Time of the sample that told. */
+            detected_at: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description By how much the deviation changed where the ship was then, on the heading where
+             *     it changed most, degrees; none where the ship's magnetism did not change.
+             * @example 6.2
+             */
+            deviation_change_deg: number | null;
+            ended: components["schemas"]["Time"] | null;
+            /** @description Place of the one that it began: its curve is the one after. */
+            epoch_after: number | null;
+            /**
+             * @description Place in `epochs` of the one that it ended: its curve is the one before. None
+             *     where it ended none.
+             */
+            epoch_before: number | null;
+            /** @description Place of the one that began when it was over. */
+            epoch_ended: number | null;
+            /**
+             * @description Why, a sentence each.
+             * @example [
+             *       "it began at sea",
+             *       "the logbook has a report of that time"
+             *     ]
+             */
+            evidence: string[];
+            /** @description When it most likely happened. */
+            from: components["schemas"]["Time"];
+            /** @description It hardly happened before this. */
+            from_earliest: components["schemas"]["Time"];
+            /** @description Nor after this. */
+            from_latest: components["schemas"]["Time"];
+            step: components["schemas"]["Step"] | null;
+        };
+        /**
+         * @description What changes what a compass shows.
+         * @enum {string}
+         */
+        ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
         /** @description That an alert is over. */
         Clearing: {
             /**
@@ -1205,6 +1286,42 @@ export interface components {
          * @description An entry of a vessel's logbook.
          */
         EntryId: string;
+        /** @description An interval in which the ship's magnetism was constant, but for slow drift. */
+        Epoch: {
+            begun_by: components["schemas"]["LogbookKind"] | null;
+            begun_by_change: components["schemas"]["ChangeCause"] | null;
+            /**
+             * @description Its deviation at `place`, by compass heading from 0, each 10°; none without a
+             *     model, or where headings are ambiguous.
+             */
+            curve: components["schemas"]["DeviationRow"][] | null;
+            data_from: components["schemas"]["Time"] | null;
+            data_until: components["schemas"]["Time"] | null;
+            from: components["schemas"]["Time"] | null;
+            /**
+             * Format: int64
+             * @description The last version of the model that was made from samples up to this epoch's;
+             *     none where there was none.
+             * @example 4
+             */
+            model_version: number | null;
+            refusal: components["schemas"]["Refusal"] | null;
+            /** @description Place in this list of the earlier epoch whose magnetism it is again. */
+            resumes: number | null;
+            /**
+             * Format: double
+             * @description Root mean square of the residuals, degrees.
+             * @example 0.3
+             */
+            rms_deg: number | null;
+            /**
+             * Format: int64
+             * @description Samples that carry weight in its model.
+             * @example 412
+             */
+            samples_used: number | null;
+            to: components["schemas"]["Time"] | null;
+        };
         /**
          * @description What happened to a vessel.
          * @enum {string}
@@ -2030,12 +2147,85 @@ export interface components {
              */
             password: string;
         };
+        /** @description A step of permanent magnetism over the shielding factor, nT. */
+        Step: {
+            /**
+             * Format: double
+             * @description Fore and aft, forward positive.
+             * @example 1850
+             */
+            bx_nt: number;
+            /**
+             * Format: double
+             * @description Standard error of the first.
+             * @example 120
+             */
+            bx_se_nt: number;
+            /**
+             * Format: double
+             * @description Athwart, starboard positive.
+             * @example -640
+             */
+            by_nt: number;
+            /**
+             * Format: double
+             * @description Standard error of the second.
+             * @example 95
+             */
+            by_se_nt: number;
+        };
         /**
          * Format: date-time
          * @description BIGINT microseconds in the database, RFC 3339 in JSON.
          * @example 2026-11-21T07:00:00Z
          */
         Time: string;
+        /** @description A compass's epochs and changes, by its last analysis. */
+        Timeline: {
+            analysed_at: components["schemas"]["Time"] | null;
+            /** @description In order of time. */
+            changes: components["schemas"]["Change"][];
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description In order of time, without gaps; the last one goes on. */
+            epochs: components["schemas"]["Epoch"][];
+            place: components["schemas"]["TimelinePlace"] | null;
+        };
+        /** @description Where and when the last sample was taken, and the earth's field there. */
+        TimelinePlace: {
+            /** @description When. */
+            at: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description Horizontal field, nT.
+             * @example 24300
+             */
+            h_nt: number;
+            /**
+             * Format: double
+             * @description Degrees north.
+             * @example 43.4
+             */
+            lat: number;
+            /**
+             * Format: double
+             * @description Degrees east.
+             * @example -3.1
+             */
+            lon: number;
+            /**
+             * Format: double
+             * @description Variation, degrees, east positive.
+             * @example 0.4
+             */
+            variation_deg: number;
+            /**
+             * Format: double
+             * @description Vertical field, nT, down positive.
+             * @example 39600
+             */
+            z_nt: number;
+        };
         /** @description A token, without its secret. */
         Token: {
             /** @description When it was made. */
@@ -3507,6 +3697,67 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_changes: {
+        parameters: {
+            query?: {
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Timeline"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,7 +1,7 @@
 //! A ship with an agent, whose batches the test makes.
 
 use super::{Answer, Person, Shore};
-use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::position::Position;
@@ -100,10 +100,22 @@ pub(crate) fn truth() -> Model {
 
 /// What that ship's compass and gyro read on a true heading at a time.
 pub(crate) fn sample(time: Timestamp, heading_deg: f64) -> Sample {
+    sample_of(&truth(), time, heading_deg)
+}
+
+/// The same ship after a step of her permanent magnetism, nT.
+pub(crate) fn struck(bx_nt: f64, by_nt: f64) -> Model {
+    let mut ship = truth();
+    ship.parameters_over_lambda.bx_nt += bx_nt;
+    ship.parameters_over_lambda.by_nt += by_nt;
+    ship
+}
+
+fn sample_of(ship: &Model, time: Timestamp, heading_deg: f64) -> Sample {
     let position = Position::new(48.0, -6.0).unwrap();
     let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
     let heading = TrueHeading::new(heading_deg).unwrap();
-    let compass = truth()
+    let compass = ship
         .compass_for_true(heading, earth.declination(), earth.for_ship())
         .unwrap();
     Sample {
@@ -125,4 +137,32 @@ pub(crate) fn passage(from: &str, samples: usize) -> Vec<Sample> {
     (0..samples)
         .map(|i| sample(start.plus_seconds(600.0 * i as f64), 37.0 * i as f64))
         .collect()
+}
+
+/// So many days at sea from a day and hour on, in legs of three hours, with a sample
+/// every ten minutes from both references, all a little off.
+pub(crate) fn days_at_sea(ship: &Model, from: &str, days: f64) -> Vec<Sample> {
+    let start = Timestamp::parse(from).unwrap();
+    let samples = (days * 144.0).round() as u32;
+    (0..samples)
+        .map(|i| {
+            let leg = f64::from(i / 18);
+            let time = start.plus_seconds(600.0 * f64::from(i));
+            let mut sample = sample_of(ship, time, 107.0 * leg);
+            let off = |sign: u32, size_deg: f64| size_deg * unevenness(3 * i + sign);
+            let compass_deg = sample.compass.degrees() + off(0, 0.4);
+            sample.compass = CompassHeading::new(compass_deg).unwrap();
+            let heading_deg = sample.gyro.unwrap().degrees();
+            sample.gyro = TrueHeading::new(heading_deg + off(1, 0.3));
+            sample.satellite = TrueHeading::new(heading_deg + off(2, 0.3));
+            sample
+        })
+        .collect()
+}
+
+/// Between -1 and 1, without any pattern that matters, the same each time.
+fn unevenness(i: u32) -> f64 {
+    let mixed = i.wrapping_mul(2_654_435_761) ^ 0x9E37_79B9;
+    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x85EB_CA6B);
+    f64::from(mixed ^ (mixed >> 13)) / f64::from(u32::MAX) * 2.0 - 1.0
 }

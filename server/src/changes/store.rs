@@ -1,0 +1,87 @@
+//! What a timeline is made from, in the database.
+
+use crate::alerts::Findings;
+use crate::db::{Db, row, rows};
+use crate::error::Result;
+use crate::ids::{CompassId, VesselId};
+use crate::time::Time;
+use binnacle_magnetics::analyse::LogbookKind;
+use binnacle_magnetics::change::Cause;
+use binnacle_magnetics::fit::FitError;
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::time::Timestamp;
+use serde::Deserialize;
+
+/// The last analysis of a compass, as far as it tells of changes.
+pub(super) struct Analysed {
+    pub(super) at: Time,
+    pub(super) epochs: Vec<StoredEpoch>,
+    pub(super) findings: Findings,
+}
+
+/// An epoch as it was stored; what an older server left out is none.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct StoredEpoch {
+    pub(super) from: Option<Timestamp>,
+    pub(super) to: Option<Timestamp>,
+    pub(super) begun_by: Option<LogbookKind>,
+    pub(super) begun_by_change: Option<Cause>,
+    pub(super) resumes: Option<usize>,
+    pub(super) data_from: Option<Timestamp>,
+    pub(super) data_until: Option<Timestamp>,
+    pub(super) model: Option<Model>,
+    pub(super) refusal: Option<FitError>,
+}
+
+/// A model version, and the time of the last sample in it.
+#[derive(Clone, Copy, Debug, sqlx::FromRow)]
+pub(super) struct Version {
+    pub(super) version: i64,
+    pub(super) data_until: Time,
+}
+
+/// The compass's last analysis; none before the first.
+pub(super) async fn find(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<Analysed>> {
+    let found = row!(
+        db,
+        (Time, String, Option<String>),
+        "SELECT analysed_at, epochs, findings FROM analyses
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY compass_id",
+        vessel,
+        compass
+    )?;
+    let Some((at, epochs, findings)) = found else {
+        return Ok(None);
+    };
+    Ok(Some(Analysed {
+        at,
+        epochs: serde_json::from_str(&epochs)?,
+        findings: findings
+            .map(|findings| serde_json::from_str(&findings))
+            .transpose()?
+            .unwrap_or_default(),
+    }))
+}
+
+/// All versions of the compass's model, the oldest first.
+pub(super) async fn versions(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Vec<Version>> {
+    Ok(rows!(
+        db,
+        Version,
+        "SELECT version, data_until FROM models
+         WHERE vessel_id = $1 AND compass_id = $2
+         ORDER BY version",
+        vessel,
+        compass
+    )?)
+}
