@@ -5,7 +5,7 @@
 
 use anyhow::{Context, Result, bail};
 use binnacle_magnetics::time::Timestamp;
-use std::net::SocketAddr;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncWriteExt, BufReader};
 use tokio::net::{TcpListener, TcpStream};
@@ -68,7 +68,7 @@ pub struct Feed {
 }
 
 impl Feed {
-    /// Listens on a free port for an agent.
+    /// Listens on a free port for an agent of this machine.
     ///
     /// # Errors
     /// When there is no port.
@@ -76,7 +76,19 @@ impl Feed {
         source: impl AsyncRead + Send + Unpin + 'static,
         pace: Pace,
     ) -> Result<Feed> {
-        let listener = TcpListener::bind("127.0.0.1:0").await?;
+        Feed::start_at(IpAddr::V4(Ipv4Addr::LOCALHOST), source, pace).await
+    }
+
+    /// Listens at an address.
+    ///
+    /// # Errors
+    /// When there is no such address, or no port.
+    pub async fn start_at(
+        address: IpAddr,
+        source: impl AsyncRead + Send + Unpin + 'static,
+        pace: Pace,
+    ) -> Result<Feed> {
+        let listener = TcpListener::bind((address, 0)).await?;
         let address = listener.local_addr()?;
         let (pace, paces) = watch::channel(pace);
         let (news, progress) = watch::channel(Progress::Waiting);

@@ -33,13 +33,18 @@ pub fn path(name: &str) -> Result<PathBuf> {
 /// When the program is missing.
 pub fn command(name: &str) -> Result<Command> {
     let mut command = Command::new(path(name)?);
+    without_settings(&mut command);
+    command.stdin(Stdio::null()).kill_on_drop(true);
+    Ok(command)
+}
+
+/// Takes the caller's settings from a command.
+pub(crate) fn without_settings(command: &mut Command) {
     for (variable, _) in std::env::vars_os() {
         if variable.to_string_lossy().starts_with("BINNACLE_") {
             command.env_remove(variable);
         }
     }
-    command.stdin(Stdio::null()).kill_on_drop(true);
-    Ok(command)
 }
 
 /// Runs a program to its end.

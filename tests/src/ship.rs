@@ -2,14 +2,19 @@
 
 use crate::eventually::eventually;
 use crate::program::{self, Program};
+use crate::satellite::Berth;
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use tokio::process::Command;
 
 /// Machines may be busy.
 const START: Duration = Duration::from_secs(30);
+
+/// What waits for nothing, on a link that costs nothing.
+const SWIFT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
 
 /// An agent, running or not.
 #[derive(Debug)]
@@ -17,6 +22,7 @@ pub struct Ship {
     name: String,
     folder: PathBuf,
     agent: Option<Program>,
+    berth: Option<Berth>,
 }
 
 impl Ship {
@@ -26,6 +32,14 @@ impl Ship {
     /// # Errors
     /// When the folder cannot be written.
     pub fn new(name: &str, parent: &Path, feed: SocketAddr) -> Result<Ship> {
+        Ship::with_uplink(name, parent, feed, SWIFT)
+    }
+
+    /// The same with other lines in `[uplink]`.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub fn with_uplink(name: &str, parent: &Path, feed: SocketAddr, uplink: &str) -> Result<Ship> {
         let folder = parent.join(name);
         std::fs::create_dir_all(&folder)?;
         let config = format!(
@@ -44,9 +58,7 @@ interval_s = 0.1
 [page]
 listen = "127.0.0.1:0"
 [uplink]
-poll_s = 2
-retry_min_s = 0.2
-retry_max_s = 1
+{uplink}
 [silence]
 stale_s = 15
 "#
@@ -56,7 +68,23 @@ stale_s = 15
             name: name.to_owned(),
             folder,
             agent: None,
+            berth: None,
         })
+    }
+
+    /// Puts the ship at the other end of a satellite link: before anything is run.
+    #[must_use]
+    pub fn at_sea(mut self, berth: Berth) -> Ship {
+        self.berth = Some(berth);
+        self
+    }
+
+    fn command(&self) -> Result<Command> {
+        const AGENT: &str = "binnacle-agent";
+        match self.berth {
+            Some(berth) => berth.command(AGENT),
+            None => program::command(AGENT),
+        }
     }
 
     /// The path of `agent.toml`.
@@ -74,7 +102,7 @@ stale_s = 15
     /// # Errors
     /// When the agent or the server refuses.
     pub async fn enrol(&self, server: &str, code: &str) -> Result<()> {
-        let mut command = program::command("binnacle-agent")?;
+        let mut command = self.command()?;
         command
             .args(["enrol", "--server", server, "--code", code, "--config"])
             .arg(self.config());
@@ -92,7 +120,7 @@ stale_s = 15
             "the agent of {} runs already",
             self.name
         );
-        let mut command = program::command("binnacle-agent")?;
+        let mut command = self.command()?;
         command.args(["run", "--config"]).arg(self.config());
         let log = self.folder.join("agent.log");
         self.agent = Some(Program::start(&self.name, command, &log)?);
@@ -128,7 +156,7 @@ stale_s = 15
     /// # Errors
     /// When it fails.
     pub async fn status(&self) -> Result<Value> {
-        let mut command = program::command("binnacle-agent")?;
+        let mut command = self.command()?;
         command
             .args(["status", "--json", "--config"])
             .arg(self.config());

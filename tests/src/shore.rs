@@ -2,9 +2,11 @@
 
 use crate::database::{Database, Engine};
 use crate::program::{self, Program};
+use crate::satellite::{self, Certificates};
 use anyhow::{Context, Result, bail, ensure};
 use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
+use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::sync::Once;
@@ -20,12 +22,13 @@ const START: Duration = Duration::from_mins(1);
 /// A running server with one operator, and an admin signed in.
 #[derive(Debug)]
 pub struct Shore {
-    /// `http://127.0.0.1:PORT`, the same after a restart.
+    /// As `http://127.0.0.1:PORT`, the same after a restart.
     pub url: String,
     database: Database,
     folder: PathBuf,
     server: Option<Program>,
     http: Client,
+    tls: Option<Certificates>,
     cookie: String,
 }
 
@@ -35,18 +38,36 @@ impl Shore {
     /// # Errors
     /// When it does not start.
     pub async fn start(engine: Engine, folder: &Path) -> Result<Shore> {
+        Shore::open(engine, folder, Ipv4Addr::LOCALHOST.into(), None).await
+    }
+
+    /// Starts a server on SQLite at its end of a satellite link, with https.
+    ///
+    /// # Errors
+    /// When it does not start.
+    pub async fn start_ashore(folder: &Path, tls: &Certificates) -> Result<Shore> {
+        Shore::open(Engine::Sqlite, folder, satellite::SHORE, Some(tls)).await
+    }
+
+    async fn open(
+        engine: Engine,
+        folder: &Path,
+        address: IpAddr,
+        tls: Option<&Certificates>,
+    ) -> Result<Shore> {
         let database = Database::create(engine, folder).await?;
         let mut shore = Shore {
             url: String::new(),
             database,
             folder: folder.to_owned(),
             server: None,
-            http: http_client()?,
+            http: http_client(tls)?,
+            tls: tls.cloned(),
             cookie: String::new(),
         };
         shore.admin(&["migrate"], "").await?;
         shore.create_admin(EMAIL).await?;
-        shore.serve("127.0.0.1:0").await?;
+        shore.serve(&format!("{address}:0")).await?;
         shore.cookie = shore.sign_in(EMAIL).await?;
         Ok(shore)
     }
@@ -105,6 +126,10 @@ impl Shore {
             .env("BINNACLE_DATABASE_URL", self.database.url())
             .env("BINNACLE_ANALYSIS_DELAY_S", "0")
             .stdout(Stdio::piped());
+        if let Some(tls) = &self.tls {
+            command.arg("--tls-cert").arg(&tls.chain);
+            command.arg("--tls-key").arg(&tls.key);
+        }
         let log = self.folder.join("server.log");
         let mut server = Program::start("binnacle-server", command, &log)?;
         let stdout = server
@@ -134,7 +159,8 @@ impl Shore {
     pub async fn kill_and_restart(&mut self) -> Result<()> {
         let server = self.server.take().context("the server runs")?;
         server.kill().await?;
-        let listen = self.url.trim_start_matches("http://").to_owned();
+        let (_, listen) = self.url.split_once("://").context("a URL")?;
+        let listen = listen.to_owned();
         self.serve(&listen).await
     }
 
@@ -304,12 +330,14 @@ async fn json_of(answer: Response) -> Result<Value> {
     serde_json::from_str(&text).with_context(|| format!("{path}: {text}"))
 }
 
-fn http_client() -> Result<Client> {
+fn http_client(tls: Option<&Certificates>) -> Result<Client> {
     static PROVIDER: Once = Once::new();
     // A second installation fails, which is as good.
     PROVIDER.call_once(|| drop(rustls::crypto::ring::default_provider().install_default()));
-    Ok(Client::builder()
-        .timeout(Duration::from_mins(1))
-        .no_proxy()
-        .build()?)
+    let mut builder = Client::builder().timeout(Duration::from_mins(1)).no_proxy();
+    if let Some(tls) = tls {
+        let authority = reqwest::Certificate::from_pem(&std::fs::read(&tls.authority)?)?;
+        builder = builder.tls_certs_only([authority]);
+    }
+    Ok(builder.build()?)
 }

@@ -6,6 +6,7 @@ use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::time::Timestamp;
 use serde::Deserialize;
 use std::fs::File;
+use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use tokio::process::Child;
@@ -51,11 +52,26 @@ pub struct Row {
 }
 
 impl Voyage {
-    /// Sails a scenario of this package with one ship.
+    /// Sails a scenario of this package with one ship, whose agent runs on this
+    /// machine.
     ///
     /// # Errors
     /// When the simulator cannot be started.
     pub async fn sail(scenario: &str, seed: u64, folder: &Path, pace: Pace) -> Result<Voyage> {
+        Voyage::sail_at(Ipv4Addr::LOCALHOST.into(), scenario, seed, folder, pace).await
+    }
+
+    /// The same, with the instruments at an address.
+    ///
+    /// # Errors
+    /// When the simulator cannot be started, or there is no such address.
+    pub async fn sail_at(
+        instruments: IpAddr,
+        scenario: &str,
+        seed: u64,
+        folder: &Path,
+        pace: Pace,
+    ) -> Result<Voyage> {
         let file = Path::new(env!("CARGO_MANIFEST_DIR"))
             .join("scenarios")
             .join(scenario);
@@ -76,7 +92,7 @@ impl Voyage {
             .stdout
             .take()
             .context("standard output was asked for")?;
-        let feed = Feed::start(sentences, pace).await?;
+        let feed = Feed::start_at(instruments, sentences, pace).await?;
         Ok(Voyage {
             feed,
             simulator,

@@ -1,0 +1,274 @@
+//! A satellite link between a shore and a ship, each in a network of its own.
+//!
+//! `satellite/link.py` carries the packets, late, seldom and slowly, and counts
+//! them. A test on it calls [`in_own_network`] first: the test's own network is the
+//! shore's, where nothing else on the machine can be reached.
+
+use crate::program;
+use anyhow::{Context, Result, ensure};
+use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
+use serde::{Deserialize, Serialize};
+use std::future::Future;
+use std::net::{IpAddr, Ipv4Addr};
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::time::Duration;
+use tokio::io::{AsyncBufReadExt, AsyncWriteExt, BufReader, Lines};
+use tokio::process::{Child, ChildStdin, ChildStdout, Command};
+use tokio::time::timeout;
+
+/// The shore's address on the link.
+pub const SHORE: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 77, 0, 1));
+/// Where the ship finds her instruments.
+pub const INSTRUMENTS: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 78, 0, 1));
+/// Set for a test that is in its own network.
+const OWN_NETWORK: &str = "BINNACLE_TEST_OWN_NETWORK";
+const START: Duration = Duration::from_secs(30);
+
+/// Runs `body` in a new network that has nothing but itself: starts this test
+/// again in one. `test` is its name.
+///
+/// # Panics
+/// When the system gives no network (it wants root, or user namespaces that anyone
+/// may make), or `body` fails.
+pub fn in_own_network(test: &str, body: impl Future<Output = Result<()>>) {
+    if std::env::var_os(OWN_NETWORK).is_some() {
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(2)
+            .enable_all()
+            .build()
+            .expect("a runtime");
+        runtime.block_on(body).expect("the test holds");
+        return;
+    }
+    let this = std::env::current_exe().expect("the path of this test");
+    let is_root = rustix::process::geteuid().is_root();
+    let as_root: &[&str] = if is_root {
+        &[]
+    } else {
+        &["--user", "--map-root-user"]
+    };
+    let status = std::process::Command::new("unshare")
+        .args(as_root)
+        .arg("--net")
+        .arg(this)
+        .args(["--exact", test, "--nocapture"])
+        .env(OWN_NETWORK, "1")
+        .status()
+        .expect("unshare, of util-linux");
+    assert!(
+        status.success(),
+        "{test} in a network of its own: {status}. If that could not be made: be root, or allow \
+         user namespaces"
+    );
+}
+
+/// How the link is; what is left out stays.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Weather {
+    /// Whether anything passes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub up: Option<bool>,
+    /// There and back, milliseconds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub round_trip_ms: Option<f64>,
+    /// The share of packets that get lost.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loss: Option<f64>,
+    /// Bits a second each way; 0 is without limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bits_per_s: Option<f64>,
+}
+
+/// What was put on the link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub struct Tally {
+    /// By the ship.
+    pub to_shore: Count,
+    /// By the shore.
+    pub to_ship: Count,
+}
+
+/// IP packets one way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+pub struct Count {
+    /// How many.
+    pub packets: u64,
+    /// Their octets, IP headers included.
+    pub octets: u64,
+}
+
+impl Tally {
+    /// Octets both ways.
+    pub fn octets(&self) -> u64 {
+        self.to_shore.octets + self.to_ship.octets
+    }
+}
+
+/// The link, up until it is dropped.
+#[derive(Debug)]
+pub struct Satellite {
+    // Dropped first: the end of its input is the end of the link.
+    orders: ChildStdin,
+    answers: Lines<BufReader<ChildStdout>>,
+    _link: Child,
+    ship: u32,
+}
+
+#[derive(Deserialize)]
+struct Up {
+    ship: u32,
+}
+
+impl Satellite {
+    /// Sets the link up; it is perfect until told otherwise.
+    ///
+    /// # Errors
+    /// When Python or the system does not let it.
+    pub async fn launch() -> Result<Satellite> {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("satellite/link.py");
+        let mut link = Command::new("python3")
+            .arg(script)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .kill_on_drop(true)
+            .spawn()
+            .context("python3")?;
+        let orders = link.stdin.take().context("standard input was asked for")?;
+        let output = link
+            .stdout
+            .take()
+            .context("standard output was asked for")?;
+        let mut satellite = Satellite {
+            orders,
+            answers: BufReader::new(output).lines(),
+            _link: link,
+            ship: 0,
+        };
+        let up: Up = serde_json::from_str(&satellite.answer().await?)?;
+        satellite.ship = up.ship;
+        Ok(satellite)
+    }
+
+    async fn answer(&mut self) -> Result<String> {
+        let line = timeout(START, self.answers.next_line()).await;
+        let line = line.context("the link is silent")??;
+        line.context("the link has ended: see its errors above")
+    }
+
+    async fn order(&mut self, mut line: String) -> Result<()> {
+        line.push('\n');
+        Ok(self.orders.write_all(line.as_bytes()).await?)
+    }
+
+    /// Changes how the link is.
+    ///
+    /// # Errors
+    /// When it has ended.
+    pub async fn set(&mut self, weather: Weather) -> Result<()> {
+        self.order(serde_json::to_string(&weather)?).await?;
+        // Once it counts, it has taken the order before.
+        self.tally().await.map(drop)
+    }
+
+    /// What was put on the link so far.
+    ///
+    /// # Errors
+    /// When it has ended.
+    pub async fn tally(&mut self) -> Result<Tally> {
+        self.order(r#"{"tally": true}"#.to_owned()).await?;
+        Ok(serde_json::from_str(&self.answer().await?)?)
+    }
+
+    /// What makes a program run on board.
+    pub fn berth(&self) -> Berth {
+        Berth(self.ship)
+    }
+}
+
+/// A place for programs on board: the ship's network.
+#[derive(Clone, Copy, Debug)]
+pub struct Berth(u32);
+
+impl Berth {
+    /// A command for one of the programs, on board.
+    ///
+    /// # Errors
+    /// When the program is missing.
+    pub fn command(&self, name: &str) -> Result<Command> {
+        let mut command = Command::new("nsenter");
+        command
+            .args(["--net", "--target", &self.0.to_string(), "--"])
+            .arg(program::path(name)?);
+        program::without_settings(&mut command);
+        command.stdin(Stdio::null()).kill_on_drop(true);
+        Ok(command)
+    }
+}
+
+/// An authority of one's own, and the shore's certificate by it, as files.
+#[derive(Clone, Debug)]
+pub struct Certificates {
+    /// Whom to believe.
+    pub authority: PathBuf,
+    /// The shore's.
+    pub chain: PathBuf,
+    /// Its private key.
+    pub key: PathBuf,
+    issuer_key: PathBuf,
+}
+
+impl Certificates {
+    /// Makes and writes them: the authority's key and that of the shore are new.
+    ///
+    /// # Errors
+    /// When the folder cannot be written.
+    pub fn make(folder: &Path) -> Result<Certificates> {
+        let made = Certificates {
+            authority: folder.join("authority.pem"),
+            chain: folder.join("chain.pem"),
+            key: folder.join("key.pem"),
+            issuer_key: folder.join("authority-key.pem"),
+        };
+        let issuer_key = KeyPair::generate()?;
+        std::fs::write(&made.issuer_key, issuer_key.serialize_pem())?;
+        let authority = authority()?.self_signed(&issuer_key)?;
+        std::fs::write(&made.authority, authority.pem())?;
+        made.renew(1)?;
+        Ok(made)
+    }
+
+    /// Writes a new certificate for the shore that ends on the first of January so
+    /// many years from 2126.
+    ///
+    /// # Errors
+    /// When the files cannot be read or written.
+    pub fn renew(&self, years: i32) -> Result<()> {
+        let issuer_key = KeyPair::from_pem(&std::fs::read_to_string(&self.issuer_key)?)?;
+        let issuer = Issuer::new(authority()?, issuer_key);
+        let key = KeyPair::generate()?;
+        let mut of_shore = CertificateParams::new([SHORE.to_string()])?;
+        of_shore.not_before = rcgen::date_time_ymd(2020, 1, 1);
+        of_shore.not_after = rcgen::date_time_ymd(2126 + years, 1, 1);
+        std::fs::write(&self.key, key.serialize_pem())?;
+        std::fs::write(&self.chain, of_shore.signed_by(&key, &issuer)?.pem())?;
+        Ok(())
+    }
+}
+
+fn authority() -> Result<CertificateParams> {
+    let mut authority = CertificateParams::new(Vec::<String>::new())?;
+    authority.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
+    Ok(authority)
+}
+
+/// Fails unless both ends used the link: a test on one that they went round proves
+/// nothing.
+///
+/// # Errors
+/// When one did not.
+pub fn ensure_used(tally: &Tally) -> Result<()> {
+    ensure!(tally.to_shore.packets > 0, "the ship never called");
+    ensure!(tally.to_ship.packets > 0, "the shore never answered");
+    Ok(())
+}
