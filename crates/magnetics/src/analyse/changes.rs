@@ -1,14 +1,15 @@
 //! Changes found among the readings of one epoch of the logbook: the epochs that
 //! they make of it, and what they say of its samples.
 
+use super::epoch::Reference;
 use super::logbook::{LogbookEntry, LogbookKind};
-use super::reading::{Reading, heading_reading};
+use super::reading::Reading;
 use super::{Epoch, SampleReason};
 use crate::change::{
     Cause, Change, Circumstances, Event, Given, Snapshot, Step, What, at_port, causes, detect,
 };
 use crate::estimate::Prior;
-use crate::fit::{HeadingReading, Observation, refer};
+use crate::fit::{HeadingReading, Observation};
 use crate::model::{Model, Parameters};
 use crate::ship::EarthField;
 use crate::time::Timestamp;
@@ -48,40 +49,33 @@ struct Row {
 /// passing disturbance or a failed reference spoilt.
 pub(super) fn find(
     readings: &mut [Reading],
+    reference: &Reference,
     logbook: &[LogbookEntry],
     prior: &Prior,
-    one_constant_sd_deg: f64,
 ) -> Found {
     let mut found = Found {
         changes: Vec::new(),
         boundaries: Vec::new(),
     };
-    let (indices, heading_readings): (Vec<usize>, Vec<HeadingReading>) = readings
-        .iter()
-        .enumerate()
-        .filter(|(_, r)| {
-            matches!(
-                r.diagnostic.reason,
-                None | Some(SampleReason::MagneticCargo)
-            )
-        })
-        .filter_map(|(index, reading)| Some((index, heading_reading(reading)?)))
-        .unzip();
-    let Ok(referred) = refer(&heading_readings, one_constant_sd_deg) else {
-        return found;
+    let usable = |reading: &Reading| {
+        matches!(
+            reading.diagnostic.reason,
+            None | Some(SampleReason::MagneticCargo)
+        )
     };
-    faults(
-        &heading_readings,
-        &referred.observations,
-        &mut found.changes,
-    );
-    let rows: Vec<Row> = indices
+    let usable: Vec<usize> = (0..readings.len())
+        .filter(|&index| usable(&readings[index]))
+        .collect();
+    let read = usable
+        .iter()
+        .filter_map(|&index| Some((reference.readings[index]?, reference.observations[index])));
+    faults(&read.collect::<Vec<_>>(), &mut found.changes);
+    let rows: Vec<Row> = usable
         .into_iter()
-        .zip(referred.observations)
-        .filter_map(|(reading, observation)| {
+        .filter_map(|reading| {
             Some(Row {
                 reading,
-                observation: observation?,
+                observation: reference.observations[reading]?,
             })
         })
         .collect();
@@ -207,13 +201,9 @@ fn cause_of(kind: LogbookKind) -> Option<Cause> {
 }
 
 /// Stretches over which a reference was dropped.
-fn faults(
-    readings: &[HeadingReading],
-    observations: &[Option<Observation>],
-    changes: &mut Vec<Change>,
-) {
+fn faults(readings: &[(HeadingReading, Option<Observation>)], changes: &mut Vec<Change>) {
     let mut dropped: Vec<(usize, Timestamp, &'static str)> = Vec::new();
-    for (index, (reading, observation)) in readings.iter().zip(observations).enumerate() {
+    for (index, (reading, observation)) in readings.iter().enumerate() {
         let both = reading.gyro.is_some() && reading.satellite.is_some();
         let share = observation.as_ref().map(|o| o.gyro_share);
         let which = match share {
@@ -229,7 +219,7 @@ fn faults(
     let spells = dropped.chunk_by(|a, b| b.1.seconds_since(a.1) < FAULT_GAP_S);
     for spell in spells.filter(|spell| spell.len() >= FAULT_ROWS) {
         let (first, last) = (&spell[0], &spell[spell.len() - 1]);
-        let before = first.0.checked_sub(1).and_then(|i| readings[i].time);
+        let before = first.0.checked_sub(1).and_then(|i| readings[i].0.time);
         let goes_on = last.0 + 1 == readings.len();
         changes.push(Change {
             from: first.1,

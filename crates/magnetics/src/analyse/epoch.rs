@@ -3,11 +3,11 @@
 use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
 use super::reading::heading_reading;
-use super::settings::AnalysisSettings;
 use super::{Epoch, SampleReason};
 use crate::estimate::Prior;
 use crate::fit::{
-    HeadingReading, REJECTED_BELOW, RobustFit, RobustOptions, fit_known_ship, fit_robust, refer,
+    FitError, HeadingReading, Observation, REJECTED_BELOW, ReferenceCheck, RobustFit,
+    RobustOptions, fit_known_ship, fit_robust, refer,
 };
 use crate::model::Model;
 use crate::time::Timestamp;
@@ -52,7 +52,7 @@ pub(super) fn empty_epoch(from: Option<Timestamp>, begun_by: Option<LogbookKind>
 /// compass itself were moved, for then everything may be another.
 pub(super) fn prior(
     epoch: &Epoch,
-    before: Option<&Model>,
+    before: Option<&Epoch>,
     reference_constant_sd_deg: f64,
 ) -> Prior {
     let leaves_the_iron = match epoch.begun_by {
@@ -61,80 +61,92 @@ pub(super) fn prior(
     };
     before
         .filter(|_| leaves_the_iron)
-        .and_then(|model| Prior::after_upset(model, reference_constant_sd_deg))
+        .and_then(|before| {
+            let stood_in_it = before.references.as_ref()?.constant_sd_deg;
+            Prior::after_upset(before.model.as_ref()?, stood_in_it)
+        })
         .unwrap_or_else(|| Prior::population(reference_constant_sd_deg))
 }
 
-/// Fits an epoch's model to the readings in `own`, and those in `earlier` in which
-/// the ship was the same, and notes in each of its own what became of it; `before`
-/// is the model of the epoch before.
-pub(super) fn fit_epoch(
-    epoch: &mut Epoch,
-    before: Option<&Model>,
-    readings: &mut [Reading],
-    (earlier, own): (&[Range<usize>], Range<usize>),
-    settings: &AnalysisSettings,
-) {
+/// The readings of one epoch of the logbook held against their references, once:
+/// parts of it have the same reference, so that a change between them is the ship's.
+pub(super) struct Reference {
+    /// For each reading of the epoch, in order; none where there was no reference
+    /// or none to be believed.
+    pub(super) observations: Vec<Option<Observation>>,
+    /// For those that were held against a reference, what they said.
+    pub(super) readings: Vec<Option<HeadingReading>>,
+    pub(super) check: ReferenceCheck,
+}
+
+/// Holds readings against their references.
+pub(super) fn reference(
+    readings: &[Reading],
+    one_constant_sd_deg: f64,
+) -> Result<Reference, FitError> {
+    let read: Vec<Option<HeadingReading>> = readings.iter().map(heading_reading).collect();
+    let known: Vec<HeadingReading> = read.iter().copied().flatten().collect();
+    let referred = refer(&known, one_constant_sd_deg)?;
+    let mut observed = referred.observations.into_iter();
+    let observations = read
+        .iter()
+        .map(|read| read.and_then(|_| observed.next().flatten()));
+    Ok(Reference {
+        observations: observations.collect(),
+        readings: read,
+        check: referred.check,
+    })
+}
+
+/// Says of every reading with a reference that no model can be had of it.
+pub(super) fn refuse(epoch: &mut Epoch, readings: &mut [Reading], refusal: FitError) {
+    epoch.data_from = readings.first().map(|r| r.sample.time);
+    epoch.data_until = readings.last().map(|r| r.sample.time);
+    let referred = readings.iter_mut().filter(|r| heading_reading(r).is_some());
+    for reading in referred {
+        let reason = &mut reading.diagnostic.reason;
+        *reason = reason.or(Some(SampleReason::ReferenceFailed));
+    }
+    epoch.refusal = Some(refusal);
+}
+
+/// What an epoch's model is fitted to: places among the readings of one epoch of
+/// the logbook.
+pub(super) struct Stretch<'a> {
+    /// Those of earlier epochs in which the ship was the same.
+    pub(super) earlier: Vec<Range<usize>>,
+    pub(super) own: Range<usize>,
+    pub(super) prior: Prior,
+    /// Whether the prior is of this very ship.
+    pub(super) is_known: bool,
+    pub(super) reference: &'a Reference,
+}
+
+/// Fits an epoch's model, and notes in each of its own readings what became of it.
+pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], stretch: &Stretch<'_>) {
+    let reference = stretch.reference;
+    let own = &stretch.own;
+    epoch.references = Some(reference.check);
     epoch.data_from = readings[own.clone()].first().map(|r| r.sample.time);
     epoch.data_until = readings[own.clone()].last().map(|r| r.sample.time);
-    let all = earlier.iter().cloned().flatten().chain(own.clone());
-    let (indices, heading_readings): (Vec<usize>, Vec<HeadingReading>) = all
-        .filter_map(|index| Some((index, heading_reading(&readings[index])?)))
-        .unzip();
-    let referred = match refer(&heading_readings, settings.reference_constant_sd_deg) {
-        Ok(referred) => referred,
-        Err(refusal) => {
-            for index in indices.into_iter().filter(|index| own.contains(index)) {
-                let reason = &mut readings[index].diagnostic.reason;
-                *reason = reason.or(Some(SampleReason::ReferenceFailed));
-            }
-            epoch.refusal = Some(refusal);
-            return;
-        }
-    };
-    let constant_sd_deg = referred.check.constant_sd_deg;
-    epoch.references = Some(referred.check);
-
-    let mut taken = Vec::new();
-    let mut observations = Vec::new();
-    for (index, observation) in indices.into_iter().zip(referred.observations) {
+    for index in own.clone() {
         let diagnostic = &mut readings[index].diagnostic;
-        if !own.contains(&index) {
-            // An earlier fit may have doubted it; this one judges for itself.
-            let usable = matches!(diagnostic.reason, None | Some(SampleReason::Outlier));
-            if let Some(observation) = observation.filter(|_| usable) {
-                taken.push(index);
-                observations.push(observation);
+        match &reference.observations[index] {
+            Some(observation) => {
+                diagnostic.deviation_deg = Some(observation.deviation.degrees_east());
             }
-            continue;
-        }
-        let Some(observation) = observation else {
-            diagnostic.reason = diagnostic.reason.or(Some(SampleReason::ReferenceFailed));
-            continue;
-        };
-        diagnostic.deviation_deg = Some(observation.deviation.degrees_east());
-        if diagnostic.reason.is_none() {
-            taken.push(index);
-            observations.push(observation);
+            None if reference.readings[index].is_some() => {
+                diagnostic.reason = diagnostic.reason.or(Some(SampleReason::ReferenceFailed));
+            }
+            None => {}
         }
     }
-    let options = RobustOptions {
-        prior: prior(epoch, before, constant_sd_deg),
-        reference_constant_sd_deg: constant_sd_deg,
-    };
-    let fitted = if epoch.begun_by_change.is_some() && before.is_some() {
-        fit_known_ship(&observations, &options)
-    } else {
-        fit_robust(&observations, &options)
-    };
+    let (taken, fitted) = stretch.fit(readings);
     match fitted {
         Ok(fit) => {
-            note(&fit, &taken, &own, readings);
-            let mut model = fit.model;
-            let offered = earlier.iter().map(ExactSizeIterator::len).sum::<usize>() + own.len();
-            model.samples_rejected = offered as u64 - model.samples_used;
-            epoch.model = Some(model);
+            note(&fit, &taken, own, readings);
             epoch.noise = Some(fit.noise);
+            epoch.model = Some(stretch.count(fit.model));
         }
         Err(refusal) => {
             for index in taken.into_iter().filter(|index| own.contains(index)) {
@@ -142,6 +154,48 @@ pub(super) fn fit_epoch(
             }
             epoch.refusal = Some(refusal);
         }
+    }
+}
+
+impl Stretch<'_> {
+    /// The fit, and the places of what it was given.
+    fn fit(&self, readings: &[Reading]) -> (Vec<usize>, Result<RobustFit, FitError>) {
+        let (taken, observations) = self.taken(readings);
+        let options = RobustOptions {
+            prior: self.prior.clone(),
+            reference_constant_sd_deg: self.reference.check.constant_sd_deg,
+        };
+        let fitted = if self.is_known {
+            fit_known_ship(&observations, &options)
+        } else {
+            fit_robust(&observations, &options)
+        };
+        (taken, fitted)
+    }
+
+    /// Samples that were not offered to the fit are rejected, too.
+    fn count(&self, mut model: Model) -> Model {
+        let earlier = self.earlier.iter().map(ExactSizeIterator::len);
+        let offered = earlier.sum::<usize>() + self.own.len();
+        model.samples_rejected = offered as u64 - model.samples_used;
+        model
+    }
+
+    /// The places and observations of the readings that a fit may take.
+    fn taken(&self, readings: &[Reading]) -> (Vec<usize>, Vec<Observation>) {
+        let all = self.earlier.iter().cloned().flatten();
+        all.chain(self.own.clone())
+            .filter_map(|index| {
+                let usable = match readings[index].diagnostic.reason {
+                    None => true,
+                    // An earlier fit may have doubted it; this one judges for itself.
+                    Some(SampleReason::Outlier) => !self.own.contains(&index),
+                    Some(_) => false,
+                };
+                let observation = self.reference.observations[index].filter(|_| usable)?;
+                Some((index, observation))
+            })
+            .unzip()
     }
 }
 

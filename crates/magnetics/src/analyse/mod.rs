@@ -25,14 +25,14 @@ use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
 use changes::{Found, find, sharpen};
-use epoch::{empty_epoch, epochs, fit_epoch, prior};
+use epoch::{Reference, Stretch, empty_epoch, epochs, fit_epoch, prior, reference, refuse};
 use reading::{Reading, readings};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-3";
+pub const ESTIMATOR: &str = "state-space-4";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -201,6 +201,7 @@ pub fn analyse(
 #[derive(Default)]
 struct Course {
     epochs: Vec<Epoch>,
+    /// Places among those of the epoch of the logbook.
     ranges: Vec<Range<usize>>,
     changes: Vec<Change>,
 }
@@ -217,17 +218,21 @@ impl Course {
         let place = |time: Timestamp| readings.partition_point(|r| r.sample.time < time);
         let begin = epoch.from.map_or(0, place);
         let end = epoch.to.map_or(readings.len(), place);
-        let before = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
         let one_sd_deg = settings.reference_constant_sd_deg;
-        let known = prior(&epoch, before, one_sd_deg);
-        let mut found = find(&mut readings[begin..end], logbook, &known, one_sd_deg);
         let expected = self.expect(&epoch, begin, end);
         let first = self.epochs.len();
-        if found.boundaries.is_empty() {
-            self.add(epoch, None, begin..end, readings, settings);
-            self.changes.append(&mut found.changes);
-        } else {
-            self.split(epoch, found, (begin, end), readings, settings);
+        let own = &mut readings[begin..end];
+        match reference(own, one_sd_deg) {
+            Ok(reference) => {
+                let known = prior(&epoch, self.epochs.last(), one_sd_deg);
+                let found = find(own, &reference, logbook, &known);
+                self.split(epoch, found, own, &reference);
+            }
+            Err(refusal) => {
+                let mut epoch = epoch;
+                refuse(&mut epoch, own, refusal);
+                self.push(epoch, 0..own.len());
+            }
         }
         if let Some(mut change) = expected {
             let sides = first.checked_sub(1).map(|i| &self.epochs[i]);
@@ -243,39 +248,34 @@ impl Course {
         &mut self,
         mut epoch: Epoch,
         mut found: Found,
-        (begin, end): (usize, usize),
         readings: &mut [Reading],
-        settings: &AnalysisSettings,
+        reference: &Reference,
     ) {
         let until = epoch.to;
         let boundaries = std::mem::take(&mut found.boundaries);
         // The epoch in which each change happened.
         let mut happened_in = vec![None; found.changes.len()];
-        let mut resumes = None;
-        let mut from = begin;
+        let mut from = 0;
         for boundary in boundaries {
             let at = boundary.at;
             let is_later = epoch.from.is_none_or(|begun| begun < at);
             if !is_later || until.is_some_and(|until| until <= at) {
                 continue;
             }
-            let to = readings
-                .partition_point(|r| r.sample.time < at)
-                .clamp(from, end);
+            let to = readings.partition_point(|r| r.sample.time < at).max(from);
             let mut next = empty_epoch(Some(at), None);
             next.begun_by_change = Some(found.changes[boundary.change].cause);
             epoch.to = Some(at);
-            self.add(epoch, resumes, from..to, readings, settings);
+            self.add(epoch, from..to, readings, reference);
             if boundary.resumes {
-                resumes = happened_in[boundary.change];
+                next.resumes = happened_in[boundary.change];
             } else {
                 happened_in[boundary.change] = Some(self.epochs.len() - 1);
-                resumes = None;
             }
             (epoch, from) = (next, to);
         }
         epoch.to = until;
-        self.add(epoch, resumes, from..end, readings, settings);
+        self.add(epoch, from..readings.len(), readings, reference);
         for (change, happened_in) in found.changes.iter_mut().zip(happened_in) {
             let sides = happened_in.and_then(|i| self.epochs.get(i).zip(self.epochs.get(i + 1)));
             if let Some((old, new)) = sides {
@@ -289,37 +289,57 @@ impl Course {
     fn add(
         &mut self,
         mut epoch: Epoch,
-        resumes: Option<usize>,
         own: Range<usize>,
         readings: &mut [Reading],
-        settings: &AnalysisSettings,
+        reference: &Reference,
     ) {
-        if epoch.begun_by_change == Some(Cause::MagneticCargo) && resumes.is_none() {
+        if epoch.begun_by_change == Some(Cause::MagneticCargo) && epoch.resumes.is_none() {
             // They tell of nothing but the ship with her cargo: of this epoch.
             for reading in &mut readings[own.clone()] {
                 let reason = &mut reading.diagnostic.reason;
                 *reason = reason.filter(|reason| *reason != SampleReason::MagneticCargo);
             }
         }
-        epoch.resumes = resumes;
+        let stretch = self.stretch(&epoch, own.clone(), reference);
+        fit_epoch(&mut epoch, readings, &stretch);
+        self.push(epoch, own);
+    }
+
+    /// What an epoch that follows the last is to be fitted to.
+    fn stretch<'a>(
+        &self,
+        epoch: &Epoch,
+        own: Range<usize>,
+        reference: &'a Reference,
+    ) -> Stretch<'a> {
         let mut earlier = Vec::new();
-        let mut same = resumes;
+        let mut root = None;
+        let mut same = epoch.resumes;
         while let Some(place) = same {
             earlier.insert(0, self.ranges[place].clone());
+            root = Some(place);
             same = self.epochs[place].resumes;
         }
-        let before = match resumes {
-            // It is fitted to all that its prior would come from.
-            Some(_) => None,
-            None => self.epochs.last().and_then(|epoch| epoch.model.clone()),
+        // What was known before the first of the epochs in which she was the same.
+        let (first, before) = match root {
+            Some(root) => (&self.epochs[root], root.checked_sub(1)),
+            None => (epoch, self.epochs.len().checked_sub(1)),
         };
-        fit_epoch(
-            &mut epoch,
-            before.as_ref(),
-            readings,
-            (&earlier, own.clone()),
-            settings,
-        );
+        // One that was too short for a model tells nothing; the one before it does.
+        let before = before.and_then(|last| {
+            let mut back = self.epochs[..=last].iter().rev();
+            back.find(|epoch| epoch.model.is_some() || epoch.begun_by_change.is_none())
+        });
+        Stretch {
+            earlier,
+            own,
+            prior: prior(first, before, reference.check.constant_sd_deg),
+            is_known: first.begun_by_change.is_some() && before.is_some_and(|b| b.model.is_some()),
+            reference,
+        }
+    }
+
+    fn push(&mut self, epoch: Epoch, own: Range<usize>) {
         self.epochs.push(epoch);
         self.ranges.push(own);
     }

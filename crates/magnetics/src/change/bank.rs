@@ -205,16 +205,47 @@ pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
 /// The filter with the ship's own parameters as `base` had them.
 pub(super) fn set_back(now: &Filter, base: &Filter) -> Filter {
     let mut copy = now.clone();
+    copy.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
     for i in 0..PARAMETERS {
-        copy.mean[i] = base.mean[i];
         for j in 0..STATES {
-            copy.covariance[i][j] = 0.0;
-            copy.covariance[j][i] = 0.0;
+            let of_the_ship = j < PARAMETERS;
+            let known = if of_the_ship {
+                base.covariance[i][j]
+            } else {
+                0.0
+            };
+            copy.covariance[i][j] = known;
+            copy.covariance[j][i] = known;
         }
-        copy.covariance[i][..PARAMETERS].copy_from_slice(&base.covariance[i][..PARAMETERS]);
     }
     for j in [0, 2] {
         copy.covariance[j][j] += SLACK * SLACK;
     }
     copy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::{NoiseLevels, Prior};
+
+    #[test]
+    fn a_ship_set_back_is_known_as_she_was_and_no_worse() {
+        let noise = Noise::new(&NoiseLevels::TYPICAL);
+        let mut base = Filter::new(&Prior::population(0.5), &noise);
+        for (i, row) in base.covariance.iter_mut().enumerate() {
+            for (j, c) in row.iter_mut().enumerate() {
+                *c += 0.01 / (1.0 + i.abs_diff(j) as f64);
+            }
+        }
+        let back = set_back(&upset(&base, Kind::Step), &base);
+        for i in 0..STATES {
+            for j in 0..STATES {
+                let (c, mirrored) = (back.covariance[i][j], back.covariance[j][i]);
+                assert!((c - mirrored).abs() < 1e-12, "{i}, {j}: {c} and {mirrored}");
+            }
+        }
+        assert!((back.covariance[1][3] - base.covariance[1][3]).abs() < 1e-12);
+        assert!(back.covariance[1][CONSTANT_STATE].abs() < 1e-12);
+    }
 }

@@ -23,6 +23,8 @@ pub(crate) enum Event {
     Lightning(f64),
     /// All seven parameters, from a port call to the one after the next.
     Cargo,
+    /// The same for good, and nobody wrote it down.
+    Refit,
     /// The gyro steps by so many degrees, for some days.
     GyroFault(f64),
 }
@@ -72,6 +74,7 @@ pub(crate) enum Name {
     Step,
     Lightning,
     Cargo,
+    Refit,
     GyroFault,
     Storm,
     Anomaly,
@@ -185,7 +188,7 @@ impl World {
                 self.note(name, minute);
                 self.state = Stage::Over;
             }
-            (Stage::ToCome, Event::Cargo) if due && arrived => {
+            (Stage::ToCome, Event::Cargo | Event::Refit) if due && arrived => {
                 self.base = truth.parameters.to_array();
                 let sd = [600.0, 0.005, 600.0, 0.0025, 0.008, 0.003, 0.003];
                 let mut laden = self.base;
@@ -193,8 +196,13 @@ impl World {
                     *p += sd * gauss(rng);
                 }
                 truth.parameters = binnacle_magnetics::model::Parameters::from_array(laden);
-                self.note(Name::Cargo, minute);
-                self.state = Stage::Laden(2);
+                let is_cargo = plan.event == Event::Cargo;
+                self.note(if is_cargo { Name::Cargo } else { Name::Refit }, minute);
+                self.state = if is_cargo {
+                    Stage::Laden(2)
+                } else {
+                    Stage::Over
+                };
             }
             (Stage::Laden(calls), _) if arrived => {
                 self.state = Stage::Laden(calls - 1);
