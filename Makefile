@@ -55,7 +55,7 @@ study-changes: setup ## Measure how changes are found on simulated fleets: delay
 methods: setup ## Compare the published fit, least squares, Huber and Binnacle on voyages
 	$(CARGO) run --locked --release -p binnacle-magnetics --example methods
 
-bench-peer: setup ## Compare the fit with the same model in NumPy, in pairs
+bench-peer: setup ## Compare the fit with the same model in statsmodels and NumPy, in pairs
 	scripts/bench-peer
 
 clean: ## Remove what was built (tools in .tools are kept)

@@ -2,7 +2,8 @@
 //! observations, writes them as CSV for the peer to fit, and prints as JSON what
 //! the product makes of them and how long it takes.
 //!
-//! `peer VOYAGE.csv`, with Linux's count of processor time in `/proc`.
+//! `peer VOYAGE.csv usual|calm`, calm being without storms and wild readings; with
+//! Linux's count of processor time in `/proc`.
 
 #![allow(clippy::unwrap_used)] // a benchmark, run by hand
 
@@ -43,7 +44,7 @@ struct Answer {
 
 fn main() {
     let path = std::env::args().nth(1).expect("the CSV to write");
-    let voyage = sail(SEED, Variety::Medium, DAYS, &Faults::USUAL);
+    let voyage = sail(SEED, Variety::Medium, DAYS, &faults());
     std::fs::write(&path, csv(&voyage.observations)).unwrap();
     let mut seconds = Vec::new();
     let mut processor_seconds = Vec::new();
@@ -67,6 +68,18 @@ fn main() {
         z_nt: voyage.truth.z_nt,
     };
     println!("{}", serde_json::to_string(&answer).unwrap());
+}
+
+fn faults() -> Faults {
+    match std::env::args().nth(2).as_deref() {
+        Some("usual") => Faults::USUAL,
+        Some("calm") => Faults {
+            outliers: 0.0,
+            storms_per_month: 0.0,
+            ..Faults::USUAL
+        },
+        other => panic!("{other:?}: expected usual or calm"),
+    }
 }
 
 fn csv(observations: &[Observation]) -> String {

@@ -1,7 +1,7 @@
 """Says whether both sides found the same ship, and how their times compare.
 
-`compare.py FOLDER PAIRS` with what `scripts/bench-peer` left there; fails when an
-unknown differs by more than a thousandth of its standard error.
+`compare.py FOLDER PAIRS PEER APART` with what `scripts/bench-peer` left there; fails when
+an unknown differs by more than APART of its standard error.
 """
 
 import json
@@ -10,25 +10,34 @@ import statistics
 import sys
 
 folder, pairs = pathlib.Path(sys.argv[1]), int(sys.argv[2])
+name, allowed = sys.argv[3], float(sys.argv[4])
 
 
 def read(side, pair):
     return json.loads((folder / f"{side}-{pair}.json").read_text())
 
 
-ratios, product_seconds, peer_seconds = [], [], []
+ratios, product_seconds, peer_seconds, furthest = [], [], [], 0.0
 for pair in range(1, pairs + 1):
-    product, peer = read("product", pair), read("peer", pair)
+    product, peer = read(f"product-{name}", pair), read(name, pair)
     for k, (ours, theirs) in enumerate(zip(product["unknowns"], peer["unknowns"])):
         standard_error = product["covariance"][k][k] ** 0.5
-        if abs(ours - theirs) > 1e-3 * standard_error:
-            sys.exit(f"unknown {k}: {ours} by the product, {theirs} by NumPy")
+        apart = abs(ours - theirs) / standard_error
+        furthest = max(furthest, apart)
+        if not apart <= allowed:
+            sys.exit(
+                f"unknown {k}: {ours} by the product, {theirs} by {name}:"
+                f" {apart:.2g} standard errors apart, {allowed:g} allowed"
+            )
     product_seconds.append(product["processor_seconds"])
     peer_seconds.append(peer["processor_seconds"])
     ratios.append(peer["processor_seconds"] / product["processor_seconds"])
 
-print(f"{product['observations']} observations, the same ship by both, {pairs} pairs")
+print(
+    f"{product['observations']} observations, the same ship by both"
+    f" (at most {furthest:.2g} standard errors apart), {pairs} pairs"
+)
 print(f"product {statistics.median(product_seconds):.3f} s of processor, median")
-print(f"NumPy {statistics.median(peer_seconds):.3f} s of processor, median")
+print(f"{name} {statistics.median(peer_seconds):.3g} s of processor, median")
 low, middle, high = min(ratios), statistics.median(ratios), max(ratios)
 print(f"ratio {low:.0f} to {high:.0f}, median {middle:.0f}")
