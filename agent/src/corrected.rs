@@ -141,6 +141,7 @@ mod tests {
             id: uuid::Uuid::from_u128(1),
             version: 1,
             data_until: Timestamp::parse("2026-11-20T00:00:00Z").unwrap(),
+            replaces: None,
             model: Model {
                 parameters_over_lambda: Parameters {
                     bx_nt,

@@ -326,6 +326,7 @@ impl Agent {
             data_until: model.data_until,
             age_days: Some(now.seconds_since(model.data_until).max(0.0) / 86_400.0),
             withdrawn: self.withdrawn.borrow().clone(),
+            replaces: model.replaces.clone(),
         })
     }
 
@@ -412,6 +413,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
             data_until: model.data_until,
             age_days: None,
             withdrawn,
+            replaces: model.replaces,
         }),
         hold: spool.hold().await?,
         link: LinkStatus {

@@ -51,6 +51,9 @@ pub(crate) struct ModelStatus {
     /// Why it holds no more; nothing is corrected by it then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) withdrawn: Option<CardWithdrawn>,
+    /// Why no card from before its epoch holds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) replaces: Option<CardWithdrawn>,
 }
 
 /// How an input is doing; counts are since the agent started.
@@ -145,6 +148,9 @@ impl Status {
                 )?;
                 if let Some(withdrawn) = &model.withdrawn {
                     writeln!(out, "           {}: not in use", withdrawn.in_words())?;
+                    writeln!(out, "           {}", CardWithdrawn::ADVICE)?;
+                } else if let Some(replaces) = &model.replaces {
+                    writeln!(out, "           {}", replaces.of_older_cards())?;
                 }
             }
             None => writeln!(out, "model      none")?,

@@ -33,6 +33,7 @@ fn model() -> ModelDownlink {
         id: Uuid::from_u128(9),
         version: 3,
         data_until: Timestamp::parse("2026-08-30T00:00:00Z").unwrap(),
+        replaces: None,
         model: Model {
             parameters_over_lambda: Parameters {
                 bx_nt: 0.0,

@@ -36,6 +36,7 @@ fn downlink(contiguous_seq: u64) -> Downlink {
     Downlink {
         contiguous_seq,
         model: None,
+        unread: None,
         card_withdrawn: None,
         settings: None,
         server_time: sample(0).time,

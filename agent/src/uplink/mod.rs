@@ -234,6 +234,7 @@ impl Uplink {
             // Enrolled anew meanwhile: this answer is for another stream.
             return Ok(Next::GoOn);
         }
+        let downlink = self.without_unread(downlink);
         match batch {
             Some(batch) => {
                 self.spool
@@ -261,9 +262,32 @@ impl Uplink {
         Ok(Next::GoOn)
     }
 
+    /// Makes the best of a model that this version cannot read: the one on board goes
+    /// on, unless that other one is of a ship altered since.
+    fn without_unread(&self, mut downlink: Downlink) -> Downlink {
+        let Some(unread) = downlink.unread.take() else {
+            return downlink;
+        };
+        tracing::error!(
+            version = unread.version,
+            "the shore sent a model that this agent cannot read: update it"
+        );
+        let model = self.tell.model.borrow();
+        let known = model.as_ref().and_then(|model| model.replaces.as_ref());
+        if unread.replaces.as_ref() != known {
+            downlink.card_withdrawn = downlink.card_withdrawn.or(unread.replaces);
+        }
+        downlink
+    }
+
     fn take_effect(&self, downlink: Downlink) {
         if let Some(model) = downlink.model {
             tracing::info!(version = model.version, "a new model is in effect");
+            let mut before = self.tell.model.borrow().clone();
+            let before = before.take().and_then(|model| model.replaces);
+            if let Some(replaces) = model.replaces.as_ref().filter(|_| before != model.replaces) {
+                tracing::warn!("{}", replaces.of_older_cards());
+            }
             self.tell.model.send_replace(Some(model));
         }
         // Only now: the model before must not hold again for a moment.
@@ -272,7 +296,7 @@ impl Uplink {
             .as_ref()
             .filter(|_| *self.tell.withdrawn.borrow() != withdrawn)
         {
-            tracing::warn!("{}", withdrawn.in_words());
+            tracing::warn!("{}: {}", withdrawn.in_words(), CardWithdrawn::ADVICE);
         }
         self.tell.withdrawn.send_replace(withdrawn);
         if let Some(settings) = downlink.settings {

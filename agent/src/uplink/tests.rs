@@ -14,7 +14,7 @@ use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::messages::{CardWithdrawn, LogbookReport};
 use rand::SeedableRng;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::sync::Mutex;
 use tempfile::TempDir;
@@ -29,6 +29,8 @@ struct Fake {
     answers: VecDeque<Response>,
     settings: Option<Settings>,
     withdrawn: Option<CardWithdrawn>,
+    /// A model as no agent knows it.
+    unreadable: Option<Value>,
     requests: u32,
     reports: Vec<(Uuid, LogbookReport)>,
     report_answers: VecDeque<Response>,
@@ -83,7 +85,7 @@ async fn put_report(
     Json(json!({ "revision": revision, "withdrawn": false })).into_response()
 }
 
-async fn get_downlink(State(fake): State<Shared>, Path(stream): Path<Uuid>) -> Json<Downlink> {
+async fn get_downlink(State(fake): State<Shared>, Path(stream): Path<Uuid>) -> Json<Value> {
     Json(downlink(&fake.lock().unwrap(), stream))
 }
 
@@ -94,15 +96,21 @@ async fn open_stream(State(fake): State<Shared>) -> Response {
     (StatusCode::CREATED, Json(json!({"stream": stream}))).into_response()
 }
 
-fn downlink(fake: &Fake, stream: Uuid) -> Downlink {
+fn downlink(fake: &Fake, stream: Uuid) -> Value {
     let contiguous_seq = (1..).take_while(|seq| fake.batches.contains_key(&(stream, *seq)));
-    Downlink {
+    let downlink = Downlink {
         contiguous_seq: contiguous_seq.last().unwrap_or(0),
         model: None,
+        unread: None,
         card_withdrawn: fake.withdrawn.clone(),
         settings: fake.settings.clone(),
         server_time: time(),
+    };
+    let mut sent = serde_json::to_value(downlink).unwrap();
+    if let Some(model) = &fake.unreadable {
+        sent["model"] = model.clone();
     }
+    sent
 }
 
 struct Rig {
@@ -508,4 +516,22 @@ async fn a_shore_that_knows_no_reports_gets_its_batches_all_the_same() {
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);
     assert_eq!(rig.standings().await, [ReportStanding::Waiting]);
+}
+
+#[tokio::test]
+async fn a_model_that_cannot_be_read_leaves_the_one_on_board_unless_the_ship_was_altered() {
+    let altered = CardWithdrawn {
+        since: time(),
+        reason: "lightning_or_shock".to_owned(),
+    };
+    for (replaces, withdrawn) in [(None, None), (Some(altered.clone()), Some(altered))] {
+        let fake = Fake {
+            unreadable: Some(json!({ "version": 9, "replaces": replaces, "model": "?" })),
+            ..Fake::default()
+        };
+        let mut rig = rig(1, fake).await;
+        rig.all_sent().await;
+        assert_eq!(rig.spool.card_withdrawn().await.unwrap(), withdrawn);
+        assert_eq!(*rig.withdrawn.borrow(), withdrawn);
+    }
 }

@@ -80,6 +80,7 @@ impl Shore {
         Downlink {
             contiguous_seq: contiguous.last().unwrap_or(0),
             model: self.model.clone(),
+            unread: None,
             card_withdrawn: None,
             settings: Some(self.settings.clone()),
             server_time: Timestamp::parse("2026-11-21T07:00:00Z").unwrap(),

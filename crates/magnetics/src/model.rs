@@ -104,6 +104,10 @@ pub enum Caution {
         /// The weakest horizontal field.
         h_nt: f64,
     },
+    /// One that a later version of the program gives, and this one does not know.
+    #[error("a caution that this version of the program does not know")]
+    #[serde(other)]
+    Other,
 }
 
 /// A fitted model: what `fit` prints, what the server stores, and what the

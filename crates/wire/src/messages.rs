@@ -45,14 +45,20 @@ pub struct OpenStreamAnswer {
 /// The answer to `PUT /api/v1/streams/{stream}/batches/{seq}`, and to
 /// `GET /api/v1/streams/{stream}/downlink`.
 ///
-/// Both take `?model={id}&settings={version}`: what the agent already has.
+/// Both take `?model={id}&settings={version}`: what the agent already has. A model that
+/// this version of the program cannot read does not spoil the rest: the shore may be
+/// years ahead of a ship.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Received")]
 pub struct Downlink {
     /// Every batch up to and including this one is durable on shore; 0 for none.
     pub contiguous_seq: u64,
     /// The current model, when it is not the one the agent has.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelDownlink>,
+    /// What is left of a model that came and cannot be read here; never sent.
+    #[serde(skip)]
+    pub unread: Option<UnreadModel>,
     /// Why the model that the agent has holds no more, while nothing has taken its
     /// place; when absent, the model holds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -64,6 +70,55 @@ pub struct Downlink {
     pub server_time: Timestamp,
 }
 
+/// A downlink as it came.
+#[derive(Deserialize)]
+#[serde(rename = "Downlink")]
+struct Received {
+    contiguous_seq: u64,
+    #[serde(default)]
+    model: Option<Sent>,
+    #[serde(default)]
+    card_withdrawn: Option<CardWithdrawn>,
+    #[serde(default)]
+    settings: Option<Settings>,
+    server_time: Timestamp,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Sent {
+    Readable(Box<ModelDownlink>),
+    Other(UnreadModel),
+}
+
+impl From<Received> for Downlink {
+    fn from(received: Received) -> Downlink {
+        let (model, unread) = match received.model {
+            Some(Sent::Readable(model)) => (Some(*model), None),
+            Some(Sent::Other(unread)) => (None, Some(unread)),
+            None => (None, None),
+        };
+        Downlink {
+            contiguous_seq: received.contiguous_seq,
+            model,
+            unread,
+            card_withdrawn: received.card_withdrawn,
+            settings: received.settings,
+            server_time: received.server_time,
+        }
+    }
+}
+
+/// What can be told of a model of a form that is not known here.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(default)]
+pub struct UnreadModel {
+    /// Counts the compass's models from 1.
+    pub version: Option<u32>,
+    /// Why no card from before its epoch holds.
+    pub replaces: Option<CardWithdrawn>,
+}
+
 /// A model as it is sent to the bridge.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelDownlink {
@@ -73,22 +128,38 @@ pub struct ModelDownlink {
     pub version: u32,
     /// The time of the last sample that went into it: its age counts from here.
     pub data_until: Timestamp,
+    /// Why no card from before its epoch holds; none in the first epoch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub replaces: Option<CardWithdrawn>,
     /// The fit itself.
     pub model: Model,
 }
 
-/// That the last model holds no more: the ship's magnetism, or the compass, was
-/// altered since, and there is no model yet of how it is now.
+/// That models from before hold no more: the ship's magnetism, or the compass, was
+/// altered since.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CardWithdrawn {
     /// Since when.
     pub since: Timestamp,
-    /// What altered it, in a word: a kind of logbook entry, or a cause that was
-    /// found. Words may be added.
+    /// What altered it, in a word: a kind of logbook entry, a cause that was found, or
+    /// `ship_as_before`. Words may be added.
     pub reason: String,
 }
 
 impl CardWithdrawn {
+    /// Of a card that has taken the place of those before: the same as a sentence.
+    pub fn of_older_cards(&self) -> String {
+        format!(
+            "no card from before {} holds ({})",
+            self.since,
+            self.reason.replace('_', " ")
+        )
+    }
+
+    /// What to do while there is no model.
+    pub const ADVICE: &str = "steer by the gyro, take an azimuth once a watch and on each new \
+        course; steady courses on other headings make a new card soonest";
+
     /// The same as a sentence without a full stop.
     pub fn in_words(&self) -> String {
         format!(
@@ -198,6 +269,54 @@ mod tests {
         assert_eq!(serde_json::from_value::<Downlink>(again).unwrap(), downlink);
         let model = downlink.model.unwrap();
         assert_eq!((model.version, model.model.samples_used), (4, 0));
+    }
+
+    #[test]
+    fn a_model_of_another_form_does_not_spoil_the_downlink() {
+        let replaces = json!({ "since": "2026-11-20T00:00:00Z", "reason": "lightning_or_shock" });
+        for model in [
+            json!({ "version": 2, "parameters_over_lambda": {} }),
+            json!("a word"),
+        ] {
+            let sent = json!({
+                "contiguous_seq": 12, "server_time": "2026-11-21T07:00:00Z",
+                "settings": Settings::default(),
+                "model": { "id": ID, "version": 5, "data_until": "2026-11-20T00:00:00Z",
+                           "replaces": replaces, "model": model },
+            });
+            let downlink: Downlink = serde_json::from_value(sent).unwrap();
+            assert_eq!((downlink.contiguous_seq, &downlink.model), (12, &None));
+            assert!(downlink.settings.is_some());
+            let unread = downlink.unread.unwrap();
+            assert_eq!(unread.version, Some(5));
+            assert_eq!(unread.replaces.unwrap().reason, "lightning_or_shock");
+        }
+    }
+
+    #[test]
+    fn a_caution_from_a_later_version_does_not_spoil_the_model() {
+        let nothing = json!({
+            "bx_nt": 0.0, "chi13": 0.0, "by_nt": 0.0, "chi23": 0.0, "chi11_minus_chi22": 0.0,
+            "chi12": 0.0, "chi21": 0.0, "constant_deg": 0.0,
+        });
+        let sent = json!({
+            "contiguous_seq": 12, "server_time": "2026-11-21T07:00:00Z",
+            "model": {
+                "id": ID, "version": 5, "data_until": "2026-11-20T00:00:00Z",
+                "model": {
+                    "parameters_over_lambda": nothing,
+                    "quality": {
+                        "effective_samples": 9.0, "condition": null, "from_data": nothing,
+                        "cautions": [{ "caution": "full_moon", "phase": 0.5 },
+                                     { "caution": "weak_field", "h_nt": 5000.0 }],
+                    },
+                },
+            },
+        });
+        let downlink: Downlink = serde_json::from_value(sent).unwrap();
+        let cautions = downlink.model.unwrap().model.quality.unwrap().cautions;
+        assert_eq!(cautions.len(), 2);
+        assert!(cautions[1].to_string().contains("5000 nT"));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::ids::{CompassId, ModelId, VesselId};
 use crate::models::{self, ModelJson, StoredModel};
 use crate::time::Time;
 use binnacle_magnetics::advice::SailNext;
-use binnacle_magnetics::analyse::{Analysis, SampleDiagnostic};
+use binnacle_magnetics::analyse::{Analysis, Epoch, SampleDiagnostic};
 use binnacle_magnetics::coverage::Coverage;
 use binnacle_magnetics::fit::{FitError, ReferenceCheck};
 use binnacle_wire::messages::CardWithdrawn;
@@ -131,21 +131,16 @@ pub async fn chunks(
 /// no more.
 pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
-    let refusal = analysis
-        .current_epoch()
-        .and_then(|epoch| epoch.refusal.as_ref())
-        .map(ToString::to_string);
     let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
     let withdrawn = withdrawal(analysis)?;
     execute!(
         &mut *tx,
-        "INSERT INTO analyses (vessel_id, compass_id, input_hash, estimator, analysed_at, refusal,
-                               epochs, coverage, findings, card_withdrawn_at,
-                               card_withdrawn_by)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
+        "INSERT INTO analyses (vessel_id, compass_id, input_hash, estimator, analysed_at, epochs,
+                               coverage, findings, card_withdrawn_at, card_withdrawn_by)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)
          ON CONFLICT (vessel_id, compass_id) DO UPDATE
          SET input_hash = excluded.input_hash, estimator = excluded.estimator,
-             analysed_at = excluded.analysed_at, refusal = excluded.refusal,
+             analysed_at = excluded.analysed_at,
              epochs = excluded.epochs, coverage = excluded.coverage,
              findings = excluded.findings, card_withdrawn_at = excluded.card_withdrawn_at,
              card_withdrawn_by = excluded.card_withdrawn_by",
@@ -154,7 +149,6 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
         found.input_hash.as_str(),
         analysis.estimator.as_str(),
         now,
-        refusal,
         serde_json::to_string(&analysis.epochs)?,
         serde_json::to_string(&found.covered)?,
         serde_json::to_string(&found.findings)?,
@@ -164,7 +158,7 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
             .map(|withdrawn| withdrawn.reason.as_str())
     )?;
     save_diagnostics(tx, found).await?;
-    let Some(model) = next_model(found, now) else {
+    let Some(model) = next_model(found, now)? else {
         if withdrawn == withdrawn_before {
             return Ok(None);
         }
@@ -184,14 +178,18 @@ fn withdrawal(analysis: &Analysis) -> Result<Option<CardWithdrawn>> {
     let Some(since) = epoch.from.filter(|_| epoch.model.is_none()) else {
         return Ok(None);
     };
-    let begun_by = match epoch.begun_by {
-        Some(reported) => serde_json::to_value(reported)?,
-        None => serde_json::to_value(epoch.begun_by_change)?,
+    let reason = begun_by(epoch)?.unwrap_or_else(|| "change".to_owned());
+    Ok(Some(CardWithdrawn { since, reason }))
+}
+
+/// What began an epoch, in a word: what people reported, or the change that was found.
+fn begun_by(epoch: &Epoch) -> Result<Option<String>> {
+    let word = match (epoch.begun_by, epoch.begun_by_change) {
+        (Some(reported), _) => serde_json::to_value(reported)?,
+        (None, Some(_)) if epoch.resumes.is_some() => "ship_as_before".into(),
+        (None, found) => serde_json::to_value(found)?,
     };
-    Ok(Some(CardWithdrawn {
-        since,
-        reason: begun_by.as_str().unwrap_or("change").to_owned(),
-    }))
+    Ok(word.as_str().map(str::to_owned))
 }
 
 async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
@@ -221,10 +219,18 @@ async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
 }
 
 /// The current epoch's model as a row; none when it was refused.
-fn next_model(found: &Found, now: Time) -> Option<StoredModel> {
-    let epoch = found.analysis.current_epoch()?;
-    let place = found.analysis.last_place?;
-    Some(StoredModel {
+fn next_model(found: &Found, now: Time) -> Result<Option<StoredModel>> {
+    let epoch = found.analysis.current_epoch();
+    let model = epoch.and_then(|epoch| epoch.model.clone());
+    let (Some(epoch), Some(model)) = (epoch, model) else {
+        return Ok(None);
+    };
+    let (Some(place), Some(data_from), Some(data_until)) =
+        (found.analysis.last_place, epoch.data_from, epoch.data_until)
+    else {
+        return Ok(None);
+    };
+    Ok(Some(StoredModel {
         vessel_id: found.vessel_id,
         id: ModelId::new(),
         compass_id: found.compass_id,
@@ -234,14 +240,15 @@ fn next_model(found: &Found, now: Time) -> Option<StoredModel> {
         estimator: found.analysis.estimator.clone(),
         epoch_from: epoch.from.map(Time),
         epoch_to: epoch.to.map(Time),
-        data_from: Time(epoch.data_from?),
-        data_until: Time(epoch.data_until?),
+        epoch_begun_by: begun_by(epoch)?,
+        data_from: Time(data_from),
+        data_until: Time(data_until),
         place_at: Time(place.time),
         lat: place.position.lat_deg(),
         lon: place.position.lon_deg(),
         variation_deg: place.variation_deg,
         h_nt: place.h_nt,
         z_nt: place.z_nt,
-        model: ModelJson(epoch.model.clone()?),
-    })
+        model: ModelJson(model),
+    }))
 }

@@ -23,6 +23,7 @@ use crate::{analysis, vessels};
 use axum::extract::State;
 use binnacle_magnetics::handbook::Handbook;
 use binnacle_magnetics::ship::EarthField;
+use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -177,6 +178,14 @@ impl StoredModel {
     /// The heading with the greatest deviation, at the last sample's place.
     pub fn worst(&self) -> Option<Worst> {
         crate::deviation::worst(&self.model.0, self.earth())
+    }
+
+    /// Why no card from before the model's epoch holds.
+    pub fn replaces(&self) -> Option<CardWithdrawn> {
+        Some(CardWithdrawn {
+            since: self.epoch_from?.0,
+            reason: self.epoch_begun_by.clone()?,
+        })
     }
 
     fn earth(&self) -> EarthField {

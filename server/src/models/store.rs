@@ -19,6 +19,7 @@ pub struct StoredModel {
     pub estimator: String,
     pub epoch_from: Option<Time>,
     pub epoch_to: Option<Time>,
+    pub epoch_begun_by: Option<String>,
     pub data_from: Time,
     pub data_until: Time,
     pub place_at: Time,
@@ -162,10 +163,10 @@ pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
     execute!(
         tx,
         "INSERT INTO models (vessel_id, id, compass_id, version, created_at, input_hash, estimator,
-                             epoch_from, epoch_to, data_from, data_until,
+                             epoch_from, epoch_to, epoch_begun_by, data_from, data_until,
                              place_at, lat, lon, variation_deg, h_nt, z_nt, model)
-         SELECT $1, $2, $3, COALESCE(MAX(version), 0) + 1, $4, $5, $6, $7, $8, $9, $10,
-                $11, $12, $13, $14, $15, $16, $17
+         SELECT $1, $2, $3, COALESCE(MAX(version), 0) + 1, $4, $5, $6, $7, $8, $9, $10, $11,
+                $12, $13, $14, $15, $16, $17, $18
          FROM models WHERE vessel_id = $1 AND compass_id = $3",
         model.vessel_id,
         model.id,
@@ -175,6 +176,7 @@ pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
         model.estimator.as_str(),
         model.epoch_from,
         model.epoch_to,
+        model.epoch_begun_by.as_deref(),
         model.data_from,
         model.data_until,
         model.place_at,

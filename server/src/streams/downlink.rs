@@ -53,17 +53,21 @@ pub(super) struct ModelDownlinkSchema {
     version: u32,
     /// The time of the last sample in it.
     data_until: Time,
+    /// Why no card from before its epoch holds; none in the first epoch.
+    #[schema(required = false)]
+    replaces: Option<CardWithdrawnSchema>,
     model: ModelSchema,
 }
 
-/// That the last card holds no more.
+/// That cards from before hold no more.
 #[derive(ToSchema)]
 #[schema(as = CardWithdrawn)]
 #[allow(dead_code, reason = "describes binnacle_wire::messages::CardWithdrawn")]
 pub struct CardWithdrawnSchema {
     /// Since when.
     since: Time,
-    /// What altered the ship's magnetism or the compass: a kind of logbook entry.
+    /// What altered the ship's magnetism or the compass: a kind of logbook entry, a cause
+    /// that was found, or `ship_as_before`.
     #[schema(example = "adjustment")]
     reason: String,
 }
@@ -105,12 +109,14 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
                 id: model.id.0,
                 version: model.version as u32,
                 data_until: model.data_until.0,
+                replaces: model.replaces(),
                 // What the model rests on is for the shore; the bridge has its band.
                 model: Model {
                     quality: None,
                     ..model.model.0
                 },
             }),
+        unread: None,
         card_withdrawn,
         settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
         server_time: app.clock.now(),

@@ -959,10 +959,11 @@ export interface components {
             /** @description Whether the entry counts no more, taken back on board or ashore. */
             withdrawn: boolean;
         };
-        /** @description That the last card holds no more. */
+        /** @description That cards from before hold no more. */
         CardWithdrawn: {
             /**
-             * @description What altered the ship's magnetism or the compass: a kind of logbook entry.
+             * @description What altered the ship's magnetism or the compass: a kind of logbook entry, a cause
+             *     that was found, or `ship_as_before`.
              * @example adjustment
              */
             reason: string;
@@ -1617,6 +1618,7 @@ export interface components {
             /** Format: uuid */
             id: string;
             model: components["schemas"]["Model"];
+            replaces?: components["schemas"]["CardWithdrawn"] | null;
             /**
              * Format: int32
              * @description Counts the compass's models from 1.
