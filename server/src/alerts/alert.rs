@@ -214,11 +214,17 @@ impl Cause {
         self == Cause::SilentAgent
     }
 
-    /// Whether later samples date its beginning better.
+    /// Whether it is something that happened at a time, which later samples date better.
     pub(super) fn is_dated_anew(self) -> bool {
         matches!(
             self,
-            Cause::LightningOrShock | Cause::MagneticCargo | Cause::Drift | Cause::UnknownChange
+            Cause::LightningOrShock
+                | Cause::MagneticCargo
+                | Cause::Drift
+                | Cause::UnknownChange
+                | Cause::LocalAnomaly
+                | Cause::MagneticStorm
+                | Cause::BerthSteel
         )
     }
 

@@ -1,214 +1,214 @@
 //! Alerts for what the analysis found to have changed.
 //!
-//! What always holds: a change calls for an alert until it is over, or until the
-//! epoch that it began has a model as certain as the vessel's limit asks; the latest
-//! of each cause speaks for all. Work on correctors, compass or ship is expected and
-//! calls for none.
+//! What always holds: a change of the ship calls for an alert for a week, and longer
+//! until her model is as certain again as the vessel's limit asks, unless it is over;
+//! what passes by and a reference's fault call for one while they last. The latest of
+//! each cause speaks for all. Work on correctors, compass or ship that the logbook
+//! tells of is expected and calls for none.
 
 use super::alert::{AlertWanted, Cause, Evidence, Severity};
-use super::findings::Findings;
+use super::findings::{Findings, FoundChange};
 use super::limits::AlertLimits;
-use binnacle_magnetics::change::{self, Change};
+use binnacle_magnetics::change;
 
 /// A change of deviation of this size is to be acted on, degrees.
 const WARN_DEG: f64 = 2.0;
+/// So long a change is news, even if the model has learnt it, seconds.
+const NEWS_S: f64 = 7.0 * 86_400.0;
+/// A model of fewer days than this after a change may yet turn out wrong, seconds.
+const SETTLED_S: f64 = 86_400.0;
+/// Causes less likely than this are not worth a word.
+const UNLIKELY: f64 = 0.01;
+
+/// How far the ship's model has come with a change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// It is not certain that there is one.
+    Doubtful,
+    /// No card holds.
+    NoModel,
+    /// There is a model since, of less than a day or less certain than the limit asks.
+    Interim,
+    /// The model since is as certain as the limit asks.
+    Learnt,
+    /// It is not the ship's magnetism that changed.
+    NotTheShips,
+}
 
 /// The alerts that the changes call for, one of each cause.
 pub(super) fn changed(findings: &Findings, limits: &AlertLimits) -> Vec<AlertWanted> {
     let mut wanted: Vec<AlertWanted> = Vec::new();
-    for change in findings.changes.iter().rev() {
-        let Some(cause) = cause_of(change.cause) else {
-            continue;
-        };
+    for found in findings.changes.iter().rev() {
+        let cause = cause_of(found.change.cause);
         let known = wanted.iter().any(|alert| alert.cause == cause);
-        if known || change.ended.is_some() || is_learnt(change, findings, limits) {
-            continue;
+        let stage = stage(found, findings, limits);
+        if !known && !found.expected && holds(found, stage, findings) {
+            wanted.push(alert(found, cause, stage, limits));
         }
-        wanted.push(alert(change, cause, limits));
     }
     wanted
 }
 
-fn cause_of(cause: change::Cause) -> Option<Cause> {
-    Some(match cause {
+fn cause_of(cause: change::Cause) -> Cause {
+    match cause {
         change::Cause::LightningOrShock => Cause::LightningOrShock,
         change::Cause::MagneticCargo => Cause::MagneticCargo,
-        change::Cause::AdjustmentOrRepair => return None,
         change::Cause::Drift => Cause::Drift,
         change::Cause::ReferenceFault => Cause::ReferenceFault,
         change::Cause::LocalAnomaly => Cause::LocalAnomaly,
         change::Cause::MagneticStorm => Cause::MagneticStorm,
         change::Cause::BerthSteel => Cause::BerthSteel,
-        change::Cause::Unknown => Cause::UnknownChange,
-    })
+        // Work that nobody reported is not known to be work.
+        change::Cause::AdjustmentOrRepair | change::Cause::Unknown => Cause::UnknownChange,
+    }
 }
 
-/// Whether the model of the epoch since then is as certain as is asked.
-fn is_learnt(change: &Change, findings: &Findings, limits: &AlertLimits) -> bool {
-    let since = findings.epoch_from.is_some_and(|from| from >= change.from);
-    let band_deg = findings.widest_band95_deg.unwrap_or(f64::INFINITY);
-    change.cause.is_the_ships() && since && band_deg <= limits.band95_deg
-}
-
-fn alert(change: &Change, cause: Cause, limits: &AlertLimits) -> AlertWanted {
-    let size_deg = change.deviation_change_deg.map_or(0.0, f64::abs);
-    let severity = if !change.confirmed {
-        Severity::Notice
-    } else if size_deg >= limits.deviation_deg {
-        Severity::Critical
-    } else if size_deg >= WARN_DEG || cause == Cause::ReferenceFault {
-        Severity::Warning
-    } else {
-        Severity::Notice
+fn stage(found: &FoundChange, findings: &Findings, limits: &AlertLimits) -> Stage {
+    if !found.change.confirmed {
+        return Stage::Doubtful;
+    }
+    if !found.change.cause.is_the_ships() {
+        return Stage::NotTheShips;
+    }
+    let Some(band_deg) = findings.widest_band95_deg else {
+        return Stage::NoModel;
     };
+    let is_settled = findings
+        .data_until
+        .is_some_and(|until| until.seconds_since(found.change.from) >= SETTLED_S);
+    if is_settled && band_deg <= limits.band95_deg {
+        Stage::Learnt
+    } else {
+        Stage::Interim
+    }
+}
+
+fn holds(found: &FoundChange, stage: Stage, findings: &Findings) -> bool {
+    let change = &found.change;
+    if change.ended.is_some() {
+        return false;
+    }
+    if !change.cause.is_the_ships() {
+        return true;
+    }
+    let is_news = findings
+        .data_until
+        .is_some_and(|until| until.seconds_since(change.detected_at) < NEWS_S);
+    let is_of_now = findings.epoch_from.is_none_or(|from| change.from >= from);
+    is_news || (is_of_now && stage != Stage::Learnt)
+}
+
+fn alert(found: &FoundChange, cause: Cause, stage: Stage, limits: &AlertLimits) -> AlertWanted {
+    let change = &found.change;
     let mut evidence = change.evidence.clone();
-    let likely = change
-        .causes
-        .iter()
-        .filter(|other| other.probability >= 0.01);
+    let likely = change.causes.iter().filter(|c| c.probability >= UNLIKELY);
     let likely: Vec<String> = likely
-        .map(|other| {
-            let words = cause_of(other.cause).map_or("work on ship or compass", Cause::words);
-            format!("{words} {:.0} %", 100.0 * other.probability)
-        })
+        .map(|c| format!("{} {:.0} %", words(c.cause), 100.0 * c.probability))
         .collect();
     if !likely.is_empty() {
         evidence.push(format!("How likely each cause is: {}.", likely.join(", ")));
     }
     AlertWanted {
         cause,
-        severity,
+        severity: severity(found, stage, limits),
         since: change.from.into(),
-        summary: summary(change, cause),
-        advice: advice(cause),
+        summary: summary(found, stage),
+        advice: advice(change.cause, stage),
         evidence: Evidence(evidence),
     }
 }
 
-fn summary(change: &Change, cause: Cause) -> String {
-    let doubt = if change.confirmed {
-        ""
+/// As bad as the deviation that it causes where the ship is now.
+fn severity(found: &FoundChange, stage: Stage, limits: &AlertLimits) -> Severity {
+    let size_deg = found.size_deg.unwrap_or(0.0);
+    let by_size = if size_deg >= limits.deviation_deg {
+        Severity::Critical
+    } else if size_deg >= WARN_DEG || found.change.cause == change::Cause::ReferenceFault {
+        Severity::Warning
     } else {
-        " It is not certain yet."
+        Severity::Notice
     };
-    let words = cause.words();
-    match change.deviation_change_deg {
-        Some(degrees) if change.cause.is_the_ships() => format!(
-            "Deviation changed by up to {:.1}° since about {}; most likely: {words}.{doubt}",
-            degrees.abs(),
-            change.from
-        ),
-        _ => format!(
-            "Since about {} something disturbs: {words}.{doubt}",
-            change.from
-        ),
+    match stage {
+        Stage::Doubtful => Severity::Notice,
+        // The compass can be relied on again, by the new model; what passes spoils no
+        // model.
+        Stage::Learnt | Stage::NotTheShips => by_size.min(Severity::Warning),
+        Stage::NoModel | Stage::Interim => by_size,
     }
 }
 
-fn advice(cause: Cause) -> &'static str {
+fn words(cause: change::Cause) -> &'static str {
     match cause {
-        Cause::MagneticCargo => {
-            "Steer by the gyro and take an azimuth once a watch and after each large alteration \
-             of course. Report the cargo in the logbook; the model from before it is used again \
-             once it is discharged."
+        change::Cause::AdjustmentOrRepair => "work on ship or compass that nobody reported",
+        change::Cause::Unknown => "something unknown",
+        change::Cause::ReferenceFault => "a fault of gyro or satellite compass",
+        known => cause_of(known).words(),
+    }
+}
+
+fn summary(found: &FoundChange, stage: Stage) -> String {
+    let change = &found.change;
+    let (since, cause) = (change.from, words(change.cause));
+    let size = found
+        .size_deg
+        .map_or(String::new(), |degrees| format!(" by up to {degrees:.1}°"));
+    match stage {
+        Stage::Doubtful => format!(
+            "Since about {since} the compass may be astray{size}; perhaps {cause}. It is not \
+             certain yet."
+        ),
+        Stage::NotTheShips => format!(
+            "Since about {since} the measured deviation is astray{size}; most likely {cause}, \
+             not the ship."
+        ),
+        Stage::NoModel | Stage::Interim | Stage::Learnt => {
+            format!("Since about {since} the deviation is another{size}; most likely {cause}.")
         }
-        Cause::ReferenceFault => {
+    }
+}
+
+fn advice(cause: change::Cause, stage: Stage) -> &'static str {
+    match (cause, stage) {
+        (change::Cause::ReferenceFault, _) => {
             "Check gyro and satellite compass against an azimuth. The magnetic compass itself is \
              not suspected."
         }
-        Cause::LocalAnomaly | Cause::MagneticStorm | Cause::BerthSteel => {
-            "Rely on the gyro until it is over. Nothing needs to be adjusted: the samples taken \
+        (_, Stage::Doubtful) => {
+            "Take an azimuth now and once a watch, and report in the logbook what may have \
+             happened. The card holds until the next samples tell."
+        }
+        (_, Stage::NotTheShips) => {
+            "Steer by the gyro until it is over. Nothing needs to be adjusted: the samples taken \
              meanwhile are left out of the model."
         }
-        _ => {
-            "Do not use the old deviation card. Steer by the gyro, take an azimuth once a watch \
-             and on each new course, and report what happened in the logbook. Expect an \
-             adjustment if the deviation stays large."
+        (change::Cause::MagneticCargo, Stage::NoModel) => {
+            "No card holds with this cargo. Steer by the gyro, take an azimuth once a watch and \
+             after each large alteration of course, and report the cargo in the logbook. The \
+             model from before is used again once it is discharged."
+        }
+        (change::Cause::MagneticCargo, _) => {
+            "Use no card from before loading. Steer by the gyro or the corrected heading, which \
+             knows the cargo, take an azimuth once a watch, and report the cargo in the logbook. \
+             The model from before is used again once it is discharged."
+        }
+        (_, Stage::NoModel) => {
+            "No card holds. Steer by the gyro, take an azimuth once a watch and on each new \
+             course, and report what happened in the logbook. Steady courses on other headings \
+             make a new model soonest; expect an adjustment."
+        }
+        (_, Stage::Interim) => {
+            "Do not use the card from before. Steer by the gyro or the corrected heading, whose \
+             band is wider for now, take an azimuth once a watch and on each new course, and \
+             report what happened in the logbook. Expect an adjustment if the deviation stays \
+             large."
+        }
+        (_, Stage::Learnt) => {
+            "Put up a new card: the one from before does not hold. The corrected heading takes \
+             the change into account. Check it by an azimuth, report what happened in the \
+             logbook, and expect an adjustment if the deviation is over the limit."
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use binnacle_magnetics::change::CauseProbability;
-    use binnacle_magnetics::time::Timestamp;
-
-    fn at(text: &str) -> Timestamp {
-        Timestamp::parse(text).unwrap()
-    }
-
-    fn found(cause: change::Cause, deviation_change_deg: f64) -> Change {
-        let from = at("2026-11-18T12:00:00Z");
-        Change {
-            from,
-            from_earliest: from,
-            from_latest: from,
-            detected_at: at("2026-11-18T14:00:00Z"),
-            confirmed: true,
-            cause,
-            causes: vec![CauseProbability {
-                cause,
-                probability: 0.9,
-            }],
-            evidence: vec!["It came at once, at sea.".to_owned()],
-            deviation_change_deg: Some(deviation_change_deg),
-            step: None,
-            ended: None,
-        }
-    }
-
-    fn alerts(changes: Vec<Change>) -> Vec<AlertWanted> {
-        let findings = Findings {
-            changes,
-            ..Findings::default()
-        };
-        changed(&findings, &AlertLimits::default())
-    }
-
-    #[test]
-    fn a_change_is_as_bad_as_the_deviation_that_it_causes() {
-        for (deviation_deg, severity) in [
-            (-6.0, Severity::Critical),
-            (3.0, Severity::Warning),
-            (1.0, Severity::Notice),
-        ] {
-            let wanted = alerts(vec![found(change::Cause::LightningOrShock, deviation_deg)]);
-            assert_eq!(wanted[0].severity, severity, "{deviation_deg}");
-            assert_eq!(wanted[0].cause, Cause::LightningOrShock);
-            assert!(wanted[0].evidence.0[1].contains("lightning or a shock 90 %"));
-        }
-        let mut doubtful = found(change::Cause::Unknown, 8.0);
-        doubtful.confirmed = false;
-        assert_eq!(alerts(vec![doubtful])[0].severity, Severity::Notice);
-    }
-
-    #[test]
-    fn what_is_over_or_expected_is_no_alert_and_the_latest_speaks_for_all() {
-        let mut over = found(change::Cause::MagneticCargo, 6.0);
-        over.ended = Some(at("2026-11-19T00:00:00Z"));
-        let expected = found(change::Cause::AdjustmentOrRepair, 6.0);
-        assert_eq!(alerts(vec![over, expected]), []);
-        let first = found(change::Cause::LightningOrShock, 3.0);
-        let mut second = first.clone();
-        second.from = at("2026-11-19T12:00:00Z");
-        let wanted = alerts(vec![first, second.clone()]);
-        assert_eq!(wanted.len(), 1);
-        assert_eq!(wanted[0].since, second.from.into());
-    }
-
-    #[test]
-    fn a_change_is_told_until_the_new_magnetism_is_known() {
-        let change = found(change::Cause::LightningOrShock, 6.0);
-        let mut findings = Findings {
-            epoch_from: Some(change.from),
-            widest_band95_deg: Some(8.0),
-            changes: vec![change],
-            ..Findings::default()
-        };
-        let limits = AlertLimits::default();
-        assert_eq!(changed(&findings, &limits).len(), 1);
-        findings.widest_band95_deg = Some(1.2);
-        assert_eq!(changed(&findings, &limits), []);
-    }
-}
+mod tests;

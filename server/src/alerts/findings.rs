@@ -1,13 +1,17 @@
 //! What of an analysis alerts are made from: small enough to be kept beside it, so
 //! that other limits make other alerts without another analysis.
 
+mod found;
+
+pub use found::FoundChange;
+
 use crate::deviation::{self, Worst};
-use binnacle_magnetics::analyse::{Analysis, Epoch, LastPlace, SampleDiagnostic};
+use binnacle_magnetics::analyse::{Analysis, Epoch, LastPlace, LogbookEntry, SampleDiagnostic};
 use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::change::Change;
 use binnacle_magnetics::fit::FitError;
 use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
+use found::found_changes;
 use serde::{Deserialize, Serialize};
 
 /// How far back `lately` reaches from the last sample, seconds.
@@ -33,7 +37,7 @@ pub struct Findings {
     pub failed_lately: Option<FailedLately>,
     /// What changed the ship's magnetism, or seemed to, in order of time.
     #[serde(default)]
-    pub changes: Vec<Change>,
+    pub changes: Vec<FoundChange>,
     /// When the current epoch began.
     #[serde(default)]
     pub epoch_from: Option<Timestamp>,
@@ -61,7 +65,7 @@ pub struct FailedLately {
 }
 
 /// What the alerts of a compass are made from.
-pub fn findings_of(analysis: &Analysis) -> Findings {
+pub fn findings_of(analysis: &Analysis, logbook: &[LogbookEntry]) -> Findings {
     let Some(epoch) = analysis.current_epoch() else {
         return Findings::default();
     };
@@ -88,7 +92,7 @@ pub fn findings_of(analysis: &Analysis) -> Findings {
             _ => None,
         },
         failed_lately: failed_lately(epoch, &analysis.samples),
-        changes: analysis.changes.clone(),
+        changes: found_changes(analysis, logbook),
         epoch_from: epoch.from,
         last_place: analysis.last_place,
     }

@@ -135,8 +135,10 @@ async fn open_or_update(
     };
     let worse = wanted.severity > known.severity;
     if known.state == State::Cleared {
-        // A person cleared it, and its cause goes on: only if it gets worse.
-        if !worse {
+        // A person cleared it, and its cause goes on: only if it gets worse, or happened
+        // again since.
+        let again = wanted.cause.is_dated_anew() && Some(wanted.since) > known.cleared_at;
+        if !worse && !again {
             return Ok(None);
         }
         store::end(tx, vessel, known.id, now).await?;

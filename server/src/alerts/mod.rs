@@ -5,7 +5,7 @@
 //! - An alert is raised, acknowledged and cleared, and kept for good. A compass has
 //!   one open alert of each cause: what goes on is updated, not repeated.
 //! - An alert clears itself when its cause is over. One that a person cleared comes
-//!   back only when its cause does, or gets worse.
+//!   back only when its cause does, gets worse, or happens again.
 //! - It comes from an analysis, in the transaction that stores the analysis, or from
 //!   the clock, when a vessel falls silent.
 //! - Every change is stored together with what tells people of it.
@@ -19,7 +19,7 @@ mod store;
 mod wanted;
 
 pub use alert::{Alert, AlertWanted, Cause, Severity, State};
-pub use findings::{Findings, findings_of};
+pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;
 pub use look::{after_analysis, for_silence, sum, watch};
 pub use store::{Standing, standing};

@@ -18,6 +18,7 @@ pub(super) struct Known {
     pub(super) advice: String,
     #[sqlx(try_from = "String")]
     pub(super) evidence: Evidence,
+    pub(super) cleared_at: Option<Time>,
 }
 
 /// What a person says of an alert.
@@ -120,7 +121,7 @@ pub(super) async fn known(
     rows!(
         in tx,
         Known,
-        "SELECT id, cause, severity, state, summary, advice, evidence FROM alerts
+        "SELECT id, cause, severity, state, summary, advice, evidence, cleared_at FROM alerts
          WHERE vessel_id = $1 AND compass_id = $2 AND holds
          ORDER BY id",
         vessel,

@@ -159,7 +159,7 @@ async fn analyse_compass(
             vessel_id,
             compass_id,
             input_hash,
-            findings: alerts::findings_of(&analysis),
+            findings: alerts::findings_of(&analysis, &input.logbook),
             analysis,
             covered,
         }))

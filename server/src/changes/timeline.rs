@@ -5,16 +5,16 @@
 
 use super::schema::{CauseProbabilitySchema, CauseSchema, StepSchema};
 use super::store::{Analysed, StoredEpoch, Version};
+use crate::alerts::FoundChange;
 use crate::analysis::RefusalSchema;
 use crate::deviation::{self, Row};
 use crate::ids::CompassId;
 use crate::logbook::LogbookKindSchema;
 use crate::time::Time;
 use binnacle_magnetics::analyse::{LastPlace, LogbookKind};
-use binnacle_magnetics::change::{Cause, CauseProbability, Change, Step};
+use binnacle_magnetics::change::{Cause, CauseProbability, Step};
 use binnacle_magnetics::fit::FitError;
 use binnacle_magnetics::ship::EarthField;
-use binnacle_magnetics::time::Timestamp;
 use serde::Serialize;
 use utoipa::ToSchema;
 
@@ -178,11 +178,7 @@ pub(super) fn timeline(
         compass_id,
         analysed_at: Some(at),
         place: place.map(Place::from),
-        changes: findings
-            .changes
-            .into_iter()
-            .map(|change| found(change, &epochs))
-            .collect(),
+        changes: findings.changes.into_iter().map(told).collect(),
         epochs: epochs
             .into_iter()
             .map(|epoch| in_line(epoch, place, versions))
@@ -236,12 +232,8 @@ fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
     Some(last.version)
 }
 
-fn found(change: Change, epochs: &[StoredEpoch]) -> ChangeFound {
-    let begun_at = |time: Timestamp| epochs.iter().position(|epoch| epoch.from == Some(time));
-    // What passes by and what a reference does begins no epoch, even at the same time.
-    let is_boundary = change.confirmed && change.cause.is_the_ships();
-    let epoch_after = Some(change.from).filter(|_| is_boundary).and_then(begun_at);
-    let epoch_ended = change.ended.filter(|_| is_boundary).and_then(begun_at);
+fn told(found: FoundChange) -> ChangeFound {
+    let change = found.change;
     ChangeFound {
         from: change.from.into(),
         from_earliest: change.from_earliest.into(),
@@ -254,8 +246,8 @@ fn found(change: Change, epochs: &[StoredEpoch]) -> ChangeFound {
         deviation_change_deg: change.deviation_change_deg,
         step: change.step,
         ended: change.ended.map(Time),
-        epoch_before: epoch_after.and_then(|after| after.checked_sub(1)),
-        epoch_after,
-        epoch_ended,
+        epoch_before: found.epoch.and_then(|after| after.checked_sub(1)),
+        epoch_after: found.epoch,
+        epoch_ended: found.epoch_ended,
     }
 }

@@ -2,34 +2,38 @@
 //! the bridge.
 
 use crate::on_both;
-use crate::support::{Shore, days_at_sea, struck, truth};
+use crate::support::{Person, Ship, Shore, days_at_sea, struck, truth};
+use binnacle_magnetics::angle::CompassHeading;
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::ship::EarthField;
 use serde_json::{Value, json};
 
 on_both!(
     a_struck_ships_timeline_has_both_epochs_with_their_curves,
     before_the_first_analysis_the_timeline_is_empty,
+    a_struck_ship_raises_one_alert_that_follows_what_is_known,
+    a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band,
+    after_discharge_the_base_model_is_back_on_the_bridge,
+    work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert,
 );
 
 const A_WHILE_S: f64 = 10.0;
+/// Twenty days at sea begin,
+const BASE: &str = "2026-10-20T00:00:00Z";
+/// and are over.
+const HIT: &str = "2026-11-09T00:00:00Z";
 
 async fn a_struck_ships_timeline_has_both_epochs_with_their_curves(shore: Shore) {
     let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let before = days_at_sea(&truth(), "2026-10-20T00:00:00Z", 20.0);
-    nao.put(1, &before).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    let nao = well_known(&shore, &ada).await;
     let calm = ada.get(&nao.path("/changes")).await.good();
     assert_eq!(calm["changes"], json!([]));
     assert_eq!(calm["epochs"].as_array().unwrap().len(), 1);
     assert_eq!(calm["epochs"][0]["model_version"], 1);
 
-    let hit = "2026-11-09T00:00:00Z";
-    nao.put(2, &days_at_sea(&struck(3000.0, 2000.0), hit, 2.0))
-        .await
-        .good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    let struck = days_at_sea(&struck(3000.0, 2000.0), HIT, 2.0);
+    send(&shore, &nao, 2, &struck).await;
     let timeline = ada.get(&nao.path("/changes")).await.good();
     let changes = timeline["changes"].as_array().unwrap();
     assert_eq!(changes.len(), 1, "{changes:?}");
@@ -82,5 +86,160 @@ async fn before_the_first_analysis_the_timeline_is_empty(shore: Shore) {
     assert_eq!(timeline["changes"], json!([]));
     let eve = shore.admin("eve").await;
     assert_eq!(eve.get(&nao.path("/changes")).await.problem(), "not-found");
+    shore.finish().await;
+}
+
+/// A ship with a model of three weeks at sea.
+async fn well_known(shore: &Shore, person: &Person) -> Ship {
+    let ship = shore.ship(person, "Nao").await;
+    send(shore, &ship, 1, &days_at_sea(&truth(), BASE, 20.0)).await;
+    ship
+}
+
+async fn send(shore: &Shore, ship: &Ship, seq: u64, samples: &[Sample]) {
+    ship.put(seq, samples).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+}
+
+async fn open_alerts(person: &Person) -> Vec<Value> {
+    let listed = person.get("/alerts?open=true").await.good();
+    listed["items"].as_array().unwrap().clone()
+}
+
+/// What the bridge is told that has the model of an earlier answer, or none.
+async fn told(ship: &Ship, has: &Value) -> Value {
+    let query = has["id"].as_str().map(|id| format!("?model={id}"));
+    ship.downlink(&query.unwrap_or_default()).await
+}
+
+/// The widest half of the band over all headings, where the ships of these tests are.
+fn widest_band_deg(model: &Value) -> f64 {
+    let model: Model = serde_json::from_value(model["model"].clone()).unwrap();
+    let earth = EarthField {
+        h_nt: 20_500.0,
+        z_nt: 43_500.0,
+    };
+    (0..36)
+        .map(|k| {
+            let compass = CompassHeading::new(10.0 * f64::from(k)).unwrap();
+            model.deviation(compass, earth).unwrap().band95_deg.unwrap()
+        })
+        .fold(0.0, f64::max)
+}
+
+async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = well_known(&shore, &ada).await;
+    assert_eq!(open_alerts(&ada).await, Vec::<Value>::new());
+    let struck = days_at_sea(&struck(3000.0, 2000.0), HIT, 4.0);
+    send(&shore, &nao, 2, &struck[..36]).await;
+    let of_lightning = |alerts: Vec<Value>| -> Vec<Value> {
+        let mut alerts = alerts;
+        alerts.retain(|alert| alert["cause"] == "lightning_or_shock");
+        alerts
+    };
+    let raised = of_lightning(open_alerts(&ada).await);
+    assert_eq!(raised.len(), 1, "{raised:?}");
+    assert_eq!(raised[0]["severity"], "critical", "{raised:?}");
+    let told = |alert: &Value, field: &str| alert[field].as_str().unwrap().to_owned();
+    assert!(told(&raised[0], "advice").contains("azimuth"), "{raised:?}");
+    assert!(told(&raised[0], "summary").contains("lightning or a shock"));
+    assert!(told(&raised[0], "since").as_str() > "2026-11-08T20");
+    for day in 0..3 {
+        let samples = &struck[36 + 144 * day..36 + 144 * (day + 1)];
+        send(&shore, &nao, 3 + day as u64, samples).await;
+    }
+    let later = of_lightning(open_alerts(&ada).await);
+    assert_eq!(later.len(), 1, "{later:?}");
+    assert_eq!(later[0]["id"], raised[0]["id"], "updated, not repeated");
+    assert_eq!(later[0]["severity"], "warning", "{later:?}");
+    assert!(told(&later[0], "advice").contains("Put up a new card"));
+    shore.finish().await;
+}
+
+async fn a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = well_known(&shore, &ada).await;
+    let base = told(&nao, &Value::Null).await["model"].take();
+    assert_eq!(base.get("replaces"), None);
+    let struck = days_at_sea(&struck(3000.0, 2000.0), HIT, 4.0);
+    send(&shore, &nao, 2, &struck[..36]).await;
+    let interim = told(&nao, &base).await["model"].take();
+    assert_eq!(
+        interim["replaces"]["reason"], "lightning_or_shock",
+        "{interim}"
+    );
+    assert!(interim["replaces"]["since"].as_str().unwrap() > "2026-11-08T20");
+    let (before, after) = (widest_band_deg(&base), widest_band_deg(&interim));
+    assert!(after > 1.2 * before, "{before} and then {after}");
+    // The band holds what the ship is now.
+    send(&shore, &nao, 3, &struck[36..]).await;
+    let later = told(&nao, &interim).await["model"].take();
+    assert!(widest_band_deg(&later) < after);
+    shore.finish().await;
+}
+
+async fn after_discharge_the_base_model_is_back_on_the_bridge(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = well_known(&shore, &ada).await;
+    let base = told(&nao, &Value::Null).await["model"].take();
+    // Loaded for eight hours, at sea for five days, discharged.
+    let loaded = days_at_sea(&struck(2500.0, -2500.0), "2026-11-09T08:00:00Z", 5.0);
+    send(&shore, &nao, 2, &loaded).await;
+    let with_cargo = told(&nao, &base).await["model"].take();
+    assert_eq!(
+        with_cargo["replaces"]["reason"], "magnetic_cargo",
+        "{with_cargo}"
+    );
+    let raised = open_alerts(&ada).await;
+    let cargo = raised
+        .iter()
+        .find(|alert| alert["cause"] == "magnetic_cargo");
+    assert!(cargo.is_some(), "{raised:?}");
+
+    let discharged = days_at_sea(&truth(), "2026-11-14T16:00:00Z", 1.0);
+    send(&shore, &nao, 3, &discharged).await;
+    let timeline = ada.get(&nao.path("/changes")).await.good();
+    assert_eq!(
+        timeline["epochs"][2]["resumes"], 0,
+        "{}",
+        timeline["changes"]
+    );
+    assert_eq!(timeline["changes"][0]["epoch_ended"], 2);
+    let back = told(&nao, &with_cargo).await["model"].take();
+    assert_eq!(back["replaces"]["reason"], "ship_as_before");
+    assert!(widest_band_deg(&back) < 1.2 * widest_band_deg(&base));
+    let open = open_alerts(&ada).await;
+    assert!(
+        open.iter().all(|alert| alert["cause"] != "magnetic_cargo"),
+        "{open:?}"
+    );
+    shore.finish().await;
+}
+
+async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = well_known(&shore, &ada).await;
+    let base = told(&nao, &Value::Null).await["model"].take();
+    let repair = json!({ "kind": "repair", "from": "2026-11-09T00:00:00Z" });
+    ada.post(&nao.path("/logbook"), &repair).await.good();
+    shore.work().await;
+    // No sample since: no card holds, and the ship is told at once.
+    let withdrawn = told(&nao, &base).await["card_withdrawn"].take();
+    assert_eq!(withdrawn["reason"], "repair");
+    let after = days_at_sea(&struck(3000.0, 2000.0), "2026-11-09T12:00:00Z", 4.0);
+    send(&shore, &nao, 2, &after).await;
+    let timeline = ada.get(&nao.path("/changes")).await.good();
+    assert_eq!(timeline["epochs"].as_array().unwrap().len(), 2);
+    assert_eq!(timeline["epochs"][1]["begun_by"], "repair");
+    assert_eq!(timeline["changes"][0]["cause"], "adjustment_or_repair");
+    assert_eq!(timeline["changes"][0]["epoch_after"], 1);
+    let open = open_alerts(&ada).await;
+    let causes: Vec<&str> = open.iter().map(|a| a["cause"].as_str().unwrap()).collect();
+    assert!(
+        causes.iter().all(|cause| *cause == "deviation_over_limit"),
+        "{causes:?}"
+    );
     shore.finish().await;
 }

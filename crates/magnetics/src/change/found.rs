@@ -81,6 +81,14 @@ impl Cause {
                 | Cause::Unknown
         )
     }
+
+    /// Whether it comes from outside the ship and is over within hours or miles.
+    pub fn passes_by(self) -> bool {
+        matches!(
+            self,
+            Cause::LocalAnomaly | Cause::MagneticStorm | Cause::BerthSteel
+        )
+    }
 }
 
 /// A cause and how likely it is.

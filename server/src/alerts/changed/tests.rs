@@ -1,0 +1,127 @@
+use super::*;
+use binnacle_magnetics::change::{Cause as Found, CauseProbability, Change};
+use binnacle_magnetics::time::Timestamp;
+
+fn at(text: &str) -> Timestamp {
+    Timestamp::parse(text).unwrap()
+}
+
+fn found(cause: Found, size_deg: f64) -> FoundChange {
+    let from = at("2026-11-18T12:00:00Z");
+    FoundChange {
+        change: Change {
+            from,
+            from_earliest: from,
+            from_latest: from,
+            detected_at: at("2026-11-18T14:00:00Z"),
+            confirmed: true,
+            cause,
+            causes: vec![CauseProbability {
+                cause,
+                probability: 0.9,
+            }],
+            evidence: vec!["it began at sea".to_owned()],
+            deviation_change_deg: cause.is_the_ships().then_some(size_deg),
+            step: None,
+            ended: None,
+        },
+        epoch: None,
+        epoch_ended: None,
+        expected: false,
+        size_deg: Some(size_deg),
+        position: None,
+    }
+}
+
+/// A ship that has sailed for so many days since, with such a band by now.
+fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<AlertWanted> {
+    let findings = Findings {
+        epoch_from: changes.last().map(|found| found.change.from),
+        data_until: changes
+            .last()
+            .map(|found| found.change.detected_at.plus_seconds(days * 86_400.0)),
+        widest_band95_deg: band95_deg,
+        changes,
+        ..Findings::default()
+    };
+    changed(&findings, &AlertLimits::default())
+}
+
+#[test]
+fn a_change_is_as_bad_as_the_deviation_that_it_causes() {
+    for (size_deg, severity) in [
+        (6.0, Severity::Critical),
+        (3.0, Severity::Warning),
+        (1.0, Severity::Notice),
+    ] {
+        let wanted = sailed(vec![found(Found::LightningOrShock, size_deg)], 0.0, None);
+        assert_eq!(wanted[0].severity, severity, "{size_deg}");
+        assert_eq!(wanted[0].cause, Cause::LightningOrShock);
+        assert!(wanted[0].evidence.0[1].contains("lightning or a shock 90 %"));
+    }
+    let passing = sailed(vec![found(Found::MagneticStorm, 8.0)], 0.0, None);
+    assert_eq!(passing[0].severity, Severity::Warning);
+    assert!(passing[0].summary.contains("not the ship"));
+}
+
+#[test]
+fn what_is_not_certain_is_told_as_such_and_leaves_the_card() {
+    let mut doubtful = found(Found::Unknown, 8.0);
+    doubtful.change.confirmed = false;
+    let wanted = sailed(vec![doubtful], 0.0, Some(1.0));
+    assert_eq!(wanted[0].severity, Severity::Notice);
+    assert!(wanted[0].summary.contains("not certain yet"), "{wanted:?}");
+    assert!(wanted[0].advice.contains("card holds until"), "{wanted:?}");
+}
+
+#[test]
+fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
+    let struck = || vec![found(Found::LightningOrShock, 6.0)];
+    let told = |days, band_deg| sailed(struck(), days, band_deg);
+    assert!(told(0.1, None)[0].advice.starts_with("No card holds."));
+    for (days, band_deg) in [(0.5, 2.0), (3.0, 4.0)] {
+        let interim = &told(days, Some(band_deg))[0];
+        assert!(interim.advice.contains("band is wider for now"));
+        assert_eq!(interim.severity, Severity::Critical);
+    }
+    let learnt = &told(3.0, Some(2.0))[0];
+    assert!(learnt.advice.starts_with("Put up a new card"));
+    assert_eq!(learnt.severity, Severity::Warning);
+    assert_eq!(told(8.0, Some(2.0)), []);
+    assert_eq!(told(8.0, Some(4.0)).len(), 1, "not learnt yet");
+}
+
+#[test]
+fn an_earlier_change_is_told_for_a_week_only() {
+    let struck = found(Found::LightningOrShock, 3.0);
+    let mut loaded = found(Found::MagneticCargo, 3.0);
+    loaded.change.from = at("2026-11-19T12:00:00Z");
+    loaded.change.detected_at = at("2026-11-19T13:00:00Z");
+    let causes = |days| -> Vec<Cause> {
+        let wanted = sailed(vec![struck.clone(), loaded.clone()], days, Some(4.0));
+        wanted.iter().map(|alert| alert.cause).collect()
+    };
+    assert_eq!(causes(1.0), [Cause::MagneticCargo, Cause::LightningOrShock]);
+    assert_eq!(causes(8.0), [Cause::MagneticCargo]);
+}
+
+#[test]
+fn what_is_over_or_expected_is_no_alert_and_the_latest_speaks_for_all() {
+    let mut over = found(Found::MagneticCargo, 6.0);
+    over.change.ended = Some(at("2026-11-19T00:00:00Z"));
+    let mut expected = found(Found::AdjustmentOrRepair, 6.0);
+    expected.expected = true;
+    assert_eq!(sailed(vec![over, expected.clone()], 0.0, None), []);
+    expected.expected = false;
+    let unreported = sailed(vec![expected], 0.0, None);
+    assert_eq!(unreported[0].cause, Cause::UnknownChange);
+    assert!(unreported[0].summary.contains("nobody reported"));
+
+    let first = found(Found::LightningOrShock, 3.0);
+    let mut second = first.clone();
+    second.change.from = at("2026-11-19T12:00:00Z");
+    let since = second.change.from.into();
+    let wanted = sailed(vec![first, second], 0.0, None);
+    assert_eq!(wanted.len(), 1);
+    assert_eq!(wanted[0].since, since);
+}

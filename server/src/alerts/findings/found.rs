@@ -1,0 +1,144 @@
+//! A change, with what it means for the ship where she is now.
+//!
+//! What always holds: a change that began an epoch, or ended when one began, says
+//! which; its size is of the place of the last sample where models on both sides of it
+//! tell, and else of where it was found.
+
+use binnacle_magnetics::analyse::{Analysis, LogbookEntry, SampleReason};
+use binnacle_magnetics::angle::{CompassHeading, wrap_180};
+use binnacle_magnetics::change::{Cause, Change};
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::ship::EarthField;
+use binnacle_magnetics::time::Timestamp;
+use serde::{Deserialize, Serialize};
+
+/// People write down when they noticed, not when it happened: seconds.
+const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
+/// Degrees of compass heading between those on which two models are compared.
+const STEP_DEG: u32 = 5;
+
+/// A change, and what alerts and the timeline say beside it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FoundChange {
+    /// The change itself.
+    #[serde(flatten)]
+    pub change: Change,
+    /// Place among the epochs of the one that it began.
+    #[serde(default)]
+    pub epoch: Option<usize>,
+    /// Place of the one that began when it was over.
+    #[serde(default)]
+    pub epoch_ended: Option<usize>,
+    /// Whether the logbook tells of work that explains it.
+    #[serde(default)]
+    pub expected: bool,
+    /// By how much it changes the deviation that is measured, degrees, on the heading
+    /// where it does most; none where that cannot be told.
+    #[serde(default)]
+    pub size_deg: Option<f64>,
+    /// About where the ship was while it lasted, for what passes by.
+    #[serde(default)]
+    pub position: Option<Position>,
+}
+
+/// The changes that an analysis found.
+pub(super) fn found_changes(analysis: &Analysis, logbook: &[LogbookEntry]) -> Vec<FoundChange> {
+    let changes = analysis.changes.iter();
+    changes
+        .map(|change| found(change, analysis, logbook))
+        .collect()
+}
+
+fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> FoundChange {
+    let epochs = &analysis.epochs;
+    let begun_at = |time: Timestamp| epochs.iter().position(|epoch| epoch.from == Some(time));
+    // What passes by and what a reference does begins no epoch, even at the same time.
+    let is_boundary = change.confirmed && change.cause.is_the_ships();
+    let epoch = Some(change.from).filter(|_| is_boundary).and_then(begun_at);
+    let spoilt = Spoilt::by(change, analysis);
+    let parted_deg = epoch.and_then(|after| {
+        let before = epochs.get(after.checked_sub(1)?)?.model.as_ref()?;
+        parted_deg(before, epochs[after].model.as_ref()?, analysis)
+    });
+    FoundChange {
+        epoch,
+        epoch_ended: change.ended.filter(|_| is_boundary).and_then(begun_at),
+        expected: change.cause == Cause::AdjustmentOrRepair && is_reported(change, logbook),
+        size_deg: parted_deg
+            .or(change.deviation_change_deg.map(f64::abs))
+            .or(spoilt.most_deg),
+        position: spoilt.position,
+        change: change.clone(),
+    }
+}
+
+/// Whether people told of work around that time.
+fn is_reported(change: &Change, logbook: &[LogbookEntry]) -> bool {
+    logbook
+        .iter()
+        .filter(|entry| entry.kind.ends_an_epoch())
+        .any(|entry| {
+            let until = entry.to.unwrap_or(entry.from);
+            change.from_earliest.seconds_since(until) < REPORTED_WITHIN_S
+                && entry.from.seconds_since(change.from_latest) < REPORTED_WITHIN_S
+        })
+}
+
+/// By how much two models part at most where the last sample was taken, degrees.
+fn parted_deg(before: &Model, after: &Model, analysis: &Analysis) -> Option<f64> {
+    let place = analysis.last_place?;
+    let earth = EarthField {
+        h_nt: place.h_nt,
+        z_nt: place.z_nt,
+    };
+    let deviation_deg = |model: &Model, compass| {
+        let predicted = model.deviation(compass, earth).ok()?;
+        Some(predicted.deviation.degrees_east())
+    };
+    let headings = (0..360).step_by(STEP_DEG as usize);
+    let parted = headings.filter_map(|heading_deg| {
+        let compass = CompassHeading::new(f64::from(heading_deg))?;
+        Some((deviation_deg(after, compass)? - deviation_deg(before, compass)?).abs())
+    });
+    parted.reduce(f64::max)
+}
+
+/// The samples that a passing disturbance spoilt.
+#[derive(Default)]
+struct Spoilt {
+    position: Option<Position>,
+    /// By how much they departed from the model at most, degrees.
+    most_deg: Option<f64>,
+}
+
+impl Spoilt {
+    fn by(change: &Change, analysis: &Analysis) -> Spoilt {
+        if !change.cause.passes_by() {
+            return Spoilt::default();
+        }
+        let last = change.ended.or(analysis.data_until);
+        let within = |time| change.from <= time && last.is_none_or(|last| time <= last);
+        let spoilt: Vec<_> = analysis
+            .samples
+            .iter()
+            .filter(|s| within(s.sample.time) && s.reason == Some(SampleReason::Disturbance))
+            .collect();
+        let departed = spoilt.iter().filter_map(|s| {
+            let earth = EarthField {
+                h_nt: s.h_nt?,
+                z_nt: s.z_nt?,
+            };
+            let epoch = analysis.epochs.iter().rev();
+            let mut begun =
+                epoch.filter(|epoch| epoch.from.is_none_or(|from| from <= s.sample.time));
+            let model = begun.next()?.model.as_ref()?;
+            let expected = model.deviation(s.sample.compass, earth).ok()?;
+            Some(wrap_180(s.deviation_deg? - expected.deviation.degrees_east()).abs())
+        });
+        Spoilt {
+            most_deg: departed.reduce(f64::max),
+            position: spoilt.get(spoilt.len() / 2).map(|s| s.sample.position),
+        }
+    }
+}
