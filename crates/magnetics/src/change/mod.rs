@@ -15,8 +15,10 @@ mod bank;
 mod cause;
 mod detect;
 mod filter;
+mod fleet;
 mod found;
 
 pub(crate) use cause::{Circumstances, causes};
 pub(crate) use detect::{Event, Given, Snapshot, What, at_port, detect};
+pub use fleet::{Elsewhere, in_fleet};
 pub use found::{Cause, CauseProbability, Change, Step};
