@@ -69,6 +69,8 @@ fn frame(stream: StreamId, seq: u64, samples: Vec<Sample>) -> Vec<u8> {
         seq,
         samples,
         tally: BTreeMap::new(),
+        alerts: Vec::new(),
+        thinned: None,
     })
     .unwrap()
 }

@@ -136,6 +136,8 @@ async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Resul
             .into_iter()
             .map(|(reason, windows)| (reason, windows.unsigned_abs()))
             .collect(),
+        alerts: Vec::new(),
+        thinned: None,
     };
     let bytes = binnacle_wire::encode(&batch).map_err(|e| sqlx::Error::Encode(e.into()))?;
     insert_batch(tx, seq, &bytes, count).await?;

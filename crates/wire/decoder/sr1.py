@@ -22,6 +22,8 @@ TIME, LAT, LON, GYRO, SATELLITE, COMPASS, SOG, RATE_OF_TURN, SPREAD, WINDOWS = r
 REQUIRED = (TIME, LAT, LON, COMPASS, WINDOWS)
 DIRECTIONS = (LON, GYRO, SATELLITE, COMPASS)
 LIMIT = 1 << 53
+STATES = ("open", "agree", "not_judged")
+FIRST_SECOND, LAST_SECOND = 315_964_800, 4_102_444_800
 MAX_BYTES, MAX_SAMPLES, MAX_COLUMNS = 262_144, 65_535, 64
 
 
@@ -189,6 +191,52 @@ def read_tally(bits):
     return tally
 
 
+def instant(seconds):
+    if not FIRST_SECOND <= seconds < LAST_SECOND:
+        raise Refused("BadNote")
+    return datetime.fromtimestamp(seconds, timezone.utc).isoformat().replace("+00:00", "Z")
+
+
+def read_alert(bits):
+    alert = {"id": str(uuid.UUID(int=bits.take(128))), "revision": bits.varint()}
+    state = bits.take(8)
+    if state >= len(STATES) or not 1 <= alert["revision"] < 1 << 32:
+        raise Refused("BadNote")
+    alert["state"] = STATES[state]
+    alert["since"] = instant(bits.varint())
+    alert["at"] = instant(bits.varint())
+    there = bits.take(8)
+    for bit, name in ((1, "gyro_departure_deg"), (2, "satellite_departure_deg")):
+        alert[name] = unzigzag(bits.varint()) / 10 if there & bit else None
+    alert["limit_deg"] = bits.varint() / 10
+    alert["model_version"] = bits.varint()
+    angles = (alert["gyro_departure_deg"], alert["satellite_departure_deg"], alert["limit_deg"])
+    if any(abs(angle or 0) > 180 for angle in angles) or alert["model_version"] >= 1 << 32:
+        raise Refused("BadNote")
+    return alert
+
+
+def read_notes(bits):
+    notes, count = {}, bits.varint()
+    if count > 255:
+        raise Refused("TooManyNotes")
+    for _ in range(count):
+        kind, length = bits.varint(), bits.varint()
+        if length > bits.left() // 8:
+            raise Refused("Truncated")
+        note = Bits(bytes(bits.take(8) for _ in range(length)))
+        try:
+            if kind == 1:
+                notes.setdefault("alerts", []).append(read_alert(note))
+            elif kind == 2:
+                if "thinned" in notes:
+                    raise Refused("BadNote")
+                notes["thinned"] = {"samples": note.varint(), "windows": note.varint()}
+        except Refused:
+            raise Refused("BadNote") from None
+    return notes
+
+
 def exact(value, exponent):
     """value / 10^exponent, rounded once, as a whole number where JSON has one."""
     return value / 10**exponent
@@ -271,7 +319,7 @@ def content(data):
         raise Refused("Checksum")
     if data[2] != 1:
         raise Refused("UnsupportedVersion")
-    if data[3] != 0:
+    if data[3] & ~1:
         raise Refused("UnsupportedFlags")
     return data[4:-4]
 
@@ -297,6 +345,7 @@ def decode(data):
     if seq == 0:
         raise Refused("SeqZero")
     tally = read_tally(bits)
+    notes = read_notes(bits) if data[3] & 1 else {}
     count = bits.varint()
     if count > MAX_SAMPLES:
         raise Refused("TooManySamples")
@@ -322,7 +371,7 @@ def decode(data):
         samples.append(read_sample(Sample(columns, row)))
         if row and samples[-2]["time"] > samples[-1]["time"]:
             raise Refused("OutOfOrder")
-    return {"stream": str(stream), "seq": seq, "tally": tally, "samples": samples}
+    return {"stream": str(stream), "seq": seq, "tally": tally, "samples": samples, **notes}
 
 
 def main():

@@ -1,5 +1,6 @@
 //! The batch: samples of one stream, sealed, numbered and never changed again.
 
+use crate::alert::ShipAlert;
 use binnacle_magnetics::sample::Sample;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -29,4 +30,19 @@ pub struct Batch {
     /// Ten-second windows since the batch before, by outcome: `accepted` or the
     /// name of the reason for refusal.
     pub tally: BTreeMap<String, u64>,
+    /// What the ship says of alerts of her own.
+    pub alerts: Vec<ShipAlert>,
+    /// What was left out for want of room or budget.
+    pub thinned: Option<Thinned>,
+}
+
+/// Samples that were sealed in a batch and left out again before it was sent. Which
+/// ones was decided by heading and time alone, never by what the compass read: what
+/// is left is as good a picture, of fewer windows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Thinned {
+    /// How many samples.
+    pub samples: u64,
+    /// The windows in them, which the tally counts as accepted.
+    pub windows: u64,
 }

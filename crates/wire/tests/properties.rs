@@ -8,7 +8,8 @@ use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::alert::{ShipAlert, ShipAlertState};
+use binnacle_wire::batch::{Batch, StreamId, Thinned};
 use binnacle_wire::codec::{MAX_BYTES, MAX_SAMPLES};
 use binnacle_wire::{DecodeError, decode, encode};
 use proptest::option;
@@ -49,15 +50,45 @@ fn samples() -> impl Strategy<Value = Vec<Sample>> {
     prop::collection::vec(sample, 0..300)
 }
 
+fn thinned() -> impl Strategy<Value = Thinned> {
+    let counts = (any::<u64>(), any::<u64>());
+    counts.prop_map(|(samples, windows)| Thinned { samples, windows })
+}
+
+fn alerts() -> impl Strategy<Value = ShipAlert> {
+    let seconds = || 315_964_800..4_102_444_800_i64;
+    let angle = || (-1800..=1800_i32).prop_map(|tenths| f64::from(tenths) / 10.0);
+    let head = (any::<u128>(), 1..=u32::MAX, 0..3_u8, any::<u32>());
+    let angles = (option::of(angle()), option::of(angle()), angle());
+    (head, seconds(), seconds(), angles).prop_map(|(head, since, at, angles)| ShipAlert {
+        id: Uuid::from_u128(head.0),
+        revision: head.1,
+        state: [
+            ShipAlertState::Open,
+            ShipAlertState::Agree,
+            ShipAlertState::NotJudged,
+        ][usize::from(head.2)],
+        since: Timestamp::from_micros(since * 1_000_000).unwrap(),
+        at: Timestamp::from_micros(at * 1_000_000).unwrap(),
+        gyro_departure_deg: angles.0,
+        satellite_departure_deg: angles.1,
+        limit_deg: angles.2.abs(),
+        model_version: head.3,
+    })
+}
+
 fn batches() -> impl Strategy<Value = Batch> {
     let reason = prop_oneof!["accepted", "turning", "settling", "[a-zé_]{1,30}"];
     let tally = prop::collection::btree_map(reason, any::<u64>(), 0..20);
     let head = (any::<u128>(), 1..=u64::MAX);
-    (head, samples(), tally).prop_map(|((stream, seq), samples, tally)| Batch {
+    let notes = (prop::collection::vec(alerts(), 0..4), option::of(thinned()));
+    (head, samples(), tally, notes).prop_map(|((stream, seq), samples, tally, notes)| Batch {
         stream: StreamId(Uuid::from_u128(stream)),
         seq,
         samples,
         tally,
+        alerts: notes.0,
+        thinned: notes.1,
     })
 }
 
@@ -102,6 +133,7 @@ proptest! {
         let came = decode(&bytes).unwrap();
         prop_assert_eq!(encode(&came).unwrap(), bytes);
         prop_assert_eq!((came.stream, came.seq, &came.tally), (sent.stream, sent.seq, &sent.tally));
+        prop_assert_eq!((&came.alerts, came.thinned), (&sent.alerts, sent.thinned));
         let mut samples = sent.samples;
         samples.sort_by_key(|sample| sample.time);
         prop_assert_eq!(samples.len(), came.samples.len());
@@ -113,7 +145,7 @@ proptest! {
     #[test]
     fn any_bytes_are_answered_or_refused(
         body in prop::collection::vec(any::<u8>(), 0..400),
-        head in prop_oneof![Just(&b""[..]), Just(&b"BN"[..]), Just(&b"BN\x01\0"[..])],
+        head in prop_oneof![Just(&b""[..]), Just(&b"BN"[..]), Just(&b"BN\x01\0"[..]), Just(&b"BN\x01\x01"[..])],
     ) {
         answer(&with_checksum([head, &body].concat()));
         answer(&body);

@@ -9,7 +9,8 @@ mod support;
 
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::position::Position;
-use binnacle_wire::batch::Batch;
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::batch::{Batch, Thinned};
 use binnacle_wire::{DecodeError, decode, encode};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -48,7 +49,21 @@ fn written() -> Vec<(&'static str, Batch)> {
         ("two_references", batch(8, references)),
         ("antimeridian_and_north", batch(9, crossing)),
         ("gaps_over_blocks", batch(10, gaps)),
+        ("one_alert", noted(11, voyage(6, 3), &[1], None)),
+        ("alerts_alone", noted(12, Vec::new(), &[2, 3], None)),
+        ("thinned", noted(13, voyage(7, 12), &[], Some(17))),
     ]
+}
+
+fn noted(seq: u64, samples: Vec<Sample>, revisions: &[u32], thinned: Option<u64>) -> Batch {
+    Batch {
+        alerts: revisions.iter().copied().map(support::alert).collect(),
+        thinned: thinned.map(|samples| Thinned {
+            samples,
+            windows: 60 * samples,
+        }),
+        ..batch(seq, samples)
+    }
 }
 
 /// Frames that only a later or a wrong encoder writes.
@@ -72,7 +87,39 @@ fn edited() -> Vec<(&'static str, Vec<u8>)> {
         ),
         ("not_a_batch", b"{\"samples\":[]}".to_vec()),
         ("unknown_column", unknown_column()),
+        ("unknown_note", with_note(77, b"of a later agent")),
+        ("longer_alert", with_note(1, &longer_alert())),
+        ("short_alert", with_note(1, &longer_alert()[..20])),
+        (
+            "note_beyond_the_end",
+            sealed(with_note(77, &[0; 12])[..30].to_vec()),
+        ),
     ]
+}
+
+/// No sample, and one note.
+fn with_note(kind: u8, octets: &[u8]) -> Vec<u8> {
+    let mut body = b"BN\x01\x01".to_vec();
+    body.extend([0x11; 16]);
+    // seq 1; no tally; one note.
+    body.extend([1, 0, 1, kind, octets.len() as u8]);
+    body.extend(octets);
+    // No samples, no columns.
+    body.extend([0, 0]);
+    sealed(body)
+}
+
+/// An alert with something after it that a later agent may say.
+fn longer_alert() -> Vec<u8> {
+    let frame = encode(&noted(1, Vec::new(), &[1], None)).unwrap();
+    // The note's octets: from after the head, seq, tally, count, kind and length.
+    let from = frame
+        .windows(16)
+        .position(|id| id == support::alert(1).id.as_bytes());
+    let from = from.unwrap();
+    let mut octets = frame[from..frame.len() - 6].to_vec();
+    octets.extend(b"and more");
+    octets
 }
 
 /// One sample of five columns and a column 77, which no version has yet.
@@ -109,12 +156,21 @@ fn sealed(mut body: Vec<u8>) -> Vec<u8> {
 
 fn as_json(decoded: &Result<Batch, DecodeError>) -> Value {
     match decoded {
-        Ok(batch) => json!({
-            "stream": batch.stream,
-            "seq": batch.seq,
-            "tally": batch.tally,
-            "samples": batch.samples,
-        }),
+        Ok(batch) => {
+            let mut meaning = json!({
+                "stream": batch.stream,
+                "seq": batch.seq,
+                "tally": batch.tally,
+                "samples": batch.samples,
+            });
+            if !batch.alerts.is_empty() {
+                meaning["alerts"] = json!(batch.alerts);
+            }
+            if let Some(thinned) = batch.thinned {
+                meaning["thinned"] = json!(thinned);
+            }
+            meaning
+        }
         Err(error) => {
             let kind = format!("{error:?}");
             let end = kind.find(['(', ' ', '{']).unwrap_or(kind.len());
@@ -178,6 +234,14 @@ fn frames_are_written_and_read_as_they_always_were() {
 }
 
 #[test]
+fn a_note_of_a_later_agent_is_passed_over() {
+    let batch = decode(&with_note(77, b"of a later agent")).unwrap();
+    assert_eq!((batch.seq, batch.alerts.len()), (1, 0));
+    let batch = decode(&with_note(1, &longer_alert())).unwrap();
+    assert_eq!(batch.alerts, [support::alert(1)]);
+}
+
+#[test]
 fn a_column_of_a_later_version_is_passed_over() {
     let batch = decode(&unknown_column()).unwrap();
     assert_eq!(batch.samples.len(), 1);
@@ -197,7 +261,9 @@ fn the_python_decoder_agrees_on_every_vector_and_a_thousand_more() {
     let mut dice = Dice(1);
     for seed in 0..500 {
         let samples = voyage(seed, 1 + dice.next() as usize % 60);
-        let good = encode(&batch(seed + 1, samples)).unwrap();
+        let plain = batch(seed + 1, samples);
+        let alerts = [1, 2, 3].map(support::alert)[..seed as usize % 4].to_vec();
+        let good = encode(&Batch { alerts, ..plain }).unwrap();
         let mut spoilt = good[..good.len() - 4].to_vec();
         let at = 4 + dice.next() as usize % (spoilt.len() - 4);
         spoilt[at] ^= 1 << (dice.next() % 8);

@@ -29,6 +29,12 @@ pub enum EncodeError {
     /// More reasons than a tally may have.
     #[error("{0} reasons are more than the 255 of one tally")]
     TooManyReasons(usize),
+    /// More alerts than a frame may hold.
+    #[error("{0} alerts are more than the 254 of one batch")]
+    TooManyAlerts(usize),
+    /// A value that no alert can have.
+    #[error("an alert's {0} is out of range")]
+    Alert(&'static str),
     /// A reason's name is empty or longer than 64 bytes.
     #[error("reason {0:?} is not 1 to 64 bytes long")]
     ReasonName(String),
@@ -98,6 +104,12 @@ pub enum DecodeError {
     /// A reason that is unknown, unreadable, empty, too long or there twice.
     #[error("entry {0} of the tally cannot be read")]
     BadReason(usize),
+    /// More notes than a frame may hold.
+    #[error("{0} notes are more than the 255 of one batch")]
+    TooManyNotes(u64),
+    /// A note of a known kind that is cut short, out of range or there twice.
+    #[error("a note of kind {0} cannot be read")]
+    BadNote(u64),
     /// Something follows the last column.
     #[error("something follows the last column")]
     TrailingBits,

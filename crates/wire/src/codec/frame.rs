@@ -3,6 +3,7 @@
 use super::bits::{BitReader, BitWriter};
 use super::columns::{self, Column};
 use super::error::{DecodeError, EncodeError};
+use super::notes::{self, Notes};
 use super::stack;
 use super::step::Step;
 use super::tally;
@@ -16,7 +17,8 @@ pub const MAX_SAMPLES: usize = 65_535;
 
 const MAGIC: [u8; 2] = *b"BN";
 const VERSION: u8 = 1;
-const NO_FLAGS: u8 = 0;
+/// Notes follow the tally.
+const HAS_NOTES: u8 = 1;
 /// Magic, version and flags; the checksum.
 const HEAD_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
@@ -44,10 +46,14 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
 
     let mut writer = BitWriter::default();
     writer.octets(&MAGIC);
-    writer.octets(&[VERSION, NO_FLAGS]);
+    let has_notes = !batch.alerts.is_empty() || batch.thinned.is_some();
+    writer.octets(&[VERSION, if has_notes { HAS_NOTES } else { 0 }]);
     writer.octets(batch.stream.0.as_bytes());
     writer.varint(batch.seq);
     tally::write(&mut writer, &batch.tally)?;
+    if has_notes {
+        notes::write(&mut writer, &batch.alerts, batch.thinned)?;
+    }
     writer.varint(samples.len() as u64);
     writer.varint(columns.len() as u64);
     for column in &columns {
@@ -78,7 +84,8 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
 /// When the bytes are not a whole, undamaged frame of a version that this
 /// decoder knows, or hold what no ship can have.
 pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
-    let mut reader = BitReader::new(content(bytes)?);
+    let (flags, content) = content(bytes)?;
+    let mut reader = BitReader::new(content);
     let stream = reader
         .bits(64)
         .and_then(|high| Ok((high, reader.bits(64)?)))?;
@@ -88,6 +95,11 @@ pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
         return Err(DecodeError::SeqZero);
     }
     let tally = tally::read(&mut reader)?;
+    let notes = if flags & HAS_NOTES == 0 {
+        Notes::default()
+    } else {
+        notes::read(&mut reader)?
+    };
     let stated = reader.varint()?;
     let count = usize::try_from(stated)
         .ok()
@@ -101,11 +113,13 @@ pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
         seq,
         samples: columns::to_samples(&columns, count)?,
         tally,
+        alerts: notes.alerts,
+        thinned: notes.thinned,
     })
 }
 
-/// What stands between the head and the checksum of an undamaged frame.
-fn content(bytes: &[u8]) -> Result<&[u8], DecodeError> {
+/// The flags of an undamaged frame, and what stands between its head and checksum.
+fn content(bytes: &[u8]) -> Result<(u8, &[u8]), DecodeError> {
     if bytes.len() > MAX_BYTES {
         return Err(DecodeError::TooLarge(bytes.len()));
     }
@@ -125,10 +139,10 @@ fn content(bytes: &[u8]) -> Result<&[u8], DecodeError> {
     if body[2] != VERSION {
         return Err(DecodeError::UnsupportedVersion(body[2]));
     }
-    if body[3] != NO_FLAGS {
+    if body[3] & !HAS_NOTES != 0 {
         return Err(DecodeError::UnsupportedFlags(body[3]));
     }
-    Ok(&body[HEAD_BYTES..])
+    Ok((body[3], &body[HEAD_BYTES..]))
 }
 
 /// Ids, rising, and their steps.

@@ -11,6 +11,7 @@ mod bits;
 mod columns;
 mod error;
 mod frame;
+mod notes;
 mod predict;
 mod rice;
 mod stack;

@@ -29,6 +29,8 @@ fn batch(samples: Vec<Sample>) -> Batch {
         seq: 1,
         samples,
         tally: BTreeMap::new(),
+        alerts: Vec::new(),
+        thinned: None,
     }
 }
 
@@ -205,8 +207,8 @@ fn each_kind_of_damage_has_its_own_error() {
         Err(DecodeError::UnsupportedVersion(9))
     );
     assert_eq!(
-        decode(&edited(&bytes, 3, 1)),
-        Err(DecodeError::UnsupportedFlags(1))
+        decode(&edited(&bytes, 3, 2)),
+        Err(DecodeError::UnsupportedFlags(2))
     );
     assert_eq!(decode(&edited(&bytes, 20, 0)), Err(DecodeError::SeqZero));
 }

@@ -7,6 +7,7 @@ use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::reasons;
 use std::collections::BTreeMap;
@@ -99,6 +100,28 @@ pub(crate) fn batch(seq: u64, samples: Vec<Sample>) -> Batch {
         seq,
         samples,
         tally: tally.map(|(name, count)| (name.to_owned(), count)).into(),
+        alerts: Vec::new(),
+        thinned: None,
+    }
+}
+
+/// What a ship says when her compass and her gyro have parted.
+pub(crate) fn alert(revision: u32) -> ShipAlert {
+    let since = Timestamp::parse("2026-10-01T04:00:00Z").expect("a date");
+    ShipAlert {
+        id: Uuid::from_u128(0x0193_4f2a_7c00_4000_8000_0000_0000_00a1),
+        revision,
+        state: match revision {
+            1 => ShipAlertState::Open,
+            2 => ShipAlertState::Agree,
+            _ => ShipAlertState::NotJudged,
+        },
+        since,
+        at: since.plus_seconds(300.0 * f64::from(revision)),
+        gyro_departure_deg: (revision != 2).then_some(-28.4),
+        satellite_departure_deg: (revision > 1).then_some(0.3),
+        limit_deg: 3.9,
+        model_version: 4,
     }
 }
 

@@ -85,6 +85,8 @@ pub(crate) fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
         seq,
         samples: samples.to_vec(),
         tally: BTreeMap::from([("accepted".to_owned(), 60 * samples.len() as u64)]),
+        alerts: Vec::new(),
+        thinned: None,
     };
     binnacle_wire::encode(&batch).unwrap()
 }

@@ -1,0 +1,130 @@
+//! The alert that a ship raises herself: compass and reference have parted.
+//!
+//! What always holds: an alert keeps its id for life, and its revision rises with
+//! each change. Whoever gets revisions in another order keeps the highest.
+
+use binnacle_magnetics::time::Timestamp;
+use serde::{Deserialize, Serialize};
+use uuid::Uuid;
+
+/// What the ship says of her own alert, whole, in each revision.
+///
+/// A departure is the heading that the compass gives by its model less that of the
+/// reference, both true, as the mean of some settled minutes; none where the
+/// reference gave nothing. Times are whole seconds, angles tenths of a degree.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShipAlert {
+    /// Made on board.
+    pub id: Uuid,
+    /// From 1.
+    pub revision: u32,
+    /// Whether it goes on.
+    pub state: ShipAlertState,
+    /// When they parted, by the ship's time.
+    pub since: Timestamp,
+    /// When this revision was made, by the ship's time.
+    pub at: Timestamp,
+    /// The gyro's.
+    pub gyro_departure_deg: Option<f64>,
+    /// The satellite compass's.
+    pub satellite_departure_deg: Option<f64>,
+    /// A departure beyond this raised it.
+    pub limit_deg: f64,
+    /// The model that corrected the compass.
+    pub model_version: u32,
+}
+
+/// Whether a ship's alert goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShipAlertState {
+    /// They are apart.
+    Open,
+    /// They agree again.
+    Agree,
+    /// Nobody can tell any more: the card was withdrawn, or there is another.
+    NotJudged,
+}
+
+/// Which instrument the two others speak against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Suspect {
+    /// Gyro and satellite compass agree with each other.
+    Compass,
+    /// Compass and satellite compass agree.
+    Gyro,
+    /// Compass and gyro agree.
+    Satellite,
+    /// There is one reference only, or all three are apart.
+    Unknown,
+}
+
+impl ShipAlert {
+    /// The larger of the departures, with its sign.
+    pub fn departure_deg(&self) -> f64 {
+        let (gyro, satellite) = (self.gyro_departure_deg, self.satellite_departure_deg);
+        let departures = gyro.into_iter().chain(satellite);
+        departures.fold(0.0, |worst: f64, next| {
+            if next.abs() > worst.abs() {
+                next
+            } else {
+                worst
+            }
+        })
+    }
+
+    /// What the references say of each other.
+    pub fn suspect(&self) -> Suspect {
+        let (gyro, satellite) = (self.gyro_departure_deg, self.satellite_departure_deg);
+        let Some((gyro, satellite)) = gyro.zip(satellite) else {
+            return Suspect::Unknown;
+        };
+        // Headings may be apart either way round.
+        let between = (gyro - satellite + 180.0).rem_euclid(360.0) - 180.0;
+        let apart = [gyro, satellite, between].map(|angle| angle.abs() > self.limit_deg);
+        match apart {
+            [true, true, false] => Suspect::Compass,
+            [true, false, true] => Suspect::Gyro,
+            [false, true, true] => Suspect::Satellite,
+            _ => Suspect::Unknown,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn alert(gyro: Option<f64>, satellite: Option<f64>) -> ShipAlert {
+        let at = Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
+        ShipAlert {
+            id: Uuid::from_u128(1),
+            revision: 1,
+            state: ShipAlertState::Open,
+            since: at,
+            at,
+            gyro_departure_deg: gyro,
+            satellite_departure_deg: satellite,
+            limit_deg: 3.0,
+            model_version: 1,
+        }
+    }
+
+    #[test]
+    fn two_that_agree_speak_against_the_third() {
+        for (gyro, satellite, suspect) in [
+            (Some(8.0), Some(7.0), Suspect::Compass),
+            (Some(8.0), Some(0.5), Suspect::Gyro),
+            (Some(-0.5), Some(-8.0), Suspect::Satellite),
+            (Some(8.0), Some(-8.0), Suspect::Unknown),
+            (Some(179.5), Some(-179.5), Suspect::Compass),
+            (Some(8.0), None, Suspect::Unknown),
+            (None, None, Suspect::Unknown),
+        ] {
+            let alert = alert(gyro, satellite);
+            assert_eq!(alert.suspect(), suspect, "{gyro:?} {satellite:?}");
+        }
+        let worst = alert(Some(-8.0), Some(7.0)).departure_deg();
+        assert!((worst + 8.0).abs() < 1e-9);
+    }
+}
