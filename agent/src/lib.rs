@@ -11,6 +11,7 @@ mod config;
 mod input;
 mod observation;
 
+mod alert;
 mod hold;
 mod roles;
 mod sampler;

@@ -6,10 +6,13 @@
 //! needs a header that no form can send, and names that resolve elsewhere are
 //! refused.
 
+use crate::alert::Aboard;
+use crate::config::PageConfig;
 use crate::hold::Hold;
 use crate::reports;
 use crate::spool::Spool;
 use crate::status::Status;
+use anyhow::Context;
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::header::{CONTENT_SECURITY_POLICY, HOST, ORIGIN};
 use axum::http::{HeaderMap, StatusCode};
@@ -18,9 +21,12 @@ use axum::response::{Html, IntoResponse, Response};
 use axum::routing::{get, post, put};
 use axum::{Json, Router};
 use serde::{Deserialize, Serialize};
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
+use tokio::net::TcpListener;
 use tokio::sync::{Notify, watch};
+use tokio_util::sync::CancellationToken;
+use uuid::Uuid;
 
 /// What the page's handlers work with.
 #[derive(Clone, Debug)]
@@ -28,6 +34,8 @@ pub(crate) struct Page {
     pub(crate) spool: Spool,
     pub(crate) status: watch::Receiver<Arc<Status>>,
     pub(crate) hold: watch::Sender<Option<Hold>>,
+    /// The alert that an officer has seen.
+    pub(crate) acknowledged: watch::Sender<Option<Uuid>>,
     /// Rings when there is something to send.
     pub(crate) news: Arc<Notify>,
 }
@@ -46,12 +54,47 @@ pub(crate) struct HoldRequest {
     pub(crate) hold: Option<Hold>,
 }
 
+/// Serves the page until `shutdown`, where it is configured; notes where in the spool.
+pub(crate) async fn serve(
+    config: Option<&PageConfig>,
+    page: Page,
+    shutdown: &CancellationToken,
+) -> anyhow::Result<Option<SocketAddr>> {
+    let Some(config) = config else {
+        page.spool.set_page(None).await?;
+        return Ok(None);
+    };
+    let listener = TcpListener::bind(config.listen)
+        .await
+        .with_context(|| format!("page.listen {}: cannot listen", config.listen))?;
+    let address = listener.local_addr()?;
+    page.spool.set_page(Some(address)).await?;
+    let stopped = shutdown.clone().cancelled_owned();
+    tokio::spawn(async move {
+        let served = axum::serve(listener, router(page))
+            .with_graceful_shutdown(stopped)
+            .await;
+        if let Err(error) = served {
+            tracing::error!(%error, "the local page stopped");
+        }
+    });
+    Ok(Some(address))
+}
+
+/// Says which alert was seen.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Acknowledgement {
+    id: Uuid,
+}
+
 /// All of the page.
 pub(crate) fn router(page: Page) -> Router {
     Router::new()
         .route("/", get(show))
         .route("/api/status", get(status))
         .route("/api/hold", post(set_hold))
+        .route("/api/alert/acknowledge", post(acknowledge))
         .route("/api/reports", get(reports::list))
         .route("/api/reports/{id}", put(reports::put))
         .layer(DefaultBodyLimit::max(MAX_BYTES))
@@ -90,6 +133,41 @@ async fn set_hold(
     }
     page.hold.send_replace(request.hold);
     Json(request).into_response()
+}
+
+async fn acknowledge(
+    State(page): State<Page>,
+    headers: HeaderMap,
+    Json(seen): Json<Acknowledgement>,
+) -> Response {
+    if let Err(refusal) = guarded(&headers) {
+        return refusal.into_response();
+    }
+    match acknowledged(&page.spool, seen.id).await {
+        Ok(true) => {
+            page.acknowledged.send_replace(Some(seen.id));
+            Json(seen).into_response()
+        }
+        Ok(false) => (StatusCode::NOT_FOUND, "there is no such alert any more").into_response(),
+        Err(error) => {
+            tracing::error!(%error, "an acknowledgement cannot be stored");
+            let why = "the acknowledgement cannot be stored";
+            (StatusCode::INTERNAL_SERVER_ERROR, why).into_response()
+        }
+    }
+}
+
+/// Keeps that an alert was seen, if it is the last one.
+async fn acknowledged(spool: &Spool, id: Uuid) -> sqlx::Result<bool> {
+    let Some(aboard) = spool.alert().await?.filter(|known| known.alert.id == id) else {
+        return Ok(false);
+    };
+    let seen = Aboard {
+        acknowledged: true,
+        ..aboard
+    };
+    spool.keep_alert(&seen).await?;
+    Ok(true)
 }
 
 /// Refuses a change that carries no guard header.
@@ -142,6 +220,7 @@ fn is_local_name(host: &str) -> bool {
 pub(crate) mod tests {
     use super::*;
     use axum::body::Body;
+    use binnacle_wire::alert::{ShipAlert, ShipAlertState};
     use tempfile::TempDir;
     use tower::ServiceExt;
 
@@ -152,6 +231,7 @@ pub(crate) mod tests {
             spool,
             status: watch::channel(Arc::new(Status::default())).1,
             hold: watch::Sender::new(None),
+            acknowledged: watch::Sender::new(None),
             news: Arc::new(Notify::new()),
         };
         let router = router(page.clone());
@@ -223,5 +303,48 @@ pub(crate) mod tests {
         for outside in ["http://", "https://", "//cdn", "@import", "<link"] {
             assert!(!html.contains(outside), "{outside}");
         }
+    }
+
+    #[tokio::test]
+    async fn an_alert_is_acknowledged_once_it_is_known_and_only_from_here() {
+        let (_directory, page, router) = page().await;
+        let at = binnacle_magnetics::time::Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
+        let id = Uuid::from_u128(0xa1);
+        let aboard = Aboard {
+            alert: ShipAlert {
+                id,
+                revision: 1,
+                state: ShipAlertState::Open,
+                since: at,
+                at,
+                gyro_departure_deg: Some(20.0),
+                satellite_departure_deg: None,
+                limit_deg: 4.0,
+                model_version: 1,
+            },
+            acknowledged: false,
+            followed: false,
+            sectors: 1,
+        };
+        page.spool.keep_alert(&aboard).await.unwrap();
+        let press = |id: Uuid, guard: &str| {
+            Request::post("/api/alert/acknowledge")
+                .header("content-type", "application/json")
+                .header("host", "192.168.1.9:8090")
+                .header("x-binnacle-request", guard)
+                .body(Body::from(format!(r#"{{"id":"{id}"}}"#)))
+                .unwrap()
+        };
+        let status = |request: Request| {
+            let router = router.clone();
+            async move { router.oneshot(request).await.unwrap().status() }
+        };
+        assert_eq!(status(press(id, "0")).await, StatusCode::FORBIDDEN);
+        let other = Uuid::from_u128(2);
+        assert_eq!(status(press(other, "1")).await, StatusCode::NOT_FOUND);
+        assert!(!page.spool.alert().await.unwrap().unwrap().acknowledged);
+        assert_eq!(status(press(id, "1")).await, StatusCode::OK);
+        assert!(page.spool.alert().await.unwrap().unwrap().acknowledged);
+        assert_eq!(*page.acknowledged.borrow(), Some(id));
     }
 }

@@ -56,6 +56,8 @@ pub(crate) fn replay(
                 ship.observe(observation, heard);
             }
             replayed.samples.extend(ship.sampler.take_samples());
+            // Nobody stands lookout over a recording.
+            drop(ship.sampler.take_settled());
         });
         let read = read.with_context(|| file.display().to_string())?;
         anyhow::ensure!(

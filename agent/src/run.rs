@@ -5,6 +5,7 @@
 //! waits, its channel fills, and the inputs wait in turn: a recording that is
 //! played fast is throttled and never lost.
 
+use crate::alert::{Aboard, AlarmSentence, Card, Lookout};
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
 use crate::corrected::{self, Corrected, Ingredients};
@@ -19,18 +20,18 @@ use crate::ship::{Latest, Ship};
 use crate::spool::{Pending, Seal, Spool};
 use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{Backoff, LinkState, LinkStatus, Shore, Tell, Uplink};
-use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::alert::ShipAlert;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink, Settings};
-use rand::SeedableRng;
 use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::net::TcpListener;
 use tokio::sync::{Notify, mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval};
 use tokio_util::sync::CancellationToken;
+use uuid::Uuid;
 
 /// Samples are written to the spool when there are so many, or after a second.
 pub(crate) const SAMPLES_PER_COMMIT: usize = 64;
@@ -67,8 +68,14 @@ struct Agent {
     settings: watch::Receiver<Settings>,
     link: watch::Receiver<LinkStatus>,
     hold: watch::Sender<Option<Hold>>,
+    lookout: Lookout,
+    /// What the spool has of the lookout's alert.
+    alert_kept: Option<Aboard>,
+    acknowledged: watch::Receiver<Option<Uuid>>,
+    alarm: Option<AlarmSentence>,
     status: watch::Sender<Arc<Status>>,
     sealed: Arc<Notify>,
+    urgent: Arc<Notify>,
     uplink: tokio::task::JoinHandle<()>,
     unstored: Unstored,
     windows: Tally,
@@ -79,6 +86,8 @@ struct Agent {
 struct Unstored {
     samples: Vec<Sample>,
     tally: Tally,
+    /// Revisions of alerts.
+    alerts: Vec<ShipAlert>,
     /// What the spool has that is not sealed.
     pending: Pending,
     /// The ship's time when the tally was last sealed.
@@ -94,6 +103,8 @@ impl Agent {
         let settings = spool.settings().await?;
         let model = spool.model().await?;
         let hold = spool.hold().await?;
+        let alert_kept = spool.alert().await?;
+        let judged_by = model.as_ref().map(|model| model.id);
         let ship = Ship::new(
             &config.roles,
             config.silence.stale_s.0,
@@ -108,8 +119,17 @@ impl Agent {
         let outputs = Outputs::open(&config.output, shutdown).await?;
         let hold = watch::Sender::new(hold);
         let status = watch::Sender::new(Arc::new(Status::default()));
-        let sealed = Arc::new(Notify::new());
-        let page = serve_page(&config, &spool, &status, &hold, &sealed, shutdown).await?;
+        let (sealed, urgent) = (Arc::new(Notify::new()), Arc::new(Notify::new()));
+        let acknowledged = watch::Sender::new(None);
+        let acknowledged_rx = acknowledged.subscribe();
+        let served = Page {
+            spool: spool.clone(),
+            status: status.subscribe(),
+            hold: hold.clone(),
+            acknowledged,
+            news: sealed.clone(),
+        };
+        let page = page::serve(config.page.as_ref(), served, shutdown).await?;
         let model = watch::Sender::new(model);
         let withdrawn = watch::Sender::new(spool.card_withdrawn().await?);
         let withdrawn_rx = withdrawn.subscribe();
@@ -137,6 +157,7 @@ impl Agent {
             },
             no_reports_before: None,
             sealed: sealed.clone(),
+            urgent: urgent.clone(),
             rng: StdRng::from_rng(&mut rand::rng()),
         };
         let uplink = tokio::spawn(uplink.run(shutdown.clone()));
@@ -164,8 +185,13 @@ impl Agent {
             settings: settings_rx,
             link: link_rx,
             hold,
+            lookout: Lookout::new(config.alert, alert_kept, judged_by),
+            alert_kept,
+            acknowledged: acknowledged_rx,
+            alarm: config.output.alarm_sentence.then(AlarmSentence::default),
             status,
             sealed,
+            urgent,
             uplink,
             unstored,
             windows: Tally::default(),
@@ -193,6 +219,12 @@ impl Agent {
                     let hold = *hold.borrow_and_update();
                     self.ship.sampler.set_hold(hold);
                 }
+                Ok(()) = self.acknowledged.changed() => {
+                    let seen = *self.acknowledged.borrow_and_update();
+                    if let Some(id) = seen {
+                        self.lookout.acknowledge(id);
+                    }
+                }
             }
         }
         self.stop().await;
@@ -215,22 +247,29 @@ impl Agent {
         for observation in observations {
             self.ship.observe(observation, heard);
         }
+        self.look_out();
         if !self.ship.sampler.has_samples() {
             return;
         }
         self.collect();
         let seal = self.seal_due();
-        if seal == Seal::All || self.unstored.samples.len() >= SAMPLES_PER_COMMIT {
+        if seal == Seal::All
+            || !self.unstored.alerts.is_empty()
+            || self.unstored.samples.len() >= SAMPLES_PER_COMMIT
+        {
             self.store(seal).await;
         }
     }
 
     async fn every_second(&mut self) {
+        self.look_out();
         self.collect();
         let seal = self.seal_due();
-        if seal == Seal::All || !self.unstored.samples.is_empty() {
+        let unstored = &self.unstored;
+        if seal == Seal::All || !unstored.samples.is_empty() || !unstored.alerts.is_empty() {
             self.store(seal).await;
         }
+        self.keep_alert().await;
         match self.spool.hold().await {
             Ok(hold) => {
                 // The command line sets it there when it finds no page.
@@ -241,6 +280,45 @@ impl Agent {
         }
         let status = self.take_stock().await;
         self.status.send_replace(Arc::new(status));
+    }
+
+    /// Looks at what has settled since; the samples of an alert end with it.
+    fn look_out(&mut self) {
+        let (model, withdrawn) = (self.model.borrow(), self.withdrawn.borrow());
+        let card = Card {
+            model: model.as_ref(),
+            withdrawn: withdrawn.as_ref(),
+        };
+        let new_id = || uuid::Builder::from_random_bytes(rand::rng().random()).into_uuid();
+        let settled = self.ship.sampler.take_settled();
+        let revisions = settled
+            .iter()
+            .filter_map(|w| self.lookout.take(w, card, new_id));
+        let mut revisions: Vec<ShipAlert> = revisions.collect();
+        let now = self.ship.time();
+        revisions.extend(now.and_then(|now| self.lookout.follow(card, now)));
+        if revisions.is_empty() {
+            return;
+        }
+        if let Some(aboard) = self.lookout.aboard() {
+            tracing::warn!("{}", aboard.status().says);
+        }
+        self.ship.sampler.cut();
+        self.unstored.alerts.extend(revisions);
+    }
+
+    /// Keeps what only those aboard need to know of the alert.
+    async fn keep_alert(&mut self) {
+        let Some(aboard) = self.lookout.aboard().copied() else {
+            return;
+        };
+        if self.alert_kept == Some(aboard) || !self.unstored.alerts.is_empty() {
+            return;
+        }
+        match self.spool.keep_alert(&aboard).await {
+            Ok(()) => self.alert_kept = Some(aboard),
+            Err(error) => tracing::error!(%error, "the alert cannot be stored"),
+        }
     }
 
     fn collect(&mut self) {
@@ -273,12 +351,26 @@ impl Agent {
     async fn store(&mut self, seal: Seal) {
         let unstored = &mut self.unstored;
         let tally = unstored.tally.by_name();
-        match self.spool.store(&unstored.samples, &tally, seal).await {
+        let has_evidence = !unstored.alerts.is_empty();
+        let stored = if has_evidence {
+            let aboard = self.lookout.aboard();
+            let (samples, alerts) = (&unstored.samples, &unstored.alerts);
+            let spool = &self.spool;
+            spool.store_evidence(samples, &tally, alerts, aboard).await
+        } else {
+            self.spool.store(&unstored.samples, &tally, seal).await
+        };
+        match stored {
             Ok((pending, sealed)) => {
+                if has_evidence {
+                    self.alert_kept = self.lookout.aboard().copied();
+                    unstored.alerts.clear();
+                    self.urgent.notify_one();
+                }
                 unstored.samples.clear();
                 unstored.tally = Tally::default();
                 unstored.pending = pending;
-                if seal == Seal::All {
+                if has_evidence || seal == Seal::All {
                     unstored.tally_since = self.ship.time();
                 }
                 if sealed > 0 {
@@ -308,13 +400,18 @@ impl Agent {
         (corrected::correct(from), corrected::card(from))
     }
 
-    fn send_heading(&self) {
+    fn send_heading(&mut self) {
         let (corrected, _) = self.correct();
         let quality = self.model_status().map(|model| Quality {
             version: model.version,
             age_days: model.age_days.unwrap_or_default(),
         });
-        self.outputs.send(sentences(&corrected, quality));
+        let mut said = sentences(&corrected, quality);
+        if let Some(alarm) = &mut self.alarm {
+            let due = alarm.due(self.lookout.aboard(), Instant::now());
+            said.extend(due.into_iter().flatten());
+        }
+        self.outputs.send(said);
     }
 
     fn model_status(&self) -> Option<ModelStatus> {
@@ -340,6 +437,7 @@ impl Agent {
         status.ship_time = self.ship.time();
         status.heading = heading;
         status.card = card;
+        status.alert = self.lookout.aboard().map(Aboard::status);
         status.gyro_deg = Latest::within(readings.gyro, stale, now);
         status.satellite_deg = Latest::within(readings.satellite, stale, now);
         status.sog_kn = Latest::within(readings.sog_kn, stale, now);
@@ -355,41 +453,6 @@ impl Agent {
         status.link = self.link.borrow().clone();
         status
     }
-}
-
-async fn serve_page(
-    config: &Config,
-    spool: &Spool,
-    status: &watch::Sender<Arc<Status>>,
-    hold: &watch::Sender<Option<Hold>>,
-    news: &Arc<Notify>,
-    shutdown: &CancellationToken,
-) -> anyhow::Result<Option<std::net::SocketAddr>> {
-    let Some(page) = &config.page else {
-        spool.set_page(None).await?;
-        return Ok(None);
-    };
-    let listener = TcpListener::bind(page.listen)
-        .await
-        .with_context(|| format!("page.listen {}: cannot listen", page.listen))?;
-    let address = listener.local_addr()?;
-    spool.set_page(Some(address)).await?;
-    let router = page::router(Page {
-        spool: spool.clone(),
-        status: status.subscribe(),
-        hold: hold.clone(),
-        news: news.clone(),
-    });
-    let stopped = shutdown.clone().cancelled_owned();
-    tokio::spawn(async move {
-        let served = axum::serve(listener, router)
-            .with_graceful_shutdown(stopped)
-            .await;
-        if let Err(error) = served {
-            tracing::error!(%error, "the local page stopped");
-        }
-    });
-    Ok(Some(address))
 }
 
 /// What the spool alone can tell.
@@ -422,6 +485,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
             last_contact,
         },
         spool: spool.standing().await?,
+        alert: spool.alert().await?.as_ref().map(Aboard::status),
         ..Status::default()
     })
 }

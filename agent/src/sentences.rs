@@ -12,7 +12,6 @@ use crate::corrected::Corrected;
 use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
-use std::io::Write;
 
 /// Whose HDG and THS a source must ask for by name to hear them.
 pub(crate) const TALKER: [u8; 2] = *b"II";
@@ -81,9 +80,13 @@ fn write_quality(corrected: &Corrected, quality: Option<Quality>, out: &mut Vec<
         .standard_error_deg
         .map(|error| format!("{error:.2}"))
         .unwrap_or_default();
-    let body = format!("PBINQ,{status},{version},{age},{error}");
+    out.extend(framed(&format!("PBINQ,{status},{version},{age},{error}")));
+}
+
+/// A sentence from what stands between `$` and `*`.
+pub(crate) fn framed(body: &str) -> Vec<u8> {
     let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
-    write!(out, "${body}*{sum:02X}\r\n").expect("a Vec takes every write");
+    format!("${body}*{sum:02X}\r\n").into_bytes()
 }
 
 /// Sensors give tenths of a degree; more would only look better.

@@ -1,5 +1,6 @@
 //! How everything is, in one value: for the local page and for `status`.
 
+use crate::alert::AlertStatus;
 use crate::corrected::{CardRow, Corrected};
 use crate::hold::Hold;
 use crate::input::InputStatus;
@@ -7,6 +8,7 @@ use crate::spool::Standing;
 use crate::uplink::LinkStatus;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::alert::ShipAlertState;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -24,6 +26,9 @@ pub(crate) struct Status {
     /// The ship's own time.
     pub(crate) ship_time: Option<Timestamp>,
     pub(crate) heading: Corrected,
+    /// The agent's last alert of its own: open, or how it ended.
+    #[serde(default)]
+    pub(crate) alert: Option<AlertStatus>,
     pub(crate) gyro_deg: Option<TrueHeading>,
     pub(crate) satellite_deg: Option<TrueHeading>,
     pub(crate) sog_kn: Option<f64>,
@@ -136,6 +141,7 @@ impl Status {
         if let Some(time) = self.ship_time {
             writeln!(out, "ship time  {time}")?;
         }
+        self.write_alert(out)?;
         self.write_heading(out)?;
         match &self.model {
             Some(model) => {
@@ -166,6 +172,22 @@ impl Status {
             writeln!(out, "windows    {windows} {outcome}")?;
         }
         Ok(())
+    }
+
+    fn write_alert(&self, out: &mut String) -> std::fmt::Result {
+        let Some(alert) = &self.alert else {
+            return Ok(());
+        };
+        if alert.alert.state != ShipAlertState::Open {
+            return writeln!(out, "alert      {}", alert.says);
+        }
+        let seen = if alert.acknowledged {
+            " (acknowledged)"
+        } else {
+            ""
+        };
+        writeln!(out, "ALERT      {}{seen}", alert.says)?;
+        writeln!(out, "           {}", alert.advice)
     }
 
     fn write_heading(&self, out: &mut String) -> std::fmt::Result {

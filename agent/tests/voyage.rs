@@ -5,11 +5,9 @@
 mod common;
 
 use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::model::{Model, Parameters};
 use binnacle_magnetics::time::Timestamp;
 use binnacle_nmea::sentence::ThsMode;
 use binnacle_nmea::{Data, parse};
-use binnacle_wire::messages::ModelDownlink;
 use common::agent::Agent;
 use common::bridge::{self, Bridge, LEAD_DEG};
 use common::shore::{STREAM, Shore};
@@ -21,45 +19,14 @@ use std::time::Duration;
 use tokio::io::{AsyncBufReadExt, BufReader};
 use tokio::net::TcpStream;
 use tokio::time::timeout;
-use uuid::Uuid;
 
 const PATIENCE: Duration = Duration::from_mins(2);
-
-/// A model that says only: everything is 2.5° east of what it seems.
-fn model() -> ModelDownlink {
-    let mut covariance = [[0.0; 8]; 8];
-    covariance[7][7] = 0.04;
-    ModelDownlink {
-        id: Uuid::from_u128(9),
-        version: 3,
-        data_until: Timestamp::parse("2026-08-30T00:00:00Z").unwrap(),
-        replaces: None,
-        model: Model {
-            parameters_over_lambda: Parameters {
-                bx_nt: 0.0,
-                chi13: 0.0,
-                by_nt: 0.0,
-                chi23: 0.0,
-                chi11_minus_chi22: 0.0,
-                chi12: 0.0,
-                chi21: 0.0,
-            },
-            constant_deg: 2.5,
-            covariance: Some(covariance),
-            identifiable: None,
-            rms_deg: None,
-            samples_used: 1,
-            samples_rejected: 0,
-            quality: None,
-        },
-    }
-}
 
 #[tokio::test]
 async fn a_voyage_reaches_the_shore_and_comes_back_as_a_heading() {
     let seconds = 12 * 3600;
     let bridge = Bridge::new(seconds).await;
-    let shore = Shore::start(Some(model()), None).await;
+    let shore = Shore::start(Some(common::model()), None).await;
     let agent = Agent::new(bridge.address);
     agent.enrol(&shore.url).await;
     let running = agent.run().await;

@@ -4,8 +4,12 @@
 //! and the field; a configuration that loads is one that can run. Paths in the
 //! file are relative to the file.
 
+mod alert;
 mod roles;
 
+pub(crate) use alert::AlertConfig;
+#[cfg(test)]
+pub(crate) use alert::GyroError;
 pub(crate) use roles::{RolesConfig, SourceConfig};
 
 use crate::input::InputConfig;
@@ -37,6 +41,9 @@ pub(crate) struct Config {
     /// How the shore is spoken to.
     #[serde(default)]
     pub(crate) uplink: UplinkConfig,
+    /// When the agent raises its own alert.
+    #[serde(default)]
+    pub(crate) alert: AlertConfig,
     /// When a source counts as silent.
     #[serde(default)]
     pub(crate) silence: SilenceConfig,
@@ -54,6 +61,8 @@ pub(crate) struct OutputConfig {
     pub(crate) serial: Option<SerialConfig>,
     /// Seconds between two outputs.
     pub(crate) interval_s: PositiveSeconds,
+    /// Whether to send ALR sentences of the agent's own alert too.
+    pub(crate) alarm_sentence: bool,
 }
 
 impl Default for OutputConfig {
@@ -63,6 +72,7 @@ impl Default for OutputConfig {
             udp: None,
             serial: None,
             interval_s: PositiveSeconds(1.0),
+            alarm_sentence: false,
         }
     }
 }
@@ -318,6 +328,9 @@ stale_s = 15
         assert_eq!(example.uplink.retry_max_s, bare.uplink.retry_max_s);
         assert_eq!(example.silence.stale_s, bare.silence.stale_s);
         assert_eq!(example.output.interval_s, bare.output.interval_s);
+        assert_eq!(example.output.alarm_sentence, bare.output.alarm_sentence);
+        assert_eq!(example.alert.gyro_error_deg, bare.alert.gyro_error_deg);
+        assert_eq!(example.alert.settled_s, bare.alert.settled_s);
     }
 
     #[test]
@@ -345,6 +358,11 @@ stale_s = 15
         assert_eq!(
             message(&wrong),
             "agent.toml:9: input: there is no input named \"brdge\""
+        );
+        let wrong = WHOLE.replace("[silence]", "[alert]\ngyro_error_deg = 0\n[silence]");
+        assert_eq!(
+            message(&wrong),
+            "agent.toml:23: gyro_error_deg: 0 is not from 0.5 to 30 degrees"
         );
         let wrong = WHOLE.replace("talker = \"HC\"", "talker = \"COMPASS\"");
         assert!(message(&wrong).starts_with("agent.toml:6: talker: "));

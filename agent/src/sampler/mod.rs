@@ -18,6 +18,7 @@ mod stretch;
 mod track;
 
 pub(crate) use outcome::{Outcome, Tally};
+pub(crate) use stretch::{WINDOW_S, Window, median};
 
 use crate::hold::Hold;
 use crate::roles::Signal;
@@ -27,7 +28,7 @@ use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::Settings;
-use stretch::{Stretch, WINDOW_S, Window};
+use stretch::Stretch;
 use track::{Span, Track};
 
 /// Fewer readings than this in ten seconds make no mean.
@@ -59,6 +60,7 @@ pub(crate) struct Sampler {
     turns: Turns,
     stretch: Stretch,
     samples: Vec<Sample>,
+    settled: Vec<Window>,
     tally: Tally,
 }
 
@@ -89,6 +91,7 @@ impl Sampler {
             turns: Turns::default(),
             stretch: Stretch::default(),
             samples: Vec::new(),
+            settled: Vec::new(),
             tally: Tally::default(),
         }
     }
@@ -132,6 +135,16 @@ impl Sampler {
     /// Whether there are finished samples.
     pub(crate) fn has_samples(&self) -> bool {
         !self.samples.is_empty()
+    }
+
+    /// The windows that were accepted since this was last asked, oldest first.
+    pub(crate) fn take_settled(&mut self) -> Vec<Window> {
+        std::mem::take(&mut self.settled)
+    }
+
+    /// Makes a sample of what has settled so far, and goes on with another.
+    pub(crate) fn cut(&mut self) {
+        self.samples.extend(self.stretch.finish());
     }
 
     /// Windows by outcome since this was last asked.
@@ -190,6 +203,7 @@ impl Sampler {
     fn close(&mut self, index: i64) {
         let outcome = match self.judge(index) {
             Ok(window) => {
+                self.settled.push(window);
                 let finished = self.stretch.add(window, self.settings.sample_s);
                 self.samples.extend(finished);
                 Outcome::Accepted

@@ -10,7 +10,7 @@ use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 
 /// Seconds in a window.
-pub(super) const WINDOW_S: i64 = 10;
+pub(crate) const WINDOW_S: i64 = 10;
 /// A stretch is on one heading while it stays this near to where it began.
 const SAME_HEADING_DEG: f64 = 5.0;
 /// Refused windows in between that end a stretch: more than a minute.
@@ -24,15 +24,15 @@ const LEAST_OUTLIER_DEG: f64 = 0.2;
 
 /// One settled window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Window {
+pub(crate) struct Window {
     /// Tens of seconds since 1970.
-    pub(super) index: i64,
-    pub(super) compass_deg: f64,
-    pub(super) gyro_deg: Option<f64>,
-    pub(super) satellite_deg: Option<f64>,
-    pub(super) position: Position,
-    pub(super) sog_kn: f64,
-    pub(super) rate_of_turn_deg_min: Option<f64>,
+    pub(crate) index: i64,
+    pub(crate) compass_deg: f64,
+    pub(crate) gyro_deg: Option<f64>,
+    pub(crate) satellite_deg: Option<f64>,
+    pub(crate) position: Position,
+    pub(crate) sog_kn: f64,
+    pub(crate) rate_of_turn_deg_min: Option<f64>,
 }
 
 /// Settled windows in order of time, all on one heading.
@@ -169,7 +169,8 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
+/// The middle of some values; zero when there are none.
+pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);
     let Some(last) = sorted.len().checked_sub(1) else {

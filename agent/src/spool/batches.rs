@@ -17,6 +17,8 @@ pub(crate) struct SealedBatch {
     pub(crate) seq: u64,
     /// The frame.
     pub(crate) bytes: Vec<u8>,
+    /// Whether it goes before everything else.
+    pub(crate) urgent: bool,
 }
 
 /// How far the shore has come with what is here.
@@ -39,16 +41,19 @@ pub(crate) struct Standing {
 }
 
 impl Spool {
-    /// The first batch that waits to be sent.
+    /// The batch that is to be sent next: evidence of alerts, the newest first, then
+    /// the others, the oldest first.
     pub(crate) async fn next_batch(&self) -> sqlx::Result<Option<SealedBatch>> {
-        let row: Option<(i64, Vec<u8>)> = sqlx::query_as(
-            "SELECT seq, bytes FROM batches WHERE standing = 'waiting' ORDER BY seq LIMIT 1",
+        let row: Option<(i64, Vec<u8>, bool)> = sqlx::query_as(
+            "SELECT seq, bytes, urgent FROM batches WHERE standing = 'waiting'
+             ORDER BY urgent DESC, CASE WHEN urgent THEN -seq ELSE seq END LIMIT 1",
         )
         .fetch_optional(&self.pool)
         .await?;
-        Ok(row.map(|(seq, bytes)| SealedBatch {
+        Ok(row.map(|(seq, bytes, urgent)| SealedBatch {
             seq: seq.cast_unsigned(),
             bytes,
+            urgent,
         }))
     }
 
@@ -180,17 +185,17 @@ async fn remember(
 /// What was acknowledged is durable on shore in the old stream, and dropped
 /// here. Bytes that no longer read are put aside, never fatal.
 pub(super) async fn renumber(tx: &mut SqliteConnection, stream: StreamId) -> sqlx::Result<()> {
-    let rows: Vec<(i64, Vec<u8>)> = sqlx::query_as(
-        "SELECT seq, bytes FROM batches WHERE standing <> 'acknowledged' ORDER BY seq",
+    let rows: Vec<(Vec<u8>, bool)> = sqlx::query_as(
+        "SELECT bytes, urgent FROM batches WHERE standing <> 'acknowledged' ORDER BY seq",
     )
     .fetch_all(&mut *tx)
     .await?;
     sqlx::query("DELETE FROM batches").execute(&mut *tx).await?;
     let mut next = 1;
-    for (_, bytes) in rows {
+    for (bytes, urgent) in rows {
         match in_stream(&bytes, stream, next) {
             Ok((bytes, samples)) => {
-                insert_batch(tx, next, &bytes, samples).await?;
+                insert_batch(tx, next, &bytes, samples, urgent).await?;
                 next += 1;
             }
             Err(problem) => {

@@ -8,6 +8,7 @@
 //!   without gaps, and sent again byte for byte until they are acknowledged.
 //! - A batch is deleted only when the shore acknowledged that very batch and
 //!   everything before it; a record of its number, size and checksum remains.
+//! - An alert and the batch that carries it ashore are here from the same moment on.
 //! - An officer's report is here until the shore has it.
 //! - Position and data are one thing: there is no ledger beside the rows that
 //!   could disagree with them.
@@ -26,6 +27,7 @@ pub(crate) use reports::ReportStanding;
 pub(crate) use reports::{NotKept, StoredReport};
 pub(crate) use seal::{Pending, Seal};
 
+use crate::alert::Aboard;
 use crate::hold::Hold;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
@@ -82,6 +84,7 @@ const SETTINGS: &str = "settings";
 const HOLD: &str = "hold";
 const PAGE: &str = "page";
 const LAST_CONTACT: &str = "last_contact";
+const ALERT: &str = "alert";
 
 impl Spool {
     /// Opens the spool in a directory, which is made if need be; both are the
@@ -96,7 +99,24 @@ impl Spool {
             .execute(&pool)
             .await
             .with_context(|| format!("{}: cannot use the spool", path.display()))?;
-        Ok(Spool { pool })
+        let spool = Spool { pool };
+        let added = spool.add_missing_columns().await;
+        added.with_context(|| format!("{}: cannot use the spool", path.display()))?;
+        Ok(spool)
+    }
+
+    /// A spool that an older agent made lacks what came later.
+    async fn add_missing_columns(&self) -> sqlx::Result<()> {
+        let known: Option<i64> =
+            sqlx::query_scalar("SELECT 1 FROM pragma_table_info('batches') WHERE name = 'urgent'")
+                .fetch_optional(&self.pool)
+                .await?;
+        if known.is_none() {
+            sqlx::query("ALTER TABLE batches ADD COLUMN urgent BOOLEAN NOT NULL DEFAULT FALSE")
+                .execute(&self.pool)
+                .await?;
+        }
+        Ok(())
     }
 
     /// Finishes what is under way and closes the file.
@@ -121,10 +141,11 @@ impl Spool {
             reports::refuse_waiting(&mut tx, &before.vessel_name).await?;
         }
         if before.is_some_and(|before| !before.is_same_compass(identity)) {
-            sqlx::query("DELETE FROM state WHERE name IN ($1, $2, $3)")
+            sqlx::query("DELETE FROM state WHERE name IN ($1, $2, $3, $4)")
                 .bind(MODEL)
                 .bind(WITHDRAWN)
                 .bind(SETTINGS)
+                .bind(ALERT)
                 .execute(&mut *tx)
                 .await?;
         }
@@ -152,6 +173,18 @@ impl Spool {
     pub(crate) async fn keep_downlink(&self, downlink: &Downlink) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         keep_downlink(&mut tx, downlink).await?;
+        tx.commit().await
+    }
+
+    /// The last alert of the agent's own.
+    pub(crate) async fn alert(&self) -> sqlx::Result<Option<Aboard>> {
+        self.get(ALERT).await
+    }
+
+    /// Keeps what is known of the alert aboard alone.
+    pub(crate) async fn keep_alert(&self, aboard: &Aboard) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        put(&mut tx, ALERT, aboard).await?;
         tx.commit().await
     }
 

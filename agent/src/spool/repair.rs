@@ -151,7 +151,8 @@ async fn carry_over(aside: &Path, spool: &Spool) {
             continue;
         };
         let count = batch.samples.len();
-        let copied = insert_batch(&mut connection, seq.cast_unsigned(), &bytes, count).await;
+        let (seq, urgent) = (seq.cast_unsigned(), !batch.alerts.is_empty());
+        let copied = insert_batch(&mut connection, seq, &bytes, count, urgent).await;
         batches += usize::from(copied.is_ok());
     }
     let reports = carry_reports_over(&damaged, spool).await;

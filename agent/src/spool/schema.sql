@@ -16,7 +16,8 @@ CREATE TABLE IF NOT EXISTS batches (
     bytes    BLOB NOT NULL,
     samples  BIGINT NOT NULL,
     standing TEXT NOT NULL CHECK (standing IN ('waiting', 'acknowledged', 'parked')),
-    problem  TEXT
+    problem  TEXT,
+    urgent   BOOLEAN NOT NULL DEFAULT FALSE
 );
 CREATE TABLE IF NOT EXISTS acknowledged (
     id      INTEGER PRIMARY KEY,

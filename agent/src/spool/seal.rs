@@ -1,8 +1,10 @@
 //! From samples to sealed batches, in one transaction.
 
-use super::{IDENTITY, Identity, NEXT_SEQ, Spool, get, put};
+use super::{ALERT, IDENTITY, Identity, NEXT_SEQ, Spool, get, put};
+use crate::alert::Aboard;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::alert::ShipAlert;
 use binnacle_wire::batch::Batch;
 use binnacle_wire::codec;
 use sqlx::SqliteConnection;
@@ -52,13 +54,50 @@ impl Spool {
             while pending.samples >= u64::from(SAMPLES_PER_BATCH)
                 || (seal == Seal::All && (pending.samples > 0 || sealed == 0))
             {
-                if !seal_one(&mut tx, &identity).await? {
+                if !seal_one(&mut tx, &identity, &[]).await? {
                     break;
                 }
                 sealed += 1;
                 pending = self::pending(&mut tx).await?;
             }
         }
+        tx.commit().await?;
+        Ok((pending, sealed))
+    }
+
+    /// Adds samples and counted windows, and seals all there is as evidence of alerts,
+    /// which go with the newest samples. What is known of the last alert is kept in
+    /// the same breath.
+    pub(crate) async fn store_evidence(
+        &self,
+        samples: &[Sample],
+        tally: &BTreeMap<String, u64>,
+        alerts: &[ShipAlert],
+        aboard: Option<&Aboard>,
+    ) -> sqlx::Result<(Pending, usize)> {
+        let mut tx = self.write().await?;
+        for sample in samples {
+            insert_sample(&mut tx, sample).await?;
+        }
+        for (reason, windows) in tally {
+            add_to_tally(&mut tx, reason, *windows).await?;
+        }
+        if let Some(aboard) = aboard {
+            put(&mut tx, ALERT, aboard).await?;
+        }
+        let mut sealed = 0;
+        if let Some(identity) = get::<Identity>(&mut tx, IDENTITY).await? {
+            if alerts.iter().any(|alert| alert.revision == 1) {
+                // What was sealed last lies just before the alert.
+                hurry_newest(&mut tx).await?;
+            }
+            while pending(&mut tx).await?.samples > u64::from(SAMPLES_PER_BATCH) {
+                sealed += usize::from(seal_one(&mut tx, &identity, &[]).await?);
+                hurry_newest(&mut tx).await?;
+            }
+            sealed += usize::from(seal_one(&mut tx, &identity, alerts).await?);
+        }
+        let pending = pending(&mut tx).await?;
         tx.commit().await?;
         Ok((pending, sealed))
     }
@@ -107,8 +146,24 @@ async fn pending(connection: &mut SqliteConnection) -> sqlx::Result<Pending> {
     })
 }
 
-/// Seals the oldest samples and the whole tally; `false` when there is nothing.
-async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Result<bool> {
+/// Lets the batch that was sealed last go first, if it waits.
+async fn hurry_newest(tx: &mut SqliteConnection) -> sqlx::Result<()> {
+    sqlx::query(
+        "UPDATE batches SET urgent = TRUE
+         WHERE standing = 'waiting' AND seq = (SELECT MAX(seq) FROM batches)",
+    )
+    .execute(tx)
+    .await?;
+    Ok(())
+}
+
+/// Seals the oldest samples, the whole tally, and alerts; `false` when there is
+/// nothing.
+async fn seal_one(
+    tx: &mut SqliteConnection,
+    identity: &Identity,
+    alerts: &[ShipAlert],
+) -> sqlx::Result<bool> {
     let rows: Vec<(i64, String)> = sqlx::query_as(
         "DELETE FROM pending_samples WHERE id IN
          (SELECT id FROM pending_samples ORDER BY time_micros, id LIMIT $1)
@@ -121,7 +176,7 @@ async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Resul
         sqlx::query_as("DELETE FROM pending_tally RETURNING reason, windows")
             .fetch_all(&mut *tx)
             .await?;
-    if rows.is_empty() && tally.is_empty() {
+    if rows.is_empty() && tally.is_empty() && alerts.is_empty() {
         return Ok(false);
     }
     let mut samples: Vec<Sample> = rows.iter().filter_map(|(_, text)| readable(text)).collect();
@@ -136,11 +191,11 @@ async fn seal_one(tx: &mut SqliteConnection, identity: &Identity) -> sqlx::Resul
             .into_iter()
             .map(|(reason, windows)| (reason, windows.unsigned_abs()))
             .collect(),
-        alerts: Vec::new(),
+        alerts: alerts.to_vec(),
         thinned: None,
     };
     let bytes = binnacle_wire::encode(&batch).map_err(|e| sqlx::Error::Encode(e.into()))?;
-    insert_batch(tx, seq, &bytes, count).await?;
+    insert_batch(tx, seq, &bytes, count, !alerts.is_empty()).await?;
     put(tx, NEXT_SEQ, &(seq + 1)).await?;
     Ok(true)
 }
@@ -172,13 +227,16 @@ pub(super) async fn insert_batch(
     seq: u64,
     bytes: &[u8],
     samples: usize,
+    urgent: bool,
 ) -> sqlx::Result<()> {
     sqlx::query(
-        "INSERT INTO batches (seq, bytes, samples, standing) VALUES ($1, $2, $3, 'waiting')",
+        "INSERT INTO batches (seq, bytes, samples, standing, urgent)
+         VALUES ($1, $2, $3, 'waiting', $4)",
     )
     .bind(seq.cast_signed())
     .bind(bytes)
     .bind(i64::try_from(samples).unwrap_or(i64::MAX))
+    .bind(urgent)
     .execute(tx)
     .await?;
     Ok(())

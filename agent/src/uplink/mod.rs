@@ -6,8 +6,9 @@
 //! - A batch counts as sent when the shore's answer has been read and kept, not
 //!   before. Until then it is sent again, byte for byte.
 //! - No failure loses data or stops the agent; each is on the page in words.
-//! - A report for the logbook goes before the batches: it is short, and changes how
-//!   they are read. One that the shore does not take keeps nothing else back.
+//! - Evidence of an alert goes before everything else, and cuts a pause short.
+//! - A report for the logbook goes before the other batches: it is short, and changes
+//!   how they are read. One that the shore does not take keeps nothing else back.
 //! - A model or settings that arrive are kept first and then in effect at once.
 
 mod backoff;
@@ -86,6 +87,8 @@ pub(crate) struct Uplink {
     pub(crate) no_reports_before: Option<Instant>,
     /// Rings when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
+    /// Rings when evidence of an alert has been sealed.
+    pub(crate) urgent: Arc<Notify>,
     pub(crate) rng: StdRng,
 }
 
@@ -141,14 +144,15 @@ impl Uplink {
         if answered.is_none() {
             self.connecting();
         }
-        if let Some(report) = self.next_report().await? {
+        let batch = self.spool.next_batch().await?;
+        let has_evidence = batch.as_ref().is_some_and(|batch| batch.urgent);
+        if !has_evidence && let Some(report) = self.next_report().await? {
             return self.send_report(&identity, &report).await;
         }
         let have = Have {
             model: self.tell.model.borrow().as_ref().map(|model| model.id),
             settings: self.tell.settings.borrow().version,
         };
-        let batch = self.spool.next_batch().await?;
         let result = if let Some(batch) = &batch {
             self.shore.put_batch(&identity, batch, have).await
         } else {
@@ -380,7 +384,7 @@ impl Uplink {
         });
     }
 
-    async fn wait(&self, next: Next) {
+    async fn wait(&mut self, next: Next) {
         match next {
             Next::GoOn => {}
             Next::Idle(longest) => {
@@ -388,7 +392,14 @@ impl Uplink {
                 let longest = longest.min(LOOK_FOR_ENROLMENT);
                 timeout(longest, self.sealed.notified()).await.ok();
             }
-            Next::Pause(pause) => self.pause(pause).await,
+            Next::Pause(pause) => {
+                let urgent = self.urgent.clone();
+                tokio::select! {
+                    () = self.pause(pause) => return,
+                    () = urgent.notified() => {}
+                }
+                self.backoff.reset();
+            }
         }
     }
 

@@ -11,6 +11,7 @@ use axum::{Json, Router};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
+use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::messages::{CardWithdrawn, LogbookReport};
 use rand::SeedableRng;
@@ -34,6 +35,8 @@ struct Fake {
     requests: u32,
     reports: Vec<(Uuid, LogbookReport)>,
     report_answers: VecDeque<Response>,
+    /// The batches that were kept, in order; 0 for a report.
+    order: Vec<u64>,
 }
 
 type Shared = Arc<Mutex<Fake>>;
@@ -68,6 +71,7 @@ async fn put_batch(
     if known != body {
         return problem(StatusCode::CONFLICT, "stream-forked");
     }
+    fake.order.push(seq);
     Json(downlink(&fake, stream)).into_response()
 }
 
@@ -79,6 +83,7 @@ async fn put_report(
     let mut fake = fake.lock().unwrap();
     let revision = report.revision;
     fake.reports.push((id, report));
+    fake.order.push(0);
     if let Some(answer) = fake.report_answers.pop_front() {
         return answer;
     }
@@ -120,6 +125,7 @@ struct Rig {
     settings: watch::Receiver<Settings>,
     withdrawn: watch::Receiver<Option<CardWithdrawn>>,
     sealed: Arc<Notify>,
+    urgent: Arc<Notify>,
     shutdown: CancellationToken,
     _directory: TempDir,
 }
@@ -165,6 +171,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
     let (settings_tx, settings) = watch::channel(Settings::default());
     let (withdrawn_tx, withdrawn) = watch::channel(None);
     let sealed = Arc::new(Notify::new());
+    let urgent = Arc::new(Notify::new());
     let uplink = Uplink {
         spool: spool.clone(),
         token: Some(identity.token.clone()),
@@ -179,6 +186,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
         },
         no_reports_before: None,
         sealed: sealed.clone(),
+        urgent: urgent.clone(),
         rng: StdRng::seed_from_u64(1),
     };
     let shutdown = CancellationToken::new();
@@ -190,6 +198,7 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
         settings,
         withdrawn,
         sealed,
+        urgent,
         shutdown,
         _directory: directory,
     }
@@ -534,4 +543,73 @@ async fn a_model_that_cannot_be_read_leaves_the_one_on_board_unless_the_ship_was
         assert_eq!(rig.spool.card_withdrawn().await.unwrap(), withdrawn);
         assert_eq!(*rig.withdrawn.borrow(), withdrawn);
     }
+}
+
+/// Seals a sample with an alert, as when compass and gyro have parted.
+async fn seal_evidence(spool: &Spool, number: i64) {
+    let at = time().plus_seconds(number as f64 * 600.0);
+    let alert = ShipAlert {
+        id: Uuid::from_u128(0xa1),
+        revision: u32::try_from(number).unwrap() + 1,
+        state: ShipAlertState::Open,
+        since: time(),
+        at,
+        gyro_departure_deg: Some(28.4),
+        satellite_departure_deg: None,
+        limit_deg: 3.9,
+        model_version: 1,
+    };
+    let sealed = spool
+        .store_evidence(&[], &BTreeMap::new(), &[alert], None)
+        .await;
+    assert_eq!(sealed.unwrap().1, 1);
+}
+
+/// A shore that asks to be left alone for an hour, and an agent that obeys.
+async fn waiting_rig(batches: i64) -> Rig {
+    let busy = (
+        StatusCode::TOO_MANY_REQUESTS,
+        [("retry-after", "3600")],
+        "slow down",
+    );
+    let fake = Fake {
+        answers: [busy.into_response()].into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(batches, fake).await;
+    let down = rig.link.wait_for(|link| link.state == LinkState::Down);
+    down.await.unwrap();
+    rig
+}
+
+#[tokio::test]
+async fn evidence_goes_before_the_backlog_and_the_reports_and_once() {
+    let mut rig = waiting_rig(3).await;
+    rig.report(1).await;
+    seal_evidence(&rig.spool, 1).await;
+    seal(&rig.spool, 7).await;
+    seal_evidence(&rig.spool, 2).await;
+    rig.urgent.notify_one();
+    rig.all_sent().await;
+    let order = rig.fake.lock().unwrap().order.clone();
+    assert_eq!(order[..2], [6, 4], "the newest alert first");
+    assert_eq!(
+        order[2..],
+        [0, 1, 2, 3, 5],
+        "a report, then the oldest first"
+    );
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!(
+        (standing.acknowledged_batches, standing.contiguous_seq),
+        (6, 6)
+    );
+}
+
+#[tokio::test]
+async fn an_alert_cuts_a_long_pause_short() {
+    let mut rig = waiting_rig(1).await;
+    seal_evidence(&rig.spool, 1).await;
+    rig.urgent.notify_one();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2]);
 }

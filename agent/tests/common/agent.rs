@@ -65,6 +65,14 @@ stale_s = 3
         self.folder.path().join("agent.toml")
     }
 
+    /// Adds a line under a heading of the configuration.
+    pub(crate) fn configure(&self, heading: &str, line: &str) {
+        let config = std::fs::read_to_string(self.config()).unwrap();
+        assert!(config.contains(heading), "{heading}");
+        let config = config.replace(heading, &format!("{heading}\n{line}"));
+        std::fs::write(self.config(), config).unwrap();
+    }
+
     pub(crate) fn spool(&self) -> PathBuf {
         self.folder.path().join("state").join("spool.db")
     }

@@ -16,6 +16,11 @@ pub(crate) const LEAD_DEG: f64 = 3.0;
 
 /// Everything the instruments say in one second.
 pub(crate) fn second(offset_s: i64) -> Vec<u8> {
+    second_with(offset_s, LEAD_DEG)
+}
+
+/// The same with a compass that reads so much less than the gyro.
+fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
     let mut out = Vec::with_capacity(256);
     let heading = heading_deg(offset_s);
     let (date, time) = from_unix_micros((START_S + offset_s) * 1_000_000).unwrap();
@@ -39,7 +44,7 @@ pub(crate) fn second(offset_s: i64) -> Vec<u8> {
     say(
         b"HC",
         Data::Hdg(Hdg {
-            reading_deg: Some(heading - LEAD_DEG),
+            reading_deg: Some((heading - lead_deg).rem_euclid(360.0)),
             ..Hdg::default()
         }),
     );
@@ -79,6 +84,12 @@ impl Bridge {
 
     /// Will play `seconds`, and be silent then without hanging up.
     pub(crate) async fn new(seconds: i64) -> Bridge {
+        Bridge::struck(seconds, seconds, 0.0).await
+    }
+
+    /// The same, and lightning strikes after `struck_s`: from then on the compass reads
+    /// `off_deg` less than before.
+    pub(crate) async fn struck(seconds: i64, struck_s: i64, off_deg: f64) -> Bridge {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
         let begin = watch::Sender::new(false);
@@ -93,7 +104,11 @@ impl Bridge {
                         std::future::pending::<()>().await;
                     }
                     let until = seconds.min(next + 60);
-                    let minute: Vec<u8> = (next..until).flat_map(second).collect();
+                    let say = |offset_s| {
+                        let off_deg = if offset_s < struck_s { 0.0 } else { off_deg };
+                        second_with(offset_s, LEAD_DEG + off_deg)
+                    };
+                    let minute: Vec<u8> = (next..until).flat_map(say).collect();
                     if stream.write_all(&minute).await.is_err() {
                         break;
                     }

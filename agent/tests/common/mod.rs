@@ -6,6 +6,52 @@ pub(crate) mod agent;
 pub(crate) mod bridge;
 pub(crate) mod shore;
 
+use binnacle_magnetics::model::{Model, Parameters};
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::messages::ModelDownlink;
+use uuid::Uuid;
+
+/// A model that says only: everything is 2.5° east of what it seems.
+pub(crate) fn model() -> ModelDownlink {
+    let mut covariance = [[0.0; 8]; 8];
+    covariance[7][7] = 0.04;
+    ModelDownlink {
+        id: Uuid::from_u128(9),
+        version: 3,
+        data_until: Timestamp::parse("2026-08-30T00:00:00Z").unwrap(),
+        replaces: None,
+        model: Model {
+            parameters_over_lambda: Parameters {
+                bx_nt: 0.0,
+                chi13: 0.0,
+                by_nt: 0.0,
+                chi23: 0.0,
+                chi11_minus_chi22: 0.0,
+                chi12: 0.0,
+                chi21: 0.0,
+            },
+            constant_deg: 2.5,
+            covariance: Some(covariance),
+            identifiable: None,
+            rms_deg: None,
+            samples_used: 1,
+            samples_rejected: 0,
+            quality: None,
+        },
+    }
+}
+
+/// Presses a button of the page.
+pub(crate) async fn post(address: std::net::SocketAddr, path: &str, body: &str) {
+    let request = reqwest::Client::new()
+        .post(format!("http://{address}{path}"))
+        .header("content-type", "application/json")
+        .header("x-binnacle-request", "1")
+        .body(body.to_owned());
+    let answer = request.send().await.unwrap();
+    assert!(answer.status().is_success(), "{answer:?}");
+}
+
 /// Fetches a page as text.
 pub(crate) async fn fetch(address: std::net::SocketAddr, path: &str) -> String {
     rustls::crypto::ring::default_provider()

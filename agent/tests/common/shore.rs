@@ -22,6 +22,10 @@ pub(crate) const CODE: &str = "K7QF-2M9X";
 pub(crate) struct Kept {
     pub(crate) batches: BTreeMap<u64, Vec<u8>>,
     pub(crate) forks: u64,
+    /// Numbers in the order in which they came.
+    pub(crate) order: Vec<u64>,
+    /// While this is set, nothing is answered but 503.
+    pub(crate) down: bool,
     requests: u64,
 }
 
@@ -110,12 +114,18 @@ async fn put_batch(
 ) -> Response {
     assert_eq!(stream, STREAM);
     let mut kept = shore.kept.lock().unwrap();
+    if kept.down {
+        return (StatusCode::SERVICE_UNAVAILABLE, "down").into_response();
+    }
     kept.requests += 1;
     let fails = shore
         .fail_every
         .is_some_and(|every| kept.requests % every == 0);
     if fails && kept.requests % 2 == 0 {
         return (StatusCode::SERVICE_UNAVAILABLE, "busy").into_response();
+    }
+    if !kept.batches.contains_key(&seq) {
+        kept.order.push(seq);
     }
     let known = kept.batches.entry(seq).or_insert(body.to_vec()).clone();
     if known != body {

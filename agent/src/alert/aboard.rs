@@ -1,0 +1,158 @@
+//! An alert as it is kept aboard, and in words for the bridge.
+
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
+use serde::{Deserialize, Serialize};
+
+/// The last alert: open, or how it ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Aboard {
+    /// Its last revision.
+    pub(crate) alert: ShipAlert,
+    /// Whether an officer said that it was seen.
+    pub(crate) acknowledged: bool,
+    /// Whether the revision that follows some time after the first was made.
+    pub(crate) followed: bool,
+    /// A bit for each 30° of compass heading on which they were last seen apart.
+    pub(crate) sectors: u16,
+}
+
+/// An alert as the page and `status` show it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct AlertStatus {
+    #[serde(flatten)]
+    pub(crate) alert: ShipAlert,
+    pub(crate) acknowledged: bool,
+    /// What is so.
+    pub(crate) says: String,
+    /// What to do; nothing once it is over.
+    pub(crate) advice: String,
+}
+
+impl Aboard {
+    /// Whether it goes on.
+    pub(crate) fn is_open(&self) -> bool {
+        self.alert.state == ShipAlertState::Open
+    }
+
+    /// For the page and `status`.
+    pub(crate) fn status(&self) -> AlertStatus {
+        AlertStatus {
+            alert: self.alert,
+            acknowledged: self.acknowledged,
+            says: says(&self.alert),
+            advice: advice(&self.alert).to_owned(),
+        }
+    }
+}
+
+fn says(alert: &ShipAlert) -> String {
+    let reference = if alert.gyro_departure_deg.is_some() {
+        "gyro"
+    } else {
+        "satellite compass"
+    };
+    let minute = |time: Timestamp| time.to_string().get(..16).map(|t| t.replace('T', " "));
+    let (since, at) = (
+        minute(alert.since).unwrap_or_default(),
+        minute(alert.at).unwrap_or_default(),
+    );
+    match alert.state {
+        ShipAlertState::Open => format!(
+            "compass and {reference} are {:.0}° apart since {since} UTC; {:.1}° is the most \
+             that their usual errors explain",
+            main_departure_deg(alert).abs(),
+            alert.limit_deg
+        ),
+        ShipAlertState::Agree => format!("compass and {reference} agree again since {at} UTC"),
+        ShipAlertState::NotJudged => {
+            format!("the alert of {since} UTC ended at {at} UTC: that card is not in use any more")
+        }
+    }
+}
+
+fn advice(alert: &ShipAlert) -> &'static str {
+    if alert.state != ShipAlertState::Open {
+        return "";
+    }
+    match alert.suspect() {
+        Suspect::Compass => {
+            "Steer by gyro; the satellite compass bears it out. Do not use the corrected compass \
+             or the card. Take an azimuth, and report lightning, a shock or magnetic cargo."
+        }
+        Suspect::Gyro => {
+            "The satellite compass bears out the compass: do not trust the gyro. Check the gyro \
+             and its speed and latitude settings, take an azimuth, and steer by what it confirms."
+        }
+        Suspect::Satellite | Suspect::Unknown => {
+            "Steer by gyro, but trust neither until one is proven: take an azimuth, and check the \
+             gyro and its repeaters. Report lightning, a shock or magnetic cargo."
+        }
+    }
+}
+
+/// What raised it.
+fn main_departure_deg(alert: &ShipAlert) -> f64 {
+    let departure = alert.gyro_departure_deg.or(alert.satellite_departure_deg);
+    departure.unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use uuid::Uuid;
+
+    fn status(state: ShipAlertState, gyro: Option<f64>, satellite: Option<f64>) -> AlertStatus {
+        let at = |text| Timestamp::parse(text).unwrap();
+        let alert = ShipAlert {
+            id: Uuid::from_u128(1),
+            revision: 1,
+            state,
+            since: at("2026-11-21T07:00:10Z"),
+            at: at("2026-11-21T07:05:00Z"),
+            gyro_departure_deg: gyro,
+            satellite_departure_deg: satellite,
+            limit_deg: 3.9,
+            model_version: 1,
+        };
+        let aboard = Aboard {
+            alert,
+            acknowledged: false,
+            followed: false,
+            sectors: 0,
+        };
+        aboard.status()
+    }
+
+    #[test]
+    fn it_says_what_is_so_and_what_to_do() {
+        let open = status(ShipAlertState::Open, Some(-28.4), None);
+        assert!(
+            open.says
+                .starts_with("compass and gyro are 28° apart since 2026-11-21 07:00 UTC"),
+            "{}",
+            open.says
+        );
+        for wanted in ["Steer by gyro", "take an azimuth", "check the gyro"] {
+            assert!(open.advice.contains(wanted), "{}", open.advice);
+        }
+    }
+
+    #[test]
+    fn a_gyro_that_the_satellite_compass_contradicts_is_not_steered_by() {
+        let gyro = status(ShipAlertState::Open, Some(9.0), Some(0.2));
+        assert!(gyro.advice.contains("do not trust the gyro"));
+        let compass = status(ShipAlertState::Open, Some(9.0), Some(9.2));
+        assert!(compass.advice.starts_with("Steer by gyro"));
+    }
+
+    #[test]
+    fn what_is_over_says_so_and_asks_for_nothing() {
+        let over = status(ShipAlertState::Agree, Some(0.4), None);
+        assert_eq!(
+            over.says,
+            "compass and gyro agree again since 2026-11-21 07:05 UTC"
+        );
+        assert_eq!(over.advice, "");
+    }
+}

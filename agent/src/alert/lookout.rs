@@ -1,0 +1,346 @@
+//! Whether compass and gyro have parted. Pure: windows in, revisions out.
+//!
+//! The limit is the 95 % band of the model on this heading, and what a sound gyro
+//! may err, which grows as 1 / cos(latitude) like all that pulls a gyro to the
+//! meridian. A Schuler swing of 0.35° and a slow bias of 0.3°, with 0.3° of the
+//! compass's own swing and the variation's error, come to 0.55° (one standard
+//! deviation); a few hours of the year they reach four times that, and for tens of
+//! minutes after a manoeuvre a gyro may be off by one or two degrees. 2.5° at the
+//! equator lies above both.
+
+use super::aboard::Aboard;
+use crate::config::AlertConfig;
+use crate::corrected::{Ingredients, correct};
+use crate::sampler::{WINDOW_S, Window, median};
+use binnacle_magnetics::angle::{CompassHeading, wrap_180};
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
+use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
+use std::collections::VecDeque;
+use uuid::Uuid;
+
+/// Where a model gives no band.
+const USUAL_BAND_DEG: f64 = 2.0;
+/// Nearer to a pole than this nobody steers by a gyro's usual error.
+const HIGHEST_LAT_DEG: f64 = 75.0;
+/// They agree again when they are so much nearer than what parted them.
+const AGREE_SHARE: f64 = 0.75;
+/// Windows further apart than half an hour do not belong together.
+const LONGEST_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
+/// After half an hour of settled windows what came since the alert goes ashore too.
+const FOLLOW_WINDOWS: usize = 1800 / WINDOW_S as usize;
+/// After so many settled hours of agreement it is over, whatever the heading.
+const AGREE_ANYWHERE_WINDOWS: usize = 6 * 3600 / WINDOW_S as usize;
+/// Degrees of compass heading that one bit of [`Aboard::sectors`] stands for.
+const SECTOR_DEG: f64 = 30.0;
+const SECTORS: u32 = 12;
+/// A ship's clock that is so far behind the model's data is wrong, and so is what
+/// variation is taken for it.
+const BEHIND_MODEL_S: f64 = 86_400.0;
+
+/// The card in use.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Card<'a> {
+    pub(crate) model: Option<&'a ModelDownlink>,
+    pub(crate) withdrawn: Option<&'a CardWithdrawn>,
+}
+
+/// How compass and references stood in one settled window.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Apart {
+    index: i64,
+    /// Corrected compass less gyro.
+    gyro_deg: Option<f64>,
+    /// Corrected compass less satellite compass.
+    satellite_deg: Option<f64>,
+    limit_deg: f64,
+    sector: u32,
+}
+
+/// The state between two windows.
+#[derive(Debug)]
+pub(crate) struct Lookout {
+    config: AlertConfig,
+    /// The latest windows, oldest first: twice as many as raise an alert.
+    recent: VecDeque<Apart>,
+    /// The model that they were judged by.
+    model: Option<Uuid>,
+    aboard: Option<Aboard>,
+    /// Settled windows since the alert was raised, or the agent was started.
+    since_raised: usize,
+    /// Settled windows of agreement in a row.
+    agreed: usize,
+}
+
+impl Lookout {
+    /// A lookout that goes on where the last one was relieved, with the model that
+    /// was in use then.
+    pub(crate) fn new(config: AlertConfig, aboard: Option<Aboard>, model: Option<Uuid>) -> Lookout {
+        Lookout {
+            config,
+            recent: VecDeque::new(),
+            model,
+            aboard,
+            since_raised: 0,
+            agreed: 0,
+        }
+    }
+
+    /// The last alert, open or not.
+    pub(crate) fn aboard(&self) -> Option<&Aboard> {
+        self.aboard.as_ref()
+    }
+
+    /// An officer has seen the alert.
+    pub(crate) fn acknowledge(&mut self, id: Uuid) {
+        let alert = self.aboard.as_mut().filter(|aboard| aboard.alert.id == id);
+        if let Some(aboard) = alert {
+            aboard.acknowledged = true;
+        }
+    }
+
+    /// Follows the card: what another one was judged by is forgotten, and without
+    /// one an alert ends. Gives the revision that says so.
+    pub(crate) fn follow(&mut self, card: Card<'_>, now: Timestamp) -> Option<ShipAlert> {
+        let model = card.in_use().map(|model| model.id);
+        if model != self.model {
+            self.model = model;
+            self.recent.clear();
+            self.agreed = 0;
+            if let Some(aboard) = &mut self.aboard {
+                // Where they were apart by another card says nothing by this one.
+                aboard.sectors = 0;
+            }
+        }
+        if model.is_some() {
+            return None;
+        }
+        self.revise(ShipAlertState::NotJudged, now)
+    }
+
+    /// Takes a settled window; gives the revision that it calls for.
+    pub(crate) fn take(
+        &mut self,
+        window: &Window,
+        card: Card<'_>,
+        new_id: impl FnOnce() -> Uuid,
+    ) -> Option<ShipAlert> {
+        let now = end_of(window.index)?;
+        if let Some(ended) = self.follow(card, now) {
+            return Some(ended);
+        }
+        let apart = self.compare(window, card, now)?;
+        self.remember(apart);
+        self.since_raised = self.since_raised.saturating_add(1);
+        let raise = self.config.settled_windows();
+        let stand = self.stand(raise)?;
+        if stand.is_apart() {
+            self.mark(stand.sector);
+        }
+        if !self.aboard.is_some_and(|aboard| aboard.is_open()) {
+            let version = card.in_use()?.version;
+            return stand
+                .is_apart()
+                .then(|| self.raise(stand, version, now, new_id()));
+        }
+        if self.agrees(raise) {
+            return self.revise(ShipAlertState::Agree, now);
+        }
+        self.follow_up(stand, now)
+    }
+
+    fn compare(&self, window: &Window, card: Card<'_>, now: Timestamp) -> Option<Apart> {
+        let model = card.in_use()?;
+        if now.seconds_since(model.data_until) < -BEHIND_MODEL_S {
+            return None;
+        }
+        let corrected = correct(Ingredients {
+            compass: CompassHeading::new(window.compass_deg),
+            position: Some(window.position),
+            time: Some(now),
+            model: Some(model),
+            withdrawn: None,
+        });
+        let true_deg = corrected.true_deg?.degrees();
+        let departure = |reference_deg: f64| wrap_180(true_deg - reference_deg);
+        let lat_deg = window.position.lat_deg().abs().min(HIGHEST_LAT_DEG);
+        let gyro_error_deg = self.config.gyro_error_deg.0 / lat_deg.to_radians().cos();
+        Some(Apart {
+            index: window.index,
+            gyro_deg: window.gyro_deg.map(departure),
+            satellite_deg: window.satellite_deg.map(departure),
+            limit_deg: corrected.band95_deg.unwrap_or(USUAL_BAND_DEG) + gyro_error_deg,
+            sector: (window.compass_deg.rem_euclid(360.0) / SECTOR_DEG) as u32 % SECTORS,
+        })
+    }
+
+    fn remember(&mut self, apart: Apart) {
+        let goes_on = self.recent.back().is_none_or(|last| {
+            (last.index + 1..=last.index + LONGEST_GAP_WINDOWS).contains(&apart.index)
+        });
+        if !goes_on {
+            self.recent.clear();
+        }
+        self.recent.push_back(apart);
+        if self.recent.len() > 2 * self.config.settled_windows() {
+            self.recent.pop_front();
+        }
+    }
+
+    /// How they stand over the last so many windows; none when there are fewer.
+    fn stand(&self, windows: usize) -> Option<Stand> {
+        let from = self.recent.len().checked_sub(windows)?;
+        let last = self.recent.back()?;
+        let of = |departure: fn(&Apart) -> Option<f64>| {
+            let departures: Vec<f64> = self.recent.range(from..).filter_map(departure).collect();
+            let origin = *departures.first()?;
+            let middle = median(departures.iter().map(|deg| wrap_180(deg - origin)));
+            // Half of the windows speak for all.
+            (departures.len() * 2 >= windows).then(|| wrap_180(origin + middle))
+        };
+        Some(Stand {
+            gyro_deg: of(|apart| apart.gyro_deg),
+            satellite_deg: of(|apart| apart.satellite_deg),
+            limit_deg: last.limit_deg,
+            sector: last.sector,
+        })
+    }
+
+    /// So many of the latest windows are apart: from where those beyond the limit
+    /// begin to prevail.
+    fn parted_windows(&self, limit_deg: f64) -> usize {
+        let (mut sum, mut most, mut windows) = (0, 0, 0);
+        for (before, apart) in self.recent.iter().rev().enumerate() {
+            let departure = apart.gyro_deg.or(apart.satellite_deg);
+            let beyond = departure.is_some_and(|deg| deg.abs() > limit_deg);
+            sum += if beyond { 1 } else { -1 };
+            if sum > most {
+                (most, windows) = (sum, before + 1);
+            }
+        }
+        windows
+    }
+
+    fn raise(&mut self, stand: Stand, model_version: u32, now: Timestamp, id: Uuid) -> ShipAlert {
+        let parted = self.parted_windows(stand.limit_deg);
+        let first = self.recent.iter().rev().nth(parted.saturating_sub(1));
+        let since = first.and_then(|apart| start_of(apart.index));
+        let stand = self.stand(parted).unwrap_or(stand);
+        let alert = ShipAlert {
+            id,
+            revision: 1,
+            state: ShipAlertState::Open,
+            since: since.unwrap_or(now),
+            at: now,
+            gyro_departure_deg: stand.gyro_deg.map(tenth),
+            satellite_departure_deg: stand.satellite_deg.map(tenth),
+            limit_deg: tenth(stand.limit_deg),
+            model_version,
+        };
+        self.aboard = Some(Aboard {
+            alert,
+            acknowledged: false,
+            followed: false,
+            sectors: 1 << stand.sector,
+        });
+        self.since_raised = 0;
+        self.agreed = 0;
+        // What agreed before the alert is no sign of its end.
+        self.recent.clear();
+        alert
+    }
+
+    fn mark(&mut self, sector: u32) {
+        self.agreed = 0;
+        if let Some(aboard) = self.aboard.as_mut().filter(|aboard| aboard.is_open()) {
+            aboard.sectors |= 1 << sector;
+        }
+    }
+
+    /// Whether an open alert is over: they agree on every heading on which they were
+    /// apart, for the compass's deviation may be right on one and wrong on the next.
+    fn agrees(&mut self, raise: usize) -> bool {
+        let Some(stand) = self.stand(2 * raise) else {
+            return false;
+        };
+        let agree = stand
+            .main_deg()
+            .is_some_and(|departure_deg| departure_deg.abs() <= AGREE_SHARE * stand.limit_deg);
+        let Some(aboard) = self.aboard.as_mut().filter(|_| agree) else {
+            self.agreed = 0;
+            return false;
+        };
+        self.agreed = self.agreed.saturating_add(1);
+        for near in [SECTORS - 1, 0, 1] {
+            aboard.sectors &= !(1 << ((stand.sector + near) % SECTORS));
+        }
+        aboard.sectors == 0
+            || aboard.alert.suspect() == Suspect::Gyro
+            || self.agreed >= AGREE_ANYWHERE_WINDOWS
+    }
+
+    fn follow_up(&mut self, stand: Stand, now: Timestamp) -> Option<ShipAlert> {
+        let aboard = self.aboard.as_mut()?;
+        if aboard.followed || self.since_raised < FOLLOW_WINDOWS {
+            return None;
+        }
+        aboard.followed = true;
+        if stand.is_apart() {
+            aboard.alert.gyro_departure_deg = stand.gyro_deg.map(tenth);
+            aboard.alert.satellite_departure_deg = stand.satellite_deg.map(tenth);
+            aboard.alert.limit_deg = tenth(stand.limit_deg);
+        }
+        self.revise(ShipAlertState::Open, now)
+    }
+
+    /// The next revision of the open alert, if there is one.
+    fn revise(&mut self, state: ShipAlertState, now: Timestamp) -> Option<ShipAlert> {
+        let aboard = self.aboard.as_mut().filter(|aboard| aboard.is_open())?;
+        aboard.alert.revision = aboard.alert.revision.saturating_add(1);
+        aboard.alert.state = state;
+        aboard.alert.at = now;
+        Some(aboard.alert)
+    }
+}
+
+/// Medians over some windows.
+#[derive(Clone, Copy, Debug)]
+struct Stand {
+    gyro_deg: Option<f64>,
+    satellite_deg: Option<f64>,
+    limit_deg: f64,
+    sector: u32,
+}
+
+impl Stand {
+    /// From the gyro, or where there is none from the satellite compass.
+    fn main_deg(&self) -> Option<f64> {
+        self.gyro_deg.or(self.satellite_deg)
+    }
+
+    fn is_apart(&self) -> bool {
+        self.main_deg()
+            .is_some_and(|deg| deg.abs() > self.limit_deg)
+    }
+}
+
+impl<'a> Card<'a> {
+    fn in_use(self) -> Option<&'a ModelDownlink> {
+        self.model.filter(|_| self.withdrawn.is_none())
+    }
+}
+
+fn start_of(window: i64) -> Option<Timestamp> {
+    Timestamp::from_micros(window.checked_mul(WINDOW_S * 1_000_000)?).ok()
+}
+
+fn end_of(window: i64) -> Option<Timestamp> {
+    start_of(window.checked_add(1)?)
+}
+
+fn tenth(degrees: f64) -> f64 {
+    (degrees * 10.0).round() / 10.0
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,382 @@
+//! A ship whose compass goes wrong, and one that only seems to.
+
+use super::*;
+use crate::config::GyroError;
+use binnacle_magnetics::model::{Model, Parameters};
+use binnacle_magnetics::position::Position;
+
+/// 2026-09-01T00:00:00Z, in windows.
+const START: i64 = 178_822_080;
+
+fn model(version: u32) -> ModelDownlink {
+    ModelDownlink {
+        id: Uuid::from_u128(u128::from(version)),
+        version,
+        data_until: end_of(START).unwrap(),
+        replaces: None,
+        model: Model {
+            parameters_over_lambda: Parameters {
+                bx_nt: 600.0,
+                chi13: 0.0,
+                by_nt: -400.0,
+                chi23: 0.0,
+                chi11_minus_chi22: 0.01,
+                chi12: 0.0,
+                chi21: 0.0,
+            },
+            constant_deg: 0.0,
+            covariance: None,
+            identifiable: None,
+            rms_deg: None,
+            samples_used: 0,
+            samples_rejected: 0,
+            quality: None,
+        },
+    }
+}
+
+/// What compass and satellite compass read beside the truth, which the gyro gives.
+#[derive(Clone, Copy, Default)]
+struct Errors {
+    compass_deg: f64,
+    satellite_deg: Option<f64>,
+}
+
+struct Ship {
+    lookout: Lookout,
+    card: ModelDownlink,
+    withdrawn: Option<CardWithdrawn>,
+    index: i64,
+    revisions: Vec<ShipAlert>,
+}
+
+fn ship() -> Ship {
+    let card = model(1);
+    Ship {
+        lookout: Lookout::new(AlertConfig::default(), None, Some(card.id)),
+        card,
+        withdrawn: None,
+        index: START,
+        revisions: Vec::new(),
+    }
+}
+
+impl Ship {
+    fn card(&self) -> Card<'_> {
+        Card {
+            model: Some(&self.card),
+            withdrawn: self.withdrawn.as_ref(),
+        }
+    }
+
+    /// Sails so many settled windows on a compass heading that the model holds for;
+    /// the error comes on top.
+    fn sail(&mut self, windows: i64, heading_deg: f64, errors: Errors) {
+        for _ in 0..windows {
+            self.index += 1;
+            // As noisy as ten seconds of a compass in a seaway.
+            let noise_deg = [0.4, -0.5, 0.1, -0.3, 0.6, -0.2][self.index.rem_euclid(6) as usize];
+            let position = Position::new(43.5, -3.0).unwrap();
+            let reading = CompassHeading::new(heading_deg);
+            let right = correct(Ingredients {
+                compass: reading,
+                position: Some(position),
+                time: end_of(START),
+                model: Some(&self.card),
+                withdrawn: None,
+            });
+            let gyro_deg = right.true_deg.unwrap().degrees();
+            let window = Window {
+                index: self.index,
+                compass_deg: (heading_deg + errors.compass_deg + noise_deg).rem_euclid(360.0),
+                gyro_deg: Some(gyro_deg),
+                satellite_deg: errors.satellite_deg.map(|error| gyro_deg + error),
+                position,
+                sog_kn: 12.0,
+                rate_of_turn_deg_min: None,
+            };
+            self.feed(&window);
+        }
+    }
+
+    fn feed(&mut self, window: &Window) {
+        let card = Card {
+            model: Some(&self.card),
+            withdrawn: self.withdrawn.as_ref(),
+        };
+        let id = Uuid::from_u128(window.index.unsigned_abs().into());
+        self.revisions
+            .extend(self.lookout.take(window, card, || id));
+    }
+
+    fn states(&self) -> Vec<(u32, ShipAlertState)> {
+        let revisions = self.revisions.iter();
+        revisions
+            .map(|alert| (alert.revision, alert.state))
+            .collect()
+    }
+}
+
+const WELL: Errors = Errors {
+    compass_deg: 0.0,
+    satellite_deg: None,
+};
+const STRUCK: Errors = Errors {
+    compass_deg: 28.0,
+    satellite_deg: None,
+};
+
+use ShipAlertState::{Agree, NotJudged, Open};
+
+#[test]
+fn a_compass_struck_by_lightning_is_an_alert_after_minutes_and_dated_to_the_half_minute() {
+    let mut ship = ship();
+    ship.sail(400, 90.0, WELL);
+    assert_eq!(ship.revisions, []);
+    let struck = ship.index;
+    ship.sail(14, 90.0, STRUCK);
+    assert_eq!(ship.revisions, [], "two minutes are too few");
+    ship.sail(6, 90.0, STRUCK);
+    let [alert] = ship.revisions[..] else {
+        panic!("{:?}", ship.revisions)
+    };
+    assert_eq!(
+        (alert.revision, alert.state, alert.model_version),
+        (1, Open, 1)
+    );
+    assert!(
+        (alert.gyro_departure_deg.unwrap() - 28.0).abs() < 2.0,
+        "{alert:?}"
+    );
+    let late_s = alert.since.seconds_since(end_of(struck).unwrap());
+    assert!((0.0..=30.0).contains(&late_s), "{late_s}");
+    ship.sail(100, 90.0, STRUCK);
+    assert_eq!(ship.revisions.len(), 1, "it is said once");
+}
+
+#[test]
+fn a_gyros_usual_errors_and_single_outliers_are_no_alert() {
+    let mut ship = ship();
+    for round in 0..200 {
+        // A Schuler swing of two degrees either way, and one wild window a minute.
+        let swing_deg = 2.0 * (f64::from(round) / 8.4).sin();
+        let swung = Errors {
+            compass_deg: swing_deg,
+            ..WELL
+        };
+        ship.sail(5, 200.0, swung);
+        ship.sail(1, 200.0, STRUCK);
+    }
+    assert_eq!(ship.revisions, []);
+}
+
+#[test]
+fn the_limit_is_the_band_and_the_gyros_error_and_grows_towards_the_poles() {
+    let ship = ship();
+    let limit_deg = |lat: f64| {
+        let window = Window {
+            index: START + 1,
+            compass_deg: 90.0,
+            gyro_deg: Some(90.0),
+            satellite_deg: None,
+            position: Position::new(lat, -20.0).unwrap(),
+            sog_kn: 12.0,
+            rate_of_turn_deg_min: None,
+        };
+        let now = end_of(window.index).unwrap();
+        let apart = ship.lookout.compare(&window, ship.card(), now);
+        apart.unwrap().limit_deg - USUAL_BAND_DEG
+    };
+    assert!((limit_deg(0.0) - 2.5).abs() < 1e-9);
+    assert!((limit_deg(60.0) - 5.0).abs() < 1e-9);
+    assert!((limit_deg(-60.0) - 5.0).abs() < 1e-9);
+}
+
+#[test]
+fn it_goes_ashore_again_with_what_came_after_and_ends_when_they_agree() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, WELL);
+    ship.sail(200, 90.0, STRUCK);
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+    ship.sail(20, 90.0, WELL);
+    assert_eq!(
+        ship.revisions.len(),
+        2,
+        "three minutes of agreement are too few"
+    );
+    ship.sail(40, 90.0, WELL);
+    assert_eq!(ship.states()[2..], [(3, Agree)]);
+    assert!(
+        ship.revisions
+            .iter()
+            .all(|alert| alert.id == ship.revisions[0].id)
+    );
+    ship.sail(60, 90.0, STRUCK);
+    assert_ne!(
+        ship.revisions[3].id, ship.revisions[0].id,
+        "this is another"
+    );
+}
+
+#[test]
+fn agreement_on_another_heading_ends_nothing_until_it_has_lasted() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, WELL);
+    ship.sail(200, 90.0, STRUCK);
+    ship.sail(600, 180.0, WELL);
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+    ship.sail(60, 110.0, WELL);
+    assert_eq!(
+        ship.states()[2..],
+        [(3, Agree)],
+        "120° is near enough to 090°"
+    );
+
+    ship.sail(60, 90.0, STRUCK);
+    ship.sail(6 * 360 + 100, 180.0, WELL);
+    assert_eq!(ship.states().last(), Some(&(3, Agree)), "six hours will do");
+}
+
+#[test]
+fn a_difference_at_the_limit_does_not_chatter() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, WELL);
+    for round in 0..300 {
+        let near = Errors {
+            compass_deg: 5.6 + 0.5 * f64::from(round % 7 - 3) / 3.0,
+            ..WELL
+        };
+        ship.sail(7, 90.0, near);
+    }
+    assert!(ship.revisions.len() <= 2, "{:?}", ship.states());
+}
+
+#[test]
+fn a_gyro_fault_that_the_satellite_compass_sees_ends_on_any_heading() {
+    let mut ship = ship();
+    let sound = Errors {
+        satellite_deg: Some(0.2),
+        ..WELL
+    };
+    ship.sail(60, 90.0, sound);
+    // The gyro is off by 9°: beside it, both others are off the other way.
+    let fault = Errors {
+        compass_deg: 9.0,
+        satellite_deg: Some(9.2),
+    };
+    ship.sail(60, 90.0, fault);
+    assert_eq!(ship.revisions[0].suspect(), Suspect::Gyro);
+    ship.sail(100, 270.0, sound);
+    assert_eq!(ship.states().last(), Some(&(2, Agree)));
+}
+
+#[test]
+fn the_satellite_compass_stands_in_for_a_silent_gyro() {
+    let mut ship = ship();
+    let mut sail = |windows: i64, departure_deg: f64| {
+        for _ in 0..windows {
+            ship.index += 1;
+            let window = Window {
+                index: ship.index,
+                compass_deg: 90.0 + departure_deg,
+                gyro_deg: None,
+                satellite_deg: Some(90.0),
+                position: Position::new(43.5, -3.0).unwrap(),
+                sog_kn: 12.0,
+                rate_of_turn_deg_min: None,
+            };
+            ship.feed(&window);
+        }
+    };
+    sail(60, 0.0);
+    sail(30, 20.0);
+    assert_eq!(ship.revisions.len(), 1);
+    assert_eq!(ship.revisions[0].gyro_departure_deg, None);
+    assert!(ship.revisions[0].satellite_departure_deg.unwrap() > 15.0);
+}
+
+#[test]
+fn without_a_card_there_is_no_alert_and_one_that_is_open_ends() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, STRUCK);
+    assert_eq!(ship.states(), [(1, Open)]);
+    ship.withdrawn = Some(CardWithdrawn {
+        since: end_of(START).unwrap(),
+        reason: "lightning".to_owned(),
+    });
+    ship.sail(60, 90.0, STRUCK);
+    assert_eq!(ship.states(), [(1, Open), (2, NotJudged)]);
+    let none = Card::default();
+    let now = end_of(ship.index).unwrap();
+    assert_eq!(ship.lookout.follow(none, now), None, "it has ended already");
+}
+
+#[test]
+fn another_model_judges_anew() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, STRUCK);
+    ship.card = model(2);
+    // What this model calls right, on another heading.
+    ship.sail(59, 200.0, WELL);
+    assert_eq!(ship.states(), [(1, Open)]);
+    ship.sail(1, 200.0, WELL);
+    assert_eq!(ship.states(), [(1, Open), (2, Agree)]);
+}
+
+#[test]
+fn a_restart_goes_on_with_the_same_alert() {
+    let mut ship = ship();
+    ship.sail(100, 90.0, STRUCK);
+    let kept = serde_json::to_string(&ship.lookout.aboard()).unwrap();
+    let kept = serde_json::from_str(&kept).unwrap();
+    ship.lookout = Lookout::new(AlertConfig::default(), kept, Some(ship.card.id));
+    ship.sail(60, 90.0, STRUCK);
+    assert_eq!(ship.states(), [(1, Open)]);
+    ship.sail(60, 180.0, WELL);
+    assert_eq!(
+        ship.states(),
+        [(1, Open)],
+        "it knows on which heading they parted"
+    );
+    ship.sail(60, 90.0, WELL);
+    assert_eq!(ship.states(), [(1, Open), (2, Agree)]);
+}
+
+#[test]
+fn clocks_that_jump_neither_raise_nor_end_it() {
+    let mut ship = ship();
+    for jump_windows in [8640, -8640, 8640 * 30, -8640 * 30] {
+        ship.sail(100, 90.0, WELL);
+        ship.index += jump_windows;
+    }
+    ship.index = START;
+    ship.sail(100, 90.0, WELL);
+    assert_eq!(ship.revisions, []);
+    ship.sail(60, 90.0, STRUCK);
+    for jump_windows in [8640, -8640] {
+        ship.index += jump_windows;
+        ship.sail(60, 90.0, STRUCK);
+    }
+    assert_eq!(ship.states(), [(1, Open)]);
+}
+
+#[test]
+fn a_week_roll_over_of_the_receiver_is_not_held_against_the_compass() {
+    let mut ship = ship();
+    // 1024 weeks back: the variation of that year is degrees from today's.
+    ship.index -= 1024 * 7 * 8640;
+    ship.sail(100, 90.0, STRUCK);
+    assert_eq!(ship.revisions, []);
+}
+
+#[test]
+fn a_wider_error_of_the_gyro_asks_for_more() {
+    let mut ship = ship();
+    let config = AlertConfig {
+        gyro_error_deg: GyroError(30.0),
+        ..AlertConfig::default()
+    };
+    ship.lookout = Lookout::new(config, None, Some(ship.card.id));
+    ship.sail(100, 90.0, STRUCK);
+    assert_eq!(ship.revisions, []);
+}

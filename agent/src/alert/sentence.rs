@@ -1,0 +1,120 @@
+//! The agent's alert for an alarm panel: `ALR` of IEC 61162-1, talker II.
+//!
+//! `$IIALR,time of change,alarm number,condition,acknowledged,text*hh`: condition A
+//! while the alert is open and V else; acknowledged A or V. It is said at once when
+//! something changed, and again every half minute.
+
+use super::Aboard;
+use crate::sentences::{TALKER, framed};
+use std::time::Duration;
+use tokio::time::Instant;
+
+const AGAIN: Duration = Duration::from_secs(30);
+/// This agent has one alarm.
+const NUMBER: &str = "001";
+
+/// What was last said, and when.
+#[derive(Debug, Default)]
+pub(crate) struct AlarmSentence {
+    said: Option<(String, Instant)>,
+}
+
+impl AlarmSentence {
+    /// The sentence with its line end, when it is due.
+    pub(crate) fn due(&mut self, aboard: Option<&Aboard>, now: Instant) -> Option<Vec<u8>> {
+        let body = body(aboard);
+        let is_due = self
+            .said
+            .as_ref()
+            .is_none_or(|(said, at)| *said != body || now.saturating_duration_since(*at) >= AGAIN);
+        if !is_due {
+            return None;
+        }
+        let sentence = framed(&body);
+        self.said = Some((body, now));
+        Some(sentence)
+    }
+}
+
+fn body(aboard: Option<&Aboard>) -> String {
+    let talker = String::from_utf8_lossy(&TALKER);
+    let Some(aboard) = aboard else {
+        return format!("{talker}ALR,,{NUMBER},V,A,COMPASS AND GYRO AGREE");
+    };
+    let time = aboard.alert.at.to_string();
+    // 2026-11-21T07:05:00Z
+    let time: String = time
+        .chars()
+        .skip(11)
+        .take(8)
+        .filter(|c| *c != ':')
+        .collect();
+    let (condition, text) = if aboard.is_open() {
+        ('A', "COMPASS AND GYRO PARTED")
+    } else {
+        ('V', "COMPASS AND GYRO AGREE")
+    };
+    let acknowledged = if aboard.acknowledged { 'A' } else { 'V' };
+    format!("{talker}ALR,{time}.00,{NUMBER},{condition},{acknowledged},{text}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_magnetics::time::Timestamp;
+    use binnacle_wire::alert::{ShipAlert, ShipAlertState};
+    use uuid::Uuid;
+
+    fn aboard(state: ShipAlertState, acknowledged: bool) -> Aboard {
+        let at = Timestamp::parse("2026-11-21T07:05:09Z").unwrap();
+        Aboard {
+            alert: ShipAlert {
+                id: Uuid::from_u128(1),
+                revision: 1,
+                state,
+                since: at,
+                at,
+                gyro_departure_deg: Some(20.0),
+                satellite_departure_deg: None,
+                limit_deg: 4.0,
+                model_version: 1,
+            },
+            acknowledged,
+            followed: false,
+            sectors: 1,
+        }
+    }
+
+    fn text(sentence: Option<Vec<u8>>) -> String {
+        String::from_utf8(sentence.unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_checksum_is_the_exclusive_or_of_what_lies_between_dollar_and_star() {
+        let open = aboard(ShipAlertState::Open, false);
+        let said = text(AlarmSentence::default().due(Some(&open), Instant::now()));
+
+        assert_eq!(
+            said,
+            "$IIALR,070509.00,001,A,V,COMPASS AND GYRO PARTED*5E\r\n"
+        );
+        assert!(said.len() <= 82, "{}", said.len());
+    }
+
+    #[test]
+    fn it_is_said_at_every_change_and_every_half_minute() {
+        let mut alarm = AlarmSentence::default();
+        let start = Instant::now();
+        let after = |seconds| start + Duration::from_secs(seconds);
+        assert!(text(alarm.due(None, start)).starts_with("$IIALR,,001,V,A,"));
+        assert_eq!(alarm.due(None, after(29)), None);
+        assert!(alarm.due(None, after(30)).is_some());
+        let open = aboard(ShipAlertState::Open, false);
+        assert!(text(alarm.due(Some(&open), after(31))).contains(",001,A,V,"));
+        assert_eq!(alarm.due(Some(&open), after(32)), None);
+        let seen = aboard(ShipAlertState::Open, true);
+        assert!(text(alarm.due(Some(&seen), after(33))).contains(",001,A,A,"));
+        let over = aboard(ShipAlertState::Agree, true);
+        assert!(text(alarm.due(Some(&over), after(34))).contains(",001,V,A,"));
+    }
+}
