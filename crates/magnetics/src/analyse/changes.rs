@@ -6,7 +6,8 @@ use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
 use super::{Epoch, SampleReason};
 use crate::change::{
-    Cause, Change, Circumstances, Event, Given, Snapshot, Step, What, at_port, causes, detect,
+    Cause, Change, Circumstances, Event, Given, Perhaps, Snapshot, Step, What, at_port, causes,
+    detect,
 };
 use crate::estimate::Prior;
 use crate::fit::{HeadingReading, Observation};
@@ -21,6 +22,8 @@ const REPORT_S: f64 = 2.0 * 86_400.0;
 const FAULT_ROWS: usize = 3;
 const FAULT_GAP_S: f64 = 1.5 * 3600.0;
 const DAY_S: f64 = 86_400.0;
+/// What is less likely than this makes no band wider.
+const SELDOM: f64 = 0.02;
 const HEADINGS: u32 = 36;
 
 /// What was found in one epoch of the logbook.
@@ -28,6 +31,17 @@ pub(super) struct Found {
     pub(super) changes: Vec<Change>,
     /// Where epochs begin beside the logbook's.
     pub(super) boundaries: Vec<Boundary>,
+    /// The end that a change may have had, if that is open.
+    pub(super) perhaps: Option<Ended>,
+}
+
+/// A change that may be over.
+pub(super) struct Ended {
+    /// When it would have ended.
+    pub(super) at: Timestamp,
+    /// Its place in the list.
+    pub(super) change: usize,
+    pub(super) probability: f64,
 }
 
 /// The beginning of an epoch that a change made.
@@ -56,6 +70,7 @@ pub(super) fn find(
     let mut found = Found {
         changes: Vec::new(),
         boundaries: Vec::new(),
+        perhaps: None,
     };
     let usable = |reading: &Reading| {
         matches!(
@@ -86,13 +101,14 @@ pub(super) fn find(
         .flat_map(|entry| [Some(entry.from), entry.to])
         .flatten()
         .collect();
-    let events = detect(
+    let told = detect(
         &observations,
         &Given {
             prior,
             reported: &reported,
         },
     );
+    let events = told.events;
     let teller = Teller {
         observations: &observations,
         logbook,
@@ -138,6 +154,11 @@ pub(super) fn find(
         }
         found.changes.push(change);
     }
+    found.perhaps = told.perhaps.and_then(|perhaps| {
+        let change = place_of.get(perhaps.of).copied().flatten()?;
+        let evidence = &mut found.changes[change].evidence;
+        teller.tell_end(&perhaps, change, evidence)
+    });
     merge_faults(&mut found);
     found
 }
@@ -185,6 +206,9 @@ fn merge_faults(found: &mut Found) {
             if boundary.change > i {
                 boundary.change -= 1;
             }
+        }
+        if let Some(ended) = found.perhaps.as_mut().filter(|ended| ended.change > i) {
+            ended.change -= 1;
         }
     }
 }
@@ -344,6 +368,29 @@ impl Teller<'_> {
             step: is_step.then(|| step(&event.before, &event.after)),
             ended: ended_row.map(|row| self.time(row)),
         }
+    }
+
+    /// That a change may be over, if that is neither certain nor out of question.
+    fn tell_end(
+        &self,
+        perhaps: &Perhaps,
+        change: usize,
+        evidence: &mut Vec<String>,
+    ) -> Option<Ended> {
+        let probability = perhaps.probability;
+        if !(SELDOM..1.0 - SELDOM).contains(&probability) {
+            return None;
+        }
+        evidence.push(format!(
+            "it may have ended at the port call before {}: {:.0} %",
+            self.time(perhaps.first),
+            100.0 * probability
+        ));
+        Some(Ended {
+            at: self.date(perhaps.first),
+            change,
+            probability,
+        })
     }
 
     /// What people reported around the interval.

@@ -173,6 +173,12 @@ impl Stretch<'_> {
         (taken, fitted)
     }
 
+    /// The model alone.
+    pub(super) fn model(&self, readings: &[Reading]) -> Option<Model> {
+        let (_, fitted) = self.fit(readings);
+        fitted.ok().map(|fit| self.count(fit.model))
+    }
+
     /// Samples that were not offered to the fit are rejected, too.
     fn count(&self, mut model: Model) -> Model {
         let earlier = self.earlier.iter().map(ExactSizeIterator::len);

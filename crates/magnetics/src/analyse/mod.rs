@@ -7,6 +7,7 @@
 //! refusal that says what is missing.
 
 mod changes;
+mod either;
 mod epoch;
 mod logbook;
 mod reading;
@@ -24,7 +25,8 @@ use crate::model::Model;
 use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
-use changes::{Found, find, sharpen};
+use changes::{Ended, Found, find, sharpen};
+use either::either;
 use epoch::{Reference, Stretch, empty_epoch, epochs, fit_epoch, prior, reference, refuse};
 use reading::{Reading, readings};
 use serde::{Deserialize, Serialize};
@@ -276,6 +278,10 @@ impl Course {
         }
         epoch.to = until;
         self.add(epoch, from..readings.len(), readings, reference);
+        if let Some(ended) = &found.perhaps {
+            let base = happened_in[ended.change];
+            self.allow_for_end(ended, base, readings, reference);
+        }
         for (change, happened_in) in found.changes.iter_mut().zip(happened_in) {
             let sides = happened_in.and_then(|i| self.epochs.get(i).zip(self.epochs.get(i + 1)));
             if let Some((old, new)) = sides {
@@ -303,6 +309,33 @@ impl Course {
         let stretch = self.stretch(&epoch, own.clone(), reference);
         fit_epoch(&mut epoch, readings, &stretch);
         self.push(epoch, own);
+    }
+
+    /// Widens the last epoch's model where the ship may be again as she was in the
+    /// epoch `base`.
+    fn allow_for_end(
+        &mut self,
+        ended: &Ended,
+        base: Option<usize>,
+        readings: &[Reading],
+        reference: &Reference,
+    ) {
+        let resumed = Epoch {
+            resumes: base,
+            ..empty_epoch(Some(ended.at), None)
+        };
+        let from = readings.partition_point(|r| r.sample.time < ended.at);
+        let mut stretch = self.stretch(&resumed, 0..0, reference);
+        // As earlier ones: what does not fit the ship with cargo may fit her without.
+        stretch.earlier.push(from..readings.len());
+        let base = base.and_then(|_| stretch.model(readings));
+        let laden = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
+        let open = base
+            .zip(laden)
+            .and_then(|(base, laden)| either(laden, &base, ended.probability));
+        if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
+            last.model = open;
+        }
     }
 
     /// What an epoch that follows the last is to be fitted to.

@@ -61,8 +61,6 @@ pub(super) struct Spawn {
     pub(super) origin: Filter,
     /// The first row of the burst that may be over.
     pub(super) astray_from: Option<usize>,
-    /// Whether the ship lay in port just before.
-    pub(super) at_port: bool,
     copies: [Option<Filter>; KINDS.len()],
     age_s: f64,
 }
@@ -89,7 +87,7 @@ pub(super) struct Bank {
 
 impl Bank {
     /// New copies of `now`, which are to begin with row `at`.
-    pub(super) fn spawn(&mut self, at: usize, at_port: bool, now: &Filter, base: Option<&Filter>) {
+    pub(super) fn spawn(&mut self, at: usize, now: &Filter, base: Option<&Filter>) {
         self.thin(at, now);
         let astray = self.lead(Kind::Burst, now).filter(|lead| lead.nats > WORTH);
         let astray = astray.map(|lead| &self.spawns[lead.spawn]);
@@ -98,7 +96,6 @@ impl Bank {
         self.spawns.push(Spawn {
             at,
             astray_from,
-            at_port,
             origin: now.clone(),
             copies: [
                 Some(upset(now, Kind::Step)),

@@ -5,6 +5,7 @@
 //! decides what it tells; every event lies between two rows; the search ends.
 
 use super::bank::{BURST_S, Bank, Kind, Lead, set_back, upset};
+use super::calls::{Base, Calls, Candidate};
 use super::filter::{Filter, Measurement, Noise, VARIATION, measurement};
 use crate::angle::wrap_180;
 use crate::estimate::{
@@ -33,9 +34,14 @@ const STEP_AT_LEAST: f64 = 3.0;
 const LARGE_NATS: f64 = 40.0;
 /// A reference's step must be likelier by this than a burst.
 const REFERENCE_NATS: f64 = 12.0;
-/// So must a return to what was before, found at a port call and elsewhere.
-const RETURN_NATS: f64 = 8.0;
+/// So must a return to what was before, away from port.
 const RETURN_AT_SEA_NATS: f64 = 14.0;
+/// A return at a port call is believed when it is as likely as this, and unlikelier
+/// than a step to something else by no more than that, nats.
+const RETURNED: f64 = 0.9;
+const RETURN_BELOW_STEP: f64 = 6.0;
+/// A burst is unlikelier beforehand than a return at a port call by about this, nats.
+const BURST_BELOW_RETURN: f64 = 3.0;
 /// A burst must be likelier by this than nothing, and by this than a change.
 const BURST_NATS: f64 = 9.0;
 const BURST_OVER_STEP: f64 = 3.0;
@@ -97,10 +103,29 @@ pub(crate) struct Event {
     pub(crate) confirmed: bool,
 }
 
+/// What the rows tell.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Told {
+    pub(crate) events: Vec<Event>,
+    /// A return that may have been, and is not among the events.
+    pub(crate) perhaps: Option<Perhaps>,
+}
+
+/// Something that is as yet neither likely enough to be believed nor unlikely
+/// enough to be forgotten.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Perhaps {
+    /// The event that would have ended.
+    pub(crate) of: usize,
+    /// The first row after its end.
+    pub(crate) first: usize,
+    pub(crate) probability: f64,
+}
+
 /// Searches rows, which are in order of time and all have one.
-pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Vec<Event> {
+pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Told {
     let Some(learnt) = Learnt::first(observations, given.prior) else {
-        return Vec::new();
+        return Told::default();
     };
     let mut search = Search::new(observations, given, learnt);
     for k in 0..observations.len() {
@@ -199,8 +224,8 @@ struct Search<'a> {
     null: Filter,
     bank: Bank,
     spawned: usize,
-    /// Events whose end would be a return, and the filter before each.
-    bases: Vec<(usize, Filter)>,
+    /// What the ship was before steps, and where she may have become it again.
+    calls: Calls,
     /// The burst that goes on, if one does.
     burst: Option<usize>,
     events: Vec<Event>,
@@ -221,7 +246,7 @@ impl<'a> Search<'a> {
             learn_next: learnt.until,
             bank: Bank::default(),
             spawned: 0,
-            bases: Vec::new(),
+            calls: Calls::default(),
             burst: None,
             events: Vec::new(),
         }
@@ -233,15 +258,18 @@ impl<'a> Search<'a> {
         }
         if k >= FIRST && self.is_due(k) {
             self.settle_burst(k);
-            let base = self.bases.last().map(|(_, filter)| filter);
-            let at_port = at_port(self.observations, k) == Some(true);
-            self.bank.spawn(k, at_port, &self.null, base);
+            let base = self.calls.bases.last().map(|base| &base.filter);
+            self.bank.spawn(k, &self.null, base);
             self.spawned = k;
+        }
+        if self.is_call(k) {
+            self.calls.call(k, &self.null, usize::MAX);
         }
         let at = self.point(k);
         let m = self.measure(k, &at);
         self.null.take(&m, &self.noise, None);
         self.bank.take(&m, &self.noise);
+        self.calls.take(&m, &self.noise, &self.null);
         if k >= YOUNG {
             self.judge(k);
         }
@@ -312,15 +340,12 @@ impl<'a> Search<'a> {
         let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         let burst = nats(Kind::Burst).max(0.0);
         let back = nats(Kind::Return);
-        let returned = leads[Kind::Return as usize].is_some_and(|lead| {
-            let needed = if self.bank.spawns[lead.spawn].at_port {
-                RETURN_NATS
-            } else {
-                RETURN_AT_SEA_NATS
-            };
-            lead.nats - burst > needed
-        });
-        if returned && back > nats(Kind::Step) {
+        if let Some(candidate) = self.candidate(&leads)
+            && candidate.probability > RETURNED
+        {
+            return self.adopt_call(k, candidate, leads);
+        }
+        if back - burst > RETURN_AT_SEA_NATS && back > nats(Kind::Step) {
             return self.adopt_return(k, leads);
         }
         let (kind, lasting) = if nats(Kind::Step) >= nats(Kind::Reference) {
@@ -340,14 +365,33 @@ impl<'a> Search<'a> {
             let Some(lead) = leads[Kind::Burst as usize] else {
                 return;
             };
-            self.burst = Some(self.events.len());
             let spawn = &self.bank.spawns[lead.spawn];
             let first = spawn
                 .astray_from
                 .filter(|_| self.is_over(lead))
                 .unwrap_or(spawn.at);
+            // One that had been taken for over goes on.
+            let same = |event: &Event| event.what == What::Burst && event.first + EVERY >= first;
+            if self.events.last().is_some_and(same) {
+                self.burst = Some(self.events.len() - 1);
+                return;
+            }
+            self.burst = Some(self.events.len());
             self.push(k, What::Burst, first, (first, first), leads, None);
         }
+    }
+
+    /// The likeliest return at a port call, if a step to something else is not
+    /// likelier by far.
+    fn candidate(&self, leads: &Leads) -> Option<Candidate> {
+        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let rival = (nats(Kind::Burst) - BURST_BELOW_RETURN).max(0.0);
+        let likeliest = self.calls.likeliest(&self.null, rival)?;
+        (likeliest.nats > nats(Kind::Step) - RETURN_BELOW_STEP).then_some(likeliest)
+    }
+
+    fn is_call(&self, k: usize) -> bool {
+        at_port(self.observations, k) == Some(true)
     }
 
     /// Whether a passing disturbance's lead is that of one that is over.
@@ -374,9 +418,6 @@ impl<'a> Search<'a> {
         } else {
             What::Reference
         };
-        if kind == Kind::Step {
-            self.bases.push((self.events.len(), before.clone()));
-        }
         self.push(
             k,
             what,
@@ -385,7 +426,36 @@ impl<'a> Search<'a> {
             leads,
             Some((&before, &dated.filter)),
         );
+        if kind == Kind::Step {
+            self.retrace(k, &dated, &before);
+        }
         self.take_over(k, dated.filter, dated.first);
+    }
+
+    /// The port calls since a step, and the one at which it happened, as the filter
+    /// that knows of the step would have met them.
+    fn retrace(&mut self, k: usize, dated: &Dated, before: &Filter) {
+        let event = self.events.len() - 1;
+        let (earliest, latest) = dated.between;
+        let base = Base {
+            event,
+            filter: before.clone(),
+            at_port: (earliest..=latest).any(|row| self.is_call(row)),
+        };
+        self.calls.step(base);
+        let at = dated.filter.unknowns();
+        if self.is_call(dated.first) {
+            self.calls.call(dated.first, before, event);
+        }
+        let mut since = upset(before, Kind::Step);
+        for row in dated.first..=k {
+            if row > dated.first && self.is_call(row) {
+                self.calls.call(row, &since, usize::MAX);
+            }
+            let m = self.measure(row, &at);
+            since.take(&m, &self.noise, None);
+            self.calls.take_since(dated.first, &m, &self.noise);
+        }
     }
 
     /// A burst that went on until now ended where a change is dated; if it began
@@ -402,23 +472,46 @@ impl<'a> Search<'a> {
     }
 
     fn adopt_return(&mut self, k: usize, leads: Leads) {
-        let Some((lead, (event, _))) = leads[Kind::Return as usize].zip(self.bases.last()) else {
+        let Some((lead, base)) = leads[Kind::Return as usize].zip(self.calls.bases.last()) else {
             return;
         };
-        let what = What::Return(*event);
+        let event = base.event;
         let dated = self.date(lead.spawn, Kind::Return, k);
         let before = self.bank.spawns[lead.spawn].origin.clone();
         self.supersede_burst(dated.first);
         self.push(
             k,
-            what,
+            What::Return(event),
             dated.first,
             dated.between,
             leads,
             Some((&before, &dated.filter)),
         );
-        self.bases.pop();
+        self.calls.returned(event);
         self.take_over(k, dated.filter, dated.first);
+    }
+
+    /// The ship has been herself again since a port call.
+    fn adopt_call(&mut self, k: usize, back: Candidate, leads: Leads) {
+        self.supersede_burst(back.at);
+        // What was taken for a step to something else was this.
+        let mut places = 0..;
+        self.events.retain(|event| {
+            let is_later = places.next().is_some_and(|place| place > back.event);
+            let is_past = matches!(event.what, What::Burst | What::Reference);
+            !is_later || is_past || event.between.1 < back.at
+        });
+        let before = self.null.clone();
+        self.push(
+            k,
+            What::Return(back.event),
+            back.at,
+            (back.at, back.at),
+            leads,
+            Some((&before, &back.filter)),
+        );
+        self.calls.returned(back.event);
+        self.take_over(k, back.filter, back.at);
     }
 
     fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
@@ -521,7 +614,7 @@ impl<'a> Search<'a> {
         let from = winner.saturating_sub(1);
         let origin = &spawns[from];
         let until = spawns.get(winner + 1).map_or(k, |s| s.at);
-        let base = self.bases.last().map(|(_, filter)| filter);
+        let base = self.calls.bases.last().map(|base| &base.filter);
         let began = |filter: &Filter| match (kind, base) {
             (Kind::Return, Some(base)) => set_back(filter, base),
             _ => upset(filter, kind),
@@ -583,14 +676,28 @@ impl<'a> Search<'a> {
     }
 
     /// What is suspected when the rows end.
-    fn finish(mut self) -> Vec<Event> {
+    fn finish(mut self) -> Told {
+        let leads = self.leads();
+        let perhaps = self.candidate(&leads).map(|candidate| Perhaps {
+            of: candidate.event,
+            first: candidate.at,
+            probability: candidate.any,
+        });
+        self.suspect();
+        Told {
+            events: self.events,
+            perhaps,
+        }
+    }
+
+    fn suspect(&mut self) {
         let Some(k) = self.observations.len().checked_sub(1) else {
-            return self.events;
+            return;
         };
         if let Some(event) = self.burst {
             let last = self.last_astray(self.events[event].first, k + 1);
             self.events[event].last = (last + EVERY < k).then_some(last);
-            return self.events;
+            return;
         }
         let leads = self.leads();
         let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
@@ -600,10 +707,10 @@ impl<'a> Search<'a> {
             .filter(|kind| nats(*kind) > SUSPECTED_NATS);
         let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))
         else {
-            return self.events;
+            return;
         };
         if k < YOUNG {
-            return self.events;
+            return;
         }
         let what = match kind {
             Kind::Reference => What::Reference,
@@ -618,7 +725,6 @@ impl<'a> Search<'a> {
         if let Some(event) = self.events.last_mut() {
             event.confirmed = false;
         }
-        self.events
     }
 }
 

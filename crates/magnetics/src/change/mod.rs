@@ -12,6 +12,7 @@
 //! evidence, and the probabilities of its causes add up to one.
 
 mod bank;
+mod calls;
 mod cause;
 mod detect;
 mod filter;
@@ -19,6 +20,6 @@ mod fleet;
 mod found;
 
 pub(crate) use cause::{Circumstances, causes};
-pub(crate) use detect::{Event, Given, Snapshot, What, at_port, detect};
+pub(crate) use detect::{Event, Given, Perhaps, Snapshot, What, at_port, detect};
 pub use fleet::{Elsewhere, in_fleet};
 pub use found::{Cause, CauseProbability, Change, Step};

@@ -13,6 +13,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
+/// When every ship sails.
+pub(crate) const START: &str = "2026-02-01T00:00:00Z";
+
 /// What is made to happen, once, after the first weeks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Event {
@@ -289,7 +292,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
     let mut truth = Truth::of_any_ship(faults, &mut rng);
     let mut passage = Passage::new(plan.variety, &mut rng);
     let mut errors = Errors::new(faults, &mut rng);
-    let start = Timestamp::parse("2026-02-01T00:00:00Z").unwrap();
+    let start = Timestamp::parse(START).unwrap();
     let mut world = World {
         start,
         happened: Vec::new(),
