@@ -11,7 +11,7 @@ use crate::angle::wrap_180;
 use crate::estimate::{
     NoiseLevels, POPULATION_SD, Prior, Station, USUAL_FUSION, Unknowns, row, stations,
 };
-use crate::fit::{Observation, RobustOptions, fit_robust};
+use crate::fit::{Observation, learn};
 use crate::model::{Covariance, Parameters};
 use crate::ship::PARAMETERS;
 use crate::time::Timestamp;
@@ -134,9 +134,10 @@ pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Told {
     search.finish()
 }
 
-/// What a fit of a stretch told.
+/// What a stretch of rows told.
 #[derive(Clone, Copy)]
 struct Learnt {
+    levels: NoiseLevels,
     noise: Noise,
     unknowns: Unknowns,
     /// Rows that it was of.
@@ -148,30 +149,31 @@ impl Learnt {
     fn first(observations: &[Observation], prior: &Prior) -> Option<Learnt> {
         LEARN_DAYS.iter().find_map(|days| {
             let until = rows_within(observations, 0, *days);
-            Learnt::of(observations, 0..until, prior)
+            Learnt::of(observations, 0..until, prior, None)
         })
     }
 
+    /// From `rows`, beginning with the levels learnt before.
     fn of(
         observations: &[Observation],
         rows: std::ops::Range<usize>,
         prior: &Prior,
+        before: Option<&NoiseLevels>,
     ) -> Option<Learnt> {
         let until = rows.end;
-        let options = RobustOptions {
-            prior: prior.clone(),
-            reference_constant_sd_deg: 0.0,
-        };
-        let fit = fit_robust(&observations[rows], &options).ok()?;
+        let rough = learn(&observations[rows], prior, before)?;
         let noise = Noise::new(&NoiseLevels {
-            drift_nt: fit.noise.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
-            ..fit.noise
+            drift_nt: rough.levels.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
+            ..rough.levels
         });
+        let mut mean = [rough.constant_deg; PARAMETERS + 1];
+        mean[..PARAMETERS].copy_from_slice(&rough.parameters.to_array());
         let known = Prior {
-            mean: prior_mean(&fit.model),
+            mean,
             covariance: prior.covariance,
         };
         Some(Learnt {
+            levels: rough.levels,
             noise,
             unknowns: Filter::new(&known, &noise).unknowns(),
             until,
@@ -179,11 +181,12 @@ impl Learnt {
     }
 }
 
-fn prior_mean(model: &crate::model::Model) -> [f64; PARAMETERS + 1] {
-    let mut mean = [0.0; PARAMETERS + 1];
-    mean[..PARAMETERS].copy_from_slice(&model.parameters_over_lambda.to_array());
-    mean[PARAMETERS] = model.constant_deg;
-    mean
+/// The row at which levels are learnt again that were learnt at row `k`, of those
+/// from row `from` on.
+fn next_lesson(observations: &[Observation], from: usize, k: usize) -> usize {
+    let lessons = LEARN_DAYS.iter();
+    let mut lessons = lessons.map(|days| rows_within(observations, from, *days));
+    lessons.find(|&row| row > k).unwrap_or(usize::MAX)
 }
 
 /// The row after the last within `days` of row `from`.
@@ -214,6 +217,7 @@ struct Search<'a> {
     stations: Vec<Station>,
     reported: &'a [Timestamp],
     prior: &'a Prior,
+    levels: NoiseLevels,
     noise: Noise,
     /// What rows are linearised at until the filter itself knows.
     start: Unknowns,
@@ -239,11 +243,12 @@ impl<'a> Search<'a> {
             reported: given.reported,
             prior: given.prior,
             null: Filter::new(given.prior, &learnt.noise),
+            levels: learnt.levels,
             noise: learnt.noise,
             start: learnt.unknowns,
             start_until: learnt.until,
             learn_from: 0,
-            learn_next: learnt.until,
+            learn_next: next_lesson(observations, 0, learnt.until),
             bank: Bank::default(),
             spawned: 0,
             calls: Calls::default(),
@@ -325,14 +330,12 @@ impl<'a> Search<'a> {
 
     /// The sizes of noise again, from the longer stretch there is now.
     fn learn(&mut self, k: usize) {
-        if let Some(learnt) = Learnt::of(self.observations, self.learn_from..k, self.prior) {
+        let rows = self.learn_from..k;
+        if let Some(learnt) = Learnt::of(self.observations, rows, self.prior, Some(&self.levels)) {
+            self.levels = learnt.levels;
             self.noise = learnt.noise;
         }
-        let next = LEARN_DAYS
-            .iter()
-            .map(|days| rows_within(self.observations, self.learn_from, *days))
-            .find(|&row| row > k);
-        self.learn_next = next.unwrap_or(usize::MAX);
+        self.learn_next = next_lesson(self.observations, self.learn_from, k);
     }
 
     fn judge(&mut self, k: usize) {

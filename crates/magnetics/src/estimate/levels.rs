@@ -6,17 +6,24 @@
 
 use super::noise::{LEVELS, NoiseLevels};
 use super::row::{Row, Station, UNKNOWNS};
-use super::whiten::whiten;
+use super::slopes::{Slopes, slopes};
+use super::whiten::{Pass, whiten};
 use nalgebra::{SMatrix, SVector};
 
 /// Standard deviations of the levels' logarithms over ships and instruments, in
 /// the order of [`NoiseLevels`].
 const LOG_SD: [f64; LEVELS] = [0.7, 0.6, 0.6, 0.5, 0.7, 0.5, 0.5, 0.6, 0.7];
-/// A level is tried this far (in its logarithm) to either side.
-const TRIAL: f64 = 0.3;
-/// And moved at most so far in a sweep.
+/// Steps of the search at most, and how far one may move a level's logarithm.
+const STEPS: u32 = 20;
 const LARGEST_MOVE: f64 = 0.9;
-/// For the slope of the likelihood by a level.
+/// Levels from which no step promises more than this in −2 log likelihood are found:
+/// while the parameters are still rough, and in the end.
+const LITTLE_TO_GAIN: f64 = 0.2;
+const NOTHING_TO_GAIN: f64 = 0.02;
+/// A step that makes things worse is halved, until it is this small a part.
+const SMALLEST_PART: f64 = 0.05;
+/// By how much a level's logarithm is moved to see what the unknowns' part in the
+/// likelihood does.
 const NUDGE: f64 = 0.05;
 /// Rows of one stretch when there are too many for all to be looked at.
 const STRETCH: usize = 1000;
@@ -30,124 +37,218 @@ pub(crate) struct Pull {
     pub(crate) score: SVector<f64, UNKNOWNS>,
 }
 
-/// The levels that make the rows likeliest, sought from `levels` by moving each
-/// in turn, `sweeps` times.
+/// Levels, and what they say of the rows.
+pub(crate) struct Found {
+    pub(crate) levels: NoiseLevels,
+    /// Slopes of the sum of log variance by the levels' logarithms.
+    log_variance: [f64; LEVELS],
+}
+
+type Logs = SVector<f64, LEVELS>;
+
+/// How well levels are sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sought {
+    /// As if the unknowns were known where they are likeliest.
+    Roughly,
+    /// With what the unknowns' fit takes from the residuals.
+    Well,
+}
+
+/// The levels that make the rows likeliest, sought from `levels` by Fisher's scoring.
 pub(crate) fn fit_levels(
     stations: &[Station],
     rows: &[Row],
     pull: &Pull,
     typical: &NoiseLevels,
     levels: &NoiseLevels,
-    sweeps: u32,
-) -> NoiseLevels {
-    let typical = typical.to_array().map(f64::ln);
-    let objective = |logs: &[f64; LEVELS]| {
-        let tried = NoiseLevels::from_array(logs.map(f64::exp));
-        let pass = whiten(stations, rows, &tried, |_, _, _| ());
-        let information = pull.information + pass.information;
-        let score = pull.score + pass.score;
-        let Some(factor) = information.cholesky() else {
-            return f64::INFINITY;
-        };
-        let log_determinant = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
-        let off = (0..LEVELS).filter(|&k| typical[k].is_finite());
-        let prior: f64 = off
-            .map(|k| ((logs[k] - typical[k]) / LOG_SD[k]).powi(2))
-            .sum();
-        pass.loss - score.dot(&factor.solve(&score)) + log_determinant + prior
+    sought: Sought,
+) -> Found {
+    let search = Search {
+        sought,
+        stations,
+        rows,
+        pull,
+        typical: logs_of(typical),
+        moved: moved(stations, levels),
     };
-    let mut logs = levels.to_array().map(f64::ln);
-    let shown = shown(stations);
-    let mut best = objective(&logs);
-    for _ in 0..sweeps {
-        for k in 0..LEVELS {
-            // A level of zero (its logarithm is not finite) stays zero, and one
-            // that no row shows stays what it usually is.
-            if logs[k].is_finite() && shown[k] {
-                best = improve(&objective, &mut logs, k, best);
-            }
-        }
-    }
-    NoiseLevels::from_array(logs.map(f64::exp))
+    search.run(logs_of(levels))
 }
 
-/// Which levels have a part in the rows at all, in the order of [`NoiseLevels`].
-fn shown(stations: &[Station]) -> [bool; LEVELS] {
+struct Search<'a> {
+    stations: &'a [Station],
+    rows: &'a [Row],
+    pull: &'a Pull,
+    typical: Logs,
+    /// The levels that are sought.
+    moved: Vec<usize>,
+    sought: Sought,
+}
+
+/// What the likelihood is at some levels.
+struct Tried {
+    logs: Logs,
+    objective: f64,
+    /// By how much the unknowns differ from where the rows were taken.
+    known: [f64; UNKNOWNS],
+    log_determinant: f64,
+}
+
+impl Search<'_> {
+    fn run(&self, logs: Logs) -> Found {
+        let mut found = Found {
+            levels: levels_of(&logs),
+            log_variance: [0.0; LEVELS],
+        };
+        let Some(mut here) = self.at(logs) else {
+            return found;
+        };
+        // It hardly changes on the way.
+        let (unknowns_part, enough) = match self.sought {
+            Sought::Roughly => (Logs::zeros(), LITTLE_TO_GAIN),
+            Sought::Well => (self.unknowns_part(&here), NOTHING_TO_GAIN),
+        };
+        for _ in 0..STEPS {
+            let slopes = self.slopes(&here);
+            found = Found {
+                levels: levels_of(&here.logs),
+                log_variance: slopes.log_variance,
+            };
+            let Some((step, gain)) = self.step(&here, &slopes, &unknowns_part) else {
+                break;
+            };
+            if gain < enough {
+                break;
+            }
+            let Some(next) = self.descend(&here, &step) else {
+                break;
+            };
+            here = next;
+        }
+        found
+    }
+
+    /// None where the information is none.
+    fn at(&self, logs: Logs) -> Option<Tried> {
+        let pass = self.whiten(&logs);
+        let factor = (self.pull.information + pass.information).cholesky()?;
+        let score = self.pull.score + pass.score;
+        let known = factor.solve(&score);
+        let log_determinant = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
+        let far = self.moved.iter().map(|&k| self.far(&logs, k).powi(2));
+        Some(Tried {
+            logs,
+            objective: pass.loss - score.dot(&known) + log_determinant + far.sum::<f64>(),
+            known: known.into(),
+            log_determinant,
+        })
+    }
+
+    /// How far from usual a level is, in standard deviations.
+    fn far(&self, logs: &Logs, k: usize) -> f64 {
+        (logs[k] - self.typical[k]) / LOG_SD[k]
+    }
+
+    fn whiten(&self, logs: &Logs) -> Pass {
+        whiten(self.stations, self.rows, &levels_of(logs))
+    }
+
+    /// Slopes at the unknowns that are likeliest there: moving with the levels, they
+    /// add nothing to them.
+    fn slopes(&self, here: &Tried) -> Slopes {
+        let levels = levels_of(&here.logs);
+        slopes(self.stations, self.rows, &levels, &self.moved, &here.known)
+    }
+
+    /// Slopes of the log determinant of the unknowns' information.
+    fn unknowns_part(&self, here: &Tried) -> Logs {
+        let mut part = Logs::zeros();
+        for &k in &self.moved {
+            let mut logs = here.logs;
+            logs[k] += NUDGE;
+            let information = self.pull.information + self.whiten(&logs).information;
+            if let Some(factor) = information.cholesky() {
+                let nudged = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
+                part[k] = (nudged - here.log_determinant) / NUDGE;
+            }
+        }
+        part
+    }
+
+    /// A step and what it promises to gain.
+    fn step(&self, here: &Tried, slopes: &Slopes, unknowns_part: &Logs) -> Option<(Logs, f64)> {
+        let mut slope = Logs::from(slopes.loss) + unknowns_part;
+        let mut curvature = SMatrix::from(slopes.information);
+        for k in 0..LEVELS {
+            if self.moved.contains(&k) {
+                slope[k] += 2.0 * self.far(&here.logs, k) / LOG_SD[k];
+                curvature[(k, k)] += 2.0 / LOG_SD[k].powi(2);
+            } else {
+                slope[k] = 0.0;
+                curvature[(k, k)] = 1.0;
+            }
+        }
+        let step = -curvature.cholesky()?.solve(&slope);
+        let gain = -0.5 * step.dot(&slope);
+        let largest = step.amax().max(LARGEST_MOVE);
+        Some((step * (LARGEST_MOVE / largest), gain))
+    }
+
+    /// As much of a step as makes things better.
+    fn descend(&self, here: &Tried, step: &Logs) -> Option<Tried> {
+        let mut part = 1.0;
+        while part > SMALLEST_PART {
+            let next = self.at(here.logs + step * part);
+            if let Some(next) = next.filter(|next| next.objective < here.objective) {
+                return Some(next);
+            }
+            part /= 2.0;
+        }
+        None
+    }
+}
+
+/// A level of zero (its logarithm is not finite) stays zero, and one that no row
+/// shows stays what it usually is.
+fn moved(stations: &[Station], levels: &NoiseLevels) -> Vec<usize> {
     let gyro = stations.iter().any(Station::reads_gyro);
     let satellite = stations.iter().any(Station::reads_satellite);
     let both = stations.iter().any(Station::reads_both);
-    [true, gyro, gyro, gyro, true, true, true, satellite, both]
+    let shown = [true, gyro, gyro, gyro, true, true, true, satellite, both];
+    let levels = levels.to_array();
+    (0..LEVELS)
+        .filter(|&k| shown[k] && levels[k] > 0.0)
+        .collect()
 }
 
-/// What part of the rows' noise is the compass's, of what tells rows apart: the
-/// trace of V⁻¹ V_compass over that of V⁻¹ V, where V is the noise's covariance.
-///
-/// A row taken at a heading with so much of the reference in it has a residual
-/// that its slopes know nothing of; with any other, errors in the heading would
-/// lean on the fit.
-pub(crate) fn compass_share(
-    stations: &[Station],
-    rows: &[Row],
-    levels: &NoiseLevels,
-    of_white: f64,
-) -> f64 {
-    let log_variance = |white: f64, swing: f64| {
-        let tried = NoiseLevels {
-            white_deg: levels.white_deg * white.exp(),
-            compass_swing_deg: levels.compass_swing_deg * swing.exp(),
-            ..*levels
-        };
-        whiten(stations, rows, &tried, |_, _, _| ()).log_variance
-    };
-    // By the logarithm of the variance, which is twice the level's.
-    let (white, swing) = (of_white * NUDGE, NUDGE);
-    let slope = (log_variance(white, swing) - log_variance(-white, -swing)) / (4.0 * NUDGE);
-    (slope / rows.len() as f64).clamp(0.0, 1.0)
+fn logs_of(levels: &NoiseLevels) -> Logs {
+    Logs::from(levels.to_array().map(f64::ln))
 }
 
-/// Moves one level to the lowest point of the parabola through three tries, or
-/// to the best of the tries.
-fn improve(
-    objective: &impl Fn(&[f64; LEVELS]) -> f64,
-    logs: &mut [f64; LEVELS],
-    k: usize,
-    here: f64,
-) -> f64 {
-    let centre = logs[k];
-    let mut at = |offset: f64| {
-        logs[k] = centre + offset;
-        objective(logs)
-    };
-    let (below, above) = (at(-TRIAL), at(TRIAL));
-    let curvature = below + above - 2.0 * here;
-    let slope = (above - below) / 2.0;
-    let offset = if curvature > 0.0 {
-        (-slope / curvature * TRIAL).clamp(-LARGEST_MOVE, LARGEST_MOVE)
-    } else {
-        LARGEST_MOVE.copysign(-slope)
-    };
-    let moved = at(offset);
-    let tries = [
-        (0.0, here),
-        (-TRIAL, below),
-        (TRIAL, above),
-        (offset, moved),
-    ];
-    let (chosen, value) = tries
-        .into_iter()
-        .min_by(|a, b| a.1.total_cmp(&b.1))
-        .expect("there are four tries");
-    logs[k] = centre + chosen;
-    value
+fn levels_of(logs: &Logs) -> NoiseLevels {
+    NoiseLevels::from_array(std::array::from_fn(|k| logs[k].exp()))
 }
 
-/// Which of `rows` rows are looked at: all, or evenly spread stretches.
-pub(crate) fn looked_at(rows: usize) -> Vec<usize> {
+impl Found {
+    /// What part of the rows' noise is the compass's, of what tells rows apart: the
+    /// trace of V⁻¹ V_compass over that of V⁻¹ V, where V is the noise's covariance.
+    ///
+    /// A row taken at a heading with so much of the reference in it has a residual
+    /// that its slopes know nothing of; with any other, errors in the heading would
+    /// lean on the fit.
+    pub(crate) fn compass_share(&self, rows: usize, of_white: f64) -> f64 {
+        let [white, _, _, _, swing, ..] = self.log_variance;
+        // By the logarithm of the variance, which is twice the level's.
+        let twice = of_white * white + swing;
+        (twice / (2.0 * rows as f64)).clamp(0.0, 1.0)
+    }
+}
+
+/// Which of `rows` rows are looked at: evenly spread stretches; none where it is all.
+pub(crate) fn looked_at(rows: usize) -> Option<impl Iterator<Item = usize>> {
     if rows <= STRETCH * STRETCHES {
-        return (0..rows).collect();
+        return None;
     }
     let spacing = (rows - STRETCH) / (STRETCHES - 1);
-    (0..STRETCHES)
-        .flat_map(|i| i * spacing..i * spacing + STRETCH)
-        .collect()
+    Some((0..STRETCHES).flat_map(move |i| i * spacing..i * spacing + STRETCH))
 }

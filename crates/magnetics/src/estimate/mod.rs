@@ -24,9 +24,11 @@ mod levels;
 mod needle;
 mod noise;
 mod prior;
+mod problem;
 mod products;
 mod quality;
 mod row;
+mod slopes;
 mod solve;
 mod start;
 mod whiten;
@@ -40,5 +42,5 @@ pub use prior::Prior;
 pub(crate) use row::{
     CONSTANT, OFFSET_SD_DEG, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,
 };
-pub(crate) use solve::{Options, estimate};
+pub(crate) use solve::{Options, Rough, estimate, rough};
 pub(crate) use whiten::{loss_of, weight};

@@ -141,7 +141,7 @@ impl NoiseLevels {
     }
 }
 
-/// How the states go over from one row to the next.
+/// How the states go over from one row to the next: [`Step::sailing`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Transition {
     /// The Schuler pair's 2 × 2 matrix; the rate is in units of the swing, so
@@ -156,24 +156,50 @@ pub(crate) struct Transition {
     pub(crate) drift_share: f64,
 }
 
-impl Transition {
-    /// Over `seconds` and `miles`, both not negative, with a turn or without.
-    pub(crate) fn over(seconds: f64, miles: f64, turned: bool) -> Transition {
-        let since_turn = turned.then(|| {
-            let [[_, swing], [_, rate]] = swing_over(seconds.min(SETTLED_S));
-            [swing, rate]
-        });
-        Transition {
+/// What a time alone says of a transition. Most rows are equally far apart, and what
+/// was worked out for one serves the next.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Step {
+    seconds: f64,
+    /// Of a step without miles and turn.
+    still: Transition,
+}
+
+impl Step {
+    /// Over `seconds`, not negative.
+    pub(crate) fn over(seconds: f64) -> Step {
+        let still = Transition {
             schuler: swing_over(seconds),
             decay: [
                 (-seconds / SLOW_GYRO_S).exp(),
                 (-seconds / COMPASS_SWING_S).exp(),
-                (-miles / VARIATION_NM).exp(),
+                1.0,
                 (-seconds / SATELLITE_S).exp(),
             ],
-            since_turn,
+            since_turn: None,
             drift_share: seconds / DRIFT_S,
+        };
+        Step { seconds, still }
+    }
+
+    /// The same, or one over `seconds` if that is another time.
+    pub(crate) fn again(self, seconds: f64) -> Step {
+        if seconds.to_bits() == self.seconds.to_bits() {
+            self
+        } else {
+            Step::over(seconds)
         }
+    }
+
+    /// With so many miles sailed, and a turn or none.
+    pub(crate) fn sailing(&self, miles: f64, turned: bool) -> Transition {
+        let mut transition = self.still;
+        transition.decay[2] = (-miles / VARIATION_NM).exp();
+        transition.since_turn = turned.then(|| {
+            let [[_, swing], [_, rate]] = swing_over(self.seconds.min(SETTLED_S));
+            [swing, rate]
+        });
+        transition
     }
 }
 

@@ -30,6 +30,15 @@ impl<const N: usize> Products<N> {
         }
     }
 
+    /// Adds another such sum.
+    pub(crate) fn add_all(&mut self, other: &Products<N>) {
+        for (row, other) in self.0.iter_mut().zip(&other.0) {
+            for (cell, other) in row.iter_mut().zip(other) {
+                *cell += other;
+            }
+        }
+    }
+
     /// The sum's element in row `i` and column `j`.
     pub(crate) fn at(&self, i: usize, j: usize) -> f64 {
         self.0[i.max(j)][i.min(j)]
@@ -59,5 +68,7 @@ mod tests {
         }
         assert_eq!(products.to_matrix(), whole);
         assert_eq!(products.at(0, 3).to_bits(), products.at(3, 0).to_bits());
+        products.add_all(&products.clone());
+        assert_eq!(products.to_matrix(), whole * 2.0);
     }
 }

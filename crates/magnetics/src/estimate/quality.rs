@@ -3,8 +3,7 @@
 
 use super::needle::Needle;
 use super::prior::scales;
-use super::products::Products;
-use super::row::{CONSTANT, Row, UNKNOWNS};
+use super::row::{CONSTANT, UNKNOWNS};
 use crate::model::{Caution, FromData, Identifiable, Parameters, Quality};
 use crate::ship::{EarthField, PARAMETERS};
 use nalgebra::{SMatrix, SVector};
@@ -35,9 +34,10 @@ pub(crate) struct Evidence<'a> {
     /// Covariance that the data alone leave at the last row, the population taken
     /// [`widely`]; none when they contradict all arithmetic.
     pub(crate) by_data: Option<Matrix>,
-    /// Rows with the weight each had in the fit.
-    pub(crate) rows: &'a [Row],
-    pub(crate) weights: &'a [f64],
+    /// What the rows would tell were their errors independent and of one degree,
+    /// each with the weight it had in the fit; and the sum of the weights.
+    pub(crate) independent: &'a Matrix,
+    pub(crate) weighed: f64,
     /// Variance of what is left of a row, degrees squared.
     pub(crate) row_variance: f64,
     /// Covariance after the fit and before it, in population units.
@@ -86,13 +86,7 @@ pub(crate) fn quality(evidence: &Evidence<'_>) -> (Quality, Identifiable) {
 /// How many rows with independent errors of the same size would tell the curve
 /// at the last place as well as all rows do together.
 fn effective_samples(evidence: &Evidence<'_>) -> f64 {
-    let mut independent = Products::new();
-    let mut count = 0.0;
-    for (row, weight) in evidence.rows.iter().zip(evidence.weights) {
-        independent.add(&row.columns, weight / evidence.row_variance);
-        count += weight;
-    }
-    let mut independent = independent.to_matrix();
+    let mut independent = evidence.independent / evidence.row_variance;
     // Independent errors have no nuisances.
     for j in CONSTANT + 1..UNKNOWNS {
         independent[(j, j)] += KNOWN;
@@ -102,7 +96,7 @@ fn effective_samples(evidence: &Evidence<'_>) -> f64 {
         return 0.0;
     };
     let part = curve_variance(&independent, evidence) / curve_variance(&correlated, evidence);
-    (count * part).min(count)
+    (evidence.weighed * part).min(evidence.weighed)
 }
 
 /// Variance of the curve at the last place, averaged over headings.

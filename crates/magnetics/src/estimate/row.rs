@@ -2,7 +2,7 @@
 //! parameters, then the residual and its slopes at the current ones.
 
 use super::needle::Needle;
-use super::noise::{STATES, Transition};
+use super::noise::{STATES, Step, Transition};
 use super::prior::scales;
 use crate::angle::{TrueHeading, wrap_180};
 use crate::deviation::Coefficients;
@@ -90,20 +90,21 @@ pub(crate) fn stations(observations: &[Observation]) -> Vec<Station> {
         .iter()
         .any(|o| o.gyro_less_satellite_deg.is_some());
     let mut earlier: Option<&Observation> = None;
+    let mut step = Step::over(0.0);
     let mut stations = Vec::with_capacity(observations.len());
     for observation in observations {
-        let transition = earlier.map_or_else(
-            || Transition::over(0.0, 0.0, false),
-            |earlier| step(earlier, observation),
-        );
+        let transition = match earlier {
+            Some(earlier) => transition(&mut step, earlier, observation),
+            None => step.sailing(0.0, false),
+        };
         stations.push(station(observation, transition, both));
         earlier = Some(observation);
     }
     stations
 }
 
-/// From one observation to the next.
-fn step(earlier: &Observation, later: &Observation) -> Transition {
+/// From one observation to the next; `step` is the one before.
+fn transition(step: &mut Step, earlier: &Observation, later: &Observation) -> Transition {
     let seconds = match (earlier.time, later.time) {
         (Some(earlier), Some(later)) => later.seconds_since(earlier).max(0.0),
         // Rows without times have no memory in common.
@@ -119,7 +120,8 @@ fn step(earlier: &Observation, later: &Observation) -> Transition {
         _ => later.sog_kn.unwrap_or(TYPICAL_SPEED_KN).abs() * seconds / 3600.0,
     };
     let turn = wrap_180(true_heading(later).degrees() - true_heading(earlier).degrees());
-    Transition::over(seconds, miles, turn.abs() > TURN_DEG)
+    *step = step.again(seconds);
+    step.sailing(miles, turn.abs() > TURN_DEG)
 }
 
 fn true_heading(o: &Observation) -> TrueHeading {

@@ -1,37 +1,26 @@
 //! The estimate itself: a robust start, noise levels from the data, and
 //! Gauss–Newton on whitened rows.
 
-use super::levels::{Pull, compass_share, fit_levels, looked_at};
+use super::levels::{Sought, looked_at};
 use super::noise::NoiseLevels;
-use super::prior::{Prior, scales, tail};
-use super::products::Products;
-use super::quality::{Evidence, quality, widely};
-use super::row::{
-    CONSTANT, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, in_own_units, plain_residual, row,
-    stations,
-};
+use super::prior::{Prior, scales};
+use super::problem::{Matrix, Problem, Solution};
+use super::quality::{Evidence, quality};
+use super::row::{CONSTANT, USUAL_FUSION, in_own_units, plain_residual};
 use super::start::start;
-use super::whiten::{Measured, Pass, Whitened, whiten};
 use crate::fit::Observation;
 use crate::model::{Covariance, Identifiable, Parameters, Quality};
 use crate::ship::EarthField;
-use nalgebra::{SMatrix, SVector};
+use std::borrow::Cow;
 
-/// Gauss–Newton steps at most; three suffice near the solution, thirty where the
-/// weights and the prior's tail move with it.
-const ITERATIONS: u32 = 40;
-/// Rounds of noise levels and parameters in turn: how often each level is moved,
-/// and the step, in population standard deviations, below which the parameters
-/// have settled.
-const ROUNDS: [(u32, f64); 2] = [(3, 0.01), (1, 5e-4)];
-/// The compass's part of the noise that is new in every row.
-const OF_WHITE_BY_GYRO: f64 = 0.85;
-const OF_WHITE_BY_SATELLITE: f64 = 0.5;
-const OF_WHITE_UNTIMED: f64 = 0.6;
-/// Where bx and by stand among the unknowns.
-const DRIFTING: [usize; 2] = [0, 2];
-/// Days whose scores are held against what the noise model says of them.
-const BLOCK_S: f64 = 4.0 * 86_400.0;
+/// The step, in population standard deviations, below which the parameters have
+/// settled: while levels are sought, and in the end.
+const ROUGHLY_SETTLED: f64 = 0.01;
+const SETTLED: f64 = 1e-3;
+/// Most of what is left after a fit is slow; about this part of it, in standard
+/// deviation, is new in every row.
+const NEW: f64 = 0.2;
+
 /// What an estimate starts from beside the observations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Options<'a> {
@@ -63,21 +52,26 @@ pub(crate) struct FittedRow {
     pub(crate) weight: f64,
 }
 
+/// What a rough estimate tells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rough {
+    pub(crate) parameters: Parameters,
+    pub(crate) constant_deg: f64,
+    pub(crate) levels: NoiseLevels,
+}
+
 /// Fits the ship to observations in any order; none when the iteration does not
 /// settle. The result depends on the order only where times are equal.
 pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> Option<Estimate> {
-    let mut order: Vec<usize> = (0..observations.len()).collect();
-    order.sort_by_key(|&i| observations[i].time);
-    let sorted: Vec<Observation> = order.iter().map(|&i| observations[i]).collect();
+    let order = order(observations);
+    let sorted = sorted(observations, &order);
     let problem = Problem::new(&sorted, options.prior)?;
-    let timed = sorted.iter().all(|o| o.time.is_some());
-    let typical = if timed {
-        NoiseLevels::TYPICAL
-    } else {
-        NoiseLevels::MEMORYLESS
+    let few = few(&sorted);
+    let (solution, levels) = match &few {
+        Some(few) => seek(&problem.by(few), begin(&problem, None))?,
+        None => seek(&problem, begin(&problem, None))?,
     };
-    let (solution, levels) = problem.solve(&typical)?;
-    let judged = problem.judge(&solution, &levels)?;
+    let (solution, judged) = problem.settle(solution, &levels, SETTLED)?;
 
     let (parameters, constant_deg) = in_own_units(&judged.at_last);
     let mut covariance = in_own_units_squared(&judged.covariance);
@@ -89,7 +83,7 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         };
         order.len()
     ];
-    for ((&index, observation), &weight) in order.iter().zip(&sorted).zip(&judged.weights) {
+    for ((&index, observation), &weight) in order.iter().zip(sorted.iter()).zip(&judged.weights) {
         rows[index] = FittedRow {
             residual_deg: plain_residual(observation, &judged.at_last),
             weight,
@@ -105,11 +99,11 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
     let (quality, identifiable) = quality(&Evidence {
         information: &judged.information,
         by_data: judged.by_data,
-        rows: &judged.rows,
-        weights: &judged.weights,
+        independent: &judged.independent,
+        weighed,
         row_variance: (squares / weighed).max(levels.of_a_row()),
         after: &judged.covariance,
-        before: &Problem::prior_covariance(&solution)?,
+        before: &solution.prior_covariance()?,
         parameters: &parameters,
         earth: EarthField {
             h_nt: last.h_nt,
@@ -128,278 +122,100 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
     })
 }
 
-type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
-type Vector = SVector<f64, UNKNOWNS>;
-
-/// Observations from the earliest to the latest, with what stays the same
-/// through the iteration.
-struct Problem<'a> {
-    observations: &'a [Observation],
-    stations: Vec<Station>,
-    prior_mean: Vector,
-    prior_information: Matrix,
+/// The levels of noise, and about what the parameters are at the last observation;
+/// `before` are levels from which there is not far to go.
+pub(crate) fn rough(
+    observations: &[Observation],
+    prior: &Prior,
+    before: Option<&NoiseLevels>,
+) -> Option<Rough> {
+    let order = order(observations);
+    let sorted = sorted(observations, &order);
+    let few = few(&sorted);
+    let problem = Problem::new(few.as_deref().unwrap_or(&sorted), prior)?;
+    let (solution, levels) = seek(&problem, begin(&problem, before))?;
+    let (solution, drift) = problem.descend(solution, &levels, ROUGHLY_SETTLED)?;
+    let (parameters, constant_deg) = in_own_units(&solution.at_last(&drift));
+    Some(Rough {
+        parameters: Parameters::from_array(parameters),
+        constant_deg,
+        levels,
+    })
 }
 
-/// Where the iteration is.
-struct Solution {
-    unknowns: Unknowns,
-    /// The reference's share in the heading at which rows are taken.
-    fusion: f64,
-    /// The prior's information there.
-    prior_information: Matrix,
+/// Indices from the earliest observation to the latest.
+fn order(observations: &[Observation]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..observations.len()).collect();
+    order.sort_by_key(|&i| observations[i].time);
+    order
 }
 
-/// What the final pass says of a solution.
-struct Judged {
-    /// Parameters as they were at the last observation, in population units.
-    at_last: Unknowns,
-    information: Matrix,
-    covariance: Matrix,
-    /// The same by the data alone.
-    by_data: Option<Matrix>,
-    rows: Vec<Row>,
-    weights: Vec<f64>,
-}
-
-impl<'a> Problem<'a> {
-    fn new(observations: &'a [Observation], prior: &Prior) -> Option<Problem<'a>> {
-        let (mean, information) = prior.in_population_units()?;
-        let mut prior_mean = Vector::zeros();
-        prior_mean.as_mut_slice()[..=CONSTANT].copy_from_slice(&mean);
-        // What is neither parameter nor constant is in units of its own prior.
-        let mut prior_information = Matrix::identity();
-        prior_information
-            .fixed_view_mut::<8, 8>(0, 0)
-            .copy_from(&information);
-        Some(Problem {
-            observations,
-            stations: stations(observations),
-            prior_mean,
-            prior_information,
-        })
+fn sorted<'a>(observations: &'a [Observation], order: &[usize]) -> Cow<'a, [Observation]> {
+    if order.is_sorted() {
+        return Cow::Borrowed(observations);
     }
+    order.iter().map(|&i| observations[i]).collect()
+}
 
-    fn solve(&self, typical: &NoiseLevels) -> Option<(Solution, NoiseLevels)> {
-        let (unknowns, sd) = start(
-            self.observations,
-            &self.stations,
-            &self.prior_mean.into(),
-            &self.prior_information,
-        );
-        let mut solution = Solution {
+/// Those by which levels are sought, where it need not be all.
+fn few(observations: &[Observation]) -> Option<Vec<Observation>> {
+    let chosen = looked_at(observations.len())?;
+    Some(chosen.map(|i| observations[i]).collect())
+}
+
+/// Where the search begins.
+struct Begun {
+    solution: Solution,
+    typical: NoiseLevels,
+    levels: NoiseLevels,
+    /// How well levels are sought before the last time.
+    first: Option<Sought>,
+}
+
+fn begin(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> Begun {
+    let (unknowns, sd) = start(
+        problem.observations,
+        &problem.stations,
+        &problem.prior_mean.into(),
+        &problem.prior_information,
+    );
+    let timed = problem.observations.iter().all(|o| o.time.is_some());
+    let typical = if timed {
+        NoiseLevels::TYPICAL
+    } else {
+        NoiseLevels::MEMORYLESS
+    };
+    let by_start = NoiseLevels {
+        white_deg: (NEW * sd).clamp(0.02, 10.0),
+        ..typical
+    };
+    Begun {
+        solution: Solution {
             unknowns,
             fusion: USUAL_FUSION,
-            prior_information: self.prior_information,
-        };
-        // Most of what is left after a fit is slow; some half of it is new in
-        // every row.
-        let mut levels = *typical;
-        levels.white_deg = (sd / 2.0).clamp(0.02, 10.0);
-        let chosen: Vec<Observation> = looked_at(self.observations.len())
-            .into_iter()
-            .map(|i| self.observations[i])
-            .collect();
-        let chosen_stations = stations(&chosen);
-        let of_white = compass_part_of_white(&chosen);
-        for (sweeps, settled) in ROUNDS {
-            let rows = rows(&chosen, &chosen_stations, &solution);
-            let pull = self.pull(&solution);
-            levels = fit_levels(&chosen_stations, &rows, &pull, typical, &levels, sweeps);
-            solution.fusion = compass_share(&chosen_stations, &rows, &levels, of_white);
-            solution = self.descend(solution, &levels, settled)?;
-        }
-        Some((solution, levels))
-    }
-
-    /// Gauss–Newton from a solution until it settles.
-    fn descend(
-        &self,
-        mut solution: Solution,
-        levels: &NoiseLevels,
-        settled: f64,
-    ) -> Option<Solution> {
-        for _ in 0..ITERATIONS {
-            let rows = rows(self.observations, &self.stations, &solution);
-            let pass = whiten(&self.stations, &rows, levels, |_, _, _| ());
-            let pull = self.pull(&solution);
-            let covariance = (pass.information + pull.information).cholesky()?.inverse();
-            let step = covariance * (pass.score + pull.score);
-            for (u, d) in solution.unknowns.iter_mut().zip(step.iter()) {
-                *u += d;
-            }
-            if !solution.unknowns.iter().all(|u| u.is_finite()) {
-                return None;
-            }
-            solution.prior_information = self.prior_at(&solution.unknowns, &covariance);
-            if step.amax() < settled {
-                return Some(solution);
-            }
-        }
-        None
-    }
-
-    fn judge(&self, solution: &Solution, levels: &NoiseLevels) -> Option<Judged> {
-        let rows = rows(self.observations, &self.stations, solution);
-        let mut weights = Vec::with_capacity(rows.len());
-        let mut blocks = Blocks::new(self.observations);
-        let pass: Pass = whiten(
-            &self.stations,
-            &rows,
-            levels,
-            |index, measured, whitened| {
-                if measured == Measured::Deviation {
-                    weights.push(whitened.weight);
-                }
-                blocks.add(index, whitened);
-            },
-        );
-        let covariance = (pass.information + solution.prior_information)
-            .cholesky()?
-            .inverse();
-        let covariance = covariance * blocks.inflation(&covariance);
-        // From where the filter began to where the ship is now.
-        let scale = scales();
-        let mut at_last = solution.unknowns;
-        let mut follows = Matrix::identity();
-        let mut drifted = Matrix::zeros();
-        for (a, i) in DRIFTING.into_iter().enumerate() {
-            at_last[i] += pass.drift.nt[a] / scale[i];
-            for (j, per_unknown) in pass.drift.per_unknown[a].iter().enumerate() {
-                follows[(i, j)] -= per_unknown / scale[i];
-            }
-            for (b, j) in DRIFTING.into_iter().enumerate() {
-                drifted[(i, j)] = pass.drift.covariance[a][b] / (scale[i] * scale[j]);
-            }
-        }
-        let now = |then: Matrix| follows * then * follows.transpose() + drifted;
-        Some(Judged {
-            at_last,
-            information: pass.information,
-            covariance: now(covariance),
-            by_data: widely(&pass.information)
-                .cholesky()
-                .map(|factor| now(factor.inverse())),
-            rows,
-            weights,
-        })
-    }
-
-    fn pull(&self, solution: &Solution) -> Pull {
-        let off = self.prior_mean - Vector::from(solution.unknowns);
-        Pull {
-            information: solution.prior_information,
-            score: solution.prior_information * off,
-        }
-    }
-
-    /// What was known of parameters and constant before the data.
-    fn prior_covariance(solution: &Solution) -> Option<SMatrix<f64, 8, 8>> {
-        let information = solution.prior_information.fixed_view::<8, 8>(0, 0);
-        Some(information.into_owned().cholesky()?.inverse())
-    }
-
-    /// The prior's information, less where a solution lies out in its tail.
-    fn prior_at(&self, unknowns: &Unknowns, covariance: &Matrix) -> Matrix {
-        let off = Vector::from(*unknowns) - self.prior_mean;
-        let factors = tail(
-            &off.fixed_rows::<8>(0).into_owned(),
-            &covariance.fixed_view::<8, 8>(0, 0).into_owned(),
-            &self.prior_information.fixed_view::<8, 8>(0, 0).into_owned(),
-        );
-        let mut information = self.prior_information;
-        for i in 0..8 {
-            for j in 0..8 {
-                information[(i, j)] /= factors[i] * factors[j];
-            }
-        }
-        information
+            prior_information: problem.prior_information,
+        },
+        typical,
+        levels: before.copied().unwrap_or(by_start),
+        first: before.is_none().then_some(Sought::Roughly),
     }
 }
 
-fn rows(observations: &[Observation], stations: &[Station], solution: &Solution) -> Vec<Row> {
-    observations
-        .iter()
-        .zip(stations)
-        .map(|(o, s)| row(o, s, &solution.unknowns, solution.fusion))
-        .collect()
-}
-
-/// What part of the noise that is new in every row is the compass's: a gyro is
-/// steadier than a compass, a satellite compass is not. Without times all noise
-/// passes for new, the reference's wander too.
-fn compass_part_of_white(observations: &[Observation]) -> f64 {
-    if observations.iter().any(|o| o.time.is_none()) {
-        return OF_WHITE_UNTIMED;
+/// Levels and parameters in turn; the parameters by the last levels are the caller's
+/// to find.
+fn seek(problem: &Problem<'_>, begun: Begun) -> Option<(Solution, NoiseLevels)> {
+    let Begun {
+        mut solution,
+        typical,
+        mut levels,
+        first,
+    } = begun;
+    if let Some(sought) = first {
+        (levels, solution.fusion) = problem.levels_at(&solution, &typical, &levels, sought);
+        (solution, _) = problem.descend(solution, &levels, ROUGHLY_SETTLED)?;
     }
-    let by_gyro: f64 = observations.iter().map(|o| o.gyro_share).sum();
-    let gyro_share = by_gyro / observations.len() as f64;
-    OF_WHITE_BY_SATELLITE + gyro_share * (OF_WHITE_BY_GYRO - OF_WHITE_BY_SATELLITE)
-}
-
-/// Scores and information of stretches of days: were the noise model right,
-/// each stretch's score would vary as its information says.
-struct Blocks<'a> {
-    observations: &'a [Observation],
-    of: Vec<Block>,
-}
-
-struct Block {
-    /// Its place among all stretches since 1970.
-    number: i64,
-    score: [f64; UNKNOWNS],
-    information: Products<UNKNOWNS>,
-}
-
-impl<'a> Blocks<'a> {
-    fn new(observations: &'a [Observation]) -> Blocks<'a> {
-        Blocks {
-            observations,
-            of: Vec::new(),
-        }
-    }
-
-    fn add(&mut self, index: usize, whitened: &Whitened) {
-        let Some(time) = self.observations[index].time else {
-            return;
-        };
-        let number = (time.micros() as f64 / 1e6 / BLOCK_S).floor() as i64;
-        if self.of.last().is_none_or(|last| last.number != number) {
-            self.of.push(Block {
-                number,
-                score: [0.0; UNKNOWNS],
-                information: Products::new(),
-            });
-        }
-        let last = self
-            .of
-            .last_mut()
-            .expect("one was pushed if there was none");
-        let columns = whitened.columns();
-        let weight = whitened.weight_per_variance;
-        let pull = weight * whitened.innovation();
-        for (sum, column) in last.score.iter_mut().zip(&columns) {
-            *sum += pull * column;
-        }
-        last.information.add(&columns, weight);
-    }
-
-    /// How many times larger the scores' squares are than the noise model says,
-    /// at least 1, the fit's own part taken off.
-    fn inflation(&self, covariance: &Matrix) -> f64 {
-        let (mut seen, mut expected) = (0.0, 0.0);
-        for block in &self.of {
-            let score = Vector::from(block.score);
-            let share = block.information.to_matrix() * covariance;
-            seen += score.dot(&(covariance * score));
-            expected += share.trace() - (share * share).trace();
-        }
-        // Too few stretches say nothing.
-        if expected > 1.0 {
-            (seen / expected).max(1.0)
-        } else {
-            1.0
-        }
-    }
+    (levels, solution.fusion) = problem.levels_at(&solution, &typical, &levels, Sought::Well);
+    Some((solution, levels))
 }
 
 fn in_own_units_squared(covariance: &Matrix) -> Covariance {

@@ -29,8 +29,6 @@ pub(crate) struct Pass {
     /// Sum of loss and log variance over the innovations: −2 log
     /// likelihood but for a constant.
     pub(crate) loss: f64,
-    /// Sum of log variance over the innovations.
-    pub(crate) log_variance: f64,
     /// How bx and by have drifted when the last row was taken.
     pub(crate) drift: Drift,
 }
@@ -47,13 +45,19 @@ pub(crate) struct Drift {
     pub(crate) covariance: [[f64; 2]; 2],
 }
 
-/// What a whitened row measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Measured {
-    /// The deviation.
-    Deviation,
-    /// How gyro and satellite compass differ.
-    Difference,
+impl Drift {
+    /// When the unknowns have moved by a step.
+    pub(crate) fn after(&self, step: &SVector<f64, UNKNOWNS>) -> Drift {
+        let mut drift = *self;
+        for (nt, per_unknown) in drift.nt.iter_mut().zip(&self.per_unknown) {
+            *nt -= per_unknown
+                .iter()
+                .zip(step)
+                .map(|(p, d)| p * d)
+                .sum::<f64>();
+        }
+        drift
+    }
 }
 
 /// The state of the filter between rows.
@@ -75,28 +79,16 @@ struct Scalar {
 }
 
 /// What a scalar came to.
-pub(crate) struct Whitened {
+struct Whitened {
     /// Innovations, the residual's first.
     innovations: [f64; SERIES],
     variance: f64,
     /// The residual's innovation over its standard deviation, squared.
     z_squared: f64,
     /// The scalar's weight, 0 to 1.
-    pub(crate) weight: f64,
+    weight: f64,
     /// Weight over variance.
-    pub(crate) weight_per_variance: f64,
-}
-
-impl Whitened {
-    /// The residual's innovation, degrees.
-    pub(crate) fn innovation(&self) -> f64 {
-        self.innovations[0]
-    }
-
-    /// The columns' innovations.
-    pub(crate) fn columns(&self) -> [f64; UNKNOWNS] {
-        columns_of(&self.innovations)
-    }
+    weight_per_variance: f64,
 }
 
 impl Filter {
@@ -242,46 +234,96 @@ pub(crate) fn loss_of(z_squared: f64) -> f64 {
     }
 }
 
-/// Runs the filter over all rows; `each` sees every whitened row.
-pub(crate) fn whiten(
-    stations: &[Station],
-    rows: &[Row],
-    levels: &NoiseLevels,
-    mut each: impl FnMut(usize, Measured, &Whitened),
-) -> Pass {
-    let mut filter = Filter::new(levels);
-    let mut sums = Sums::new();
-    let white = levels.white_deg.powi(2);
-    let difference_white = levels.difference_deg.powi(2);
-    for (index, (station, row)) in stations.iter().zip(rows).enumerate() {
-        filter.advance(&station.transition);
+/// The slope of [`loss_of`].
+pub(super) fn loss_slope(z_squared: f64) -> f64 {
+    if z_squared > GROSS * GROSS {
+        0.0
+    } else {
+        weight(z_squared)
+    }
+}
+
+/// Runs the filter over all rows.
+pub(crate) fn whiten(stations: &[Station], rows: &[Row], levels: &NoiseLevels) -> Pass {
+    let mut whitening = Whitening::new(levels);
+    for (station, row) in stations.iter().zip(rows) {
+        whitening.take(station, row);
+    }
+    whitening.pass()
+}
+
+/// A pass that goes on, row by row.
+pub(crate) struct Whitening {
+    filter: Filter,
+    white: f64,
+    difference_white: f64,
+    /// What has been added up since the last cut, and before it.
+    sums: Sums,
+    before: Products<SERIES>,
+}
+
+/// What some of the rows tell: their part of the normal equations.
+pub(crate) struct Part {
+    pub(crate) information: SMatrix<f64, UNKNOWNS, UNKNOWNS>,
+    pub(crate) score: SVector<f64, UNKNOWNS>,
+}
+
+impl Whitening {
+    /// Before the first row.
+    pub(crate) fn new(levels: &NoiseLevels) -> Whitening {
+        Whitening {
+            filter: Filter::new(levels),
+            white: levels.white_deg.powi(2),
+            difference_white: levels.difference_deg.powi(2),
+            sums: Sums::new(),
+            before: Products::new(),
+        }
+    }
+
+    /// Takes the next row in; the weight of its residual, 0 to 1.
+    pub(crate) fn take(&mut self, station: &Station, row: &Row) -> f64 {
+        self.filter.advance(&station.transition);
         if let Some(residual) = row.difference {
             let (columns, load) = station.difference(row);
             let scalar = Scalar {
                 series: series_of(residual, &columns),
                 load,
-                white: difference_white * station.white_factor,
+                white: self.difference_white * station.white_factor,
             };
-            each(
-                index,
-                Measured::Difference,
-                &sums.take(&mut filter, &scalar),
-            );
+            self.sums.take(&mut self.filter, &scalar);
         }
         let scalar = Scalar {
             series: series_of(row.residual, &row.columns),
             load: station.loads(row),
-            white: white * station.white_factor,
+            white: self.white * station.white_factor,
         };
-        each(index, Measured::Deviation, &sums.take(&mut filter, &scalar));
+        self.sums.take(&mut self.filter, &scalar)
     }
-    let log_variance = sums.log_variance();
-    Pass {
-        information: SMatrix::from_fn(|i, j| sums.normal.at(i + 1, j + 1)),
-        score: SVector::from_fn(|i, _| sums.normal.at(i + 1, 0)),
-        loss: sums.loss + log_variance,
-        log_variance,
-        drift: filter.drift(),
+
+    /// What the rows since the last cut tell.
+    pub(crate) fn cut(&mut self) -> Part {
+        let normal = std::mem::replace(&mut self.sums.normal, Products::new());
+        self.before.add_all(&normal);
+        part_of(&normal)
+    }
+
+    /// What all rows tell.
+    pub(crate) fn pass(mut self) -> Pass {
+        self.cut();
+        let Part { information, score } = part_of(&self.before);
+        Pass {
+            information,
+            score,
+            loss: self.sums.loss + self.sums.log_variance(),
+            drift: self.filter.drift(),
+        }
+    }
+}
+
+fn part_of(normal: &Products<SERIES>) -> Part {
+    Part {
+        information: SMatrix::from_fn(|i, j| normal.at(i + 1, j + 1)),
+        score: SVector::from_fn(|i, _| normal.at(i + 1, 0)),
     }
 }
 
@@ -319,7 +361,7 @@ impl Sums {
         }
     }
 
-    fn take(&mut self, filter: &mut Filter, scalar: &Scalar) -> Whitened {
+    fn take(&mut self, filter: &mut Filter, scalar: &Scalar) -> f64 {
         let whitened = filter.update(scalar);
         self.loss += loss_of(whitened.z_squared);
         self.variances *= whitened.variance;
@@ -330,7 +372,7 @@ impl Sums {
         }
         let weight = whitened.weight_per_variance;
         self.normal.add(&whitened.innovations, weight);
-        whitened
+        whitened.weight
     }
 
     fn log_variance(&self) -> f64 {

@@ -20,6 +20,7 @@ pub(crate) use reference::northerly_speed_error_deg;
 pub use reference::{
     GyroSpeedError, HeadingReading, ReferenceCheck, Referred, gyro_speed_error_deg, refer,
 };
+pub(crate) use robust::learn;
 pub use robust::{
     REFERENCE_CONSTANT_SD_DEG, REJECTED_BELOW, RobustFit, RobustOptions, RowOutcome, WEAKEST_H_NT,
     fit_known_ship, fit_robust,

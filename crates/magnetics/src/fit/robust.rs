@@ -3,7 +3,7 @@
 
 use super::{FitError, Observation};
 use crate::deviation::Coefficients;
-use crate::estimate::{NoiseLevels, Options, Prior, estimate};
+use crate::estimate::{NoiseLevels, Options, Prior, Rough, estimate, rough};
 use crate::model::{Model, Parameters};
 use crate::ship::EarthField;
 
@@ -100,11 +100,31 @@ pub fn fit_known_ship(
     fit_usable(observations, &usable, &rows, options)
 }
 
+/// The levels of noise, and about what the parameters are, where [`fit_robust`] would
+/// fit a model; `before` are levels from which there is not far to go.
+pub(crate) fn learn(
+    observations: &[Observation],
+    prior: &Prior,
+    before: Option<&NoiseLevels>,
+) -> Option<Rough> {
+    let mut rows = observations.to_vec();
+    rows.retain(is_usable);
+    check_number(&rows, NEEDED_SAMPLES).ok()?;
+    check_headings(&rows).ok()?;
+    let learnt = rough(&rows, prior, before)?;
+    check_needle(&learnt.parameters, &rows).ok()?;
+    Some(learnt)
+}
+
 /// Those in a field that a compass can work in.
 fn usable(observations: &[Observation]) -> Vec<usize> {
     (0..observations.len())
-        .filter(|&i| observations[i].h_nt >= WEAKEST_H_NT && observations[i].weight > 0.0)
+        .filter(|&i| is_usable(&observations[i]))
         .collect()
+}
+
+fn is_usable(o: &Observation) -> bool {
+    o.h_nt >= WEAKEST_H_NT && o.weight > 0.0
 }
 
 fn fit_usable(
@@ -176,20 +196,22 @@ fn check_number(rows: &[Observation], needed: u64) -> Result<(), FitError> {
 }
 
 pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
-    let mut headings: Vec<f64> = rows.iter().map(|o| o.compass.degrees()).collect();
-    headings.sort_by(f64::total_cmp);
-    let mut sectors = [false; 24];
-    for heading in &headings {
-        sectors[(heading / 15.0) as usize % 24] = true;
+    // The least and the most in each degree: between these lie all gaps that matter.
+    let mut ends: [Option<(f64, f64)>; 360] = [None; 360];
+    for heading in rows.iter().map(|o| o.compass.degrees()) {
+        let (least, most) = ends[heading as usize % 360].get_or_insert((heading, heading));
+        *least = least.min(heading);
+        *most = most.max(heading);
     }
-    let found = sectors.iter().filter(|&&filled| filled).count() as u32;
-    let around = headings.first().map_or(360.0, |first| first + 360.0);
-    let next = headings.iter().skip(1).chain(std::iter::once(&around));
-    let widest_gap_deg = headings
-        .iter()
-        .zip(next)
-        .map(|(a, b)| b - a)
-        .fold(0.0, f64::max);
+    let sectors = ends.chunks(15);
+    let found = sectors.filter(|of| of.iter().any(Option::is_some)).count() as u32;
+    let mut widest_gap_deg: f64 = 0.0;
+    let around = ends.iter().flatten().next();
+    let around = around.map(|(least, most)| (least + 360.0, most + 360.0));
+    let next = ends.iter().flatten().copied().skip(1).chain(around);
+    for ((_, most), (least, _)) in ends.iter().flatten().zip(next) {
+        widest_gap_deg = widest_gap_deg.max(least - most);
+    }
     if found >= NEEDED_SECTORS && widest_gap_deg <= ALLOWED_GAP_DEG {
         return Ok(());
     }
@@ -203,14 +225,12 @@ pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
 
 /// One compass heading must stand for one course where the ship is mostly.
 fn check_needle(p: &Parameters, rows: &[Observation]) -> Result<(), FitError> {
-    let mut by_strength: Vec<&Observation> = rows.iter().collect();
-    by_strength.sort_by(|a, b| a.h_nt.total_cmp(&b.h_nt));
-    let usual = by_strength[by_strength.len() / 2];
-    let earth = EarthField {
-        h_nt: usual.h_nt,
-        z_nt: usual.z_nt,
-    };
+    let mut fields: Vec<(f64, f64)> = rows.iter().map(|o| (o.h_nt, o.z_nt)).collect();
+    let middle = fields.len() / 2;
+    let (_, &mut (h_nt, z_nt), _) =
+        fields.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let earth = EarthField { h_nt, z_nt };
     Coefficients::new(p, earth)
         .and_then(|coefficients| coefficients.check_unambiguous())
-        .map_err(|_| FitError::AmbiguousHeadings { h_nt: usual.h_nt })
+        .map_err(|_| FitError::AmbiguousHeadings { h_nt })
 }

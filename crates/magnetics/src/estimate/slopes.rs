@@ -1,0 +1,264 @@
+//! How the likelihood of residuals falls and rises with each level: filters side by
+//! side over the same rows, each with one level nudged.
+//!
+//! What always holds: all filters go over by the same transitions and meet the same
+//! loads, so that one step of arithmetic serves them all; covariances are symmetric,
+//! and only their lower triangle is kept.
+
+use super::noise::{LEVELS, NoiseLevels, STATES, Transition};
+use super::products::Products;
+use super::row::{Row, Station, UNKNOWNS};
+use super::whiten::{loss_slope, weight};
+
+/// By how much a level's logarithm is nudged: far below what matters, far above
+/// what rounding does.
+const NUDGE: f64 = 1e-4;
+/// Filters that run side by side: the levels' own and one for each that is moved.
+const FEW: usize = 8;
+const MANY: usize = 10;
+
+/// Slopes by the logarithms of the levels, in the order of [`NoiseLevels`].
+#[derive(Clone, Debug)]
+pub(crate) struct Slopes {
+    /// Of the loss, −2 log likelihood but for a constant.
+    pub(crate) loss: [f64; LEVELS],
+    /// Of the sum of log variance.
+    pub(crate) log_variance: [f64; LEVELS],
+    /// What the loss's second slopes are on the average over data (Fisher's
+    /// information, twice).
+    pub(crate) information: [[f64; LEVELS]; LEVELS],
+}
+
+/// The slopes at `levels` by those that are `moved`; the others' are zero. `known`
+/// is taken off the unknowns that the rows were taken at.
+pub(crate) fn slopes(
+    stations: &[Station],
+    rows: &[Row],
+    levels: &NoiseLevels,
+    moved: &[usize],
+    known: &[f64; UNKNOWNS],
+) -> Slopes {
+    if moved.len() < FEW {
+        side_by_side::<FEW>(stations, rows, levels, moved, known)
+    } else {
+        side_by_side::<MANY>(stations, rows, levels, moved, known)
+    }
+}
+
+fn side_by_side<const N: usize>(
+    stations: &[Station],
+    rows: &[Row],
+    levels: &NoiseLevels,
+    moved: &[usize],
+    known: &[f64; UNKNOWNS],
+) -> Slopes {
+    let mut nudged = [*levels; N];
+    for (levels, &k) in nudged[1..].iter_mut().zip(moved) {
+        let mut array = levels.to_array();
+        array[k] *= NUDGE.exp();
+        *levels = NoiseLevels::from_array(array);
+    }
+    let white = nudged.map(|levels| levels.white_deg.powi(2));
+    let difference_white = nudged.map(|levels| levels.difference_deg.powi(2));
+    let mut filters = Filters::new(&nudged);
+    let mut sums = Sums::new();
+    for (station, row) in stations.iter().zip(rows) {
+        filters.advance(&station.transition);
+        if let Some(residual) = row.difference {
+            let (columns, load) = station.difference(row);
+            let value = residual - dot(&columns, known);
+            sums.add(&filters.update(value, &load, &difference_white, station.white_factor));
+        }
+        let value = row.residual - dot(&row.columns, known);
+        sums.add(&filters.update(value, &station.loads(row), &white, station.white_factor));
+    }
+    sums.by_level(moved)
+}
+
+fn dot(a: &[f64; UNKNOWNS], b: &[f64; UNKNOWNS]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// One number for each filter.
+type Each<const N: usize> = [f64; N];
+
+fn times_add<const N: usize>(sum: &mut Each<N>, factor: f64, of: &Each<N>) {
+    for (sum, of) in sum.iter_mut().zip(of) {
+        *sum += factor * of;
+    }
+}
+
+struct Filters<const N: usize> {
+    /// The lower triangle.
+    covariance: [[Each<N>; STATES]; STATES],
+    state: [Each<N>; STATES],
+    stationary: [Each<N>; STATES],
+    drift_variance: Each<N>,
+    turn_variance: Each<N>,
+}
+
+/// Innovation and variance by each filter.
+struct Innovation<const N: usize> {
+    value: Each<N>,
+    variance: Each<N>,
+}
+
+impl<const N: usize> Filters<N> {
+    fn new(levels: &[NoiseLevels; N]) -> Filters<N> {
+        let initial = levels.map(|levels| levels.initial_variances());
+        let mut covariance = [[[0.0; N]; STATES]; STATES];
+        let mut stationary = [[0.0; N]; STATES];
+        for s in 0..STATES {
+            stationary[s] = initial.map(|of_states| of_states[s]);
+            covariance[s][s] = stationary[s];
+        }
+        Filters {
+            covariance,
+            state: [[0.0; N]; STATES],
+            stationary,
+            drift_variance: levels.map(|levels| levels.drift_nt.powi(2)),
+            turn_variance: levels.map(|levels| levels.turn_deg.powi(2)),
+        }
+    }
+
+    fn advance(&mut self, t: &Transition) {
+        let [[a, b], [c, d]] = t.schuler;
+        let turn = |swing: &mut Each<N>, rate: &mut Each<N>| {
+            for (swing, rate) in swing.iter_mut().zip(rate) {
+                (*swing, *rate) = (a * *swing + b * *rate, c * *swing + d * *rate);
+            }
+        };
+        let [swing, rate, slow @ .., _, _] = &mut self.state;
+        turn(swing, rate);
+        for (state, decay) in slow.iter_mut().zip(t.decay) {
+            *state = state.map(|value| value * decay);
+        }
+        let [swings, rates, others @ ..] = &mut self.covariance;
+        for n in 0..N {
+            let (p, q, r) = (swings[0][n], rates[0][n], rates[1][n]);
+            // What the stationary process lost in the step comes in as new noise.
+            let lasting = self.stationary[0][n];
+            let (p, r) = (p - lasting, r - lasting);
+            swings[0][n] = a * a * p + 2.0 * a * b * q + b * b * r + lasting;
+            rates[0][n] = a * c * p + (a * d + b * c) * q + b * d * r;
+            rates[1][n] = c * c * p + 2.0 * c * d * q + d * d * r + lasting;
+        }
+        for (i, row) in others.iter_mut().enumerate() {
+            let [swing, rate, others @ ..] = row;
+            turn(swing, rate);
+            for (cell, decay) in others[..=i].iter_mut().zip(t.decay) {
+                *cell = cell.map(|value| value * decay);
+            }
+            let Some(decay) = t.decay.get(i) else {
+                times_add(&mut others[i], t.drift_share, &self.drift_variance);
+                continue;
+            };
+            for cell in &mut row[..=i + 2] {
+                *cell = cell.map(|value| value * decay);
+            }
+            let lost = 1.0 - decay * decay;
+            times_add(&mut row[i + 2], lost, &self.stationary[i + 2]);
+        }
+        if let Some([swing, rate]) = t.since_turn {
+            let turned = &self.turn_variance;
+            times_add(&mut self.covariance[0][0], swing * swing, turned);
+            times_add(&mut self.covariance[1][0], swing * rate, turned);
+            times_add(&mut self.covariance[1][1], rate * rate, turned);
+        }
+    }
+
+    fn update(
+        &mut self,
+        measured: f64,
+        load: &[f64; STATES],
+        white: &Each<N>,
+        white_factor: f64,
+    ) -> Innovation<N> {
+        let mut gain = [[0.0; N]; STATES];
+        let mut value = [measured; N];
+        for (s, &load) in load.iter().enumerate() {
+            if load == 0.0 {
+                continue;
+            }
+            times_add(&mut value, -load, &self.state[s]);
+            for (t, gain) in gain.iter_mut().enumerate() {
+                times_add(gain, load, &self.covariance[s.max(t)][s.min(t)]);
+            }
+        }
+        let mut variance = white.map(|white| white * white_factor);
+        for (gain, load) in gain.iter().zip(load) {
+            times_add(&mut variance, *load, gain);
+        }
+        let mut per_variance = [0.0; N];
+        for n in 0..N {
+            let z_squared = value[n] * value[n] / variance[n];
+            per_variance[n] = weight(z_squared) / variance[n];
+        }
+        for (s, row) in self.covariance.iter_mut().enumerate() {
+            let mut step = gain[s];
+            for (step, per_variance) in step.iter_mut().zip(&per_variance) {
+                *step *= per_variance;
+            }
+            let state = self.state[s].iter_mut();
+            for ((state, step), value) in state.zip(&step).zip(&value) {
+                *state += step * value;
+            }
+            for (cell, gain) in row[..=s].iter_mut().zip(&gain) {
+                for ((cell, step), gain) in cell.iter_mut().zip(&step).zip(gain) {
+                    *cell -= step * gain;
+                }
+            }
+        }
+        Innovation { value, variance }
+    }
+}
+
+/// What the innovations add up to, by filter; the levels' own is the first.
+struct Sums<const N: usize> {
+    loss: Each<N>,
+    log_variance: Each<N>,
+    information: Products<N>,
+}
+
+impl<const N: usize> Sums<N> {
+    fn new() -> Sums<N> {
+        Sums {
+            loss: [0.0; N],
+            log_variance: [0.0; N],
+            information: Products::new(),
+        }
+    }
+
+    fn add(&mut self, innovation: &Innovation<N>) {
+        let (value, variance) = (innovation.value[0], innovation.variance[0]);
+        let z_squared = value * value / variance;
+        let slope = loss_slope(z_squared);
+        let by_variance = innovation
+            .variance
+            .map(|nudged| (nudged / variance - 1.0) / NUDGE);
+        let by_value = innovation.value.map(|nudged| (nudged - value) / NUDGE);
+        for n in 0..N {
+            self.log_variance[n] += by_variance[n];
+            let of_square = 2.0 * value * by_value[n] / variance - z_squared * by_variance[n];
+            self.loss[n] += by_variance[n] + slope * of_square;
+        }
+        self.information.add(&by_variance, 1.0);
+        self.information.add(&by_value, 2.0 * slope / variance);
+    }
+
+    fn by_level(&self, moved: &[usize]) -> Slopes {
+        let mut slopes = Slopes {
+            loss: [0.0; LEVELS],
+            log_variance: [0.0; LEVELS],
+            information: [[0.0; LEVELS]; LEVELS],
+        };
+        for (a, &k) in moved.iter().enumerate() {
+            slopes.loss[k] = self.loss[a + 1];
+            slopes.log_variance[k] = self.log_variance[a + 1];
+            for (b, &l) in moved.iter().enumerate() {
+                slopes.information[k][l] = self.information.at(a + 1, b + 1);
+            }
+        }
+        slopes
+    }
+}
