@@ -1,8 +1,10 @@
 """The peer's side of `make bench-peer`: docs/science.md, §7, in NumPy.
 
-`fit.py VOYAGE.csv` prints the fit and how long it took as JSON, reading the file not
-counted. What can be is done for all samples at once; the filter goes step by step,
-since its gain depends on the weights before.
+`fit.py VOYAGE.csv PRODUCT.json` prints the fit and how long it took as JSON, reading the
+file not counted; beside it, not timed, the fit by the levels that the product found. What
+can be is done for all samples at once; the filter goes step by step, since its gain
+depends on the weights before. The levels are sought in the plainest way: each in turn to
+the lowest point of a parabola.
 """
 
 import json
@@ -136,12 +138,13 @@ def inflation(voyage, found, covariance):
     return max(seen / expected, 1.0) if expected > 1 else 1.0
 
 
-def fit(voyage):
-    """Ratios and constant at the last row with their covariance, and the levels."""
+def fit(voyage, given=None):
+    """Ratios and constant at the last row with their covariance, and the levels, which
+    are sought if they are not given."""
     nuisances, stations = Nuisances(voyage), Stations(voyage)
     unknowns, sd = start(voyage, nuisances)
-    levels = TYPICAL.copy()
-    levels[0] = np.clip(sd / 2, 0.02, 10)
+    sought = TYPICAL.copy()
+    sought[0] = np.clip(sd / 2, 0.02, 10)
     fusion, prior = USUAL_FUSION, prior_information()
     spacing = (len(voyage) - STRETCH) // (STRETCHES - 1)
     chosen = (spacing * np.arange(STRETCHES)[:, None] + np.arange(STRETCH)).ravel()
@@ -149,7 +152,11 @@ def fit(voyage):
     few_nuisances, few_stations = Nuisances(looked_at), Stations(looked_at)
     for sweeps, settled in ROUNDS:
         few = rows(looked_at, few_nuisances, unknowns, fusion)
-        levels = fit_levels(few_stations, few, prior, -prior @ unknowns, levels, sweeps)
+        levels = given
+        if given is None:
+            pull = -prior @ unknowns
+            levels = fit_levels(few_stations, few, prior, pull, sought, sweeps)
+            sought = levels
         fusion = compass_share(few_stations, few, levels)
         while True:
             found = whiten(stations, rows(voyage, nuisances, unknowns, fusion), levels)
@@ -192,6 +199,9 @@ def main():
         "covariance": covariance.tolist(),
         "levels": levels.tolist(),
     }
+    with open(sys.argv[2], encoding="ascii") as product:
+        given = np.array(json.load(product)["levels"])
+    answer["unknowns_by_its_levels"] = fit(voyage, given)[0].tolist()
     print(json.dumps(answer))
 
 
