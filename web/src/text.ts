@@ -90,6 +90,7 @@ export const text = {
       magnetic_storm: 'Magnetic storm',
       berth_steel: 'Steel at the berth',
       unknown_change: 'Magnetism changed: cause unknown',
+      reported_aboard: 'Compass and gyro parted, says the ship',
       silent_agent: 'No word from the vessel',
       no_model: 'No model of the compass yet',
       wide_band: 'The model is too uncertain',

@@ -31,6 +31,8 @@ pub enum Cause {
     BerthSteel,
     /// A change of which no cause is likely.
     UnknownChange,
+    /// The ship's agent says that compass and gyro have parted.
+    ReportedAboard,
     /// Nothing has come from the vessel for too long.
     SilentAgent,
     /// There is no model although samples have come for a while.
@@ -209,6 +211,11 @@ impl Severity {
 }
 
 impl Cause {
+    /// Whether an analysis finds it, and finds when it is over.
+    pub fn is_of_an_analysis(self) -> bool {
+        !matches!(self, Cause::SilentAgent | Cause::ReportedAboard)
+    }
+
     /// Whether the clock finds it rather than an analysis.
     pub fn is_of_the_clock(self) -> bool {
         self == Cause::SilentAgent
@@ -240,6 +247,7 @@ impl Cause {
             Cause::MagneticStorm => "a magnetic storm",
             Cause::BerthSteel => "steel at the berth",
             Cause::UnknownChange => "a change of unknown cause",
+            Cause::ReportedAboard => "compass and gyro parted, says the ship",
             Cause::SilentAgent => "no word from the vessel",
             Cause::NoModel => "no model of the compass yet",
             Cause::WideBand => "the model is too uncertain",

@@ -44,7 +44,7 @@ pub async fn after_analysis(
     };
     let findings: Findings = serde_json::from_str(&findings)?;
     let mut known = store::known(tx, vessel, compass).await?;
-    known.retain(|alert| !alert.cause.is_of_the_clock());
+    known.retain(|alert| alert.cause.is_of_an_analysis());
     let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();
     let wanted = alerts_of(&findings, limits, &open);
     let news = bring_in_line(tx, vessel, compass, &known, &wanted, now).await?;
@@ -95,7 +95,7 @@ pub async fn watch(app: App) {
     }
 }
 
-async fn bring_in_line(
+pub(super) async fn bring_in_line(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,

@@ -6,10 +6,12 @@
 //!   one open alert of each cause: what goes on is updated, not repeated.
 //! - An alert clears itself when its cause is over. One that a person cleared comes
 //!   back only when its cause does, gets worse, or happens again.
-//! - It comes from an analysis, in the transaction that stores the analysis, or from
-//!   the clock, when a vessel falls silent.
+//! - It comes from an analysis, in the transaction that stores the analysis, from the
+//!   ship herself, in the one that stores her batch, or from the clock, when a vessel
+//!   falls silent.
 //! - Every change is stored together with what tells people of it.
 
+mod aboard;
 mod alert;
 mod changed;
 mod findings;
@@ -18,6 +20,7 @@ mod look;
 mod store;
 mod wanted;
 
+pub use aboard::from_ship;
 pub use alert::{Alert, AlertWanted, Cause, Severity, State};
 pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;

@@ -6,6 +6,7 @@
 //!   in one transaction.
 //! - The same batch again changes nothing; other bytes under the same number are
 //!   refused and change nothing.
+//! - An alert of the ship's own is taken in that transaction too.
 //! - `contiguous_seq` covers only batches that are here, all from 1 on.
 //! - An agent reaches its own streams and nothing else.
 
@@ -17,7 +18,7 @@ use crate::app::App;
 use crate::enrolment;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Params};
-use crate::{analysis, events};
+use crate::{alerts, analysis, events};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, State};
@@ -82,17 +83,18 @@ async fn put_batch(
     let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
     let stored = store::insert(&mut tx, agent, &batch, &bytes, now).await?;
-    let event = if stored {
-        if !batch.samples.is_empty() {
-            let delay_s = f64::from(app.config.analysis_delay_s);
-            analysis::enqueue(&mut tx, agent.vessel_id, now, delay_s).await?;
+    let mut told = Vec::new();
+    if stored {
+        let (vessel, compass) = (agent.vessel_id, agent.compass_id);
+        told.extend(alerts::from_ship(&mut tx, vessel, compass, &batch.alerts, now).await?);
+        if !batch.samples.is_empty() || !batch.alerts.is_empty() {
+            let delay_s = analysis_delay_s(&app, &batch);
+            analysis::enqueue(&mut tx, vessel, now, delay_s).await?;
         }
-        Some(events::insert(&mut tx, agent.vessel_id, events::Kind::Batch, now).await?)
-    } else {
-        None
-    };
+        told.push(events::insert(&mut tx, vessel, events::Kind::Batch, now).await?);
+    }
     tx.commit().await?;
-    if let Some(event) = event {
+    for event in told {
         app.publish(event);
     }
     let result = if stored { "stored" } else { "repeated" };
@@ -112,6 +114,15 @@ async fn downlink(
     Params(has): Params<Has>,
 ) -> Result<Json<Downlink>> {
     Ok(Json(downlink::answer(&app, agent, stream, has).await?))
+}
+
+/// Other batches may follow soon, and are analysed with it; what the ship raised an
+/// alert of is not kept waiting.
+fn analysis_delay_s(app: &App, batch: &Batch) -> f64 {
+    if batch.alerts.is_empty() {
+        return f64::from(app.config.analysis_delay_s);
+    }
+    0.0
 }
 
 /// Reads a frame and makes sure that it is the one that the path names.

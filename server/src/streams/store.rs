@@ -15,6 +15,9 @@ use uuid::Uuid;
 /// where the ship was last.
 const AHEAD_S: f64 = 86_400.0;
 
+/// Windows that were accepted and whose samples were left out again on board.
+const THINNED: &str = "thinned";
+
 #[derive(sqlx::FromRow)]
 struct Progress {
     contiguous_seq: i64,
@@ -88,6 +91,10 @@ async fn advance(tx: &mut Tx, vessel: VesselId, batch: &Batch, progress: Progres
     for (outcome, windows) in &batch.tally {
         let sum = tally.entry(outcome.clone()).or_default();
         *sum = sum.saturating_add(*windows);
+    }
+    if let Some(thinned) = batch.thinned {
+        let sum = tally.entry(THINNED.to_owned()).or_default();
+        *sum = sum.saturating_add(thinned.windows);
     }
     let contiguous = contiguous_seq(tx, vessel, batch.stream.0, progress.contiguous_seq).await?;
     execute!(

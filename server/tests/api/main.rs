@@ -21,6 +21,7 @@ mod fleet;
 mod ingest;
 mod logbook;
 mod sessions;
+mod ship_alerts;
 mod tenants;
 mod tls;
 mod webhooks;

@@ -873,7 +873,7 @@ export interface components {
          * @description What an alert is about: one compass has at most one open alert of each.
          * @enum {string}
          */
-        AlertCause: "deviation_over_limit" | "reference_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "silent_agent" | "no_model" | "wide_band";
+        AlertCause: "deviation_over_limit" | "reference_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "reported_aboard" | "silent_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
          * @description Something that people must know of.
