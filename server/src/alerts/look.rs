@@ -10,6 +10,7 @@ use super::limits::AlertLimits;
 use super::store::{self, Known};
 use super::wanted::{alerts_of, silence};
 use crate::app::App;
+use crate::changes;
 use crate::db::Tx;
 use crate::error::Result;
 use crate::events::{self, Event};
@@ -42,7 +43,8 @@ pub async fn after_analysis(
     let Some(findings) = store::findings(tx, vessel, compass).await? else {
         return Ok(None);
     };
-    let findings: Findings = serde_json::from_str(&findings)?;
+    let mut findings: Findings = serde_json::from_str(&findings)?;
+    changes::sharpen_in(tx, vessel, &mut findings).await?;
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause.is_of_an_analysis());
     let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();

@@ -1,6 +1,7 @@
 //! What an analysis leaves in the database.
 
 use crate::alerts::Findings;
+use crate::changes;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::Result;
 use crate::events::{self, Event, Kind};
@@ -158,6 +159,8 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
             .map(|withdrawn| withdrawn.reason.as_str())
     )?;
     save_diagnostics(tx, found).await?;
+    let (vessel, compass) = (found.vessel_id, found.compass_id);
+    changes::keep_disturbances(tx, vessel, compass, &found.findings, now).await?;
     let Some(model) = next_model(found, now)? else {
         if withdrawn == withdrawn_before {
             return Ok(None);

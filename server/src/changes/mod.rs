@@ -4,9 +4,12 @@
 //! What always holds: the timeline is what the last analysis found; all curves are of
 //! one place, where the last sample was taken, so that they can be compared.
 
+mod fleet;
 mod schema;
 mod store;
 mod timeline;
+
+pub use fleet::{keep_disturbances, sharpen_in};
 
 use crate::access::Reader;
 use crate::app::App;
@@ -43,7 +46,10 @@ async fn list_changes(
 ) -> Result<Json<Timeline>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
     let compass = compasses::find(&app.db, id, which.compass).await?;
-    let analysed = store::find(&app.db, id, compass.id).await?;
+    let mut analysed = store::find(&app.db, id, compass.id).await?;
+    if let Some(analysed) = &mut analysed {
+        fleet::sharpen(&app.db, id, &mut analysed.findings).await?;
+    }
     let versions = store::versions(&app.db, id, compass.id).await?;
     Ok(Json(timeline(compass.id, analysed, &versions)))
 }

@@ -2,7 +2,7 @@
 //! the bridge.
 
 use crate::on_both;
-use crate::support::{Person, Ship, Shore, days_at_sea, struck, truth};
+use crate::support::{Person, Ship, Shore, days_at_sea, days_in, struck, truth};
 use binnacle_magnetics::angle::CompassHeading;
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::sample::Sample;
@@ -16,6 +16,8 @@ on_both!(
     a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band,
     after_discharge_the_base_model_is_back_on_the_bridge,
     work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert,
+    two_ships_in_one_storm_name_it_and_one_alone_does_not,
+    an_alert_follows_what_other_ships_show_without_another_fit,
 );
 
 const A_WHILE_S: f64 = 10.0;
@@ -240,6 +242,97 @@ async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(shore: S
     assert!(
         causes.iter().all(|cause| *cause == "deviation_over_limit"),
         "{causes:?}"
+    );
+    shore.finish().await;
+}
+
+/// Twenty days at sea, the needle astray for some hours so long before the end.
+fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: fn(f64) -> f64) -> Vec<Sample> {
+    let mut samples = days_in(place, &truth(), "2026-10-31T00:00:00Z", 20.0);
+    let place = |hours| samples.len() - 6 * hours;
+    let (from, to) = (place(from_h), place(to_h));
+    for (i, sample) in samples[from..to].iter_mut().enumerate() {
+        let astray_deg = sample.compass.degrees() + deg(i as f64);
+        sample.compass = CompassHeading::new(astray_deg).unwrap();
+    }
+    samples
+}
+
+/// Two hours, the same on two headings, over for half a day.
+fn passed(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
+    astray(place, hours_ago + 2, hours_ago, |_| 3.0)
+}
+
+/// To and fro, for the last two hours.
+fn passing(place: (f64, f64)) -> Vec<Sample> {
+    astray(place, 2, 0, |i| 6.0 * (0.7 * i).sin())
+}
+
+async fn last_change(person: &Person, ship: &Ship) -> Value {
+    let timeline = person.get(&ship.path("/changes")).await.good();
+    timeline["changes"]
+        .as_array()
+        .unwrap()
+        .last()
+        .unwrap()
+        .clone()
+}
+
+async fn two_ships_in_one_storm_name_it_and_one_alone_does_not(shore: Shore) {
+    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
+    let nao = shore.ship(&ada, "Nao").await;
+    send(&shore, &nao, 1, &passed((48.0, -6.0), 14)).await;
+    let alone = last_change(&ada, &nao).await;
+    assert_eq!(alone["cause"], "local_anomaly", "{alone}");
+
+    // Another one in other hours is none the wiser, nor makes Nao so.
+    let victoria = shore.ship(&eve, "Victoria").await;
+    send(&shore, &victoria, 1, &passed((30.0, -40.0), 62)).await;
+    assert_eq!(last_change(&eve, &victoria).await["cause"], "local_anomaly");
+    assert_eq!(last_change(&ada, &nao).await, alone);
+
+    let gaviota = shore.ship(&eve, "Gaviota").await;
+    send(&shore, &gaviota, 1, &passed((58.0, -20.0), 14)).await;
+    let stormy = last_change(&ada, &nao).await;
+    assert_eq!(stormy["cause"], "magnetic_storm", "{stormy}");
+    let told = stormy.to_string();
+    assert!(
+        told.contains("1 other ship was disturbed in the same hours"),
+        "{told}"
+    );
+    assert!(!told.contains("Gaviota"));
+    assert_eq!(last_change(&eve, &gaviota).await["cause"], "magnetic_storm");
+    shore.finish().await;
+}
+
+async fn an_alert_follows_what_other_ships_show_without_another_fit(shore: Shore) {
+    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
+    let nao = shore.ship(&ada, "Nao").await;
+    send(&shore, &nao, 1, &passing((48.0, -6.0))).await;
+    let before = open_alerts(&ada).await;
+    assert_eq!(before.len(), 1, "{before:?}");
+    assert_eq!(before[0]["severity"], "warning");
+    assert!(!before[0]["evidence"].to_string().contains("other ship"));
+
+    let gaviota = shore.ship(&eve, "Gaviota").await;
+    send(&shore, &gaviota, 1, &passing((58.0, -20.0))).await;
+    // Ada's alert follows by itself.
+    shore.advance(100.0);
+    shore.work().await;
+    let after = open_alerts(&ada).await;
+    assert_eq!(after.len(), 1, "{after:?}");
+    assert_eq!(after[0]["cause"], "magnetic_storm");
+    assert!(
+        after[0]["evidence"].to_string().contains("1 other ship"),
+        "{after:?}"
+    );
+    let versions = ada.get(&nao.path("/models")).await.good();
+    assert_eq!(versions["items"].as_array().unwrap().len(), 1);
+    shore.advance(1000.0);
+    assert_eq!(
+        shore.work().await,
+        [],
+        "they do not wake each other for ever"
     );
     shore.finish().await;
 }

@@ -6,7 +6,9 @@ mod ship;
 
 pub(crate) use database::Engine;
 pub(crate) use person::{Answer, Person, attempt};
-pub(crate) use ship::{Ship, days_at_sea, exchange, frame, passage, sample, struck, truth};
+pub(crate) use ship::{
+    Ship, days_at_sea, days_in, exchange, frame, passage, sample, struck, truth,
+};
 
 use binnacle_magnetics::time::Timestamp;
 use binnacle_server::analysis::{self, Worked};

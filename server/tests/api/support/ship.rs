@@ -91,6 +91,9 @@ pub(crate) fn frame(stream: StreamId, seq: u64, samples: &[Sample]) -> Vec<u8> {
     binnacle_wire::encode(&batch).unwrap()
 }
 
+/// Where these ships are, unless a test says otherwise: degrees north and east.
+pub(crate) const BISCAY: (f64, f64) = (48.0, -6.0);
+
 /// A ship whose magnetism is known.
 pub(crate) fn truth() -> Model {
     serde_json::from_value(json!({ "parameters_over_lambda": {
@@ -102,7 +105,7 @@ pub(crate) fn truth() -> Model {
 
 /// What that ship's compass and gyro read on a true heading at a time.
 pub(crate) fn sample(time: Timestamp, heading_deg: f64) -> Sample {
-    sample_of(&truth(), time, heading_deg)
+    sample_of(&truth(), BISCAY, time, heading_deg)
 }
 
 /// The same ship after a step of her permanent magnetism, nT.
@@ -113,8 +116,8 @@ pub(crate) fn struck(bx_nt: f64, by_nt: f64) -> Model {
     ship
 }
 
-fn sample_of(ship: &Model, time: Timestamp, heading_deg: f64) -> Sample {
-    let position = Position::new(48.0, -6.0).unwrap();
+fn sample_of(ship: &Model, place: (f64, f64), time: Timestamp, heading_deg: f64) -> Sample {
+    let position = Position::new(place.0, place.1).unwrap();
     let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
     let heading = TrueHeading::new(heading_deg).unwrap();
     let compass = ship
@@ -144,13 +147,18 @@ pub(crate) fn passage(from: &str, samples: usize) -> Vec<Sample> {
 /// So many days at sea from a day and hour on, in legs of three hours, with a sample
 /// every ten minutes from both references, all a little off.
 pub(crate) fn days_at_sea(ship: &Model, from: &str, days: f64) -> Vec<Sample> {
+    days_in(BISCAY, ship, from, days)
+}
+
+/// The same in other waters, degrees north and east.
+pub(crate) fn days_in(place: (f64, f64), ship: &Model, from: &str, days: f64) -> Vec<Sample> {
     let start = Timestamp::parse(from).unwrap();
     let samples = (days * 144.0).round() as u32;
     (0..samples)
         .map(|i| {
             let leg = f64::from(i / 18);
             let time = start.plus_seconds(600.0 * f64::from(i));
-            let mut sample = sample_of(ship, time, 107.0 * leg);
+            let mut sample = sample_of(ship, place, time, 107.0 * leg);
             let off = |sign: u32, size_deg: f64| size_deg * unevenness(3 * i + sign);
             let compass_deg = sample.compass.degrees() + off(0, 0.4);
             sample.compass = CompassHeading::new(compass_deg).unwrap();
