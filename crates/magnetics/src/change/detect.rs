@@ -373,10 +373,9 @@ impl<'a> Search<'a> {
                 .astray_from
                 .filter(|_| self.is_over(lead))
                 .unwrap_or(spawn.at);
-            // One that had been taken for over goes on.
+            // One that has had its time keeps its lead, but is told once.
             let same = |event: &Event| event.what == What::Burst && event.first + EVERY >= first;
             if self.events.last().is_some_and(same) {
-                self.burst = Some(self.events.len() - 1);
                 return;
             }
             self.burst = Some(self.events.len());
