@@ -16,10 +16,14 @@ const LOG_SD: [f64; LEVELS] = [0.7, 0.6, 0.6, 0.5, 0.7, 0.5, 0.5, 0.6, 0.7];
 /// Steps of the search at most, and how far one may move a level's logarithm.
 const STEPS: u32 = 20;
 const LARGEST_MOVE: f64 = 0.9;
-/// Levels from which no step promises more than this in −2 log likelihood are found:
-/// while the parameters are still rough, and in the end.
-const LITTLE_TO_GAIN: f64 = 0.2;
-const NOTHING_TO_GAIN: f64 = 0.02;
+/// A step that promises no more than this in −2 log likelihood is the last: while the
+/// parameters are still rough, and in the end.
+const LITTLE_TO_GAIN: f64 = 1.0;
+const NOTHING_TO_GAIN: f64 = 0.2;
+/// Levels of which the rows tell more than this (twice Fisher's information on the
+/// logarithm) are as good as known: what the unknowns' fit takes from the residuals
+/// does not matter to them.
+const WELL_KNOWN: f64 = 300.0;
 /// A step that makes things worse is halved, until it is this small a part.
 const SMALLEST_PART: f64 = 0.05;
 /// By how much a level's logarithm is moved to see what the unknowns' part in the
@@ -103,29 +107,33 @@ impl Search<'_> {
         let Some(mut here) = self.at(logs) else {
             return found;
         };
-        // It hardly changes on the way.
-        let (unknowns_part, enough) = match self.sought {
-            Sought::Roughly => (Logs::zeros(), LITTLE_TO_GAIN),
-            Sought::Well => (self.unknowns_part(&here), NOTHING_TO_GAIN),
-        };
+        let mut unknowns_part = None;
         for _ in 0..STEPS {
             let slopes = self.slopes(&here);
-            found = Found {
-                levels: levels_of(&here.logs),
-                log_variance: slopes.log_variance,
-            };
-            let Some((step, gain)) = self.step(&here, &slopes, &unknowns_part) else {
+            found.log_variance = slopes.log_variance;
+            // It hardly changes on the way.
+            let part = unknowns_part.get_or_insert_with(|| self.unknowns_part(&here, &slopes));
+            let Some((step, gain)) = self.step(&here, &slopes, part) else {
                 break;
             };
-            if gain < enough {
+            if gain < self.enough() {
+                found.levels = levels_of(&(here.logs + step));
                 break;
             }
             let Some(next) = self.descend(&here, &step) else {
                 break;
             };
             here = next;
+            found.levels = levels_of(&here.logs);
         }
         found
+    }
+
+    fn enough(&self) -> f64 {
+        match self.sought {
+            Sought::Roughly => LITTLE_TO_GAIN,
+            Sought::Well => NOTHING_TO_GAIN,
+        }
     }
 
     /// None where the information is none.
@@ -160,10 +168,14 @@ impl Search<'_> {
         slopes(self.stations, self.rows, &levels, &self.moved, &here.known)
     }
 
-    /// Slopes of the log determinant of the unknowns' information.
-    fn unknowns_part(&self, here: &Tried) -> Logs {
+    /// Slopes of the log determinant of the unknowns' information, where they matter.
+    fn unknowns_part(&self, here: &Tried, slopes: &Slopes) -> Logs {
         let mut part = Logs::zeros();
-        for &k in &self.moved {
+        if self.sought == Sought::Roughly {
+            return part;
+        }
+        let matters = |k: &&usize| slopes.information[**k][**k] < WELL_KNOWN;
+        for &k in self.moved.iter().filter(matters) {
             let mut logs = here.logs;
             logs[k] += NUDGE;
             let information = self.pull.information + self.whiten(&logs).information;

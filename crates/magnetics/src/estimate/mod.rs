@@ -20,6 +20,7 @@
 //! - where the ship's magnetism drifts, the parameters are those at the last
 //!   observation.
 
+mod direction;
 mod levels;
 mod needle;
 mod noise;

@@ -1,8 +1,9 @@
 //! Where the needle points on a magnetic heading, and how that depends on the
 //! parameters.
 
+use super::direction::Direction;
 use crate::model::Parameters;
-use crate::ship::{EarthField, PARAMETERS, compass_rad};
+use crate::ship::{EarthField, PARAMETERS};
 
 /// The horizontal field at the compass, over λ, with the ship on one magnetic
 /// heading, in a form that never divides by zero.
@@ -11,15 +12,18 @@ pub(crate) struct Needle {
     earth: [f64; 3],
     /// Sine and cosine of the compass heading over the strength, per nT.
     direction: [f64; 2],
-    compass_rad: f64,
+    /// The strength along the ship's magnetic heading and to starboard of it, nT.
+    along: f64,
+    across: f64,
     compass_per_magnetic: f64,
 }
 
 impl Needle {
-    /// The needle of a ship on magnetic heading `magnetic_rad`.
-    pub(crate) fn at(p: &Parameters, magnetic_rad: f64, field: EarthField) -> Needle {
-        let earth = field.in_ship_axes(magnetic_rad);
-        let [hx, hy, _] = earth;
+    /// The needle of a ship on a magnetic heading.
+    pub(crate) fn at(p: &Parameters, heading: Direction, field: EarthField) -> Needle {
+        let Direction { sin, cos } = heading;
+        let (hx, hy) = (field.h_nt * cos, -field.h_nt * sin);
+        let earth = [hx, hy, field.z_nt];
         let [ux, uy] = p.of_ship_axes(earth);
         // A needle with no force at all has no direction, and any small number
         // keeps the arithmetic finite.
@@ -32,14 +36,16 @@ impl Needle {
         Needle {
             earth,
             direction: [-uy / squared, ux / squared],
-            compass_rad: compass_rad(ux, uy),
+            along: cos * ux - sin * uy,
+            across: sin * ux + cos * uy,
             compass_per_magnetic: (uy * dux - ux * duy) / squared,
         }
     }
 
-    /// The compass heading, radians in (−π, π].
-    pub(crate) fn compass_rad(&self) -> f64 {
-        self.compass_rad
+    /// Magnetic heading less compass heading (docs/science.md, eq. 5), radians in
+    /// (−π, π].
+    pub(crate) fn deviation_rad(&self) -> f64 {
+        self.across.atan2(self.along)
     }
 
     /// How fast compass heading changes with magnetic heading: 1 without deviation.
@@ -59,6 +65,7 @@ impl Needle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ship::compass_rad;
 
     const EARTH: EarthField = EarthField {
         h_nt: 24e3,
@@ -71,10 +78,11 @@ mod tests {
         let step = [1.0, 1e-6, 1.0, 1e-6, 1e-6, 1e-6, 1e-6];
         for degrees in 0..24 {
             let magnetic = f64::from(degrees * 15).to_radians();
-            let deviation = |a: &[f64; 7]| {
-                magnetic - Needle::at(&Parameters::from_array(*a), magnetic, EARTH).compass_rad()
+            let needle = |a: &[f64; 7]| {
+                Needle::at(&Parameters::from_array(*a), Direction::of(magnetic), EARTH)
             };
-            let gradient = Needle::at(&Parameters::from_array(start), magnetic, EARTH).gradient();
+            let deviation = |a: &[f64; 7]| needle(a).deviation_rad();
+            let gradient = needle(&start).gradient();
             for j in 0..7 {
                 let (mut up, mut down) = (start, start);
                 up[j] += step[j];
@@ -89,13 +97,26 @@ mod tests {
     }
 
     #[test]
+    fn the_deviation_is_what_the_card_settles_on() {
+        let p = Parameters::from_array([2000.0, -0.02, -2900.0, 0.01, 0.035, 0.004, -0.003]);
+        for degrees in 0..24 {
+            let magnetic = f64::from(degrees * 15 - 179).to_radians();
+            let [forward, starboard] = p.field_over_lambda(magnetic, EARTH);
+            let compass = compass_rad(forward, starboard);
+            let deviation = Needle::at(&p, Direction::of(magnetic), EARTH).deviation_rad();
+            assert!(crate::ship::wrap_pi(magnetic - deviation - compass).abs() < 1e-12);
+        }
+    }
+
+    #[test]
     fn compass_heading_turns_with_the_ship_at_the_rate_given() {
         let p = Parameters::from_array([2000.0, -0.02, -2900.0, 0.01, 0.035, 0.004, -0.003]);
         for degrees in 0..24 {
             let magnetic = f64::from(degrees * 15 + 3).to_radians();
-            let compass = |m: f64| Needle::at(&p, m, EARTH).compass_rad();
+            let needle = |m: f64| Needle::at(&p, Direction::of(m), EARTH);
+            let compass = |m: f64| m - needle(m).deviation_rad();
             let slope = (compass(magnetic + 1e-6) - compass(magnetic - 1e-6)) / 2e-6;
-            let rate = Needle::at(&p, magnetic, EARTH).compass_per_magnetic();
+            let rate = needle(magnetic).compass_per_magnetic();
             assert!((slope - rate).abs() < 1e-6);
         }
     }

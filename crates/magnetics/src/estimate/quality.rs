@@ -1,6 +1,7 @@
 //! What an estimate rests on: the data or the prior, and how many independent
 //! samples the data are worth.
 
+use super::direction::Direction;
 use super::needle::Needle;
 use super::prior::scales;
 use super::row::{CONSTANT, UNKNOWNS};
@@ -105,7 +106,7 @@ fn curve_variance(covariance: &Matrix, evidence: &Evidence<'_>) -> f64 {
     let sum: f64 = (0..HEADINGS)
         .map(|k| {
             let magnetic = f64::from(k * 360 / HEADINGS).to_radians();
-            let needle = Needle::at(evidence.parameters, magnetic, evidence.earth);
+            let needle = Needle::at(evidence.parameters, Direction::of(magnetic), evidence.earth);
             let mut slopes = SVector::<f64, UNKNOWNS>::zeros();
             for (j, slope) in needle.gradient().iter().enumerate() {
                 slopes[j] = slope.to_degrees() * scale[j];

@@ -1,10 +1,11 @@
 //! Observations as rows of a linear problem: once what does not depend on the
 //! parameters, then the residual and its slopes at the current ones.
 
+use super::direction::Direction;
 use super::needle::Needle;
 use super::noise::{STATES, Step, Transition};
 use super::prior::scales;
-use crate::angle::{TrueHeading, wrap_180};
+use crate::angle::wrap_180;
 use crate::deviation::Coefficients;
 use crate::fit::{Observation, northerly_speed_error_deg};
 use crate::model::Parameters;
@@ -46,8 +47,11 @@ const FULL_WINDOWS: f64 = 60.0;
 /// An observation's part that does not depend on the parameters.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Station {
-    /// From the row before in the filter's order (which is later in time).
+    /// From the row before.
     pub(crate) transition: Transition,
+    /// The magnetic and the true heading that the reference says.
+    magnetic: Direction,
+    heading: Direction,
     /// How the states but the drift add to the residual; the Schuler pair's
     /// rate does not.
     gyro_load: f64,
@@ -119,13 +123,14 @@ fn transition(step: &mut Step, earlier: &Observation, later: &Observation) -> Tr
         }
         _ => later.sog_kn.unwrap_or(TYPICAL_SPEED_KN).abs() * seconds / 3600.0,
     };
-    let turn = wrap_180(true_heading(later).degrees() - true_heading(earlier).degrees());
+    let turn = near(heading_deg(later) - heading_deg(earlier));
     *step = step.again(seconds);
     step.sailing(miles, turn.abs() > TURN_DEG)
 }
 
-fn true_heading(o: &Observation) -> TrueHeading {
-    (o.compass + o.deviation) + o.variation
+/// True, by the reference, but for whole turns.
+fn heading_deg(o: &Observation) -> f64 {
+    o.compass.degrees() + o.deviation.degrees_east() + o.variation.degrees_east()
 }
 
 fn station(o: &Observation, transition: Transition, both: bool) -> Station {
@@ -144,11 +149,14 @@ fn station(o: &Observation, transition: Transition, both: bool) -> Station {
         }
         _ => (0.0, 0.0),
     };
+    let magnetic = magnetic_by_reference(o);
     let windows = f64::from(o.windows).clamp(1.0, FULL_WINDOWS);
     // Half of the difference is put to either.
     let offset_share = if both { o.gyro_share - 0.5 } else { 0.0 };
     Station {
         transition,
+        magnetic,
+        heading: magnetic.turned(Direction::of(o.variation.degrees_east().to_radians())),
         gyro_load: o.gyro_share * per_cos_lat,
         satellite_load: 1.0 - o.gyro_share,
         variation_load,
@@ -178,43 +186,58 @@ pub(crate) fn in_own_units(unknowns: &Unknowns) -> ([f64; PARAMETERS], f64) {
     (parameters, unknowns[CONSTANT] * scale[CONSTANT])
 }
 
+fn magnetic_by_reference(o: &Observation) -> Direction {
+    let degrees = o.compass.degrees() + o.deviation.degrees_east();
+    Direction::of(degrees.to_radians())
+}
+
 /// What is predicted on the magnetic heading that compass and reference agree on.
 struct Predicted {
-    magnetic_deg: f64,
+    /// That heading from the reference's.
+    from_reference: Direction,
     /// As the compass's user sees it.
     deviation_deg: f64,
     needle: Needle,
 }
 
-fn predict(o: &Observation, unknowns: &Unknowns, fusion: f64) -> Predicted {
+/// `reference` is the magnetic heading that it says.
+fn predict(o: &Observation, reference: Direction, unknowns: &Unknowns, fusion: f64) -> Predicted {
     let (parameters, constant) = in_own_units(unknowns);
     let p = Parameters::from_array(parameters);
     let earth = EarthField {
         h_nt: o.h_nt,
         z_nt: o.z_nt,
     };
-    let at = |magnetic_deg: f64| {
-        let needle = Needle::at(&p, (magnetic_deg - constant).to_radians(), earth);
-        let deviation = magnetic_deg - needle.compass_rad().to_degrees();
-        Predicted {
-            magnetic_deg,
-            deviation_deg: wrap_180(deviation),
-            needle,
-        }
-    };
-    let by_reference = o.compass.degrees() + o.deviation.degrees_east();
-    let disagreement = wrap_180(o.deviation.degrees_east() - at(by_reference).deviation_deg)
-        .clamp(-FUSION_LIMIT_DEG, FUSION_LIMIT_DEG);
-    at(by_reference - (1.0 - fusion) * disagreement)
+    let deviation_of = |needle: &Needle| near(needle.deviation_rad().to_degrees() + constant);
+    let needles = reference.turned(Direction::of(-constant.to_radians()));
+    let by_reference = deviation_of(&Needle::at(&p, needles, earth));
+    let disagreement =
+        near(o.deviation.degrees_east() - by_reference).clamp(-FUSION_LIMIT_DEG, FUSION_LIMIT_DEG);
+    let from_reference = Direction::of_small(-((1.0 - fusion) * disagreement).to_radians());
+    let needle = Needle::at(&p, needles.turned(from_reference), earth);
+    Predicted {
+        from_reference,
+        deviation_deg: deviation_of(&needle),
+        needle,
+    }
+}
+
+/// Into (−180°, 180°], where most angles are already.
+fn near(degrees: f64) -> f64 {
+    if -180.0 < degrees && degrees <= 180.0 {
+        degrees
+    } else {
+        wrap_180(degrees)
+    }
 }
 
 /// The row of `o` at `unknowns`; `fusion` is the reference's share in its heading.
 pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns, fusion: f64) -> Row {
     let Predicted {
-        magnetic_deg,
+        from_reference,
         deviation_deg,
         needle,
-    } = predict(o, unknowns, fusion);
+    } = predict(o, station.magnetic, unknowns, fusion);
     let gradient = needle.gradient();
     let scale = scales();
     // The heading of the row moves with the parameters too.
@@ -226,13 +249,11 @@ pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns, fusio
     columns[CONSTANT] = needle.compass_per_magnetic() * scale[CONSTANT] * follows;
     // At the heading of the row like all else: at the reference's own it would
     // lean on the reference's error.
-    let northerly = (magnetic_deg + o.variation.degrees_east())
-        .to_radians()
-        .cos();
+    let northerly = station.heading.turned(from_reference).cos;
     let speed_error = SPEED_ERROR_SD * station.northerly_error * northerly;
     columns[SPEED_ERROR] = speed_error * station.gyro_share;
     columns[SPEED_ERROR + 1..].copy_from_slice(&station.nuisance);
-    let mut residual = wrap_180(o.deviation.degrees_east() - deviation_deg);
+    let mut residual = near(o.deviation.degrees_east() - deviation_deg);
     for j in CONSTANT + 1..UNKNOWNS {
         residual -= columns[j] * unknowns[j];
     }
@@ -260,7 +281,10 @@ pub(crate) fn plain_residual(o: &Observation, unknowns: &Unknowns) -> f64 {
         .ok()
         .and_then(|coefficients| coefficients.deviation_at_compass_rad(o.compass.radians()))
         .map(|deviation| deviation.to_degrees() + constant);
-    let predicted = by_compass.unwrap_or_else(|| predict(o, unknowns, USUAL_FUSION).deviation_deg);
+    let predicted = by_compass.unwrap_or_else(|| {
+        let reference = magnetic_by_reference(o);
+        predict(o, reference, unknowns, USUAL_FUSION).deviation_deg
+    });
     wrap_180(o.deviation.degrees_east() - predicted)
 }
 

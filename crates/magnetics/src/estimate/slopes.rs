@@ -195,6 +195,10 @@ impl<const N: usize> Filters<N> {
             per_variance[n] = weight(z_squared) / variance[n];
         }
         for (s, row) in self.covariance.iter_mut().enumerate() {
+            // Nothing is told of a state that has no part in anything measured.
+            if gain[s][0] == 0.0 {
+                continue;
+            }
             let mut step = gain[s];
             for (step, per_variance) in step.iter_mut().zip(&per_variance) {
                 *step *= per_variance;
