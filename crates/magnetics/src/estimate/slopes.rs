@@ -174,25 +174,27 @@ impl<const N: usize> Filters<N> {
         white: &Each<N>,
         white_factor: f64,
     ) -> Innovation<N> {
-        let mut gain = [[0.0; N]; STATES];
         let mut value = [measured; N];
-        for (s, &load) in load.iter().enumerate() {
-            if load == 0.0 {
-                continue;
+        for (state, &load) in self.state.iter().zip(load) {
+            times_add(&mut value, -load, state);
+        }
+        let mut gain = [[0.0; N]; STATES];
+        for (t, gain) in gain.iter_mut().enumerate() {
+            let mut sum = [0.0; N];
+            for (s, &load) in load.iter().enumerate() {
+                if load != 0.0 {
+                    times_add(&mut sum, load, &self.covariance[s.max(t)][s.min(t)]);
+                }
             }
-            times_add(&mut value, -load, &self.state[s]);
-            for (t, gain) in gain.iter_mut().enumerate() {
-                times_add(gain, load, &self.covariance[s.max(t)][s.min(t)]);
-            }
+            *gain = sum;
         }
         let mut variance = white.map(|white| white * white_factor);
         for (gain, load) in gain.iter().zip(load) {
             times_add(&mut variance, *load, gain);
         }
-        let mut per_variance = [0.0; N];
-        for n in 0..N {
-            let z_squared = value[n] * value[n] / variance[n];
-            per_variance[n] = weight(z_squared) / variance[n];
+        let mut per_variance = variance.map(f64::recip);
+        for (per_variance, value) in per_variance.iter_mut().zip(&value) {
+            *per_variance *= weight(value * value * *per_variance);
         }
         for (s, row) in self.covariance.iter_mut().enumerate() {
             // Nothing is told of a state that has no part in anything measured.
@@ -235,19 +237,21 @@ impl<const N: usize> Sums<N> {
 
     fn add(&mut self, innovation: &Innovation<N>) {
         let (value, variance) = (innovation.value[0], innovation.variance[0]);
-        let z_squared = value * value / variance;
+        let per_variance = variance.recip();
+        let z_squared = value * value * per_variance;
         let slope = loss_slope(z_squared);
+        let per_nudge = NUDGE.recip();
         let by_variance = innovation
             .variance
-            .map(|nudged| (nudged / variance - 1.0) / NUDGE);
-        let by_value = innovation.value.map(|nudged| (nudged - value) / NUDGE);
+            .map(|nudged| (nudged - variance) * (per_variance * per_nudge));
+        let by_value = innovation.value.map(|nudged| (nudged - value) * per_nudge);
         for n in 0..N {
             self.log_variance[n] += by_variance[n];
-            let of_square = 2.0 * value * by_value[n] / variance - z_squared * by_variance[n];
+            let of_square = 2.0 * value * per_variance * by_value[n] - z_squared * by_variance[n];
             self.loss[n] += by_variance[n] + slope * of_square;
         }
         self.information.add(&by_variance, 1.0);
-        self.information.add(&by_value, 2.0 * slope / variance);
+        self.information.add(&by_value, 2.0 * slope * per_variance);
     }
 
     fn by_level(&self, moved: &[usize]) -> Slopes {
@@ -264,5 +268,77 @@ impl<const N: usize> Sums<N> {
             }
         }
         slopes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::angle::{CompassHeading, Deviation, Variation};
+    use crate::estimate::row::{row, stations};
+    use crate::estimate::whiten::whiten;
+    use crate::fit::Observation;
+    use crate::time::Timestamp;
+
+    /// A ship that turns now and then, with a satellite compass and a wild reading.
+    fn observations() -> Vec<Observation> {
+        (0..200_i32)
+            .map(|k| {
+                let hour = f64::from(k) / 6.0;
+                let time = Timestamp::from_micros(1_700_000_000_000_000).unwrap();
+                let wild = if k == 77 { 30.0 } else { 0.0 };
+                Observation {
+                    time: Some(time.plus_seconds(600.0 * f64::from(k))),
+                    position: None,
+                    compass: CompassHeading::new(f64::from(k / 10 * 40)).unwrap(),
+                    deviation: Deviation::new(wild + (1.3 * hour).sin() + 0.2 * (9.0 * hour).cos())
+                        .unwrap(),
+                    variation: Variation::new(-3.0).unwrap(),
+                    h_nt: 20_000.0,
+                    z_nt: 40_000.0,
+                    gyro_share: 0.7,
+                    gyro_less_satellite_deg: (k % 3 != 0).then(|| 0.4 * (5.0 * hour).sin()),
+                    sog_kn: Some(12.0),
+                    windows: 50,
+                    weight: 1.0,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_slopes_are_those_of_the_loss() {
+        let observations = observations();
+        let stations = stations(&observations);
+        let at = [0.1; UNKNOWNS];
+        let rows: Vec<Row> = observations
+            .iter()
+            .zip(&stations)
+            .map(|(o, s)| row(o, s, &at, 0.7))
+            .collect();
+        let levels = NoiseLevels::TYPICAL;
+        let all: Vec<usize> = (0..LEVELS).collect();
+        let none = [0.0; UNKNOWNS];
+        let found = slopes(&stations, &rows, &levels, &all, &none);
+        let few = slopes(&stations, &rows, &levels, &all[..7], &none);
+        for k in 0..LEVELS {
+            let loss = |nudge: f64| {
+                let mut moved = levels.to_array();
+                moved[k] *= nudge.exp();
+                whiten(&stations, &rows, &NoiseLevels::from_array(moved)).loss
+            };
+            let slope = (loss(1e-4) - loss(-1e-4)) / 2e-4;
+            assert!(
+                (found.loss[k] - slope).abs() < 0.02 + 1e-3 * slope.abs(),
+                "{k}: {slope} {found:?}"
+            );
+            assert!(found.information[k][k] > 0.0, "{k}");
+            if k < 7 {
+                assert!(
+                    (few.loss[k] - found.loss[k]).abs() < 1e-6 * slope.abs().max(1.0),
+                    "{k}"
+                );
+            }
+        }
     }
 }
