@@ -236,6 +236,25 @@ pub enum Method {
     Robust,
 }
 
+/// Whether the gyro takes out the error that it has from the ship's own speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum GyroSpeedError {
+    /// It does
+    #[default]
+    Corrected,
+    /// It does not: it is taken out here, from sog_kn and latitude
+    Uncorrected,
+}
+
+impl From<GyroSpeedError> for binnacle_magnetics::fit::GyroSpeedError {
+    fn from(said: GyroSpeedError) -> Self {
+        match said {
+            GyroSpeedError::Corrected => Self::Corrected,
+            GyroSpeedError::Uncorrected => Self::Uncorrected,
+        }
+    }
+}
+
 /// `fit`.
 #[derive(Debug, Args)]
 pub struct Fit {
@@ -247,6 +266,9 @@ pub struct Fit {
     /// Which fit
     #[arg(long, value_enum, default_value_t)]
     pub method: Method,
+    /// Whether the gyro takes the error of the ship's own speed out of its headings
+    #[arg(long, value_enum, default_value_t)]
+    pub gyro_speed_error: GyroSpeedError,
 }
 
 /// `deviation`.
@@ -286,4 +308,7 @@ pub struct Analyse {
     /// A JSON array of logbook entries
     #[arg(long)]
     pub logbook: Option<PathBuf>,
+    /// Whether the gyro takes the error of the ship's own speed out of its headings
+    #[arg(long, value_enum, default_value_t)]
+    pub gyro_speed_error: GyroSpeedError,
 }

@@ -94,7 +94,20 @@ async fn fit_names_file_line_and_field() {
             vec!["32", "compass_deg"],
         ),
         ("short.csv", rows("2026-11-20T01:00:00Z,48"), vec!["32"]),
-        ("empty.csv", String::new(), vec![]),
+        ("empty.csv", String::new(), vec!["the file is empty"]),
+        ("header.csv", format!("{HEADER}\n"), vec!["no row follows"]),
+        (
+            "digits.csv",
+            rows("2026-11-20T01:00:00Z,48,-6,1e308,10"),
+            vec!["32", "compass_deg", "1e308"],
+        ),
+        (
+            "no_reference.csv",
+            (0..30).fold(format!("{HEADER}\n"), |text, i| {
+                text + &format!("2026-11-20T00:{i:02}:00Z,48,-6,{},\n", 12 * i)
+            }),
+            vec!["no gyro, satellite or other true heading", "30"],
+        ),
         (
             "long.csv",
             format!("{HEADER}\n{}", "1".repeat(10_000_000)),

@@ -476,6 +476,15 @@ export const text = {
     droppedStuck: 'It stood still while the ship turned.',
     oneMagneticLatitude:
       'Her samples are from too narrow a range of magnetic latitudes to tell permanent from induced magnetism. The curve is good where she has been; far from there it leans on what is usual in ships until she has sailed there.',
+    fewSamples:
+      'Her latitudes would tell permanent from induced magnetism, but her samples are too few yet. The curve is good where she has been; elsewhere it leans on what is usual in ships until more samples come in, which needs nothing but sailing on.',
+    noTimes:
+      'The rows have no times, so that nobody knows which of them share one error of the gyro. The band takes rows on like headings for half a day’s.',
+    largeResiduals: (residual: string) =>
+      `Measured and predicted deviation usually differ by ${residual}, more than sound instruments leave. Check compass, gyro and satellite compass, and which input is taken for which, before these figures are believed.`,
+    longGap: (days: string, last: string) =>
+      `Before the last samples there were none for ${days} days. The curve is for ${last}, and its band allows for what a ship may change in such a time.`,
+    unknown: 'This page does not know one of this model’s cautions: load it anew.',
     weakField: (h: string) =>
       `Some samples are from waters with a horizontal field of only ${h}. There a compass is sluggish, small fields disturb it much, and its heading needs checking often.`,
     tableTitle: 'The band by magnetic latitude',
@@ -497,8 +506,19 @@ export const text = {
       `${found} samples can be used so far; at least ${needed} are needed.`,
     tooFewSamplesTodo:
       'Keep sailing: the agent takes a sample from every ten minutes or so on a steady heading at speed, away from the berth. If few come in, what became of the ten-second windows stands under “On board”, with the reasons.',
+    noReference: (readings: string) =>
+      `None of the ${readings} samples has a heading by gyro or satellite compass to hold the compass against.`,
+    noReferenceTodo:
+      'Check on board that a gyro or satellite compass is connected, and which sentence is taken for it.',
+    noWeight: (samples: string) => `The weight is 0 in all of ${samples} samples.`,
+    noWeightTodo: 'Give the rows that are to count a weight above 0.',
+    contradictory: (residual: string, allowed: string) =>
+      `Measured and predicted deviation differ by ${residual}, where no instruments leave more than ${allowed}: no ship’s magnetism explains these samples.`,
+    contradictoryTodo:
+      'Check on board which input is taken for the compass and which for the gyro, and in a file the sign of the variation, which is positive to the east.',
     tooFewHeadings: (found: number, needed: number, gap: string, allowed: string) =>
       `Samples are on ${found} of 24 sectors of 15°, with a gap of ${gap} between them. At least ${needed} sectors are needed, and no gap wider than ${allowed}.`,
+    missing: (ranges: string) => `Missing: ${ranges}.`,
     tooFewHeadingsTodo:
       'Steer the missing headings, marked empty under “Coverage”: ten minutes steady on each will do, such as when waiting for a pilot or a berth, or on the passage back.',
     fieldTooWeak: (strongest: string, needed: string) =>

@@ -33,7 +33,7 @@ pub enum AngleError {
     #[error("{0} is not a finite angle")]
     NotFinite(f64),
     /// The number lies outside the range that the outside world may send.
-    #[error("{value} degrees is outside {low} to {high}")]
+    #[error("{} degrees is outside {low} to {high}", Brief(*value))]
     OutOfRange {
         /// What was sent.
         value: f64,
@@ -42,6 +42,21 @@ pub enum AngleError {
         /// The most that is accepted.
         high: f64,
     },
+}
+
+/// A number as a complaint quotes it: with an exponent where it would be a long one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Brief(pub(crate) f64);
+
+impl fmt::Display for Brief {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size != 0.0 && !(1e-6..1e9).contains(&size) {
+            write!(f, "{:e}", self.0)
+        } else {
+            write!(f, "{}", self.0)
+        }
+    }
 }
 
 macro_rules! heading {

@@ -44,6 +44,14 @@ pub enum DeviationError {
         /// Vertical field as given, nT.
         z_nt: f64,
     },
+    /// The horizontal field is too weak for a compass, whatever the ship.
+    #[error("horizontal field of {h_nt:.0} nT; a compass needs at least {needed_nt:.0} nT")]
+    FieldTooWeak {
+        /// What it is.
+        h_nt: f64,
+        /// What there must be.
+        needed_nt: f64,
+    },
     /// A parameter is NaN or infinite.
     #[error("the ship's magnetic parameters are not all finite")]
     NotFinite,

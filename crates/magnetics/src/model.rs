@@ -2,6 +2,7 @@
 
 mod json;
 
+use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// The seven ratios that headings alone can tell: Poisson's parameters over λ.
@@ -97,6 +98,39 @@ pub enum Caution {
          far from there the band rests on ships at large"
     )]
     OneMagneticLatitude,
+    /// The magnetic latitudes would tell the parts of bx + χ13 Z and by + χ23 Z, but
+    /// there are not yet samples enough.
+    #[error(
+        "too few samples yet to tell the parts of bx + chi13 Z and by + chi23 Z: where the ship \
+         has not been the band rests on ships at large"
+    )]
+    FewSamples,
+    /// Without times nobody knows which samples share one error of a gyro.
+    #[error(
+        "rows without times: which of them share one error of the reference is not known; the band \
+         takes rows on like headings for half a day's"
+    )]
+    NoTimes,
+    /// Residuals are larger than sound instruments leave.
+    #[error(
+        "residuals of {residual_deg:.1} degrees are more than sound instruments leave: check \
+         compass, reference and columns before the figures are believed"
+    )]
+    LargeResiduals {
+        /// Robust standard deviation of the residuals, degrees.
+        residual_deg: f64,
+    },
+    /// The last samples stand long after the others, and the ship may have changed.
+    #[error(
+        "no samples for {days:.0} days before the last ones: the model is for {last}, and its \
+         band allows for what a ship may change in such a time"
+    )]
+    LongGap {
+        /// How long there were none.
+        days: f64,
+        /// When the last sample was taken.
+        last: Timestamp,
+    },
     /// Some samples lie where the horizontal field is so weak that a compass is
     /// sluggish and small fields disturb it much.
     #[error("samples from a horizontal field of only {h_nt:.0} nT")]

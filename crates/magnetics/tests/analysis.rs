@@ -481,6 +481,41 @@ fn two_references_narrow_the_constant_and_their_quarrel_widens_it() {
     assert!(sd(&quarrel) > 0.95, "{}", sd(&quarrel));
 }
 
+/// The constant of two references is known better than that of one: what stood in the
+/// model before is taken off, not what stands in the one after.
+#[test]
+fn after_a_repair_with_one_reference_left_the_epoch_is_fitted_all_the_same() {
+    let both_then_one: Vec<Sample> = with_satellite()
+        .into_iter()
+        .map(|s| Sample {
+            satellite: s.satellite.filter(|_| s.time < time(5000)),
+            ..s
+        })
+        .collect();
+    let repair = LogbookEntry {
+        from: time(5000),
+        to: None,
+        kind: LogbookKind::Repair,
+        cargo: None,
+        note: String::new(),
+    };
+    let analysis = analyse(&both_then_one, &[repair], &AnalysisSettings::default());
+    let [before, after] = &analysis.epochs[..] else {
+        panic!("{} epochs", analysis.epochs.len());
+    };
+    assert!(before.model.is_some());
+    let refusal = &after.refusal;
+    let covariance = after
+        .model
+        .as_ref()
+        .unwrap_or_else(|| panic!("{refusal:?}"))
+        .covariance;
+    assert!(
+        covariance.unwrap()[7][7] > 0.25,
+        "one reference's constant stands in it"
+    );
+}
+
 #[test]
 fn a_very_magnetic_ship_is_fitted_all_the_same() {
     // Some twenty-five degrees of deviation at home, more in the south.

@@ -10,6 +10,7 @@ use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variatio
 use binnacle_magnetics::fit::{
     FitError, HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, refer,
 };
+use binnacle_magnetics::model::Caution;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 use voyages::{Faults, Truth, Variety, Voyage, predicted, sail, true_deviation};
@@ -25,6 +26,10 @@ fn fit(observations: &[Observation]) -> Result<RobustFit, FitError> {
             .all(|x| x.is_finite())
     );
     Ok(fit)
+}
+
+fn cautions(fit: &RobustFit) -> &[Caution] {
+    &fit.model.quality.as_ref().unwrap().cautions
 }
 
 /// Part of the headings on which the band at the ship's place holds the truth.
@@ -224,4 +229,159 @@ fn a_field_too_weak_for_a_compass_is_named() {
         matches!(refused, FitError::FieldTooWeak { .. }),
         "{refused}"
     );
+}
+
+/// Reference less compass holds the variation; with its sign changed it holds it twice.
+#[test]
+fn a_variation_of_the_wrong_sign_is_refused_by_name() {
+    for seed in 8100..8104 {
+        let mut observations = sail(seed, Variety::Rich, 30.0, &Faults::USUAL).observations;
+        let variation = |o: &Observation| 8.0 * o.variation.degrees_east();
+        let spread = observations.iter().map(variation).fold(0.0, f64::max)
+            - observations.iter().map(variation).fold(0.0, f64::min);
+        assert!(spread > 20.0, "the dipole's variation says too little");
+        for o in &mut observations {
+            let wrong = o.deviation.degrees_east() + variation(o);
+            o.deviation = Deviation::new(wrong).unwrap();
+        }
+        let refused = fit(&observations).unwrap_err();
+        assert!(
+            matches!(refused, FitError::Contradictory { residual_deg, .. } if residual_deg > 3.0),
+            "{refused}"
+        );
+    }
+}
+
+#[test]
+fn compass_and_gyro_that_changed_places_are_refused_by_name() {
+    let mut observations = sail(8110, Variety::Rich, 30.0, &Faults::USUAL).observations;
+    for o in &mut observations {
+        let variation = 4.0 * o.variation.degrees_east();
+        let gyro = o.compass.degrees() + o.deviation.degrees_east() + variation;
+        let (compass, reference) = (gyro, o.compass.degrees());
+        o.compass = CompassHeading::new(compass).unwrap();
+        o.deviation = Deviation::new(reference - variation - compass).unwrap();
+    }
+    match fit(&observations) {
+        Err(refused) => assert!(
+            matches!(refused, FitError::Contradictory { .. }),
+            "{refused}"
+        ),
+        Ok(fit) => assert!(
+            cautions(&fit)
+                .iter()
+                .any(|c| matches!(c, Caution::LargeResiduals { .. })),
+            "{:?}",
+            cautions(&fit)
+        ),
+    }
+}
+
+/// Thrice the usual swing of gyro and compass, and one reading in ten 20° out.
+#[test]
+fn bad_weather_with_wild_readings_is_not_refused() {
+    let bad = Faults {
+        schuler_deg: 1.0,
+        swing_deg: 0.6,
+        variation_deg: 0.4,
+        ..Faults::USUAL
+    };
+    for seed in 8120..8124 {
+        let mut observations = sail(seed, Variety::Medium, 20.0, &bad).observations;
+        for o in observations.iter_mut().step_by(10) {
+            o.deviation = Deviation::new(o.deviation.degrees_east() + 20.0).unwrap();
+        }
+        assert!(fit(&observations).is_ok(), "{seed}");
+    }
+}
+
+#[test]
+fn sound_instruments_give_no_caution_about_residuals() {
+    for seed in 8130..8136 {
+        let fit = fit(&sail(seed, Variety::Rich, 20.0, &Faults::USUAL).observations).unwrap();
+        let about_residuals = |c: &Caution| matches!(c, Caution::LargeResiduals { .. });
+        assert!(!cautions(&fit).iter().any(about_residuals), "{seed}");
+    }
+}
+
+/// The reference's own constant left aside, which would hide a band too narrow.
+#[test]
+fn without_times_the_band_still_holds() {
+    let (mut held, mut looked_at) = (0, 0);
+    for seed in 8200..8224 {
+        let variety = [Variety::Rich, Variety::Medium, Variety::Poor][seed as usize % 3];
+        let voyage = sail(seed, variety, 20.0, &Faults::USUAL);
+        let mut untimed = voyage.observations.clone();
+        for o in &mut untimed {
+            (o.time, o.position) = (None, None);
+        }
+        let fit = fit(&untimed).unwrap();
+        assert!(cautions(&fit).contains(&Caution::NoTimes));
+        let Truth { h_nt, z_nt, .. } = voyage.truth;
+        for k in 0..36 {
+            let compass = f64::from(k) * 10.0;
+            let truth =
+                true_deviation(&voyage.truth, compass, h_nt, z_nt) + voyage.truth.gyro_constant_deg;
+            let (deviation, se) = predicted(&fit.model, compass, h_nt, z_nt);
+            let shape_se = (se * se - 0.25).max(0.0).sqrt();
+            held += u32::from(wrap_180(deviation - truth).abs() <= 1.96 * shape_se);
+            looked_at += 1;
+        }
+    }
+    let share = f64::from(held) / f64::from(looked_at);
+    assert!(share >= 0.93, "{share}");
+}
+
+/// One row out of a month has the date of a clock that was never set.
+#[test]
+fn a_row_with_a_date_of_years_ago_is_left_out() {
+    for seed in 8300..8303 {
+        let voyage = sail(seed, Variety::Rich, 30.0, &Faults::USUAL);
+        let right = fit(&voyage.observations).unwrap();
+        for date in [
+            "1970-01-01T00:00:00Z",
+            "2006-05-01T00:00:00Z",
+            "2015-01-01T00:00:00Z",
+        ] {
+            let mut observations = voyage.observations.clone();
+            let at = observations.len() / 3;
+            observations[at].time = Some(Timestamp::parse(date).unwrap());
+            let wrong = fit(&observations).unwrap();
+            assert!(wrong.rows[at].weight < 0.5, "{date}");
+            assert!((band(&voyage, &wrong) / band(&voyage, &right) - 1.0).abs() < 0.1);
+        }
+    }
+}
+
+#[test]
+fn a_row_years_after_the_others_widens_the_band_and_says_so() {
+    let voyage = sail(8310, Variety::Rich, 30.0, &Faults::USUAL);
+    let mut observations = voyage.observations.clone();
+    let at = observations.len() / 3;
+    let later = Timestamp::parse("2029-05-01T00:00:00Z").unwrap();
+    observations[at].time = Some(later);
+    let fit = fit(&observations).unwrap();
+    let said = cautions(&fit).iter().find_map(|caution| match caution {
+        Caution::LongGap { days, last } => Some((*days, *last)),
+        _ => None,
+    });
+    let (days, last) = said.unwrap();
+    assert_eq!(last, later);
+    assert!((900.0..1000.0).contains(&days), "{days}");
+}
+
+#[test]
+fn the_headings_that_are_missing_are_named() {
+    let mut observations = voyage(20.0).observations;
+    observations.retain(|o| o.compass.degrees() < 90.0);
+    let refused = fit(&observations).unwrap_err();
+    assert!(
+        refused.to_string().contains("missing: 090-360"),
+        "{refused}"
+    );
+    for observation in &mut observations {
+        observation.weight = 0.0;
+    }
+    let refused = fit(&observations).unwrap_err();
+    assert!(matches!(refused, FitError::NoWeight { .. }), "{refused}");
 }

@@ -6,8 +6,9 @@
 mod voyages;
 
 use binnacle_magnetics::angle::{Deviation, wrap_180};
-use binnacle_magnetics::fit::{Observation, RobustOptions, fit_robust};
-use binnacle_magnetics::model::{Caution, Model};
+use binnacle_magnetics::estimate::Prior;
+use binnacle_magnetics::fit::{Observation, RobustOptions, fit_known_ship, fit_robust};
+use binnacle_magnetics::model::{Caution, Model, Parameters};
 use voyages::tally::Tally;
 use voyages::{Faults, Truth, Variety, predicted, sail, true_deviation};
 
@@ -221,4 +222,62 @@ fn a_compass_that_is_bolted_down_askew_is_found_out() {
         });
         assert!(held.count() >= 33, "{seed}");
     }
+}
+
+/// Both hemispheres in twenty samples: latitudes are not what lacks.
+#[test]
+fn too_few_samples_are_not_taken_for_too_few_latitudes() {
+    for seed in 2400..2404 {
+        let voyage = sail(seed, Variety::Rich, 30.0, &Faults::USUAL);
+        let every = voyage.observations.len() / 20;
+        let few: Vec<Observation> = voyage.observations.iter().step_by(every).copied().collect();
+        let cautions = fitted(&few).quality.unwrap().cautions;
+        assert!(
+            !cautions.contains(&Caution::OneMagneticLatitude),
+            "{cautions:?}"
+        );
+        assert!(cautions.contains(&Caution::FewSamples), "{cautions:?}");
+    }
+}
+
+/// A ship in one sea after an upset: what the iron's shape induces rests on what was
+/// known before, and is known as badly as it says.
+#[test]
+fn what_was_known_before_an_upset_counts_for_no_more_than_it_is_worth() {
+    let sd = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008];
+    // As the sizes of upsets go: a third of what ships differ by.
+    let upsets = [-1.5, -0.9, -0.4, 0.1, 0.5, 0.8, 1.3_f64];
+    let (mut held, mut looked_at) = (0, 0);
+    for (k, seed) in (2500..2512).enumerate() {
+        let voyage = sail(seed, Variety::Poor, 4.0, &Faults::USUAL);
+        let mut before = voyage.truth.parameters.to_array();
+        let mut covariance = [[0.0; 8]; 8];
+        for j in 0..7 {
+            let part = if matches!(j, 0 | 2) { 0.8 } else { 0.3 };
+            before[j] += part * sd[j] * upsets[(k + 3 * j) % 7];
+            covariance[j][j] = (0.03 * sd[j]).powi(2);
+        }
+        covariance[7][7] = 0.3;
+        let known = Model {
+            parameters_over_lambda: Parameters::from_array(before),
+            constant_deg: voyage.truth.alignment_deg,
+            covariance: Some(covariance),
+            ..fitted(&voyage.observations)
+        };
+        let options = RobustOptions {
+            prior: Prior::after_upset(&known, 0.5).unwrap(),
+            reference_constant_sd_deg: 0.5,
+        };
+        let fit = fit_known_ship(&voyage.observations, &options).unwrap();
+        let found = fit.model.parameters_over_lambda.to_array();
+        let truth = voyage.truth.parameters.to_array();
+        // χ13, χ23 and D: the others are told by headings, or not at all.
+        for j in [1, 3, 4] {
+            let se = fit.model.covariance.unwrap()[j][j].sqrt();
+            held += u32::from((found[j] - truth[j]).abs() <= 1.96 * se);
+            looked_at += 1;
+        }
+    }
+    let share = f64::from(held) / f64::from(looked_at);
+    assert!(share > 0.85, "{share}");
 }

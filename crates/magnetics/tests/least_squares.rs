@@ -147,3 +147,36 @@ fn what_is_missing_is_named() {
         "{refused}"
     );
 }
+
+#[test]
+fn a_row_in_a_field_too_weak_for_a_compass_is_left_out_and_all_such_are_refused() {
+    let (rows, _) = textbook_voyage(3, 0.2);
+    for fit in [fit_ols, fit_paper] {
+        let expected = fit(&rows).unwrap();
+        let mut beside = rows.clone();
+        let mut weak = rows[0];
+        (weak.h_nt, weak.deviation) = (1_500.0, Deviation::new(80.0).unwrap());
+        let mut without_weight = weak;
+        (without_weight.h_nt, without_weight.weight) = (24_000.0, 0.0);
+        beside.extend([weak, without_weight]);
+        let found = fit(&beside).unwrap();
+        assert_eq!(
+            found.parameters_over_lambda,
+            expected.parameters_over_lambda
+        );
+        assert_eq!(found.samples_rejected, 2);
+
+        let all_weak: Vec<Observation> = rows
+            .iter()
+            .map(|o| Observation {
+                h_nt: 1_500.0,
+                ..*o
+            })
+            .collect();
+        let refused = fit(&all_weak).unwrap_err();
+        assert!(
+            matches!(refused, FitError::FieldTooWeak { .. }),
+            "{refused}"
+        );
+    }
+}

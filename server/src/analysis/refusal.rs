@@ -10,6 +10,16 @@ use utoipa::ToSchema;
 #[schema(as = Refusal)]
 #[allow(dead_code, reason = "describes binnacle_magnetics::fit::FitError")]
 pub enum RefusalSchema {
+    /// No sample has a gyro's or a satellite compass's heading.
+    NoReference {
+        /// How many samples there are.
+        readings: u64,
+    },
+    /// Every sample has the weight 0; only of fits of a file.
+    NoWeight {
+        /// How many there are.
+        samples: u64,
+    },
     /// Too few usable samples, whatever their headings.
     TooFewSamples {
         /// How many there are.
@@ -27,6 +37,9 @@ pub enum RefusalSchema {
         widest_gap_deg: f64,
         /// The widest such range that is allowed, degrees.
         allowed_gap_deg: f64,
+        /// The headings without a sample: whole sectors of 15°, each range by its
+        /// first degree and the one after its last, beyond 360 through north.
+        missing_deg: Vec<[u32; 2]>,
     },
     /// The earth's horizontal field is too weak for a compass in all samples.
     FieldTooWeak {
@@ -50,10 +63,18 @@ pub enum RefusalSchema {
         /// How far they may differ, degrees.
         allowed_deg: f64,
     },
-    /// The only reference repeated itself while the ship turned.
+    /// The only reference stood still while the ship turned.
     ReferenceStuck {
-        /// How many readings repeat.
+        /// In how many readings it did.
         readings: u64,
+    },
+    /// What the best ship leaves over is more than instruments do: a variation of
+    /// the wrong sign, columns that changed places, a reference that is none.
+    Contradictory {
+        /// Robust standard deviation of the residuals, degrees.
+        residual_deg: f64,
+        /// How large it may be, degrees.
+        allowed_deg: f64,
     },
     /// The samples contradict each other or any ship.
     NotConverged,

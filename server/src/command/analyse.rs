@@ -38,7 +38,11 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         Some(path) => input::json_list(path)?,
         None => Vec::new(),
     };
-    let analysis = run(&samples, &logbook, &AnalysisSettings::default());
+    let settings = AnalysisSettings {
+        gyro_speed_error: arguments.gyro_speed_error.into(),
+        ..AnalysisSettings::default()
+    };
+    let analysis = run(&samples, &logbook, &settings);
     Ok(json(&Analysed {
         sail_next: sail_next(&analysis),
         analysis,

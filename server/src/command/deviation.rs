@@ -3,6 +3,7 @@
 use super::{BadInput, answer, input, json, table};
 use crate::config::Deviation;
 use crate::deviation::{Row, table as predict};
+use binnacle_magnetics::deviation::DeviationError;
 use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::ship::EarthField;
@@ -34,7 +35,13 @@ fn find(arguments: &Deviation) -> Result<Vec<Row>, BadInput> {
         .check()
         .map_err(|error| BadInput(format!("{file}: {error}")))?;
     let earth = earth(arguments)?;
-    predict(&model, earth, arguments.step_deg).map_err(|error| BadInput(format!("{file}: {error}")))
+    predict(&model, earth, arguments.step_deg).map_err(|error| match error {
+        DeviationError::FieldTooWeak { .. } => {
+            let by_place = arguments.h_nt.is_none();
+            BadInput::option(if by_place { "--lat" } else { "--h-nt" }, error)
+        }
+        _ => BadInput(format!("{file}: {error}")),
+    })
 }
 
 fn earth(arguments: &Deviation) -> Result<EarthField, BadInput> {

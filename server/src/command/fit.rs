@@ -2,49 +2,93 @@
 
 use super::{BadInput, answer, input, json, table};
 use crate::config::{Fit, Method};
+use binnacle_magnetics::advice::{HeadingRange, Question, SailNext, advise};
+use binnacle_magnetics::coverage::coverage;
 use binnacle_magnetics::deviation::NAMES;
 use binnacle_magnetics::fit::{
-    FitError, GyroSpeedError, Observation, REFERENCE_CONSTANT_SD_DEG, RobustOptions, fit_ols,
-    fit_paper, fit_robust, readings_from_csv, refer,
+    FitError, Observation, REFERENCE_CONSTANT_SD_DEG, ReferenceCheck, RobustFit, RobustOptions,
+    fit_ols, fit_paper, fit_robust, readings_from_csv, refer,
 };
 use binnacle_magnetics::model::{Model, Quality};
+use binnacle_magnetics::ship::EarthField;
 use std::process::ExitCode;
+
+/// What was found.
+struct Found {
+    model: Model,
+    check: ReferenceCheck,
+    /// Only of the product's own fit.
+    sail_next: Option<SailNext>,
+}
 
 /// Prints the model, as a table or as JSON.
 ///
 /// # Errors
 /// When standard output cannot be written.
 pub fn fit(arguments: &Fit) -> anyhow::Result<ExitCode> {
-    answer(find(arguments).map(|model| {
+    answer(find(arguments).map(|found| {
         if arguments.json {
-            json(&model)
+            json(&found.model)
         } else {
-            describe(&model)
+            describe(&found)
         }
     }))
 }
 
-fn find(arguments: &Fit) -> Result<Model, BadInput> {
+fn find(arguments: &Fit) -> Result<Found, BadInput> {
     let table = input::Table::read(&arguments.file)?;
-    let readings = readings_from_csv(&table.rows, GyroSpeedError::Corrected)
+    let readings = readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
         .map_err(|error| table.complaint(&error))?;
     let refused = |error: FitError| BadInput(format!("{}: {error}", arguments.file.display()));
     let referred = refer(&readings, REFERENCE_CONSTANT_SD_DEG).map_err(refused)?;
     let observations: Vec<Observation> = referred.observations.into_iter().flatten().collect();
+    let mut sail_next = None;
     let fitted = match arguments.method {
         Method::Paper => fit_paper(&observations),
         Method::Ols => fit_ols(&observations),
         Method::Robust => {
             let options = RobustOptions::of_any_ship(referred.check.constant_sd_deg);
-            fit_robust(&observations, &options).map(|fit| fit.model)
+            fit_robust(&observations, &options).map(|fit| {
+                sail_next = what_to_sail(&fit, &observations, &referred.check);
+                fit.model
+            })
         }
     };
     let mut model = fitted.map_err(refused)?;
     model.samples_rejected += (readings.len() - observations.len()) as u64;
-    Ok(model)
+    Ok(Found {
+        model,
+        check: referred.check,
+        sail_next,
+    })
 }
 
-fn describe(model: &Model) -> String {
+/// What would narrow the band where the ship was last.
+fn what_to_sail(
+    fit: &RobustFit,
+    observations: &[Observation],
+    check: &ReferenceCheck,
+) -> Option<SailNext> {
+    let last = observations.last()?;
+    let samples = observations.iter().map(|o| (o.compass, o.h_nt, o.z_nt));
+    advise(&Question {
+        model: &fit.model,
+        noise: &fit.noise,
+        reference_constant_sd_deg: check.constant_sd_deg,
+        // Beside a satellite compass a gyro has little weight.
+        gyro_share: if last.gyro_share < 1.0 { 0.0 } else { 1.0 },
+        here: EarthField {
+            h_nt: last.h_nt,
+            z_nt: last.z_nt,
+        },
+        elsewhere: &[],
+        coverage: &coverage(samples),
+    })
+    .ok()
+}
+
+fn describe(found: &Found) -> String {
+    let model = &found.model;
     let values = model.parameters_over_lambda.to_array();
     let identifiable = model.identifiable.map(|known| {
         [
@@ -91,12 +135,73 @@ fn describe(model: &Model) -> String {
         model.samples_used,
         model.samples_rejected
     ) + &model.quality.as_ref().map_or_else(String::new, worth)
+        + &dropped(&found.check)
+        + &found.sail_next.as_ref().map_or_else(String::new, band)
+}
+
+/// Which reference was not believed.
+fn dropped(check: &ReferenceCheck) -> String {
+    let line = |name: &str, count: u64| match count {
+        0 => String::new(),
+        _ => format!("\n{name} not believed in {count} samples: stuck, or off from the other"),
+    };
+    line("gyro", check.gyro_dropped) + &line("satellite compass", check.satellite_dropped)
+}
+
+/// The band, here and elsewhere, and what would narrow it.
+fn band(next: &SailNext) -> String {
+    let here = &next.here;
+    let mut lines = vec![format!(
+        "95 % band where she was last: ± {:.1}°, on the worst heading {:.1}°",
+        here.band.rms_deg, here.band.worst_deg
+    )];
+    lines.extend(here.suggestions.first().map(|best| {
+        format!(
+            "to sail next: {:.0} hours on {}, for ± {:.1}°",
+            next.watch_hours,
+            headings(best.range),
+            best.after_one.rms_deg
+        )
+    }));
+    if let Some(elsewhere) = &next.elsewhere {
+        lines.push(format!(
+            "95 % band in other waters: ± {:.1}°, at worst {:.1}°",
+            elsewhere.band.rms_deg, elsewhere.band.worst_deg
+        ));
+        lines.extend(elsewhere.suggestions.first().map(|best| {
+            let on: Vec<String> = best.headings.iter().map(|&range| headings(range)).collect();
+            format!(
+                "to sail next: magnetic latitude {}° to {}°, on {}, for ± {:.1}°",
+                best.magnetic_latitude_from_deg,
+                best.magnetic_latitude_to_deg,
+                on.join(", "),
+                best.after_three.rms_deg
+            )
+        }));
+    }
+    format!("\n{}", lines.join("\n"))
+}
+
+fn headings(range: HeadingRange) -> String {
+    let HeadingRange {
+        heading_from_deg: from,
+        heading_to_deg: to,
+    } = range;
+    if (from, to) == (0, 360) {
+        return "any heading".to_owned();
+    }
+    format!("headings {from:03} to {to:03}")
 }
 
 /// What the samples are worth, and what not to trust the model for.
 fn worth(quality: &Quality) -> String {
     let samples = quality.effective_samples;
-    let worth = format!("\nworth {samples:.0} samples with independent errors");
+    let condition = quality.condition.map_or_else(
+        || "open: the data leave one combination of parameters unknown".to_owned(),
+        |condition| format!("{condition:.0}"),
+    );
+    let worth =
+        format!("\nworth {samples:.0} samples with independent errors\ncondition {condition}");
     let cautions = quality.cautions.iter();
     cautions.fold(worth, |lines, caution| {
         lines + "\ncaution: " + &caution.to_string()

@@ -108,6 +108,9 @@ impl Table {
     pub(super) fn read(path: &Path) -> Result<Table, BadInput> {
         let text = text_file(path)?;
         let path = path.display().to_string();
+        if text.trim().is_empty() {
+            return Err(BadInput(format!("{path}: the file is empty")));
+        }
         let mut reader = ReaderBuilder::new()
             .trim(csv::Trim::All)
             .comment(Some(b'#'))
@@ -134,6 +137,10 @@ impl Table {
                 })?,
             );
             lines.push(line);
+        }
+        if rows.is_empty() {
+            let what = "the first line names the columns, and no row follows";
+            return Err(BadInput(format!("{path}: {what}")));
         }
         Ok(Table { path, rows, lines })
     }

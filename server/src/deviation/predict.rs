@@ -2,6 +2,7 @@
 
 use binnacle_magnetics::angle::CompassHeading;
 use binnacle_magnetics::deviation::DeviationError;
+use binnacle_magnetics::fit::WEAKEST_H_NT;
 use binnacle_magnetics::handbook::Handbook;
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::ship::EarthField;
@@ -61,8 +62,14 @@ pub struct HandbookSchema {
 /// Deviation on compass headings from 0, each `step_deg`.
 ///
 /// # Errors
-/// When headings are ambiguous there.
+/// When the field there is too weak for a compass, or headings are ambiguous.
 pub fn table(model: &Model, earth: EarthField, step_deg: f64) -> Result<Vec<Row>, DeviationError> {
+    if earth.h_nt < WEAKEST_H_NT {
+        return Err(DeviationError::FieldTooWeak {
+            h_nt: earth.h_nt,
+            needed_nt: WEAKEST_H_NT,
+        });
+    }
     // A step that fills the circle but for rounding does not count 360 again.
     let rows = (360.0 / step_deg - 1e-9).ceil() as usize;
     (0..rows)

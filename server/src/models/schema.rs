@@ -1,6 +1,7 @@
 //! How the OpenAPI document describes a model; the model itself is the science
 //! crate's.
 
+use crate::time::Time;
 use binnacle_magnetics::model::Model;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -88,6 +89,22 @@ pub(super) struct FromDataSchema {
 pub(super) enum CautionSchema {
     /// Only the sums bx + χ13 Z and by + χ23 Z are known.
     OneMagneticLatitude,
+    /// More samples in the same latitudes would tell what the sums are made of.
+    FewSamples,
+    /// Rows without times; only of fits of a file.
+    NoTimes,
+    /// Residuals are larger than sound instruments leave.
+    LargeResiduals {
+        /// Robust standard deviation of the residuals, degrees.
+        residual_deg: f64,
+    },
+    /// The last samples stand more than a year after the others.
+    LongGap {
+        /// How long there were none, days.
+        days: f64,
+        /// When the last sample was taken.
+        last: Time,
+    },
     /// Some samples lie where the horizontal field is weak.
     WeakField {
         /// The weakest horizontal field, nT.

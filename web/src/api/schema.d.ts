@@ -991,6 +991,30 @@ export interface components {
             caution: "one_magnetic_latitude";
         } | {
             /** @enum {string} */
+            caution: "few_samples";
+        } | {
+            /** @enum {string} */
+            caution: "no_times";
+        } | {
+            /** @enum {string} */
+            caution: "large_residuals";
+            /**
+             * Format: double
+             * @description Robust standard deviation of the residuals, degrees.
+             */
+            residual_deg: number;
+        } | {
+            /** @enum {string} */
+            caution: "long_gap";
+            /**
+             * Format: double
+             * @description How long there were none, days.
+             */
+            days: number;
+            /** @description When the last sample was taken. */
+            last: components["schemas"]["Time"];
+        } | {
+            /** @enum {string} */
             caution: "weak_field";
             /**
              * Format: double
@@ -1903,6 +1927,22 @@ export interface components {
         Refusal: {
             /**
              * Format: int64
+             * @description How many samples there are.
+             */
+            readings: number;
+            /** @enum {string} */
+            reason: "no_reference";
+        } | {
+            /** @enum {string} */
+            reason: "no_weight";
+            /**
+             * Format: int64
+             * @description How many there are.
+             */
+            samples: number;
+        } | {
+            /**
+             * Format: int64
              * @description How many there are.
              */
             found: number;
@@ -1924,6 +1964,11 @@ export interface components {
              * @description Sectors of 15° with at least one sample.
              */
             found: number;
+            /**
+             * @description The headings without a sample: whole sectors of 15°, each range by its
+             *     first degree and the one after its last, beyond 360 through north.
+             */
+            missing_deg: number[][];
             /**
              * Format: int32
              * @description How many there must be.
@@ -1976,11 +2021,24 @@ export interface components {
         } | {
             /**
              * Format: int64
-             * @description How many readings repeat.
+             * @description In how many readings it did.
              */
             readings: number;
             /** @enum {string} */
             reason: "reference_stuck";
+        } | {
+            /**
+             * Format: double
+             * @description How large it may be, degrees.
+             */
+            allowed_deg: number;
+            /** @enum {string} */
+            reason: "contradictory";
+            /**
+             * Format: double
+             * @description Robust standard deviation of the residuals, degrees.
+             */
+            residual_deg: number;
         } | {
             /** @enum {string} */
             reason: "not_converged";

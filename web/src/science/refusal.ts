@@ -1,7 +1,7 @@
 /** Why there is no model, in an officer's words: what is missing, and what to do. */
 
 import type { Refusal } from '../api/types';
-import { count, degrees, microtesla } from '../format';
+import { count, degrees, heading, microtesla } from '../format';
 import { text } from '../text';
 
 export interface RefusalWords {
@@ -19,14 +19,21 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
         missing: t.tooFewSamples(count(refusal.found), count(refusal.needed)),
         todo: t.tooFewSamplesTodo,
       };
+    case 'no_reference':
+      return { missing: t.noReference(count(refusal.readings)), todo: t.noReferenceTodo };
+    case 'no_weight':
+      return { missing: t.noWeight(count(refusal.samples)), todo: t.noWeightTodo };
     case 'too_few_headings':
       return {
-        missing: t.tooFewHeadings(
-          refusal.found,
-          refusal.needed,
-          degrees(refusal.widest_gap_deg, 0),
-          degrees(refusal.allowed_gap_deg, 0),
-        ),
+        missing: [
+          t.tooFewHeadings(
+            refusal.found,
+            refusal.needed,
+            degrees(refusal.widest_gap_deg, 0),
+            degrees(refusal.allowed_gap_deg, 0),
+          ),
+          ...missingRanges(refusal.missing_deg),
+        ].join(' '),
         todo: t.tooFewHeadingsTodo,
       };
     case 'field_too_weak':
@@ -51,9 +58,21 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
       };
     case 'reference_stuck':
       return { missing: t.referenceStuck(count(refusal.readings)), todo: t.referenceStuckTodo };
+    case 'contradictory':
+      return {
+        missing: t.contradictory(degrees(refusal.residual_deg), degrees(refusal.allowed_deg, 0)),
+        todo: t.contradictoryTodo,
+      };
     case 'not_converged':
       return { missing: t.notConverged, todo: t.notConvergedTodo };
     default:
       return null;
   }
+}
+
+/** The headings to steer; nothing where a refusal of an older analysis lacks them. */
+function missingRanges(ranges: number[][] | undefined): string[] {
+  if (!ranges || ranges.length === 0) return [];
+  const shown = ranges.map(([from = 0, to = 0]) => `${heading(from)} – ${heading(to % 360)}`);
+  return [t.missing(shown.join(', '))];
 }

@@ -1,6 +1,6 @@
 import { readFileSync } from 'node:fs';
 import { describe, expect, test } from 'vitest';
-import type { Model, References, Refusal } from '../api/types';
+import type { Caution, Model, References, Refusal } from '../api/types';
 import { band95, standardError, widestBand } from './band';
 import { goodRanges, magneticLatitudeOf, watersOf, worstWaters, type Waters } from './reach';
 import { refusalWords } from './refusal';
@@ -121,6 +121,23 @@ describe('in words', () => {
     expect(plain(cautionWords({ caution: 'weak_field', h_nt: 4_130 }))).toContain('only 4.1 µT');
   });
 
+  test('every caution has words of its own', () => {
+    const cautions: Caution[] = [
+      { caution: 'one_magnetic_latitude' },
+      { caution: 'few_samples' },
+      { caution: 'no_times' },
+      { caution: 'large_residuals', residual_deg: 2.43 },
+      { caution: 'long_gap', days: 3_652.6, last: '2025-03-20T23:50:00Z' },
+      { caution: 'weak_field', h_nt: 4_130 },
+      { caution: 'moonlight' } as unknown as Caution,
+    ];
+    const words = cautions.map(cautionWords);
+    expect(new Set(words).size).toBe(cautions.length);
+    expect(words[3]).toContain('differ by 2.4°');
+    expect(plain(words[4])).toContain('none for 3\u202f653 days');
+    expect(words[4]).toContain('2025');
+  });
+
   test('references differ by an angle with its side, and what was dropped is counted', () => {
     const found: References = {
       ...{ pairs: 4_120, offset_deg: -0.32, failed_beyond_deg: 2.14, constant_sd_deg: 0.354 },
@@ -145,6 +162,10 @@ describe('in words', () => {
       ...[{ reason: 'too_few_headings' as const, found: 5, needed: 12 }].map((refusal) => ({
         ...refusal,
         ...{ widest_gap_deg: 211.4, allowed_gap_deg: 90 },
+        missing_deg: [
+          [90, 135],
+          [345, 390],
+        ] as [number, number][],
       })),
       { reason: 'field_too_weak', strongest_nt: 1_900, needed_nt: 3_000 },
       { reason: 'ambiguous_headings', h_nt: 5_000 },
@@ -152,6 +173,9 @@ describe('in words', () => {
       { reason: 'references_disagree', offset_deg: -12.04, allowed_deg: 6 },
       { reason: 'reference_stuck', readings: 1_400 },
       { reason: 'not_converged' },
+      { reason: 'no_reference', readings: 40 },
+      { reason: 'no_weight', samples: 40 },
+      { reason: 'contradictory', residual_deg: 10.52, allowed_deg: 3 },
     ];
     const found = refusals.map((refusal) => refusalWords(refusal));
     expect(new Set(found.map((words) => words?.todo)).size).toBe(refusals.length);
@@ -159,6 +183,10 @@ describe('in words', () => {
     expect(found[1]?.missing).toContain('5 of 24 sectors of 15°, with a gap of 211°');
     expect(plain(found[2]?.missing)).toContain('at most 1.9 µT; a magnetic compass needs 3.0 µT');
     expect(found[5]?.missing).toContain('differ by 12.0° throughout; 6° is the most');
+    expect(plain(found[1]?.missing)).toContain('Missing: 090° – 135°, 345° – 030°.');
+    expect(found[10]?.missing).toContain(
+      'differ by 10.5°, where no instruments leave more than 3°',
+    );
     expect(refusalWords({ reason: 'moonlight' } as unknown as Refusal)).toBeNull();
   });
 });

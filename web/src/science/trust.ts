@@ -1,7 +1,7 @@
 /** How far a model can be trusted, in an officer's words. */
 
 import type { Caution, DeviationRow, Model, References } from '../api/types';
-import { count, degrees, heading, microtesla } from '../format';
+import { count, day, degrees, heading, microtesla } from '../format';
 import { text } from '../text';
 import { size } from './advice';
 import { normal95 } from './band';
@@ -60,9 +60,23 @@ export function worth(model: Model): Statement | null {
 }
 
 export function cautionWords(caution: Caution): string {
-  return caution.caution === 'weak_field'
-    ? t.weakField(microtesla(caution.h_nt))
-    : t.oneMagneticLatitude;
+  switch (caution.caution) {
+    case 'one_magnetic_latitude':
+      return t.oneMagneticLatitude;
+    case 'few_samples':
+      return t.fewSamples;
+    case 'no_times':
+      return t.noTimes;
+    case 'large_residuals':
+      return t.largeResiduals(degrees(caution.residual_deg));
+    case 'long_gap':
+      return t.longGap(count(Math.round(caution.days)), day(caution.last));
+    case 'weak_field':
+      return t.weakField(microtesla(caution.h_nt));
+    default:
+      // A newer server may know more than this page does.
+      return t.unknown;
+  }
 }
 
 /** How gyro and satellite compass compare. */

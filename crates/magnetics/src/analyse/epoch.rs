@@ -85,6 +85,12 @@ pub(super) fn reference(
     one_constant_sd_deg: f64,
 ) -> Result<Reference, FitError> {
     let read: Vec<Option<HeadingReading>> = readings.iter().map(heading_reading).collect();
+    let has_reference = |r: &Reading| r.sample.gyro.or(r.sample.satellite).is_some();
+    if !readings.is_empty() && !readings.iter().any(has_reference) {
+        return Err(FitError::NoReference {
+            readings: readings.len() as u64,
+        });
+    }
     let known: Vec<HeadingReading> = read.iter().copied().flatten().collect();
     let referred = refer(&known, one_constant_sd_deg)?;
     let mut observed = referred.observations.into_iter();

@@ -32,6 +32,7 @@ mod row;
 mod slopes;
 mod solve;
 mod start;
+mod untimed;
 mod whiten;
 
 pub use noise::NoiseLevels;

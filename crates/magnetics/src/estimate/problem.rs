@@ -10,8 +10,10 @@ use super::prior::{Prior, scales, tail};
 use super::products::Products;
 use super::quality::widely;
 use super::row::{CONSTANT, Row, Station, UNKNOWNS, Unknowns, row, stations};
+use super::untimed::{all_timed, cell_of, design_effect};
 use super::whiten::{Drift, Part, Pass, Whitening, whiten};
 use crate::fit::Observation;
+use crate::time::Timestamp;
 use nalgebra::{SMatrix, SVector};
 
 /// Gauss–Newton steps at most; three suffice near the solution, thirty where the
@@ -155,21 +157,29 @@ impl<'a> Problem<'a> {
         levels: &NoiseLevels,
         settled: f64,
     ) -> Option<(Solution, Judged)> {
+        let timed = all_timed(self.observations);
+        let block_of = if timed { days_of } else { cell_of };
         let mut steps = Steps::new(settled);
         let mut blocks = Vec::new();
+        let mut sizes = Vec::new();
         let mut weights = Vec::with_capacity(self.observations.len());
         for _ in 0..ITERATIONS {
             blocks.clear();
+            sizes.clear();
             weights.clear();
             let mut whitening = Whitening::new(levels);
             let mut independent = Products::new();
             let mut block = None;
             for (o, station) in self.observations.iter().zip(&self.stations) {
                 let number = block_of(o);
-                if number != block {
+                if block != Some(number) {
                     let told = whitening.cut();
                     blocks.extend(block.map(|_| told));
-                    block = number;
+                    sizes.push(0.0);
+                    block = Some(number);
+                }
+                if let Some(size) = sizes.last_mut() {
+                    *size += 1.0;
                 }
                 let row = row(o, station, &solution.unknowns, solution.fusion);
                 let weight = whitening.take(station, &row);
@@ -178,9 +188,15 @@ impl<'a> Problem<'a> {
             }
             let told = whitening.cut();
             blocks.extend(block.map(|_| told));
-            let pass = whitening.pass();
+            let mut pass = whitening.pass();
             let step = self.step(&mut solution, &pass)?;
             if steps.end_with(&step) {
+                if !timed {
+                    let covariance = covariance(&solution, &pass)?;
+                    let seen = inflation(&blocks, &covariance);
+                    pass.information /= seen.max(design_effect(sizes.into_iter()));
+                    blocks.clear();
+                }
                 let judged = judge(&solution, &pass, &step, &blocks, &independent, weights)?;
                 return Some((solution, judged));
             }
@@ -255,10 +271,10 @@ impl Solution {
     }
 }
 
-/// The stretch of days that an observation is of; none without a time.
-fn block_of(o: &Observation) -> Option<i64> {
-    let time = o.time?;
-    Some((time.micros() as f64 / 1e6 / BLOCK_S).floor() as i64)
+/// The stretch of days that an observation with a time is of.
+fn days_of(o: &Observation) -> i64 {
+    let micros = o.time.map_or(0, Timestamp::micros);
+    (micros as f64 / 1e6 / BLOCK_S).floor() as i64
 }
 
 /// What a pass says of the solution that `step` led to.
@@ -271,9 +287,7 @@ fn judge(
     weights: Vec<f64>,
 ) -> Option<Judged> {
     let drift = pass.drift.after(step);
-    let covariance = (pass.information + solution.prior_information)
-        .cholesky()?
-        .inverse();
+    let covariance = covariance(solution, pass)?;
     let covariance = covariance * inflation(blocks, &covariance);
     // From where the filter began to where the ship is now.
     let scale = scales();
@@ -300,6 +314,12 @@ fn judge(
     })
 }
 
+/// What rows and prior leave open where the filter began.
+fn covariance(solution: &Solution, pass: &Pass) -> Option<Matrix> {
+    let information = pass.information + solution.prior_information;
+    Some(information.cholesky()?.inverse())
+}
+
 /// How many times larger the squares of the stretches' scores are than the noise
 /// model says, at least 1, the fit's own part taken off: were the model right, each
 /// stretch's score would vary as its information says.
@@ -322,7 +342,7 @@ fn inflation(blocks: &[Part], covariance: &Matrix) -> f64 {
 /// steadier than a compass, a satellite compass is not. Without times all noise
 /// passes for new, the reference's wander too.
 fn compass_part_of_white(observations: &[Observation]) -> f64 {
-    if observations.iter().any(|o| o.time.is_none()) {
+    if !all_timed(observations) {
         return OF_WHITE_UNTIMED;
     }
     let by_gyro: f64 = observations.iter().map(|o| o.gyro_share).sum();

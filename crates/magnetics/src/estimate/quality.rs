@@ -16,6 +16,8 @@ const WIDER: f64 = 10.0;
 const DATA_DRIVEN: f64 = 0.5;
 /// A compass is used with caution where H is below this.
 pub(crate) const CAUTION_H_NT: f64 = 6_000.0;
+/// Where so many times the samples would tell a parameter, samples are what lacks.
+const MORE: f64 = 10.0;
 /// What is neither parameter nor told apart from A by headings.
 const OTHERS: usize = UNKNOWNS - PARAMETERS;
 /// Information of what is known.
@@ -59,7 +61,7 @@ pub(crate) fn quality(evidence: &Evidence<'_>) -> (Quality, Identifiable) {
     };
     let mut cautions = Vec::new();
     if !(identifiable.bx_nt && identifiable.by_nt) {
-        cautions.push(Caution::OneMagneticLatitude);
+        cautions.push(what_lacks(evidence.information));
     }
     if evidence.weakest_h_nt < CAUTION_H_NT {
         cautions.push(Caution::WeakField {
@@ -82,6 +84,19 @@ pub(crate) fn quality(evidence: &Evidence<'_>) -> (Quality, Identifiable) {
         cautions,
     };
     (quality, identifiable)
+}
+
+/// Why bx and χ13, by and χ23 are not told apart: more samples like these would do
+/// it, or nothing will but other magnetic latitudes.
+fn what_lacks(information: &Matrix) -> Caution {
+    let more = widely(&(information * MORE)).cholesky();
+    let more = more.map(|factor| factor.inverse());
+    let told = self::identifiable(more.as_ref());
+    if told.bx_nt && told.by_nt {
+        Caution::FewSamples
+    } else {
+        Caution::OneMagneticLatitude
+    }
 }
 
 /// How many rows with independent errors of the same size would tell the curve

@@ -8,8 +8,9 @@ use super::problem::{Matrix, Problem, Solution};
 use super::quality::{Evidence, quality};
 use super::row::{CONSTANT, USUAL_FUSION, in_own_units, plain_residual};
 use super::start::start;
+use super::untimed::{all_timed, cell_of};
 use crate::fit::Observation;
-use crate::model::{Covariance, Identifiable, Parameters, Quality};
+use crate::model::{Caution, Covariance, Identifiable, Parameters, Quality};
 use crate::ship::EarthField;
 use std::borrow::Cow;
 
@@ -76,6 +77,11 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
     let (parameters, constant_deg) = in_own_units(&judged.at_last);
     let mut covariance = in_own_units_squared(&judged.covariance);
     covariance[CONSTANT][CONSTANT] += options.reference_constant_sd_deg.powi(2);
+    let timed = all_timed(&sorted);
+    if !timed {
+        // Over which days a gyro's wander has averaged nobody knows.
+        covariance[CONSTANT][CONSTANT] += NoiseLevels::TYPICAL.slow_gyro_deg.powi(2);
+    }
     let mut rows = vec![
         FittedRow {
             residual_deg: 0.0,
@@ -96,7 +102,7 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         .iter()
         .map(|row| row.weight * row.residual_deg.powi(2))
         .sum();
-    let (quality, identifiable) = quality(&Evidence {
+    let (mut quality, identifiable) = quality(&Evidence {
         information: &judged.information,
         by_data: judged.by_data,
         independent: &judged.independent,
@@ -111,6 +117,9 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
         },
         weakest_h_nt: sorted.iter().map(|o| o.h_nt).fold(f64::INFINITY, f64::min),
     });
+    if !timed {
+        quality.cautions.push(Caution::NoTimes);
+    }
     Some(Estimate {
         parameters,
         constant_deg,
@@ -143,10 +152,15 @@ pub(crate) fn rough(
     })
 }
 
-/// Indices from the earliest observation to the latest.
+/// Indices from the earliest observation to the latest, without times from cell to
+/// cell.
 fn order(observations: &[Observation]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..observations.len()).collect();
-    order.sort_by_key(|&i| observations[i].time);
+    if all_timed(observations) {
+        order.sort_by_key(|&i| observations[i].time);
+    } else {
+        order.sort_by_key(|&i| cell_of(&observations[i]));
+    }
     order
 }
 
@@ -179,8 +193,7 @@ fn begin(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> Begun {
         &problem.prior_mean.into(),
         &problem.prior_information,
     );
-    let timed = problem.observations.iter().all(|o| o.time.is_some());
-    let typical = if timed {
+    let typical = if all_timed(problem.observations) {
         NoiseLevels::TYPICAL
     } else {
         NoiseLevels::MEMORYLESS

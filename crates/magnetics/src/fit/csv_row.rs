@@ -4,7 +4,7 @@
 //! what a row says, is decided here.
 
 use super::{GyroSpeedError, HeadingReading, gyro_speed_error_deg};
-use crate::angle::{CompassHeading, TrueHeading, Variation};
+use crate::angle::{Brief, CompassHeading, TrueHeading, Variation};
 use crate::field::{FieldAt, FieldModel};
 use crate::position::Position;
 use crate::time::Timestamp;
@@ -122,9 +122,8 @@ pub fn check_columns<'a>(header: impl IntoIterator<Item = &'a str>) -> Result<()
 }
 
 /// Makes readings of rows, in order of time and then of everything else, so that
-/// the order of the rows leaves no trace. A row that says the same as another of
-/// the same time is that row again and counts once; rows without times may well
-/// be alike. Where a row has both a field and a place, the field as given is used.
+/// the order of the rows leaves no trace. A row that says the same as another is that
+/// row again and counts once, with a time or without. Where a row has both a field and a place, the field as given is used.
 ///
 /// # Errors
 /// With the first row and column that are empty or invalid. A row without any
@@ -138,7 +137,7 @@ pub fn readings_from_csv(
         .map(|(index, row)| reading(row, index, gyro_speed_error))
         .collect::<Result<_, _>>()?;
     readings.sort_by(in_order);
-    readings.dedup_by(|a, b| a.time.is_some() && in_order(a, b).is_eq());
+    readings.dedup_by(|a, b| in_order(a, b).is_eq());
     Ok(readings)
 }
 
@@ -259,9 +258,10 @@ impl Column {
         value: Option<f64>,
     ) -> Result<Option<f64>, CsvRowError> {
         match value {
-            Some(number) if !(number >= 0.0 && number.is_finite()) => {
-                Err(self.invalid(column, &format!("{number} is not a number from 0 up")))
-            }
+            Some(number) if !(number >= 0.0 && number.is_finite()) => Err(self.invalid(
+                column,
+                &format!("{} is not a number from 0 up", Brief(number)),
+            )),
             _ => Ok(value),
         }
     }
@@ -278,11 +278,16 @@ impl Column {
                 .map_err(|e| self.invalid("variation_deg", &e.to_string()))?;
             let h_nt = self.needed("h_nt", row.h_nt)?;
             if !(h_nt > 0.0 && h_nt <= 1e6) {
-                return Err(self.invalid("h_nt", &format!("{h_nt} nT is no horizontal field")));
+                return Err(self.invalid(
+                    "h_nt",
+                    &format!("{} nT is no horizontal field", Brief(h_nt)),
+                ));
             }
             let z_nt = self.needed("z_nt", row.z_nt)?;
             if !(-1e6..=1e6).contains(&z_nt) {
-                return Err(self.invalid("z_nt", &format!("{z_nt} nT is no vertical field")));
+                return Err(
+                    self.invalid("z_nt", &format!("{} nT is no vertical field", Brief(z_nt)))
+                );
             }
             return Ok((variation, h_nt, z_nt));
         }

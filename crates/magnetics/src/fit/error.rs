@@ -1,11 +1,24 @@
 //! Why no model came out of a set of observations.
 
+use super::headings::ranges;
 use serde::{Deserialize, Serialize};
 
 /// A refusal to fit; each says what is missing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[serde(tag = "reason", rename_all = "snake_case")]
 pub enum FitError {
+    /// No reading has a heading to hold the compass against.
+    #[error("no gyro, satellite or other true heading in any of {readings} readings")]
+    NoReference {
+        /// How many readings there are.
+        readings: u64,
+    },
+    /// Every observation has the weight 0.
+    #[error("the weight is 0 in all of {samples} samples")]
+    NoWeight {
+        /// How many there are.
+        samples: u64,
+    },
     /// Too few observations with a reference, whatever their headings.
     #[error("{found} usable samples; at least {needed} are needed")]
     TooFewSamples {
@@ -17,7 +30,8 @@ pub enum FitError {
     /// The observations lie on too few headings.
     #[error(
         "headings in {found} of 24 sectors of 15 degrees, the widest gap {widest_gap_deg:.0} degrees; \
-         at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} degrees"
+         at least {needed} sectors are needed and no gap over {allowed_gap_deg:.0} degrees; \
+         missing: {}", ranges(.missing_deg)
     )]
     TooFewHeadings {
         /// Sectors of 15° with at least one observation.
@@ -28,6 +42,10 @@ pub enum FitError {
         widest_gap_deg: f64,
         /// The widest such range that is allowed.
         allowed_gap_deg: f64,
+        /// The headings without an observation: whole sectors of 15°, each range by
+        /// its first degree and the one after its last, beyond 360 through north.
+        #[serde(default)]
+        missing_deg: Vec<(u32, u32)>,
     },
     /// The earth's horizontal field is too weak for a compass.
     #[error(
@@ -64,16 +82,31 @@ pub enum FitError {
         /// How far they may differ.
         allowed_deg: f64,
     },
-    /// The only reference repeated itself while the ship turned.
+    /// The only reference stood still while the ship turned.
     #[error(
-        "the reference repeats itself in {readings} readings while the compass turns: it is stuck, \
+        "the reference stands still in {readings} readings while the compass turns: it is stuck, \
          or the wrong source was taken for it"
     )]
     ReferenceStuck {
-        /// How many readings repeat.
+        /// In how many readings it did.
         readings: u64,
     },
+    /// What the best ship leaves over is more than instruments do.
+    #[error(
+        "residuals of {residual_deg:.1} degrees, where no instruments leave more than \
+         {allowed_deg:.0}: no ship explains these; check the sign of the variation and which \
+         column is which"
+    )]
+    Contradictory {
+        /// Robust standard deviation of the residuals, degrees.
+        residual_deg: f64,
+        /// How large it may be.
+        allowed_deg: f64,
+    },
     /// The iteration did not settle.
-    #[error("the fit did not settle: the samples contradict each other or any ship")]
+    #[error(
+        "the fit did not settle: the samples contradict each other or any ship; check the sign of \
+         the variation and which column is which"
+    )]
     NotConverged,
 }

@@ -4,12 +4,15 @@
 
 mod csv_row;
 mod error;
+mod headings;
 mod normal;
 mod observation;
 mod ols;
 mod paper;
 mod reference;
 mod robust;
+mod soundness;
+mod stray;
 
 pub use csv_row::{CsvRow, CsvRowError, check_columns, readings_from_csv};
 pub use error::FitError;

@@ -6,8 +6,9 @@
 //! held to be independent from row to row, and nothing is known beforehand. The
 //! product's own fit is [`fit_robust`](super::fit_robust).
 
+use super::headings::check_headings;
 use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
-use super::robust::check_headings;
+use super::robust::{check_field, is_usable};
 use super::{FitError, Observation};
 use crate::angle::wrap_180;
 use crate::deviation::linearised_at_compass;
@@ -30,18 +31,17 @@ const ROUNDING: f64 = 1e-12;
 /// χ12 and χ21 take it up with nothing lost from the deviation.
 ///
 /// An observation's weight divides the variance of its noise; those of weight
-/// zero are left out and counted as rejected.
+/// zero, and those in a field too weak for a compass, are left out and counted as
+/// rejected.
 ///
 /// # Errors
 /// When there are too few samples or headings, all lie at one magnetic
 /// latitude, the fitted ship's headings are ambiguous at a sample's field, or
 /// the iteration does not settle.
 pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
-    let rows: Vec<Observation> = observations
-        .iter()
-        .filter(|o| o.weight > 0.0)
-        .copied()
-        .collect();
+    check_field(observations)?;
+    let mut rows = observations.to_vec();
+    rows.retain(is_usable);
     let found = rows.len() as u64;
     check_number(found)?;
     check_headings(&rows)?;

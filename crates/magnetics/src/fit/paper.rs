@@ -6,27 +6,33 @@
 //! noise is held to be independent. The product's own fit is
 //! [`fit_robust`](super::fit_robust).
 
+use super::headings::check_headings;
 use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
-use super::robust::check_headings;
+use super::robust::{check_field, is_usable};
 use super::{FitError, Observation};
 use crate::angle::wrap_180;
 use crate::deviation::Coefficients;
 use crate::model::{Model, Parameters};
 use crate::ship::{EarthField, PARAMETERS};
 
-/// Fits eq. 11 by least squares. The model has no constant.
+/// Fits eq. 11 by least squares. The model has no constant. Observations of weight
+/// zero, and those in a field too weak for a compass, are left out and counted as
+/// rejected; all others count alike.
 ///
 /// # Errors
 /// When there are too few samples or headings, or all lie at one magnetic
 /// latitude, where eq. 11 has no unique solution.
 pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
-    let found = observations.len() as u64;
+    check_field(observations)?;
+    let mut rows = observations.to_vec();
+    rows.retain(is_usable);
+    let found = rows.len() as u64;
     check_number(found)?;
-    check_headings(observations)?;
+    check_headings(&rows)?;
     let mut normal = Matrix::zeros();
     let mut right = Vector::zeros();
     let mut squares = 0.0;
-    for o in observations {
+    for o in &rows {
         let (row, force) = equation_11(o);
         normal += row * row.transpose();
         right += row * force;
@@ -34,7 +40,7 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
     }
     let inverse = invert(&normal)?;
     let solution = inverse * right;
-    let freedom = (observations.len() - PARAMETERS) as f64;
+    let freedom = (rows.len() - PARAMETERS) as f64;
     let variance = ((squares - solution.dot(&right)) / freedom).max(0.0);
 
     let parameters = Parameters::from_array(solution.into());
@@ -44,9 +50,9 @@ pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
         constant_deg: 0.0,
         covariance: Some(covariance),
         identifiable: Some(identifiable(&covariance)),
-        rms_deg: Some(rms_deg(&parameters, observations)?),
+        rms_deg: Some(rms_deg(&parameters, &rows)?),
         samples_used: found,
-        samples_rejected: 0,
+        samples_rejected: observations.len() as u64 - found,
         quality: None,
     })
 }

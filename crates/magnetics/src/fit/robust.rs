@@ -1,7 +1,9 @@
 //! The product's fit: exact model, residuals in angle, robust weights, noise
 //! that remembers, and a prior for what headings cannot tell.
 
+use super::headings::check_headings;
 use super::{FitError, Observation};
+use super::{soundness, stray};
 use crate::deviation::Coefficients;
 use crate::estimate::{NoiseLevels, Options, Prior, Rough, estimate, rough};
 use crate::model::{Model, Parameters};
@@ -14,10 +16,6 @@ pub const REFERENCE_CONSTANT_SD_DEG: f64 = 0.5;
 const NEEDED_SAMPLES: u64 = 12;
 /// The same where the ship is known but for her permanent magnetism.
 const NEEDED_OF_A_KNOWN_SHIP: u64 = 6;
-/// Sectors of 15° of heading that must hold samples.
-const NEEDED_SECTORS: u32 = 6;
-/// With a wider gap the deviation beyond it would be the prior's alone.
-const ALLOWED_GAP_DEG: f64 = 240.0;
 /// Below this a compass is of no use.
 pub const WEAKEST_H_NT: f64 = 2_000.0;
 /// A row of less weight than this is counted as rejected.
@@ -78,7 +76,7 @@ pub fn fit_robust(
 ) -> Result<RobustFit, FitError> {
     let usable = usable(observations);
     let rows: Vec<Observation> = usable.iter().map(|&i| observations[i]).collect();
-    check_field(observations, &rows)?;
+    check_field(observations)?;
     check_number(&rows, NEEDED_SAMPLES)?;
     check_headings(&rows)?;
     fit_usable(observations, &usable, &rows, options)
@@ -95,7 +93,7 @@ pub fn fit_known_ship(
 ) -> Result<RobustFit, FitError> {
     let usable = usable(observations);
     let rows: Vec<Observation> = usable.iter().map(|&i| observations[i]).collect();
-    check_field(observations, &rows)?;
+    check_field(observations)?;
     check_number(&rows, NEEDED_OF_A_KNOWN_SHIP)?;
     fit_usable(observations, &usable, &rows, options)
 }
@@ -116,14 +114,17 @@ pub(crate) fn learn(
     Some(learnt)
 }
 
-/// Those in a field that a compass can work in.
+/// Those that a fit may take.
 fn usable(observations: &[Observation]) -> Vec<usize> {
-    (0..observations.len())
+    let mut usable: Vec<usize> = (0..observations.len())
         .filter(|&i| is_usable(&observations[i]))
-        .collect()
+        .collect();
+    stray::leave_out_early(observations, &mut usable);
+    usable
 }
 
-fn is_usable(o: &Observation) -> bool {
+/// In a field that a compass can work in, and not left out by its weight.
+pub(super) fn is_usable(o: &Observation) -> bool {
     o.h_nt >= WEAKEST_H_NT && o.weight > 0.0
 }
 
@@ -141,7 +142,12 @@ fn fit_usable(
         },
     )
     .ok_or(FitError::NotConverged)?;
+    let residuals = fitted.rows.iter().map(|row| row.residual_deg);
+    let caution = soundness::judge(residuals, &fitted.levels)?;
     check_needle(&fitted.parameters, rows)?;
+    let mut quality = fitted.quality;
+    quality.cautions.extend(caution);
+    quality.cautions.extend(stray::long_gap(rows));
 
     let mut outcomes = vec![
         RowOutcome {
@@ -167,7 +173,7 @@ fn fit_usable(
         rms_deg: Some((squares / samples_used.max(1) as f64).sqrt()),
         samples_used,
         samples_rejected: observations.len() as u64 - samples_used,
-        quality: Some(fitted.quality),
+        quality: Some(quality),
     };
     Ok(RobustFit {
         model,
@@ -176,12 +182,16 @@ fn fit_usable(
     })
 }
 
-fn check_field(all: &[Observation], usable: &[Observation]) -> Result<(), FitError> {
+/// Refuses observations of which none has weight and a field for a compass.
+pub(super) fn check_field(all: &[Observation]) -> Result<(), FitError> {
     let weighed = all.iter().filter(|o| o.weight > 0.0).map(|o| o.h_nt);
     match weighed.reduce(f64::max) {
-        Some(strongest_nt) if usable.is_empty() => Err(FitError::FieldTooWeak {
+        Some(strongest_nt) if strongest_nt < WEAKEST_H_NT => Err(FitError::FieldTooWeak {
             strongest_nt,
             needed_nt: WEAKEST_H_NT,
+        }),
+        None if !all.is_empty() => Err(FitError::NoWeight {
+            samples: all.len() as u64,
         }),
         _ => Ok(()),
     }
@@ -193,34 +203,6 @@ fn check_number(rows: &[Observation], needed: u64) -> Result<(), FitError> {
         return Ok(());
     }
     Err(FitError::TooFewSamples { found, needed })
-}
-
-pub(super) fn check_headings(rows: &[Observation]) -> Result<(), FitError> {
-    // The least and the most in each degree: between these lie all gaps that matter.
-    let mut ends: [Option<(f64, f64)>; 360] = [None; 360];
-    for heading in rows.iter().map(|o| o.compass.degrees()) {
-        let (least, most) = ends[heading as usize % 360].get_or_insert((heading, heading));
-        *least = least.min(heading);
-        *most = most.max(heading);
-    }
-    let sectors = ends.chunks(15);
-    let found = sectors.filter(|of| of.iter().any(Option::is_some)).count() as u32;
-    let mut widest_gap_deg: f64 = 0.0;
-    let around = ends.iter().flatten().next();
-    let around = around.map(|(least, most)| (least + 360.0, most + 360.0));
-    let next = ends.iter().flatten().copied().skip(1).chain(around);
-    for ((_, most), (least, _)) in ends.iter().flatten().zip(next) {
-        widest_gap_deg = widest_gap_deg.max(least - most);
-    }
-    if found >= NEEDED_SECTORS && widest_gap_deg <= ALLOWED_GAP_DEG {
-        return Ok(());
-    }
-    Err(FitError::TooFewHeadings {
-        found,
-        needed: NEEDED_SECTORS,
-        widest_gap_deg,
-        allowed_gap_deg: ALLOWED_GAP_DEG,
-    })
 }
 
 /// One compass heading must stand for one course where the ship is mostly.

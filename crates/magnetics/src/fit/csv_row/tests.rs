@@ -47,7 +47,10 @@ fn a_row_without_a_reference_makes_no_observation() {
         gyro_deg: None,
         ..row()
     };
-    assert_eq!(observed(without), None);
+    let rows = [without, row()];
+    let readings = readings_from_csv(&rows, GyroSpeedError::Corrected).unwrap();
+    let observations = refer(&readings, 0.5).unwrap().observations;
+    assert_eq!(observations.iter().flatten().count(), 1);
 }
 
 #[test]
@@ -219,6 +222,39 @@ fn rows_count_once_and_in_any_order_alike() {
     ]);
     assert_eq!(once.len(), 3);
     assert_eq!(once, again);
-    // Without times two rows may be alike and still be two.
-    assert_eq!(read(&[row(), row()]).len(), 2);
+}
+
+#[test]
+fn a_row_without_a_time_counts_once_however_often_it_stands_there() {
+    let rows = [
+        row(),
+        CsvRow {
+            gyro_deg: Some(2.0),
+            ..row()
+        },
+    ];
+    let once = readings_from_csv(&rows, GyroSpeedError::Corrected).unwrap();
+    let often = readings_from_csv(&rows.repeat(10), GyroSpeedError::Corrected).unwrap();
+    assert_eq!(once.len(), 2);
+    assert_eq!(once, often);
+}
+
+#[test]
+fn a_number_of_three_hundred_digits_is_quoted_briefly() {
+    for wild in [
+        CsvRow {
+            compass_deg: Some(1e308),
+            ..row()
+        },
+        CsvRow {
+            h_nt: Some(1e308),
+            ..row()
+        },
+    ] {
+        let complaint = read(wild).unwrap_err().to_string();
+        assert!(
+            complaint.contains("1e308") && complaint.len() < 80,
+            "{complaint}"
+        );
+    }
 }

@@ -77,8 +77,14 @@ struct Trust {
 ///
 /// # Errors
 /// [`FitError::ReferencesDisagree`] when the two differ throughout by more than
-/// any alignment explains, [`FitError::ReferenceStuck`] when none ever moves.
+/// any alignment explains, [`FitError::ReferenceStuck`] when none ever moves,
+/// [`FitError::NoReference`] when no reading has any.
 pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Referred, FitError> {
+    if !readings.is_empty() && !readings.iter().any(HeadingReading::has_reference) {
+        return Err(FitError::NoReference {
+            readings: readings.len() as u64,
+        });
+    }
     let mut order: Vec<usize> = (0..readings.len()).collect();
     order.sort_by_key(|&i| readings[i].time);
     let mut trust = stuck::trust(readings, &order);

@@ -136,3 +136,51 @@ fn the_order_of_the_readings_does_not_matter() {
     backward.observations.reverse();
     assert_eq!(forward, backward);
 }
+
+/// A reference that stands still and trembles; the sound gyro is kept.
+#[test]
+fn a_reference_that_trembles_where_the_ship_turns_is_stuck() {
+    for tremble in [0.05, 0.4, 3.0] {
+        let trembling = |i: u32| heading(123.0 + tremble * wobble(i) / 0.3);
+        let mut stuck = readings(300, |i| (wobble(i), 0.0));
+        for (i, reading) in stuck.iter_mut().enumerate() {
+            reading.satellite = Some(trembling(i as u32));
+        }
+        let referred = refer(&stuck, 0.5).unwrap();
+        assert_eq!(referred.check.satellite_dropped, 300, "{tremble}");
+        assert!(referred.observations.iter().all(Option::is_some));
+        for reading in &mut stuck {
+            reading.gyro = None;
+        }
+        let refused = refer(&stuck, 0.5);
+        assert_eq!(refused, Err(FitError::ReferenceStuck { readings: 300 }));
+    }
+}
+
+/// Neither wild compass readings on a steady course nor a compass that lightning
+/// moved by 60° make a stuck gyro of a sound one.
+#[test]
+fn a_gyro_on_a_steady_course_is_not_stuck_for_what_the_compass_does() {
+    let mut steady = readings(300, |i| (wobble(i), 0.0));
+    for (i, reading) in steady.iter_mut().enumerate() {
+        let moved = if i >= 150 { 60.0 } else { 0.0 };
+        let wild = if i % 10 == 0 { 20.0 } else { 0.0 };
+        reading.compass = CompassHeading::new(80.0 + moved + wild).unwrap();
+        reading.gyro = Some(heading(90.0 + wobble(i as u32)));
+        reading.satellite = None;
+    }
+    let referred = refer(&steady, 0.5).unwrap();
+    assert_eq!(referred.check.gyro_dropped, 0);
+}
+
+#[test]
+fn readings_without_any_reference_are_refused_by_name() {
+    let mut none = readings(30, |_| (0.0, 0.0));
+    for reading in &mut none {
+        (reading.gyro, reading.satellite) = (None, None);
+    }
+    assert_eq!(
+        refer(&none, 0.5),
+        Err(FitError::NoReference { readings: 30 })
+    );
+}
