@@ -257,4 +257,70 @@ fn a_compass_that_sticks_ends_in_words_and_not_in_a_panic() {
     let analysis = run(&samples);
     is_sound(&analysis);
     assert!(!analysis.changes.is_empty());
+    assert!(analysis.changes.len() < 100, "{}", analysis.changes.len());
+    let told = analysis.changes.iter().map(|c| c.evidence.len());
+    assert!(told.max().unwrap() < 20);
+}
+
+/// The same samples with everything from each of some rows on later by so much.
+fn delayed(samples: &[Sample], rows: impl Fn(usize) -> bool, seconds: f64) -> Vec<Sample> {
+    let mut late = 0.0;
+    let delayed = samples.iter().enumerate().map(|(row, sample)| {
+        if rows(row) {
+            late += seconds;
+        }
+        Sample {
+            time: sample.time.plus_seconds(late),
+            ..*sample
+        }
+    });
+    delayed.collect()
+}
+
+#[test]
+fn years_without_sailing_are_one_gap() {
+    let log = sail_log(4, &calm(Event::Nothing));
+    let middle = log.samples.len() / 2;
+    let years = 3.0 * 365.25 * 86_400.0;
+    let samples = delayed(&log.samples, |row| row == middle, years);
+    let analysis = run(&samples);
+    is_sound(&analysis);
+    assert!(analysis.changes.len() < 4, "{:?}", analysis.changes);
+    assert!(analysis.epochs.iter().all(|epoch| epoch.model.is_some()));
+}
+
+#[test]
+fn a_thousand_port_calls_are_a_bounded_work() {
+    let mut plan = calm(Event::Cargo);
+    plan.days = 60.0;
+    let log = sail_log(40, &plan);
+    let samples = delayed(&log.samples, |row| row % 5 == 4, 4.0 * HOUR_S);
+    let analysis = run(&samples);
+    is_sound(&analysis);
+    assert!(analysis.changes.len() < 60, "{}", analysis.changes.len());
+}
+
+#[test]
+fn what_was_not_certain_widens_the_band() {
+    let mut plan = calm(Event::Cargo);
+    plan.days = 90.0;
+    let log = sail_log(40, &plan);
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
+    let discharged = cargo.to.unwrap();
+    let first = log.samples.iter().position(|s| s.time > discharged);
+    let first = first.unwrap();
+    let analysis = run(&log.samples[..first + 3]);
+    is_sound(&analysis);
+    let laden = run(&log.samples[..first]);
+    let open = analysis.changes.iter().flat_map(|c| &c.evidence);
+    assert!(
+        open.clone().any(|e| e.contains("may have ended")),
+        "{open:?}"
+    );
+    let variance = |analysis: &Analysis| {
+        let model = analysis.current_epoch().unwrap().model.as_ref();
+        let covariance = model.unwrap().covariance.unwrap();
+        covariance[0][0] + covariance[2][2]
+    };
+    assert!(variance(&analysis) > variance(&laden));
 }

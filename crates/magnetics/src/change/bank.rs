@@ -1,12 +1,17 @@
 //! What else may have happened, and since when: copies of the filter that began
 //! from it at different times, each with one thing upset.
 //!
+//! Copies with a step run all the time. Those with anything else, its rivals, are
+//! of use only once a step leads: then they are made of what the steps began from,
+//! and of the last measurements, and given up again when nothing leads.
+//!
 //! What always holds: at most [`CAPACITY`] times are kept, their ages spaced
 //! about geometrically; the time of the likeliest copy of every kind is among them.
 
 use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES};
 use crate::estimate::OFFSET_SD_DEG;
 use crate::ship::PARAMETERS;
+use std::collections::VecDeque;
 
 /// Times that are kept.
 const CAPACITY: usize = 16;
@@ -28,6 +33,15 @@ const WORTH: f64 = 3.0;
 /// How far a ship that is herself again may differ from what she was, in
 /// population units.
 const SLACK: f64 = 0.06;
+
+/// Rivals are awake from when a step leads by this until nothing leads by that,
+/// nats; they know of so many measurements at most.
+const WAKE_NATS: f64 = 4.0;
+const SLEEP_NATS: f64 = 3.0;
+const REMEMBERED: usize = 432;
+/// A step that trails by this, after so many rows, is given up.
+const COLD_NATS: f64 = 2.0;
+const COLD_AFTER: usize = 144;
 
 /// What may have happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +66,8 @@ pub(super) const KINDS: [Kind; 5] = [
     Kind::Over,
 ];
 
+const RIVALS: [Kind; 4] = [Kind::Reference, Kind::Burst, Kind::Return, Kind::Over];
+
 /// A time at which something may have happened.
 #[derive(Clone, Debug)]
 pub(super) struct Spawn {
@@ -66,6 +82,25 @@ pub(super) struct Spawn {
 }
 
 impl Spawn {
+    /// Makes the copies that rival a step.
+    fn wake(&mut self, base: Option<&Filter>) {
+        let now = &self.origin;
+        self.copies[Kind::Reference as usize] = Some(upset(now, Kind::Reference));
+        self.copies[Kind::Burst as usize] = Some(upset(now, Kind::Burst));
+        self.copies[Kind::Return as usize] = base.map(|base| set_back(now, base));
+    }
+
+    fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
+        let bursting = (self.age_s < BURST_S).then_some(BURST);
+        self.age_s += m.seconds;
+        for &kind in kinds {
+            let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
+            if let Some(copy) = &mut self.copies[kind as usize] {
+                copy.take(m, noise, burst);
+            }
+        }
+    }
+
     pub(super) fn copy(&self, kind: Kind) -> Option<&Filter> {
         self.copies[kind as usize].as_ref()
     }
@@ -83,41 +118,94 @@ pub(super) struct Lead {
 pub(super) struct Bank {
     /// From the oldest to the latest.
     pub(super) spawns: Vec<Spawn>,
+    /// The last measurements, the latest last, and its row.
+    memory: VecDeque<Measurement>,
+    latest: usize,
+    are_rivals_awake: bool,
 }
 
 impl Bank {
+    /// Forgets all that may have happened.
+    pub(super) fn clear(&mut self) {
+        self.spawns.clear();
+        self.are_rivals_awake = false;
+    }
+
     /// New copies of `now`, which are to begin with row `at`.
     pub(super) fn spawn(&mut self, at: usize, now: &Filter, base: Option<&Filter>) {
         self.thin(at, now);
-        let astray = self.lead(Kind::Burst, now).filter(|lead| lead.nats > WORTH);
-        let astray = astray.map(|lead| &self.spawns[lead.spawn]);
-        let astray_from = astray.map(|spawn| spawn.at);
-        let over = astray.and_then(|spawn| spawn.copy(Kind::Burst).cloned());
-        self.spawns.push(Spawn {
+        self.rest(at, now);
+        let mut spawn = Spawn {
             at,
-            astray_from,
+            astray_from: None,
             origin: now.clone(),
-            copies: [
-                Some(upset(now, Kind::Step)),
-                Some(upset(now, Kind::Reference)),
-                Some(upset(now, Kind::Burst)),
-                base.map(|base| set_back(now, base)),
-                over,
-            ],
+            copies: [const { None }; KINDS.len()],
             age_s: 0.0,
-        });
+        };
+        spawn.copies[Kind::Step as usize] = Some(upset(now, Kind::Step));
+        if self.are_rivals_awake {
+            spawn.wake(base);
+            let astray = self.lead(Kind::Burst, now).filter(|lead| lead.nats > WORTH);
+            if let Some(astray) = astray.map(|lead| &self.spawns[lead.spawn]) {
+                spawn.astray_from = Some(astray.at);
+                spawn.copies[Kind::Over as usize] = astray.copy(Kind::Burst).cloned();
+            }
+        }
+        self.spawns.push(spawn);
     }
 
-    pub(super) fn take(&mut self, m: &Measurement, noise: &Noise) {
+    /// Takes in the measurement of row `at`; `null` has taken it in before.
+    pub(super) fn take(
+        &mut self,
+        at: usize,
+        m: Measurement,
+        noise: &Noise,
+        (null, base): (&Filter, Option<&Filter>),
+    ) {
         for spawn in &mut self.spawns {
-            let bursting = (spawn.age_s < BURST_S).then_some(BURST);
-            spawn.age_s += m.seconds;
-            for (copy, kind) in spawn.copies.iter_mut().zip(KINDS) {
-                let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
-                if let Some(copy) = copy {
-                    copy.take(m, noise, burst);
+            spawn.take(&m, noise, &KINDS);
+        }
+        if self.memory.len() == REMEMBERED {
+            self.memory.pop_front();
+        }
+        self.memory.push_back(m);
+        self.latest = at;
+        let leads = self
+            .lead(Kind::Step, null)
+            .is_some_and(|lead| lead.nats > WAKE_NATS);
+        if leads && !self.are_rivals_awake {
+            self.wake(noise, base);
+        }
+    }
+
+    /// Makes the rivals, as if they had run all along.
+    fn wake(&mut self, noise: &Noise, base: Option<&Filter>) {
+        self.are_rivals_awake = true;
+        let known_from = self.latest + 1 - self.memory.len();
+        for spawn in self.spawns.iter_mut().filter(|s| s.at >= known_from) {
+            spawn.wake(base);
+            spawn.age_s = 0.0;
+            for m in self.memory.iter().skip(spawn.at - known_from) {
+                spawn.take(m, noise, &RIVALS);
+            }
+        }
+    }
+
+    /// Gives up rivals when nothing leads, and steps that trail for good.
+    fn rest(&mut self, at: usize, null: &Filter) {
+        let leads = KINDS.map(|kind| self.lead(kind, null).map_or(0.0, |lead| lead.nats));
+        if leads.iter().all(|nats| *nats < SLEEP_NATS) {
+            self.are_rivals_awake = false;
+            for spawn in &mut self.spawns {
+                for kind in RIVALS {
+                    spawn.copies[kind as usize] = None;
                 }
             }
+        }
+        let hopeless = null.log_likelihood - COLD_NATS;
+        for spawn in self.spawns.iter_mut().filter(|s| at - s.at > COLD_AFTER) {
+            let step = &mut spawn.copies[Kind::Step as usize];
+            *step = step.take().filter(|step| step.log_likelihood > hopeless);
         }
     }
 

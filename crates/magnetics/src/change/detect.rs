@@ -32,6 +32,12 @@ const FIRST: usize = 100;
 const STEP_NATS: f64 = 10.0;
 const STEP_AT_LEAST: f64 = 3.0;
 const LARGE_NATS: f64 = 40.0;
+/// And it must have lasted for so many rows: the flank of an anomaly is as steep.
+const STEP_ROWS: usize = 6;
+/// While one of two references is out of use for more than this share of the rows,
+/// it must be likelier by that: the one that is left may be the one that fails.
+const ONE_REFERENCE_SHARE: f64 = 0.3;
+const ONE_REFERENCE_NATS: f64 = 30.0;
 /// A reference's step must be likelier by this than a burst.
 const REFERENCE_NATS: f64 = 12.0;
 /// So must a return to what was before, away from port.
@@ -57,6 +63,12 @@ const ASTRAY_DEG: f64 = 0.7;
 const DATES: usize = 40;
 /// Those less likely than the best by this or more are no date of it, nats.
 const DATE_NATS: f64 = 1.92;
+
+/// A step is dated at one of the last port calls, back to so many spawned times
+/// before its own, if that is less likely than the likeliest row by no more, nats.
+const CALLS: usize = 3;
+const CALL_SPAWNS: usize = 3;
+const CALL_NATS: f64 = 4.0;
 
 /// What the search is told beside the rows.
 pub(crate) struct Given<'a> {
@@ -273,8 +285,9 @@ impl<'a> Search<'a> {
         let at = self.point(k);
         let m = self.measure(k, &at);
         self.null.take(&m, &self.noise, None);
-        self.bank.take(&m, &self.noise);
         self.calls.take(&m, &self.noise, &self.null);
+        let base = self.calls.bases.last().map(|base| &base.filter);
+        self.bank.take(k, m, &self.noise, (&self.null, base));
         if k >= YOUNG {
             self.judge(k);
         }
@@ -359,7 +372,7 @@ impl<'a> Search<'a> {
         let over_burst = lasting - burst;
         let is_told = match kind {
             Kind::Reference => over_burst > REFERENCE_NATS,
-            _ => over_burst > STEP_NATS || (lasting > LARGE_NATS && over_burst > STEP_AT_LEAST),
+            _ => self.has_lasted(k, &leads) && self.is_step(k, lasting, over_burst, &leads),
         };
         if is_told {
             return self.adopt(k, kind, leads);
@@ -381,6 +394,25 @@ impl<'a> Search<'a> {
             self.burst = Some(self.events.len());
             self.push(k, What::Burst, first, (first, first), leads, None);
         }
+    }
+
+    fn has_lasted(&self, k: usize, leads: &Leads) -> bool {
+        leads[Kind::Step as usize]
+            .is_some_and(|lead| k + 1 >= self.bank.spawns[lead.spawn].at + STEP_ROWS)
+    }
+
+    fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
+        if over_burst <= STEP_AT_LEAST || (over_burst <= STEP_NATS && lead <= LARGE_NATS) {
+            return false;
+        }
+        let since = leads[Kind::Step as usize].map_or(k, |lead| self.bank.spawns[lead.spawn].at);
+        let with_one = |rows: &[Observation]| {
+            let one = rows.iter().filter(|o| o.gyro_less_satellite_deg.is_none());
+            one.count() as f64 > ONE_REFERENCE_SHARE * rows.len() as f64
+        };
+        let usually = &self.observations[..since.max(1)];
+        let is_half_blind = with_one(&self.observations[since..=k]) && !with_one(usually);
+        over_burst > ONE_REFERENCE_NATS || !is_half_blind
     }
 
     /// The likeliest return at a port call, if a step to something else is not
@@ -518,7 +550,7 @@ impl<'a> Search<'a> {
 
     fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
         self.null = filter;
-        self.bank = Bank::default();
+        self.bank.clear();
         self.spawned = k;
         self.learn_from = first;
         self.learn_next = rows_within(self.observations, first, LEARN_DAYS[0]);
@@ -578,7 +610,7 @@ impl<'a> Search<'a> {
         }
         if let Some((_, filter)) = knew {
             self.null = filter;
-            self.bank = Bank::default();
+            self.bank.clear();
             self.spawned = k;
         }
     }
@@ -654,6 +686,11 @@ impl<'a> Search<'a> {
             at = best.1.unknowns();
         }
         let (first, filter) = best;
+        if kind == Kind::Step
+            && let Some(dated) = self.date_at_call(winner, &filter, first, k)
+        {
+            return dated;
+        }
         let near = |round: usize| {
             let of_round = likely.iter().filter(move |(r, _, _)| *r == round);
             let most = of_round
@@ -675,6 +712,32 @@ impl<'a> Search<'a> {
             from,
             at_spawn: origin.at,
         }
+    }
+
+    /// Whether it rather happened at a port call: many more steps do than at any one
+    /// time at sea. `filter` is of the likeliest row.
+    fn date_at_call(&self, winner: usize, filter: &Filter, row: usize, k: usize) -> Option<Dated> {
+        let spawns = &self.bank.spawns;
+        let from = winner.saturating_sub(CALL_SPAWNS);
+        let origin = &spawns[from];
+        let until = spawns.get(winner + 1).map_or(k, |s| s.at);
+        let calls = (origin.at.max(1)..=until.min(k)).rev();
+        let calls = calls.filter(|&row| self.is_call(row)).take(CALLS);
+        let at = filter.unknowns();
+        let tried = calls.map(|call| {
+            let before = self.run(origin.origin.clone(), origin.at..call, &at);
+            (call, self.run(upset(&before, Kind::Step), call..k + 1, &at))
+        });
+        let (call, filter) = tried
+            .filter(|(_, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
+            .max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))?;
+        Some(Dated {
+            first: call,
+            between: (call.min(row), call.max(row)),
+            filter,
+            from,
+            at_spawn: origin.at,
+        })
     }
 
     /// What is suspected when the rows end.

@@ -191,6 +191,10 @@ impl Filter {
         let load = &scalar.load;
         let mut gain = [0.0; STATES];
         for (row, l) in self.covariance.iter().zip(load) {
+            // A difference between references has no part in the ship.
+            if *l == 0.0 {
+                continue;
+            }
             for (g, c) in gain.iter_mut().zip(row) {
                 *g += l * c;
             }
