@@ -83,6 +83,7 @@ export const text = {
     cause: {
       deviation_over_limit: 'Deviation over the limit',
       reference_fault: 'Gyro and satellite compass disagree',
+      compass_fault: 'The compass sticks',
       lightning_or_shock: 'Magnetism changed: lightning or a shock',
       magnetic_cargo: 'Magnetism changed: magnetic cargo',
       drift: 'Magnetism drifts',

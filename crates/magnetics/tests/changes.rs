@@ -6,7 +6,7 @@
 mod voyages;
 
 use binnacle_magnetics::analyse::{
-    Analysis, AnalysisSettings, LogbookEntry, LogbookKind, SampleReason, analyse,
+    Analysis, AnalysisSettings, LogbookEntry, LogbookKind, SampleDiagnostic, SampleReason, analyse,
 };
 use binnacle_magnetics::angle::CompassHeading;
 use binnacle_magnetics::change::{Cause, Change};
@@ -247,7 +247,7 @@ fn an_adjustment_is_told_as_expected() {
 }
 
 #[test]
-fn a_compass_that_sticks_ends_in_words_and_not_in_a_panic() {
+fn a_compass_that_sticks_is_named_and_its_samples_are_left_out() {
     let mut samples = sail_log(60, &calm(Event::Nothing)).samples;
     let from = samples.len() / 2;
     let stuck = samples[from].compass;
@@ -256,10 +256,66 @@ fn a_compass_that_sticks_ends_in_words_and_not_in_a_panic() {
     }
     let analysis = run(&samples);
     is_sound(&analysis);
-    assert!(!analysis.changes.is_empty());
-    assert!(analysis.changes.len() < 100, "{}", analysis.changes.len());
-    let told = analysis.changes.iter().map(|c| c.evidence.len());
-    assert!(told.max().unwrap() < 20);
+    let told: Vec<_> = analysis.changes.iter().map(|c| c.cause).collect();
+    assert_eq!(told, [Cause::CompassFault], "{:?}", analysis.changes);
+    assert!(analysis.changes[0].evidence[0].contains("while the ship turned"));
+    assert!(analysis.changes[0].ended.is_none());
+    let reasons = analysis.samples[from..].iter().map(|s| s.reason);
+    assert!(
+        reasons
+            .into_iter()
+            .all(|r| r == Some(SampleReason::CompassStuck))
+    );
+    assert!(
+        analysis.samples[..from]
+            .iter()
+            .all(|s| s.reason != Some(SampleReason::CompassStuck))
+    );
+}
+
+#[test]
+fn a_gyro_alone_that_is_off_for_days_costs_those_days_and_is_not_taken_for_the_ship() {
+    for (seed, size_deg) in [
+        (901, 5.0),
+        (902, 15.0),
+        (903, 15.0),
+        (903, 60.0),
+        (904, 60.0),
+    ] {
+        let mut plan = Plan {
+            days: 60.0,
+            event_day: 25.0,
+            ..calm(Event::GyroFault(size_deg))
+        };
+        plan.faults.satellite = false;
+        let log = sail_log(seed, &plan);
+        let fault = log.happened.iter().find(|h| h.what == Name::GyroFault);
+        let fault = fault.unwrap();
+        let (from, to) = (fault.from, fault.to.unwrap());
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        assert!(
+            of_the_ship(&analysis).is_empty(),
+            "{seed} {size_deg}: {:?}",
+            analysis.changes
+        );
+        let told = analysis
+            .changes
+            .iter()
+            .find(|c| c.cause == Cause::ReferenceFault);
+        let told = told.unwrap();
+        assert!(told.from.seconds_since(from).abs() < HOUR_S, "{told:?}");
+        let left_out = |s: &&SampleDiagnostic| s.reason == Some(SampleReason::ReferenceFailed);
+        let (during, otherwise): (Vec<_>, Vec<_>) = analysis
+            .samples
+            .iter()
+            .partition(|s| s.sample.time >= from && s.sample.time <= to);
+        assert!(during.iter().all(left_out), "{seed} {size_deg}");
+        assert!(
+            otherwise.iter().filter(|s| left_out(s)).count() < 12,
+            "{seed} {size_deg}"
+        );
+    }
 }
 
 /// The same samples with everything from each of some rows on later by so much.

@@ -17,6 +17,8 @@ pub enum Cause {
     DeviationOverLimit,
     /// Gyro and satellite compass contradict each other.
     ReferenceFault,
+    /// The magnetic compass sticks or repeats itself.
+    CompassFault,
     /// A strike, or a heavy blow to the hull.
     LightningOrShock,
     /// Steel, scrap or the like on board.
@@ -240,6 +242,7 @@ impl Cause {
         match self {
             Cause::DeviationOverLimit => "deviation over the limit",
             Cause::ReferenceFault => "gyro and satellite compass disagree",
+            Cause::CompassFault => "the compass sticks",
             Cause::LightningOrShock => "lightning or a shock",
             Cause::MagneticCargo => "magnetic cargo",
             Cause::Drift => "drift of the ship's magnetism",

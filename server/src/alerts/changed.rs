@@ -54,6 +54,7 @@ fn cause_of(cause: change::Cause) -> Cause {
         change::Cause::LightningOrShock => Cause::LightningOrShock,
         change::Cause::MagneticCargo => Cause::MagneticCargo,
         change::Cause::Drift => Cause::Drift,
+        change::Cause::CompassFault => Cause::CompassFault,
         change::Cause::ReferenceFault => Cause::ReferenceFault,
         change::Cause::LocalAnomaly => Cause::LocalAnomaly,
         change::Cause::MagneticStorm => Cause::MagneticStorm,
@@ -120,6 +121,9 @@ fn alert(found: &FoundChange, cause: Cause, stage: Stage, limits: &AlertLimits) 
 
 /// As bad as the deviation that it causes where the ship is now.
 fn severity(found: &FoundChange, stage: Stage, limits: &AlertLimits) -> Severity {
+    if found.change.cause == change::Cause::CompassFault {
+        return Severity::Critical;
+    }
     let size_deg = found.size_deg.unwrap_or(0.0);
     let by_size = if size_deg >= limits.deviation_deg {
         Severity::Critical
@@ -149,6 +153,9 @@ fn words(cause: change::Cause) -> &'static str {
 fn summary(found: &FoundChange, stage: Stage) -> String {
     let change = &found.change;
     let (since, cause) = (change.from, words(change.cause));
+    if change.cause == change::Cause::CompassFault {
+        return format!("Since about {since} the compass stands still while the ship turns.");
+    }
     let size = found
         .size_deg
         .map_or(String::new(), |degrees| format!(" by up to {degrees:.1}°"));
@@ -169,6 +176,10 @@ fn summary(found: &FoundChange, stage: Stage) -> String {
 
 fn advice(cause: change::Cause, stage: Stage) -> &'static str {
     match (cause, stage) {
+        (change::Cause::CompassFault, _) => {
+            "Do not use the compass. Steer by the gyro; look at bowl, pivot and liquid, and at \
+             the sensor and its cable. The samples taken meanwhile are left out of the model."
+        }
         (change::Cause::ReferenceFault, _) => {
             "Check gyro and satellite compass against an azimuth. The magnetic compass itself is \
              not suspected."

@@ -17,6 +17,8 @@ pub(super) enum CauseSchema {
     AdjustmentOrRepair,
     /// The ship's magnetism wandered off.
     Drift,
+    /// The magnetic compass sticks or repeats itself.
+    CompassFault,
     /// Gyro or satellite compass errs: the magnetic compass is well.
     ReferenceFault,
     /// The earth's crust, at a place.

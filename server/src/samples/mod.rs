@@ -114,6 +114,7 @@ struct SampleSchema {
 enum SampleReasonSchema {
     NoReference,
     ReferenceFailed,
+    CompassStuck,
     OutsideFieldModel,
     FieldTooWeak,
     MagneticCargo,

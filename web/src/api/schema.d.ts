@@ -873,7 +873,7 @@ export interface components {
          * @description What an alert is about: one compass has at most one open alert of each.
          * @enum {string}
          */
-        AlertCause: "deviation_over_limit" | "reference_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "reported_aboard" | "silent_agent" | "no_model" | "wide_band";
+        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "reported_aboard" | "silent_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
          * @description Something that people must know of.
@@ -1069,7 +1069,7 @@ export interface components {
          * @description What changes what a compass shows.
          * @enum {string}
          */
-        ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
+        ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
         /** @description That an alert is over. */
         Clearing: {
             /**
@@ -2188,7 +2188,7 @@ export interface components {
          * @description Why a sample was left out, or counted for less.
          * @enum {string}
          */
-        SampleReason: "no_reference" | "reference_failed" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
+        SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
         /**
          * @description How bad it is.
          * @enum {string}

@@ -121,11 +121,13 @@ pub(super) fn find(
             if let Some(place) = place {
                 let at = teller.date(event.first);
                 found.changes[place].ended = Some(at);
-                found.boundaries.push(Boundary {
-                    at,
-                    change: place,
-                    resumes: true,
-                });
+                if events[of].what == What::Step {
+                    found.boundaries.push(Boundary {
+                        at,
+                        change: place,
+                        resumes: true,
+                    });
+                }
             }
             continue;
         }
@@ -311,8 +313,8 @@ impl Teller<'_> {
         all.all(|o| o.gyro_less_satellite_deg.is_none())
     }
 
-    /// The last row that an event spoilt: a burst's, or that before a reference's
-    /// next step.
+    /// The last row that an event spoilt: a burst's, or that before a reference was
+    /// itself again.
     fn last_spoilt(&self, index: usize) -> usize {
         let event = &self.events[index];
         let last = self.observations.len() - 1;
@@ -320,8 +322,15 @@ impl Teller<'_> {
             What::Burst => event.last.unwrap_or(last),
             _ => self.events[index + 1..]
                 .iter()
-                .find(|later| later.what == What::Reference)
+                .find(|later| self.is_mended(later))
                 .map_or(last, |later| later.first.saturating_sub(1).max(event.first)),
+        }
+    }
+
+    fn is_mended(&self, event: &Event) -> bool {
+        match event.what {
+            What::Return(of) => self.events[of].what == What::Reference,
+            _ => false,
         }
     }
 

@@ -12,6 +12,7 @@ mod epoch;
 mod logbook;
 mod reading;
 mod settings;
+mod stuck;
 
 pub use crate::fit::GyroSpeedError;
 pub use logbook::{Cargo, LogbookEntry, LogbookError, LogbookKind};
@@ -31,10 +32,11 @@ use epoch::{Reference, Stretch, empty_epoch, epochs, fit_epoch, prior, reference
 use reading::{Reading, readings};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use stuck::mark_stuck;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-6";
+pub const ESTIMATOR: &str = "state-space-7";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -148,6 +150,8 @@ pub enum SampleReason {
     /// Gyro and satellite compass contradict each other and neither could be
     /// shown to be right, or the only one repeated itself while the ship turned.
     ReferenceFailed,
+    /// The compass repeated itself while the ship turned.
+    CompassStuck,
     /// Before or after the years that the field model covers.
     OutsideFieldModel,
     /// The horizontal field is too weak for a compass.
@@ -171,7 +175,10 @@ pub fn analyse(
     settings: &AnalysisSettings,
 ) -> Analysis {
     let mut readings = readings(samples, logbook, settings);
-    let mut course = Course::default();
+    let mut course = Course {
+        changes: mark_stuck(&mut readings),
+        ..Course::default()
+    };
     for epoch in epochs(logbook) {
         course.follow(epoch, &mut readings, logbook, settings);
     }

@@ -21,7 +21,8 @@ const OLDEST: usize = 4320;
 /// in what is induced.
 const STEP: f64 = 0.8;
 const STEP_INDUCED: f64 = 0.3;
-/// Of a step of either reference, degrees.
+/// Of a step of either reference, degrees, unless the first reading after it is
+/// further off.
 const REFERENCE_DEG: f64 = 5.0;
 /// Of the variation in a storm or over an anomaly, degrees where H is 24 µT, how
 /// long it stays the same, and how long it may go on.
@@ -79,20 +80,44 @@ pub(super) struct Spawn {
     pub(super) astray_from: Option<usize>,
     copies: [Option<Filter>; KINDS.len()],
     age_s: f64,
+    /// Whether the reference's copy is to be upset by the next reading.
+    is_fresh: bool,
+}
+
+/// What something was before it changed, and may become again.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Earlier<'a> {
+    Ship(&'a Filter),
+    Reference(&'a Filter),
+}
+
+impl Earlier<'_> {
+    /// The filter with that as it was.
+    pub(super) fn again(self, now: &Filter) -> Filter {
+        match self {
+            Earlier::Ship(before) => set_back(now, before),
+            Earlier::Reference(before) => mended(now, before),
+        }
+    }
 }
 
 impl Spawn {
     /// Makes the copies that rival a step.
-    fn wake(&mut self, base: Option<&Filter>) {
+    fn wake(&mut self, earlier: Option<Earlier<'_>>) {
         let now = &self.origin;
-        self.copies[Kind::Reference as usize] = Some(upset(now, Kind::Reference));
+        self.copies[Kind::Reference as usize] = Some(now.clone());
         self.copies[Kind::Burst as usize] = Some(upset(now, Kind::Burst));
-        self.copies[Kind::Return as usize] = base.map(|base| set_back(now, base));
+        self.copies[Kind::Return as usize] = earlier.map(|earlier| earlier.again(now));
+        self.is_fresh = true;
     }
 
     fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
         let bursting = (self.age_s < BURST_S).then_some(BURST);
         self.age_s += m.seconds;
+        if kinds.contains(&Kind::Reference) && std::mem::take(&mut self.is_fresh) {
+            let copy = &mut self.copies[Kind::Reference as usize];
+            *copy = copy.take().map(|copy| misled(&copy, m));
+        }
         for &kind in kinds {
             let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
             if let Some(copy) = &mut self.copies[kind as usize] {
@@ -132,7 +157,7 @@ impl Bank {
     }
 
     /// New copies of `now`, which are to begin with row `at`.
-    pub(super) fn spawn(&mut self, at: usize, now: &Filter, base: Option<&Filter>) {
+    pub(super) fn spawn(&mut self, at: usize, now: &Filter, earlier: Option<Earlier<'_>>) {
         self.thin(at, now);
         self.rest(at, now);
         let mut spawn = Spawn {
@@ -141,10 +166,11 @@ impl Bank {
             origin: now.clone(),
             copies: [const { None }; KINDS.len()],
             age_s: 0.0,
+            is_fresh: false,
         };
         spawn.copies[Kind::Step as usize] = Some(upset(now, Kind::Step));
         if self.are_rivals_awake {
-            spawn.wake(base);
+            spawn.wake(earlier);
             let astray = self.lead(Kind::Burst, now).filter(|lead| lead.nats > WORTH);
             if let Some(astray) = astray.map(|lead| &self.spawns[lead.spawn]) {
                 spawn.astray_from = Some(astray.at);
@@ -160,7 +186,7 @@ impl Bank {
         at: usize,
         m: Measurement,
         noise: &Noise,
-        (null, base): (&Filter, Option<&Filter>),
+        (null, earlier): (&Filter, Option<Earlier<'_>>),
     ) {
         for spawn in &mut self.spawns {
             spawn.take(&m, noise, &KINDS);
@@ -174,16 +200,16 @@ impl Bank {
             .lead(Kind::Step, null)
             .is_some_and(|lead| lead.nats > WAKE_NATS);
         if leads && !self.are_rivals_awake {
-            self.wake(noise, base);
+            self.wake(noise, earlier);
         }
     }
 
     /// Makes the rivals, as if they had run all along.
-    fn wake(&mut self, noise: &Noise, base: Option<&Filter>) {
+    fn wake(&mut self, noise: &Noise, earlier: Option<Earlier<'_>>) {
         self.are_rivals_awake = true;
         let known_from = self.latest + 1 - self.memory.len();
         for spawn in self.spawns.iter_mut().filter(|s| s.at >= known_from) {
-            spawn.wake(base);
+            spawn.wake(earlier);
             spawn.age_s = 0.0;
             for m in self.memory.iter().skip(spawn.at - known_from) {
                 spawn.take(m, noise, &RIVALS);
@@ -268,21 +294,54 @@ pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
                 row[j] += step * step;
             }
         }
-        // A gyro's step moves both its difference from the satellite compass and, by
-        // half, their mean; alone, it is the constant's.
-        Kind::Reference => {
-            let steps = [
-                (CONSTANT_STATE, REFERENCE_DEG / 2.0),
-                (OFFSET, REFERENCE_DEG / OFFSET_SD_DEG),
-            ];
-            for (i, a) in steps {
-                for (j, b) in steps {
-                    p[i][j] += a * b;
-                }
-            }
-        }
         // It sets in as it goes on: within its memory, not at once.
-        Kind::Burst | Kind::Return | Kind::Over => {}
+        Kind::Burst | Kind::Reference | Kind::Return | Kind::Over => {}
+    }
+    copy
+}
+
+/// The filter with a reference's step having happened just before `next` was read.
+///
+/// A gyro's step moves both its difference from the satellite compass and, by half,
+/// their mean; alone, it is the constant's. The step may be as large as the reading
+/// is astray: what is believed to be impossible is never learnt.
+pub(super) fn misled(now: &Filter, next: &Measurement) -> Filter {
+    let mut copy = now.clone();
+    let size = now.astray_deg(next).max(REFERENCE_DEG);
+    let steps = [
+        (
+            CONSTANT_STATE,
+            if next.difference.is_some() {
+                size / 2.0
+            } else {
+                size
+            },
+        ),
+        (OFFSET, size / OFFSET_SD_DEG),
+    ];
+    for (i, a) in steps {
+        for (j, b) in steps {
+            copy.covariance[i][j] += a * b;
+        }
+    }
+    copy
+}
+
+/// The filter with the references' lasting errors as `before` had them.
+fn mended(now: &Filter, before: &Filter) -> Filter {
+    let mut copy = now.clone();
+    let lasting = [CONSTANT_STATE, OFFSET];
+    for i in lasting {
+        copy.mean[i] = before.mean[i];
+        for j in 0..STATES {
+            let known = if lasting.contains(&j) {
+                before.covariance[i][j]
+            } else {
+                0.0
+            };
+            copy.covariance[i][j] = known;
+            copy.covariance[j][i] = known;
+        }
     }
     copy
 }

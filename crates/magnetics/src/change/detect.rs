@@ -4,7 +4,7 @@
 //! What always holds: a row is read once in order of time and nothing later than it
 //! decides what it tells; every event lies between two rows; the search ends.
 
-use super::bank::{BURST_S, Bank, Kind, Lead, set_back, upset};
+use super::bank::{BURST_S, Bank, Earlier, Kind, Lead, misled, upset};
 use super::calls::{Base, Calls, Candidate};
 use super::filter::{Filter, Measurement, Noise, VARIATION, measurement};
 use crate::angle::wrap_180;
@@ -48,6 +48,14 @@ const RETURNED: f64 = 0.9;
 const RETURN_BELOW_STEP: f64 = 6.0;
 /// A burst is unlikelier beforehand than a return at a port call by about this, nats.
 const BURST_BELOW_RETURN: f64 = 3.0;
+/// With one reference a step of the ship and one of the reference must differ by
+/// this; with both there were two readings among so many rows.
+const CLEAR_NATS: f64 = 4.0;
+const LATELY: usize = 36;
+/// A reference that is itself again must be likelier by this than a burst, and no
+/// less likely by this than another change.
+const MENDED_NATS: f64 = 8.0;
+const MENDED_BELOW: f64 = 3.0;
 /// A burst must be likelier by this than nothing, and by this than a change.
 const BURST_NATS: f64 = 9.0;
 const BURST_OVER_STEP: f64 = 3.0;
@@ -242,6 +250,9 @@ struct Search<'a> {
     spawned: usize,
     /// What the ship was before steps, and where she may have become it again.
     calls: Calls,
+    /// A reference's fault that goes on, if one does: its place in the list of
+    /// events, and the filter before.
+    misled: Option<(usize, Filter)>,
     /// The burst that goes on, if one does.
     burst: Option<usize>,
     events: Vec<Event>,
@@ -264,6 +275,7 @@ impl<'a> Search<'a> {
             bank: Bank::default(),
             spawned: 0,
             calls: Calls::default(),
+            misled: None,
             burst: None,
             events: Vec::new(),
         }
@@ -275,8 +287,8 @@ impl<'a> Search<'a> {
         }
         if k >= FIRST && self.is_due(k) {
             self.settle_burst(k);
-            let base = self.calls.bases.last().map(|base| &base.filter);
-            self.bank.spawn(k, &self.null, base);
+            let earlier = earlier(self.misled.as_ref(), &self.calls);
+            self.bank.spawn(k, &self.null, earlier);
             self.spawned = k;
         }
         if self.is_call(k) {
@@ -286,8 +298,8 @@ impl<'a> Search<'a> {
         let m = self.measure(k, &at);
         self.null.take(&m, &self.noise, None);
         self.calls.take(&m, &self.noise, &self.null);
-        let base = self.calls.bases.last().map(|base| &base.filter);
-        self.bank.take(k, m, &self.noise, (&self.null, base));
+        let earlier = earlier(self.misled.as_ref(), &self.calls);
+        self.bank.take(k, m, &self.noise, (&self.null, earlier));
         if k >= YOUNG {
             self.judge(k);
         }
@@ -361,19 +373,27 @@ impl<'a> Search<'a> {
         {
             return self.adopt_call(k, candidate, leads);
         }
-        if back - burst > RETURN_AT_SEA_NATS && back > nats(Kind::Step) {
+        let rival = nats(Kind::Step).max(nats(Kind::Reference));
+        if self.misled.is_some() && back - burst > MENDED_NATS && back > rival - MENDED_BELOW {
+            return self.adopt_mended(k, leads);
+        }
+        if self.misled.is_none() && back - burst > RETURN_AT_SEA_NATS && back > nats(Kind::Step) {
             return self.adopt_return(k, leads);
         }
-        let (kind, lasting) = if nats(Kind::Step) >= nats(Kind::Reference) {
-            (Kind::Step, nats(Kind::Step))
+        let (kind, lasting, other) = if nats(Kind::Step) >= nats(Kind::Reference) {
+            (Kind::Step, nats(Kind::Step), nats(Kind::Reference))
         } else {
-            (Kind::Reference, nats(Kind::Reference))
+            (Kind::Reference, nats(Kind::Reference), nats(Kind::Step))
         };
         let over_burst = lasting - burst;
-        let is_told = match kind {
-            Kind::Reference => over_burst > REFERENCE_NATS,
-            _ => self.has_lasted(k, &leads) && self.is_step(k, lasting, over_burst, &leads),
-        };
+        // One reference on one heading cannot tell a fault of its own from a change
+        // of the ship.
+        let is_clear = lasting - other.max(0.0) > CLEAR_NATS || self.has_both(k);
+        let is_told = is_clear
+            && match kind {
+                Kind::Reference => over_burst > REFERENCE_NATS,
+                _ => self.has_lasted(k, &leads) && self.is_step(k, lasting, over_burst, &leads),
+            };
         if is_told {
             return self.adopt(k, kind, leads);
         }
@@ -424,6 +444,12 @@ impl<'a> Search<'a> {
         (likeliest.nats > nats(Kind::Step) - RETURN_BELOW_STEP).then_some(likeliest)
     }
 
+    /// Whether both references were read lately.
+    fn has_both(&self, k: usize) -> bool {
+        let lately = &self.observations[k.saturating_sub(LATELY)..=k];
+        lately.iter().any(|o| o.gyro_less_satellite_deg.is_some())
+    }
+
     fn is_call(&self, k: usize) -> bool {
         at_port(self.observations, k) == Some(true)
     }
@@ -447,10 +473,12 @@ impl<'a> Search<'a> {
             &dated.filter.unknowns(),
         );
         self.supersede_burst(dated.first);
-        let what = if kind == Kind::Step {
-            What::Step
-        } else {
-            What::Reference
+        let what = match kind {
+            Kind::Step => What::Step,
+            _ => self
+                .misled
+                .take_if(|(_, before)| dated.filter.has_constant_of(before))
+                .map_or(What::Reference, |(event, _)| What::Return(event)),
         };
         self.push(
             k,
@@ -462,6 +490,8 @@ impl<'a> Search<'a> {
         );
         if kind == Kind::Step {
             self.retrace(k, &dated, &before);
+        } else if what == What::Reference && self.misled.is_none() {
+            self.misled = Some((self.events.len() - 1, before));
         }
         self.take_over(k, dated.filter, dated.first);
     }
@@ -522,6 +552,28 @@ impl<'a> Search<'a> {
             Some((&before, &dated.filter)),
         );
         self.calls.returned(event);
+        self.take_over(k, dated.filter, dated.first);
+    }
+
+    /// The reference is itself again.
+    fn adopt_mended(&mut self, k: usize, leads: Leads) {
+        let Some(lead) = leads[Kind::Return as usize] else {
+            return;
+        };
+        let dated = self.date(lead.spawn, Kind::Return, k);
+        let before = self.bank.spawns[lead.spawn].origin.clone();
+        self.supersede_burst(dated.first);
+        let Some((event, _)) = self.misled.take() else {
+            return;
+        };
+        self.push(
+            k,
+            What::Return(event),
+            dated.first,
+            dated.between,
+            leads,
+            Some((&before, &dated.filter)),
+        );
         self.take_over(k, dated.filter, dated.first);
     }
 
@@ -648,14 +700,15 @@ impl<'a> Search<'a> {
         let from = winner.saturating_sub(1);
         let origin = &spawns[from];
         let until = spawns.get(winner + 1).map_or(k, |s| s.at);
-        let base = self.calls.bases.last().map(|base| &base.filter);
-        let began = |filter: &Filter| match (kind, base) {
-            (Kind::Return, Some(base)) => set_back(filter, base),
+        let earlier = earlier(self.misled.as_ref(), &self.calls);
+        let began = |filter: &Filter, row: usize, at: &Unknowns| match (kind, earlier) {
+            (Kind::Return, Some(earlier)) => earlier.again(filter),
+            (Kind::Reference, _) => misled(filter, &self.measure(row, at)),
             _ => upset(filter, kind),
         };
         // Twice, for the rows are to be linearised at where the ship is now.
         let mut at = self.point(k);
-        let mut best = (origin.at, began(&origin.origin));
+        let mut best = (origin.at, began(&origin.origin, origin.at, &at));
         let mut likely = Vec::new();
         for round in 0..2 {
             let (low, high) = if round == 0 {
@@ -670,7 +723,7 @@ impl<'a> Search<'a> {
             let mut tried: Vec<(usize, Filter)> = Vec::new();
             let mut row = low;
             while row <= high.min(k) {
-                let filter = self.run(began(&before), row..k + 1, &at);
+                let filter = self.run(began(&before, row, &at), row..k + 1, &at);
                 tried.push((row, filter));
                 let next = row + stride;
                 before = self.run(before, row..next.min(k + 1), &at);
@@ -791,6 +844,13 @@ impl<'a> Search<'a> {
             event.confirmed = false;
         }
     }
+}
+
+/// What may be again what it was: a reference first, which is soon mended.
+fn earlier<'a>(misled: Option<&'a (usize, Filter)>, calls: &'a Calls) -> Option<Earlier<'a>> {
+    let reference = misled.map(|(_, before)| Earlier::Reference(before));
+    let ship = || calls.bases.last().map(|base| Earlier::Ship(&base.filter));
+    reference.or_else(ship)
 }
 
 /// The likeliest copies by kind, in the order of [`Kind`].

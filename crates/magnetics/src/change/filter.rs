@@ -123,6 +123,24 @@ impl Filter {
         unknowns
     }
 
+    /// Whether the constant is what it was in another, as far as either knows.
+    pub(super) fn has_constant_of(&self, other: &Filter) -> bool {
+        let k = CONSTANT_STATE;
+        let apart = (self.mean[k] - other.mean[k]).abs();
+        let variance = self.covariance[k][k] + other.covariance[k][k];
+        apart < 2.58 * variance.max(0.0).sqrt()
+    }
+
+    /// By how much the deviation, or the references' difference, is not as expected,
+    /// degrees.
+    pub(super) fn astray_deg(&self, m: &Measurement) -> f64 {
+        let off = |scalar: &Scalar| {
+            let expected: f64 = scalar.load.iter().zip(&self.mean).map(|(l, x)| l * x).sum();
+            (scalar.value - expected).abs()
+        };
+        off(&m.deviation).max(m.difference.as_ref().map_or(0.0, off))
+    }
+
     /// Takes in what was measured; `burst` is what the variation does meanwhile, if
     /// not the usual.
     pub(super) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) {

@@ -57,6 +57,8 @@ pub enum Cause {
     AdjustmentOrRepair,
     /// The ship's magnetism wandered off.
     Drift,
+    /// The magnetic compass sticks or repeats itself.
+    CompassFault,
     /// Gyro or satellite compass errs: the magnetic compass is well.
     ReferenceFault,
     /// The earth's crust, at a place.
