@@ -86,6 +86,9 @@ pub struct Serve {
     /// How webhooks are sent.
     #[command(flatten)]
     pub webhooks: Webhooks,
+    /// How mail is sent.
+    #[command(flatten)]
+    pub mail: Mail,
     /// Log as JSON lines
     #[arg(long, env = "BINNACLE_LOG_JSON", default_value_t = false,
           num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
@@ -117,6 +120,33 @@ impl Webhooks {
         } else {
             Reach::Public
         }
+    }
+}
+
+/// How mail is sent.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Mail {
+    /// Send alerts by mail through smtps://USER:PASSWORD@HOST, smtp://… (STARTTLS) or
+    /// smtp://HOST?tls=none (a relay in one's own network)
+    #[arg(long, env = "BINNACLE_SMTP_URL", hide_env_values = true,
+          requires_all = ["mail_from", "public_url"])]
+    pub smtp_url: Option<String>,
+    /// One more authority (PEM) that the relay's certificate may be of
+    #[arg(long, env = "BINNACLE_SMTP_CA", requires = "smtp_url")]
+    pub smtp_ca: Option<PathBuf>,
+    /// Whom mail comes from, like "Binnacle <alerts@example.com>"
+    #[arg(long, env = "BINNACLE_MAIL_FROM")]
+    pub mail_from: Option<String>,
+    /// Where people reach the dashboard, like https://binnacle.example.com; mail links
+    /// to it
+    #[arg(long, env = "BINNACLE_PUBLIC_URL")]
+    pub public_url: Option<String>,
+}
+
+impl Mail {
+    /// Whether mail is sent.
+    pub fn is_set_up(&self) -> bool {
+        self.smtp_url.is_some()
     }
 }
 

@@ -49,6 +49,9 @@ pub enum Error {
         "batch {0} of this stream is stored with other bytes; open a new stream and number anew"
     )]
     StreamForked(u64),
+    /// The server was not told how to.
+    #[error("{0}")]
+    NotSetUp(&'static str),
     /// The key was used for another request.
     #[error("this idempotency key was used for another request")]
     KeyReused,
@@ -126,6 +129,7 @@ impl Error {
                 "stream-forked",
                 "The stream has forked",
             ),
+            Error::NotSetUp(_) => (StatusCode::CONFLICT, "not-set-up", "Not set up"),
             Error::KeyReused => (
                 StatusCode::UNPROCESSABLE_ENTITY,
                 "idempotency-key-reused",

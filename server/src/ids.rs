@@ -58,5 +58,6 @@ id!(JobId, "A piece of work in the queue.");
 id!(EntryId, "An entry of a vessel's logbook.");
 id!(AlertId, "Something that people must know of.");
 id!(WebhookId, "Where an operator's programs want to be told.");
-id!(DeliveryId, "What a webhook is told: the id of the event.");
+id!(RecipientId, "Someone who gets mail.");
+id!(DeliveryId, "What a receiver is told: the id of the event.");
 id!(EventId, "Something a dashboard is told.");

@@ -42,6 +42,9 @@ pub mod deviation;
 pub mod events;
 pub mod models;
 pub mod samples;
+
+pub mod mail;
+pub mod outbox;
 pub mod webhooks;
 
 pub mod dashboard;

@@ -2,6 +2,9 @@
 
 import type { Alert, Severity } from './api/types';
 
+/** From the mildest to the worst. */
+export const severities: readonly Severity[] = ['notice', 'warning', 'critical'];
+
 const rank: Record<Severity, number> = { critical: 0, warning: 1, notice: 2 };
 
 /** The order in which someone should see to them. */

@@ -4,7 +4,7 @@
 //! What always holds: whoever changes a compass's alerts holds its lock until the
 //! transaction ends, and every change of an alert is told in that transaction.
 
-use super::alert::{AlertWanted, Cause, Severity, State};
+use super::alert::{Alert, AlertWanted, Cause, Severity, State};
 use super::findings::Findings;
 use super::limits::AlertLimits;
 use super::store::{self, Known};
@@ -15,9 +15,9 @@ use crate::db::Tx;
 use crate::error::Result;
 use crate::events::{self, Event};
 use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
+use crate::outbox::Kind;
 use crate::time::Time;
-use crate::webhooks::{self, Kind, Message};
-use serde_json::json;
+use crate::{mail, webhooks};
 use std::time::Duration;
 use tracing::{error, info};
 
@@ -29,6 +29,17 @@ const LOOK_EVERY: Duration = Duration::from_mins(1);
 pub(super) struct News {
     pub(super) alert: AlertId,
     pub(super) became: Option<Kind>,
+}
+
+/// What became of an alert, and how it stands then.
+#[derive(Clone, Debug)]
+pub struct AlertNews {
+    /// The event's id.
+    pub id: DeliveryId,
+    /// What became of it.
+    pub kind: Kind,
+    /// The alert.
+    pub alert: Alert,
 }
 
 /// Holds a compass's alerts against its last analysis.
@@ -172,22 +183,21 @@ pub(super) async fn tell(
     if news.is_empty() {
         return Ok(None);
     }
-    let mut messages = Vec::new();
+    let mut told = Vec::new();
     for News { alert, became } in news {
         let Some(kind) = *became else {
             continue;
         };
         info!(%vessel, %alert, ?kind, "an alert changed");
-        let id = DeliveryId::new();
-        let alert = store::read(tx, vessel, *alert).await?;
-        messages.push(Message {
-            id,
+        told.push(AlertNews {
+            id: DeliveryId::new(),
             kind,
-            body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
+            alert: store::read(tx, vessel, *alert).await?,
         });
     }
     let event = events::insert(tx, vessel, events::Kind::Alert, now).await?;
-    webhooks::announce(tx, event.operator_id, &messages, now).await?;
+    webhooks::announce(tx, event.operator_id, &told, now).await?;
+    mail::announce(tx, event.operator_id, &told, now).await?;
     Ok(Some(event))
 }
 

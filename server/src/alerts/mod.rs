@@ -24,7 +24,7 @@ pub use aboard::from_ship;
 pub use alert::{Alert, AlertWanted, Cause, Severity, State};
 pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;
-pub use look::{after_analysis, for_silence, sum, watch};
+pub use look::{AlertNews, after_analysis, for_silence, sum, watch};
 pub use store::{Standing, standing};
 pub use wanted::{alerts_of, silence};
 
@@ -33,8 +33,8 @@ use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, text};
 use crate::ids::AlertId;
+use crate::outbox::Kind;
 use crate::session;
-use crate::webhooks::Kind;
 use alert::{Acknowledgement, AlertList, Clearing, Filter};
 use axum::extract::State as Shared;
 use look::News;

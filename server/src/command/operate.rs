@@ -4,8 +4,9 @@ use crate::app::App;
 use crate::clock::Clock;
 use crate::config::{Database, Serve};
 use crate::db::Db;
+use crate::mail::Mailer;
 use crate::tls::TlsListener;
-use crate::{alerts, analysis, events, http, operations, webhooks};
+use crate::{alerts, analysis, events, http, operations, outbox, webhooks};
 use anyhow::{Context, Result};
 use axum::serve::Listener;
 use std::future::Future;
@@ -24,6 +25,8 @@ const GRACE: Duration = Duration::from_secs(20);
 
 /// So many webhooks are told at once: one that is slow keeps back only its own.
 const WEBHOOK_SENDERS: usize = 4;
+/// All letters go through one relay.
+const MAIL_SENDERS: usize = 2;
 
 /// Serves until told to stop.
 ///
@@ -60,6 +63,7 @@ pub async fn run<L>(app: App, listener: L) -> Result<()>
 where
     L: Listener<Addr = SocketAddr>,
 {
+    let mailer = Mailer::new(&app.config.mail)?;
     let mut parts = JoinSet::new();
     let line = events::Line::open(&app.db).await?;
     parts.spawn(line.listen(app.clone()));
@@ -75,11 +79,16 @@ where
         match webhooks::Sender::new(app.config.webhooks.reach()) {
             Ok(sender) => {
                 for _ in 0..WEBHOOK_SENDERS {
-                    parts.spawn(webhooks::run(app.clone(), sender.clone()));
+                    parts.spawn(outbox::run(app.clone(), sender.clone()));
                 }
             }
             // A machine without certificates can still take batches.
             Err(error) => error!(error = format!("{error:#}"), "webhooks cannot be sent"),
+        }
+        if let Some(mailer) = mailer {
+            for _ in 0..MAIL_SENDERS {
+                parts.spawn(outbox::run(app.clone(), mailer.clone()));
+            }
         }
     }
     parts.spawn(stop_on_signal(app.clone()));

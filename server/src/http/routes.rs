@@ -3,8 +3,8 @@
 use super::headers;
 use crate::app::App;
 use crate::{
-    alerts, changes, compasses, dashboard, deviation, enrolment, error, events, logbook, models,
-    operations, samples, session, settings, streams, tokens, vessels, webhooks,
+    alerts, changes, compasses, dashboard, deviation, enrolment, error, events, logbook, mail,
+    models, operations, samples, session, settings, streams, tokens, vessels, webhooks,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -86,6 +86,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(samples::router())
         .merge(alerts::router())
         .merge(webhooks::router())
+        .merge(mail::router())
         .merge(events::router())
 }
 

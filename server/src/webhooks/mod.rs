@@ -2,25 +2,20 @@
 //!
 //! What always holds:
 //!
-//! - A message is queued in the transaction that makes it true, and sent at least
-//!   once; its id tells a receiver that it had it before.
-//! - Each webhook gets its messages in order: the next is not sent before this one
-//!   was delivered, or given up after a day of tries.
+//! - Messages wait and are sent as [`crate::outbox`] says.
 //! - Each try is signed with the webhook's secret over its time and its body.
 //! - Nothing is sent to an address that is not one of the public internet, unless
 //!   the server was told to.
 
 mod address;
-mod deliveries;
+mod announce;
 mod send;
 mod store;
 mod webhook;
-mod worker;
 
-pub use deliveries::{Message, announce};
+pub use address::is_public;
+pub use announce::announce;
 pub use send::{Reach, SIGNATURE_HEADER, Sender};
-pub use webhook::Kind;
-pub use worker::{Sent, run, step};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
@@ -28,13 +23,14 @@ use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid};
 use crate::idempotency::{self, Key};
 use crate::ids::{DeliveryId, WebhookId};
+use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter, Kind, Message};
 use crate::secret;
 use axum::extract::State;
 use axum::http::StatusCode;
 use serde_json::json;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-use webhook::{Delivery, DeliveryList, Filter, MadeWebhook, NewWebhook, Webhook, WebhookList};
+use webhook::{MadeWebhook, NewWebhook, Webhook, WebhookList};
 
 /// What a webhook's secret begins with.
 const SECRET_PREFIX: &str = "bns_";
@@ -144,7 +140,7 @@ async fn delete_webhook(
     Id(id): Id<WebhookId>,
 ) -> Result<StatusCode> {
     let mut tx = app.db.begin().await?;
-    store::delete(&mut tx, writer.operator, id).await?;
+    outbox::delete(&mut tx, writer.operator, id.0, Channel::Webhook).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -171,9 +167,9 @@ async fn test_webhook(
         body,
     };
     let mut tx = app.db.begin().await?;
-    deliveries::queue(&mut tx, id, &message, now.into()).await?;
+    outbox::queue(&mut tx, id.0, &message, now.into()).await?;
     tx.commit().await?;
-    let queued = deliveries::must_find(&app.db, id, message.id).await?;
+    let queued = outbox::must_find(&app.db, id.0, message.id).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 
@@ -192,17 +188,7 @@ async fn list_deliveries(
     page: Page,
 ) -> Result<Json<DeliveryList>> {
     store::must_find(&app.db, reader.operator, id).await?;
-    let before = page.after_number()?;
-    let found = deliveries::list(&app.db, id, filter.state, before, page.fetch()).await?;
-    let listed = page.cut(found, |(number, _)| number.to_string());
-    Ok(Json(DeliveryList {
-        items: listed
-            .items
-            .into_iter()
-            .map(|(_, delivery)| delivery)
-            .collect(),
-        next: listed.next,
-    }))
+    Ok(Json(outbox::list(&app.db, id.0, filter, &page).await?))
 }
 
 /// Send a delivery again
@@ -219,8 +205,8 @@ async fn send_delivery_again(
 ) -> Result<(StatusCode, Json<Delivery>)> {
     store::must_find(&app.db, writer.operator, id).await?;
     let mut tx = app.db.begin().await?;
-    deliveries::send_again(&mut tx, id, delivery, app.clock.now().into()).await?;
+    outbox::send_again(&mut tx, id.0, delivery, app.clock.now().into()).await?;
     tx.commit().await?;
-    let queued = deliveries::must_find(&app.db, id, delivery).await?;
+    let queued = outbox::must_find(&app.db, id.0, delivery).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }

@@ -5,6 +5,9 @@
 //! beyond its status.
 
 use super::address::is_public;
+use super::store;
+use crate::app::App;
+use crate::outbox::{Carrier, Channel, Claimed, Tried};
 use anyhow::{Context, bail};
 use hmac::{Hmac, KeyInit, Mac};
 use reqwest::dns::{Addrs, Name, Resolve, Resolving};
@@ -59,10 +62,7 @@ impl Sender {
     }
 
     /// Sends a body; answers with the status, whatever it is.
-    ///
-    /// # Errors
-    /// When there was no answer.
-    pub(super) async fn send(
+    async fn send(
         &self,
         url: &str,
         secret: &str,
@@ -79,6 +79,22 @@ impl Sender {
         // An address may hold a secret of the receiver's: it goes into no message.
         let answer = request.send().await.map_err(reqwest::Error::without_url)?;
         Ok(answer.status().as_u16())
+    }
+}
+
+impl Carrier for Sender {
+    const CHANNEL: Channel = Channel::Webhook;
+
+    async fn carry(&self, app: &App, claimed: &Claimed) -> anyhow::Result<Tried> {
+        let found = store::address(&app.db, claimed.receiver_id).await?;
+        let (url, secret) = found.context("the webhook was removed")?;
+        let seconds = app.clock.now().micros() / 1_000_000;
+        let body = claimed.body.clone();
+        Ok(match self.send(&url, &secret, seconds, body).await? {
+            status @ 200..=299 => Tried::Taken(status),
+            // Whoever makes the receiver may yet mend it: nothing is refused for good.
+            status => Tried::Later(status, format!("answered with status {status}")),
+        })
     }
 }
 

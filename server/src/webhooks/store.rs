@@ -1,9 +1,10 @@
 //! Webhooks in the database.
 
-use super::webhook::{NewWebhook, Webhook};
+use super::webhook::{Kinds, NewWebhook, Webhook};
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::ids::{OperatorId, WebhookId};
+use crate::outbox::{self, Channel};
 use crate::time::Time;
 use uuid::Uuid;
 
@@ -16,12 +17,13 @@ pub(super) async fn list(
     rows!(
         db,
         Webhook,
-        "SELECT w.id, w.url, w.kinds, w.enabled, w.created_at,
-                (SELECT COUNT(*) FROM webhook_deliveries d
-                 WHERE d.webhook_id = w.id AND d.state = 'pending') AS pending,
-                (SELECT COUNT(*) FROM webhook_deliveries d
-                 WHERE d.webhook_id = w.id AND d.state = 'dead') AS dead
+        "SELECT w.id, w.url, w.kinds, r.enabled, w.created_at,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = w.id AND d.state = 'pending') AS pending,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = w.id AND d.state = 'dead') AS dead
          FROM webhooks w
+         JOIN receivers r ON r.id = w.id
          WHERE w.operator_id = $1 AND w.id > $2
          ORDER BY w.id
          LIMIT $3",
@@ -39,12 +41,13 @@ pub(super) async fn must_find(db: &Db, operator: OperatorId, id: WebhookId) -> R
     row!(
         db,
         Webhook,
-        "SELECT w.id, w.url, w.kinds, w.enabled, w.created_at,
-                (SELECT COUNT(*) FROM webhook_deliveries d
-                 WHERE d.webhook_id = w.id AND d.state = 'pending') AS pending,
-                (SELECT COUNT(*) FROM webhook_deliveries d
-                 WHERE d.webhook_id = w.id AND d.state = 'dead') AS dead
+        "SELECT w.id, w.url, w.kinds, r.enabled, w.created_at,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = w.id AND d.state = 'pending') AS pending,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = w.id AND d.state = 'dead') AS dead
          FROM webhooks w
+         JOIN receivers r ON r.id = w.id
          WHERE w.operator_id = $1 AND w.id = $2
          ORDER BY w.id",
         operator,
@@ -61,17 +64,16 @@ pub(super) async fn insert(
     secret: &str,
     now: Time,
 ) -> Result<()> {
+    outbox::insert(tx, operator, id.0, Channel::Webhook, new.enabled).await?;
     execute!(
         tx,
-        "INSERT INTO webhooks (id, operator_id, url, secret, kinds, enabled, created_at,
-                               last_number)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, 0)",
+        "INSERT INTO webhooks (id, operator_id, url, secret, kinds, created_at)
+         VALUES ($1, $2, $3, $4, $5, $6)",
         id,
         operator,
         new.url.as_str(),
         secret,
         serde_json::to_string(&new.kinds)?,
-        new.enabled,
         now
     )?;
     Ok(())
@@ -100,36 +102,42 @@ pub(super) async fn change(
     id: WebhookId,
     wanted: &NewWebhook,
 ) -> Result<()> {
+    outbox::enable(tx, operator, id.0, wanted.enabled).await?;
     let changed = execute!(
         tx,
-        "UPDATE webhooks SET url = $3, kinds = $4, enabled = $5
-         WHERE operator_id = $1 AND id = $2",
+        "UPDATE webhooks SET url = $3, kinds = $4 WHERE operator_id = $1 AND id = $2",
         operator,
         id,
         wanted.url.as_str(),
-        serde_json::to_string(&wanted.kinds)?,
-        wanted.enabled
+        serde_json::to_string(&wanted.kinds)?
     )?;
-    must_be_one(changed)
-}
-
-/// Removes a webhook with its deliveries.
-///
-/// # Errors
-/// [`Error::NotFound`] when the operator has no such webhook.
-pub(super) async fn delete(tx: &mut Tx, operator: OperatorId, id: WebhookId) -> Result<()> {
-    let deleted = execute!(
-        tx,
-        "DELETE FROM webhooks WHERE operator_id = $1 AND id = $2",
-        operator,
-        id
-    )?;
-    must_be_one(deleted)
-}
-
-fn must_be_one(touched: u64) -> Result<()> {
-    if touched == 0 {
+    if changed == 0 {
         return Err(Error::NotFound("webhook"));
     }
     Ok(())
+}
+
+/// Where a webhook goes and what signs it; none if it was removed.
+pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, String)>> {
+    row!(
+        db,
+        (String, String),
+        "SELECT url, secret FROM webhooks WHERE id = $1 ORDER BY id",
+        id
+    )
+}
+
+/// The webhooks of an operator's that are enabled, with what they want to be told of.
+pub(super) async fn wishes(tx: &mut Tx, operator: OperatorId) -> Result<Vec<(Uuid, Kinds)>> {
+    let found = rows!(
+        in tx,
+        (Uuid, String),
+        "SELECT w.id, w.kinds FROM webhooks w
+         JOIN receivers r ON r.id = w.id AND r.enabled
+         WHERE w.operator_id = $1
+         ORDER BY w.id",
+        operator
+    )?;
+    let read = |(id, kinds)| Ok((id, Kinds::try_from(kinds)?));
+    found.into_iter().map(read).collect()
 }

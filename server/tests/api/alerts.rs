@@ -25,7 +25,7 @@ const A_WHILE_S: f64 = 10.0;
 const DAY_S: f64 = 86_400.0;
 
 /// Sets the vessel's limits and has her analysed.
-async fn limit(shore: &Shore, person: &Person, ship: &Ship, limits: Value) {
+pub(crate) async fn limit(shore: &Shore, person: &Person, ship: &Ship, limits: Value) {
     let mut settings = person.get(&ship.path("/settings")).await.good();
     settings["alerts"] = limits;
     let request = person.request(Method::PUT, &ship.path("/settings"));
@@ -35,7 +35,7 @@ async fn limit(shore: &Shore, person: &Person, ship: &Ship, limits: Value) {
 }
 
 /// A ship with a model, whose greatest deviation lies between 3 and 12 degrees.
-async fn with_model(shore: &Shore, person: &Person) -> Ship {
+pub(crate) async fn with_model(shore: &Shore, person: &Person) -> Ship {
     let ship = shore.ship(person, "Nao").await;
     limit(shore, person, &ship, json!({ "deviation_deg": 45.0 })).await;
     ship.put(1, &passage(DAY, 300)).await.good();

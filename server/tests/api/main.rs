@@ -20,6 +20,8 @@ mod fit;
 mod fleet;
 mod ingest;
 mod logbook;
+mod mail;
+mod mail_tls;
 mod sessions;
 mod ship_alerts;
 mod tenants;

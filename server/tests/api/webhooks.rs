@@ -9,7 +9,8 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Redirect, Response};
 use axum::routing::post;
 use binnacle_server::alerts;
-use binnacle_server::webhooks::{self, Reach, SIGNATURE_HEADER, Sender, Sent};
+use binnacle_server::outbox::{self, Sent};
+use binnacle_server::webhooks::{Reach, SIGNATURE_HEADER, Sender};
 use reqwest::Method;
 use serde_json::{Value, json};
 use std::collections::VecDeque;
@@ -94,7 +95,7 @@ fn path(webhook: &Value, rest: &str) -> String {
 async fn deliver(shore: &Shore) -> Vec<Sent> {
     let sender = Sender::new(Reach::Anywhere).unwrap();
     let mut sent = Vec::new();
-    while let Some(done) = webhooks::step(&shore.app, &sender).await.unwrap() {
+    while let Some(done) = outbox::step(&shore.app, &sender).await.unwrap() {
         sent.push(done);
     }
     sent
@@ -274,8 +275,8 @@ async fn a_delivery_under_way_is_not_taken_by_another_server(shore: Shore) {
     let second = shore.second().await;
     let sender = Sender::new(Reach::Anywhere).unwrap();
     let (one, other) = tokio::join!(
-        webhooks::step(&shore.app, &sender),
-        webhooks::step(&second, &sender)
+        outbox::step(&shore.app, &sender),
+        outbox::step(&second, &sender)
     );
     let sent = [one.unwrap(), other.unwrap()];
     assert!(sent.contains(&Some(Sent::Delivered)), "{sent:?}");
@@ -308,7 +309,7 @@ async fn nothing_is_sent_to_an_address_within_the_network(shore: Shore) {
         let webhook = make(&ada, &url, &["alert.raised"]).await;
         ada.post(&path(&webhook, "/test"), &json!({})).await.good();
         let sender = Sender::new(Reach::Public).unwrap();
-        let sent = webhooks::step(&shore.app, &sender).await.unwrap();
+        let sent = outbox::step(&shore.app, &sender).await.unwrap();
         assert_eq!(sent, Some(Sent::Failed));
         let listed = ada.get(&path(&webhook, "/deliveries")).await.good();
         let problem = listed["items"][0]["last_error"]

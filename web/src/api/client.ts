@@ -7,7 +7,17 @@ import createClient from 'openapi-fetch';
 import { text } from '../text';
 import { Problem, readProblem } from './problem';
 import type { paths } from './schema';
-import type { Alert, LogbookEntry, NewEntry, NewVessel, NewWebhook, Sample } from './types';
+import type {
+  Alert,
+  LogbookEntry,
+  MailRecipient,
+  NewEntry,
+  NewMailRecipient,
+  NewVessel,
+  NewWebhook,
+  Sample,
+  Severity,
+} from './types';
 
 /** A place and a time at which to show the deviation. */
 export interface Place {
@@ -80,6 +90,14 @@ export const findDeviation = (id: string, compass?: string, place?: Place) =>
 export const findCoverage = (id: string, compass?: string) =>
   answer(
     client.GET('/api/v1/vessels/{id}/coverage', {
+      params: { path: { id }, query: which(compass) },
+    }),
+  );
+
+/** A compass's epochs, and what changed between them. */
+export const findTimeline = (id: string, compass?: string) =>
+  answer(
+    client.GET('/api/v1/vessels/{id}/changes', {
       params: { path: { id }, query: which(compass) },
     }),
   );
@@ -197,6 +215,51 @@ export async function listDeliveries(id: string, most: number) {
 export const sendDeliveryAgain = (id: string, delivery: string) =>
   answer(
     client.POST('/api/v1/webhooks/{id}/deliveries/{delivery}/resend', {
+      params: { path: { id, delivery } },
+    }),
+  );
+
+/** Who gets mail, and whether the server was told how to send it. */
+export async function listRecipients(): Promise<{ items: MailRecipient[]; sending: boolean }> {
+  let sending = false;
+  const items = await everyPage(async (after) => {
+    const query = page(longestPage, after);
+    const found = await answer(client.GET('/api/v1/mail-recipients', { params: { query } }));
+    sending = found.sending;
+    return found;
+  });
+  return { items, sending };
+}
+
+export const addRecipient = (body: NewMailRecipient, key: string) =>
+  answer(
+    client.POST('/api/v1/mail-recipients', {
+      params: { header: { 'Idempotency-Key': key } },
+      body,
+    }),
+  );
+
+export const changeRecipient = (id: string, severity: Severity) =>
+  answer(
+    client.PUT('/api/v1/mail-recipients/{id}', { params: { path: { id } }, body: { severity } }),
+  );
+
+export const removeRecipient = (id: string) =>
+  answer(client.DELETE('/api/v1/mail-recipients/{id}', { params: { path: { id } } }));
+
+export const testRecipient = (id: string) =>
+  answer(client.POST('/api/v1/mail-recipients/{id}/test', { params: { path: { id } } }));
+
+/** A recipient's latest letters; at most so many. */
+export async function listLetters(id: string, most: number) {
+  const params = { path: { id }, query: page(most) };
+  const found = await answer(client.GET('/api/v1/mail-recipients/{id}/deliveries', { params }));
+  return found.items;
+}
+
+export const sendLetterAgain = (id: string, delivery: string) =>
+  answer(
+    client.POST('/api/v1/mail-recipients/{id}/deliveries/{delivery}/resend', {
       params: { path: { id, delivery } },
     }),
   );

@@ -138,6 +138,110 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/mail-recipients": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List who gets mail */
+        get: operations["list_recipients"];
+        put?: never;
+        /**
+         * Have someone get mail
+         * @description From the next alert on that is as bad as `severity`, or gets so.
+         */
+        post: operations["create_recipient"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/mail-recipients/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See someone who gets mail */
+        get: operations["find_recipient"];
+        /** Change from when on someone gets mail */
+        put: operations["change_recipient"];
+        post?: never;
+        /**
+         * Send someone no more mail
+         * @description What was still to be sent is forgotten.
+         */
+        delete: operations["delete_recipient"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/mail-recipients/{id}/deliveries": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List someone's letters
+         * @description With `state=dead`, those that were given up. What is done with is kept for 30
+         *     days.
+         */
+        get: operations["list_letters"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/mail-recipients/{id}/deliveries/{delivery}/resend": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send a letter again
+         * @description At once and, if need be, for another day, with the same message id.
+         */
+        post: operations["send_letter_again"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/mail-recipients/{id}/test": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send someone a test
+         * @description It is queued like any other letter.
+         */
+        post: operations["test_recipient"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/me": {
         parameters: {
             query?: never;
@@ -1070,6 +1174,11 @@ export interface components {
          * @enum {string}
          */
         ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
+        /** @description From when on someone gets mail. */
+        ChangedMailRecipient: {
+            /** @description Of alerts as bad as this or worse. */
+            severity: components["schemas"]["Severity"];
+        };
         /** @description That an alert is over. */
         Clearing: {
             /**
@@ -1165,20 +1274,20 @@ export interface components {
              * @description How often it was tried since it was last to be sent.
              */
             attempts: number;
-            /** @description What is sent. */
+            /** @description What a webhook is sent, or a mail's `subject` and `text`. */
             body: Record<string, never>;
             /** @description When it was written. */
             created_at: components["schemas"]["Time"];
             delivered_at: components["schemas"]["Time"] | null;
-            /** @description The event's id, which stands in the body too. */
+            /** @description The event's id, which a webhook's body names too. */
             id: components["schemas"]["DeliveryId"];
             /** @description What it tells of. */
-            kind: components["schemas"]["WebhookEventKind"];
+            kind: components["schemas"]["MessageKind"];
             /** @description Why the last try failed. */
             last_error: string | null;
             /**
              * Format: int64
-             * @description The last answer's HTTP status.
+             * @description The last answer's HTTP status or SMTP reply code.
              * @example 503
              */
             last_status: number | null;
@@ -1188,7 +1297,7 @@ export interface components {
         };
         /**
          * Format: uuid
-         * @description What a webhook is told: the id of the event.
+         * @description What a receiver is told: the id of the event.
          */
         DeliveryId: string;
         /** @description A page of deliveries. */
@@ -1586,6 +1695,39 @@ export interface components {
              */
             secret: string;
         };
+        /** @description Someone who gets mail. */
+        MailRecipient: {
+            /**
+             * @description Where to.
+             * @example superintendent@example.com
+             */
+            address: string;
+            /** @description Since when. */
+            created_at: components["schemas"]["Time"];
+            /**
+             * Format: int64
+             * @description Letters that were given up.
+             */
+            dead: number;
+            /** @description The recipient's id. */
+            id: components["schemas"]["RecipientId"];
+            /**
+             * Format: int64
+             * @description Letters that wait.
+             */
+            pending: number;
+            /** @description Of alerts as bad as this or worse. */
+            severity: components["schemas"]["Severity"];
+        };
+        /** @description A page of those who get mail. */
+        MailRecipientList: {
+            /** @description In the order in which they were added. */
+            items: components["schemas"]["MailRecipient"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+            /** @description Whether this server was told how to send mail. */
+            sending: boolean;
+        };
         /** @description A user, as `/me` shows it. */
         Me: {
             /** @description What the user signs in with. */
@@ -1600,6 +1742,11 @@ export interface components {
             /** @description The user's id. */
             user_id: components["schemas"]["UserId"];
         };
+        /**
+         * @description What a message tells of.
+         * @enum {string}
+         */
+        MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "test";
         /** @description A fitted model. */
         Model: {
             /**
@@ -1756,6 +1903,16 @@ export interface components {
         NewEntry: components["schemas"]["LogbookReport"] & {
             compass_id?: components["schemas"]["CompassId"] | null;
         };
+        /** @description Someone who is to get mail. */
+        NewMailRecipient: {
+            /**
+             * @description Where to.
+             * @example superintendent@example.com
+             */
+            address: string;
+            /** @description Of alerts as bad as this or worse; `warning` if not said. */
+            severity?: components["schemas"]["Severity"];
+        };
         /** @description A token to be made. */
         NewToken: {
             expires_at?: components["schemas"]["Time"] | null;
@@ -1789,7 +1946,7 @@ export interface components {
              *       "alert.cleared"
              *     ]
              */
-            kinds: components["schemas"]["WebhookEventKind"][];
+            kinds: components["schemas"]["MessageKind"][];
             /**
              * @description Where to POST to.
              * @example https://example.com/hooks/binnacle
@@ -1885,6 +2042,11 @@ export interface components {
              */
             reference_constant_sd_deg: number;
         };
+        /**
+         * Format: uuid
+         * @description Someone who gets mail.
+         */
+        RecipientId: string;
         /**
          * @description How gyro and satellite compass compare over the samples since the ship or the
          *     compass was last changed.
@@ -2394,7 +2556,7 @@ export interface components {
             /** @description The webhook's id. */
             id: components["schemas"]["WebhookId"];
             /** @description What it is told of. */
-            kinds: components["schemas"]["WebhookEventKind"][];
+            kinds: components["schemas"]["MessageKind"][];
             /**
              * Format: int64
              * @description Deliveries that wait.
@@ -2406,11 +2568,6 @@ export interface components {
              */
             url: string;
         };
-        /**
-         * @description What a webhook may be told of.
-         * @enum {string}
-         */
-        WebhookEventKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "test";
         /**
          * Format: uuid
          * @description Where an operator's programs want to be told.
@@ -2942,6 +3099,506 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_recipients: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MailRecipientList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_recipient: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewMailRecipient"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MailRecipient"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The server was not told how to send mail */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_recipient: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["RecipientId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MailRecipient"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_recipient: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["RecipientId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ChangedMailRecipient"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MailRecipient"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_recipient: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["RecipientId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_letters: {
+        parameters: {
+            query?: {
+                /** @description Only those that stand so; `dead` are the dead letters. */
+                state?: components["schemas"]["DeliveryState"];
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["RecipientId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DeliveryList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    send_letter_again: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["RecipientId"];
+                delivery: components["schemas"]["DeliveryId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Delivery"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    test_recipient: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["RecipientId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Accepted */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Delivery"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The server was not told how to send mail */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,12 +1,14 @@
 /** Which page the address names, and moving between pages without reloading. */
 
 export type Route =
-  { page: 'vessels' | 'alerts' | 'webhooks' | 'not-found' } | { page: 'vessel'; id: string };
+  { page: 'vessels' | 'alerts' | 'mail' | 'webhooks' | 'not-found' } | { page: 'vessel'; id: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
   if (first === undefined) return { page: 'vessels' };
-  if (second === undefined && (first === 'alerts' || first === 'webhooks')) return { page: first };
+  if (second === undefined && (first === 'alerts' || first === 'mail' || first === 'webhooks')) {
+    return { page: first };
+  }
   if (first !== 'vessels' || rest.length > 0) return { page: 'not-found' };
   return second === undefined ? { page: 'vessels' } : { page: 'vessel', id: second };
 }
@@ -14,6 +16,7 @@ export function parseRoute(path: string): Route {
 export const vesselPath = (id: string): string => `/vessels/${encodeURIComponent(id)}`;
 export const vesselsPath = '/';
 export const alertsPath = '/alerts';
+export const mailPath = '/mail';
 export const webhooksPath = '/webhooks';
 
 class RouteState {

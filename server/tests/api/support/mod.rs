@@ -2,10 +2,12 @@
 
 mod database;
 mod person;
+mod relay;
 mod ship;
 
 pub(crate) use database::Engine;
 pub(crate) use person::{Answer, Person, attempt};
+pub(crate) use relay::{At, Encryption, Letter, Mood, Relay};
 pub(crate) use ship::{
     Ship, days_at_sea, days_in, exchange, frame, passage, sample, struck, truth,
 };
@@ -138,6 +140,12 @@ fn config(url: &str) -> Serve {
         "--analysis-workers",
         "0",
         "--webhooks-to-private",
+        "--smtp-url",
+        "smtp://localhost:9?tls=none",
+        "--mail-from",
+        "Binnacle <alerts@binnacle.example>",
+        "--public-url",
+        "https://binnacle.example",
     ];
     let Command::Serve(serve) = Cli::parse_from(arguments.into_iter().chain(more)).command else {
         unreachable!("serve was asked for");

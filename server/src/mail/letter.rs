@@ -1,0 +1,141 @@
+//! What a letter says: plain text, so that every program shows it the same.
+
+use crate::alerts::{Alert, AlertNews, Severity};
+use crate::ids::AlertId;
+use crate::outbox::Kind;
+use crate::time::Time;
+use serde::{Deserialize, Serialize};
+
+/// Columns that text is wrapped to.
+const WIDTH: usize = 72;
+
+/// A letter as it waits to be sent.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Letter {
+    pub(super) subject: String,
+    pub(super) text: String,
+    /// The page to look at, below the dashboard's address.
+    pub(super) path: String,
+    /// The alert that it is about: mail programs show its letters together.
+    pub(super) alert: Option<AlertId>,
+}
+
+impl Letter {
+    /// What is new about an alert.
+    pub(super) fn of(news: &AlertNews) -> Letter {
+        let alert = &news.alert;
+        let state = match news.kind {
+            Kind::AlertCleared => "over",
+            _ => name(alert.severity),
+        };
+        let cause = alert.cause.words();
+        Letter {
+            // A name that looks like an encoded word (RFC 2047, section 2) is none.
+            subject: one_line(&format!("{}: {state}, {cause}", alert.vessel_name))
+                .replace("=?", "= ?"),
+            text: text(alert, news.kind),
+            path: format!("/vessels/{}", alert.vessel_id),
+            alert: Some(alert.id),
+        }
+    }
+
+    /// What somebody gets who asked for a test.
+    pub(super) fn test() -> Letter {
+        Letter {
+            subject: "A test of Binnacle's mail".to_owned(),
+            text: "This is a test: alerts of your fleet's compasses reach this address.\n"
+                .to_owned(),
+            path: "/mail".to_owned(),
+            alert: None,
+        }
+    }
+
+    /// The whole text, with where to look and why the recipient gets it.
+    pub(super) fn text_for(&self, address: &str, least: Severity, public_url: &str) -> String {
+        let why = format!(
+            "You get this because {address} is on your company's list for alerts from {} on. An \
+             administrator takes it off:",
+            name(least)
+        );
+        format!(
+            "{}\n{public_url}{}\n\n{}\n{public_url}/mail\n",
+            self.text,
+            self.path,
+            wrapped("", &why)
+        )
+    }
+}
+
+fn text(alert: &Alert, kind: Kind) -> String {
+    let mut lines = vec![
+        format!("Vessel:   {}", one_line(&alert.vessel_name)),
+        format!("Compass:  {}", one_line(&alert.compass_name)),
+        format!("Severity: {}", name(alert.severity)),
+        format!("Since:    {}", when(alert.since)),
+    ];
+    if let (Kind::AlertCleared, Some(cleared_at)) = (kind, alert.cleared_at) {
+        lines.push(format!("Over:     {}", when(cleared_at)));
+        let by = alert.cleared_by.as_deref().unwrap_or("Binnacle");
+        let reason = alert.clearing_reason.as_deref().unwrap_or("it is over");
+        let why = format!("Cleared by {by}: {reason}");
+        lines.extend([String::new(), wrapped("", &why), String::new()]);
+        lines.extend(["It said:".to_owned(), wrapped("  ", &alert.summary)]);
+        return lines.join("\n") + "\n";
+    }
+    lines.extend([String::new(), wrapped("", &alert.summary), String::new()]);
+    lines.extend(["What to do:".to_owned(), wrapped("  ", &alert.advice)]);
+    if !alert.evidence.0.is_empty() {
+        lines.extend([String::new(), "What shows it:".to_owned()]);
+        let points = alert.evidence.0.iter();
+        lines.extend(points.map(|point| wrapped("- ", point)));
+    }
+    lines.join("\n") + "\n"
+}
+
+fn name(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Notice => "notice",
+        Severity::Warning => "warning",
+        Severity::Critical => "critical",
+    }
+}
+
+/// To the minute, UTC.
+fn when(time: Time) -> String {
+    let text = time.0.to_string();
+    let minute: String = text.chars().take(16).collect();
+    format!("{} UTC", minute.replace('T', " "))
+}
+
+/// Without anything that could end a line.
+fn one_line(text: &str) -> String {
+    let shown = |c: char| {
+        if c.is_control() || "\u{2028}\u{2029}".contains(c) {
+            ' '
+        } else {
+            c
+        }
+    };
+    text.chars().map(shown).collect()
+}
+
+/// Lines of at most [`WIDTH`] columns, the first after `lead`, the others indented
+/// alike.
+fn wrapped(lead: &str, text: &str) -> String {
+    let mut lines = Vec::new();
+    let mut line = lead.to_owned();
+    let mut empty = true;
+    for word in one_line(text).split_whitespace() {
+        if !empty && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            lines.push(std::mem::replace(&mut line, " ".repeat(lead.len())));
+            empty = true;
+        }
+        if !empty {
+            line.push(' ');
+        }
+        line.push_str(word);
+        empty = false;
+    }
+    lines.push(line);
+    lines.join("\n")
+}

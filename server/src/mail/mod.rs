@@ -1,0 +1,220 @@
+//! Mail: telling people of alerts, wherever they are.
+//!
+//! What always holds:
+//!
+//! - Letters wait and are sent as [`crate::outbox`] says. One that the relay took is
+//!   not sent again; one whose answer was lost comes again under the same message id.
+//! - Of an alert a recipient gets a letter when it reaches the recipient's severity,
+//!   when it gets worse than the last letter said, and when it is over; not when it
+//!   only says something new.
+//! - No text of others makes a header: names are encoded, line breaks are taken out.
+
+mod announce;
+mod letter;
+mod recipient;
+mod relay;
+mod send;
+mod store;
+
+pub use announce::announce;
+pub use relay::Relay;
+pub use send::Mailer;
+
+use crate::access::{Reader, Writer};
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Page, Params, Valid};
+use crate::idempotency::{self, Key};
+use crate::ids::{DeliveryId, RecipientId};
+use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter, Kind, Message};
+use axum::extract::State;
+use axum::http::StatusCode;
+use letter::Letter;
+use recipient::{ChangedRecipient, NewRecipient, Recipient, RecipientList};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_recipients, create_recipient))
+        .routes(routes!(find_recipient, change_recipient, delete_recipient))
+        .routes(routes!(test_recipient))
+        .routes(routes!(list_letters))
+        .routes(routes!(send_letter_again))
+}
+
+/// List who gets mail
+#[utoipa::path(get, path = "/mail-recipients", tag = "alerts", params(Page),
+    responses((status = 200, body = RecipientList), (status = 401, body = Problem)))]
+async fn list_recipients(
+    State(app): State<App>,
+    reader: Reader,
+    page: Page,
+) -> Result<Json<RecipientList>> {
+    let found = store::list(&app.db, reader.operator, page.after_id()?, page.fetch()).await?;
+    let listed = page.cut(found, |recipient| recipient.id.to_string());
+    Ok(Json(RecipientList {
+        items: listed.items,
+        next: listed.next,
+        sending: app.config.mail.is_set_up(),
+    }))
+}
+
+/// Have someone get mail
+///
+/// From the next alert on that is as bad as `severity`, or gets so.
+#[utoipa::path(post, path = "/mail-recipients", tag = "alerts", params(Key),
+    request_body = NewRecipient,
+    responses((status = 201, body = Recipient), (status = 401, body = Problem),
+              (status = 403, body = Problem),
+              (status = 409, description = "The server was not told how to send mail", body = Problem),
+              (status = 422, body = Problem)))]
+async fn create_recipient(
+    State(app): State<App>,
+    writer: Writer,
+    key: Key,
+    Valid(new): Valid<NewRecipient>,
+) -> Result<(StatusCode, Json<Recipient>)> {
+    must_be_set_up(&app)?;
+    let request = idempotency::request_hash("mail recipient", &new)?;
+    let new = new.checked()?;
+    let now = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    let wanted = RecipientId::new();
+    let made = key
+        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .await?;
+    if made == wanted.0 {
+        store::insert(&mut tx, writer.operator, wanted, &new, now).await?;
+    }
+    tx.commit().await?;
+    let recipient = store::must_find(&app.db, writer.operator, RecipientId(made)).await?;
+    Ok((StatusCode::CREATED, Json(recipient)))
+}
+
+/// See someone who gets mail
+#[utoipa::path(get, path = "/mail-recipients/{id}", tag = "alerts",
+    params(("id" = RecipientId, Path)),
+    responses((status = 200, body = Recipient), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_recipient(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<RecipientId>,
+) -> Result<Json<Recipient>> {
+    Ok(Json(store::must_find(&app.db, reader.operator, id).await?))
+}
+
+/// Change from when on someone gets mail
+#[utoipa::path(put, path = "/mail-recipients/{id}", tag = "alerts",
+    params(("id" = RecipientId, Path)), request_body = ChangedRecipient,
+    responses((status = 200, body = Recipient), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn change_recipient(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<RecipientId>,
+    Valid(wanted): Valid<ChangedRecipient>,
+) -> Result<Json<Recipient>> {
+    let mut tx = app.db.begin().await?;
+    store::change(&mut tx, writer.operator, id, wanted.severity).await?;
+    tx.commit().await?;
+    Ok(Json(store::must_find(&app.db, writer.operator, id).await?))
+}
+
+/// Send someone no more mail
+///
+/// What was still to be sent is forgotten.
+#[utoipa::path(delete, path = "/mail-recipients/{id}", tag = "alerts",
+    params(("id" = RecipientId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn delete_recipient(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<RecipientId>,
+) -> Result<StatusCode> {
+    let mut tx = app.db.begin().await?;
+    outbox::delete(&mut tx, writer.operator, id.0, Channel::Mail).await?;
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Send someone a test
+///
+/// It is queued like any other letter.
+#[utoipa::path(post, path = "/mail-recipients/{id}/test", tag = "alerts",
+    params(("id" = RecipientId, Path)),
+    responses((status = 202, body = Delivery), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "The server was not told how to send mail", body = Problem)))]
+async fn test_recipient(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<RecipientId>,
+) -> Result<(StatusCode, Json<Delivery>)> {
+    store::must_find(&app.db, writer.operator, id).await?;
+    must_be_set_up(&app)?;
+    let message = Message {
+        id: DeliveryId::new(),
+        kind: Kind::Test,
+        body: serde_json::to_string(&Letter::test())?,
+    };
+    let mut tx = app.db.begin().await?;
+    outbox::queue(&mut tx, id.0, &message, app.clock.now().into()).await?;
+    tx.commit().await?;
+    let queued = outbox::must_find(&app.db, id.0, message.id).await?;
+    Ok((StatusCode::ACCEPTED, Json(queued)))
+}
+
+/// List someone's letters
+///
+/// With `state=dead`, those that were given up. What is done with is kept for 30
+/// days.
+#[utoipa::path(get, path = "/mail-recipients/{id}/deliveries", tag = "alerts",
+    params(("id" = RecipientId, Path), Filter, Page),
+    responses((status = 200, body = DeliveryList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_letters(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<RecipientId>,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<DeliveryList>> {
+    store::must_find(&app.db, reader.operator, id).await?;
+    Ok(Json(outbox::list(&app.db, id.0, filter, &page).await?))
+}
+
+/// Send a letter again
+///
+/// At once and, if need be, for another day, with the same message id.
+#[utoipa::path(post, path = "/mail-recipients/{id}/deliveries/{delivery}/resend", tag = "alerts",
+    params(("id" = RecipientId, Path), ("delivery" = DeliveryId, Path)),
+    responses((status = 202, body = Delivery), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem)))]
+async fn send_letter_again(
+    State(app): State<App>,
+    writer: Writer,
+    Id((id, delivery)): Id<(RecipientId, DeliveryId)>,
+) -> Result<(StatusCode, Json<Delivery>)> {
+    store::must_find(&app.db, writer.operator, id).await?;
+    let mut tx = app.db.begin().await?;
+    outbox::send_again(&mut tx, id.0, delivery, app.clock.now().into()).await?;
+    tx.commit().await?;
+    let queued = outbox::must_find(&app.db, id.0, delivery).await?;
+    Ok((StatusCode::ACCEPTED, Json(queued)))
+}
+
+/// # Errors
+/// [`Error::NotSetUp`] when this server sends no mail.
+fn must_be_set_up(app: &App) -> Result<()> {
+    if app.config.mail.is_set_up() {
+        return Ok(());
+    }
+    Err(Error::NotSetUp(
+        "this server was not told how to send mail (--smtp-url)",
+    ))
+}

@@ -1,0 +1,134 @@
+//! Who gets mail, as it is asked for and shown.
+
+use crate::alerts::Severity;
+use crate::error::{Error, Result};
+use crate::ids::RecipientId;
+use crate::time::Time;
+use lettre::Address;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Longest address (RFC 5321, section 4.5.3.1.3, without the brackets).
+const MAX_ADDRESS: usize = 254;
+
+/// Someone who is to get mail.
+#[derive(Clone, Debug, Deserialize, Serialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewMailRecipient)]
+pub(super) struct NewRecipient {
+    /// Where to.
+    #[schema(max_length = 254, example = "superintendent@example.com")]
+    pub(super) address: String,
+    /// Of alerts as bad as this or worse; `warning` if not said.
+    #[serde(default = "warning")]
+    pub(super) severity: Severity,
+}
+
+fn warning() -> Severity {
+    Severity::Warning
+}
+
+/// From when on someone gets mail.
+#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = ChangedMailRecipient)]
+pub(super) struct ChangedRecipient {
+    /// Of alerts as bad as this or worse.
+    pub(super) severity: Severity,
+}
+
+/// Someone who gets mail.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+#[schema(as = MailRecipient)]
+pub(super) struct Recipient {
+    /// The recipient's id.
+    pub(super) id: RecipientId,
+    /// Where to.
+    #[schema(example = "superintendent@example.com")]
+    pub(super) address: String,
+    /// Of alerts as bad as this or worse.
+    pub(super) severity: Severity,
+    /// Since when.
+    pub(super) created_at: Time,
+    /// Letters that wait.
+    pub(super) pending: i64,
+    /// Letters that were given up.
+    pub(super) dead: i64,
+}
+
+/// A page of those who get mail.
+#[derive(Serialize, ToSchema)]
+#[schema(as = MailRecipientList)]
+pub(super) struct RecipientList {
+    /// In the order in which they were added.
+    pub(super) items: Vec<Recipient>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub(super) next: Option<String>,
+    /// Whether this server was told how to send mail.
+    pub(super) sending: bool,
+}
+
+impl NewRecipient {
+    /// The same, if mail can go there.
+    ///
+    /// # Errors
+    /// When it cannot.
+    pub(super) fn checked(mut self) -> Result<NewRecipient> {
+        let invalid = |detail: &str| {
+            Err(Error::Invalid {
+                field: "address",
+                detail: detail.to_owned(),
+            })
+        };
+        if self.address.len() > MAX_ADDRESS {
+            return invalid("is longer than 254 characters");
+        }
+        // Beyond ASCII an address asks every relay on its way for SMTPUTF8.
+        if !self.address.is_ascii() {
+            return invalid("has letters beyond ASCII");
+        }
+        let Ok(address) = self.address.trim().parse::<Address>() else {
+            return invalid("is not an address like name@example.com");
+        };
+        let domain = address.domain().to_ascii_lowercase();
+        self.address = format!("{}@{domain}", address.user());
+        Ok(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn checked(address: &str) -> Option<String> {
+        let new = NewRecipient {
+            address: address.to_owned(),
+            severity: Severity::Warning,
+        };
+        new.checked().ok().map(|new| new.address)
+    }
+
+    #[test]
+    fn only_what_is_one_address_is_one() {
+        assert_eq!(
+            checked(" Ada.L@Example.COM ").as_deref(),
+            Some("Ada.L@example.com")
+        );
+        for bad in [
+            "",
+            "ada",
+            "ada@",
+            "@example.com",
+            "ada@example.com, eve@example.com",
+            "Ada <ada@example.com>",
+            "ada@example.com\r\nBcc: eve@example.com",
+            "ada\n@example.com",
+            "ada@ex ample.com",
+            "ádá@example.com",
+            &format!("{}@example.com", "a".repeat(300)),
+        ] {
+            assert_eq!(checked(bad), None, "{bad:?}");
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! The mail relay: what the settings say of it, and a conversation with it.
+//!
+//! What always holds: a name and a password go only over TLS with a certificate that
+//! was checked; a relay without TLS is spoken to only within one's own network. No
+//! error names the password.
+
+use crate::outbox::Tried;
+use crate::webhooks::is_public;
+use anyhow::{Context, Result, bail};
+use lettre::address::Envelope;
+use lettre::transport::smtp::authentication::{Credentials, Mechanism};
+use lettre::transport::smtp::client::{AsyncSmtpConnection, Certificate, TlsParameters};
+use lettre::transport::smtp::extension::ClientId;
+use percent_encoding::percent_decode_str;
+use reqwest::Url;
+use std::net::SocketAddr;
+use std::time::Duration;
+use tokio::time::timeout;
+
+/// A relay that has not taken a letter by then is tried again; shorter than the
+/// lease on a delivery.
+pub(super) const PATIENCE: Duration = Duration::from_mins(1);
+/// Taking leave after a letter was taken or refused.
+const QUIT_PATIENCE: Duration = Duration::from_secs(2);
+
+/// Where letters are handed over, and how.
+#[derive(Clone)]
+pub struct Relay {
+    host: String,
+    port: u16,
+    security: Security,
+    credentials: Option<Credentials>,
+    /// What we call ourselves.
+    name: ClientId,
+    patience: Duration,
+}
+
+#[derive(Clone)]
+enum Security {
+    /// From the first byte (RFC 8314, section 3.3).
+    Tls(TlsParameters),
+    /// By STARTTLS, without which nothing is said (RFC 3207).
+    StartTls(TlsParameters),
+    /// None.
+    Nothing,
+}
+
+impl Relay {
+    /// Reads `smtps://USER:PASSWORD@HOST`, `smtp://…` for STARTTLS, or
+    /// `smtp://HOST?tls=none`. `authority` is PEM of one more authority that the
+    /// relay's certificate may be of, `name` what we call ourselves.
+    ///
+    /// # Errors
+    /// When the URL says something else; the error does not repeat it.
+    pub fn new(url: &str, authority: Option<&[u8]>, name: &str) -> Result<Relay> {
+        let url = Url::parse(url).context("is not a URL")?;
+        let host = url.host_str().filter(|host| !host.is_empty());
+        let host = host.context("names no host")?.to_owned();
+        if !matches!(url.path(), "" | "/") || url.fragment().is_some() {
+            bail!("has more in it than user, password, host, port and tls=none");
+        }
+        let tls = || tls_parameters(&host, authority);
+        let (security, port) = match (url.scheme(), url.query()) {
+            ("smtps", None) => (Security::Tls(tls()?), 465),
+            ("smtp", None) => (Security::StartTls(tls()?), 587),
+            ("smtp", Some("tls=none")) => (Security::Nothing, 25),
+            ("smtp" | "smtps", Some(_)) => {
+                bail!("may only be followed by ?tls=none, after smtp://")
+            }
+            _ => bail!("begins with neither smtps:// nor smtp://"),
+        };
+        let credentials = credentials(&url)?;
+        if credentials.is_some() && matches!(security, Security::Nothing) {
+            bail!("has a password that would go without TLS");
+        }
+        Ok(Relay {
+            port: url.port().unwrap_or(port),
+            host,
+            security,
+            credentials,
+            name: ClientId::Domain(name.to_owned()),
+            patience: PATIENCE,
+        })
+    }
+
+    /// The same, tried again after another time than a minute.
+    #[must_use]
+    pub fn with_patience(self, patience: Duration) -> Relay {
+        Relay { patience, ..self }
+    }
+
+    /// Hands a letter over.
+    ///
+    /// # Errors
+    /// When there was no answer, or none to this letter: whoever runs the relay may
+    /// yet mend it.
+    pub(super) async fn hand_over(&self, envelope: &Envelope, letter: &[u8]) -> Result<Tried> {
+        let talk = async {
+            let mut relay = self.connect().await?;
+            let answer = relay.send(envelope, letter).await;
+            anyhow::Ok((relay, answer))
+        };
+        let talked = timeout(self.patience, talk).await;
+        let (mut relay, answer) = talked.context("the relay does not answer")??;
+        match answer {
+            Ok(response) => {
+                // It has the letter, whatever it does from now on.
+                let _ = timeout(QUIT_PATIENCE, relay.quit()).await;
+                Ok(Tried::Taken(response.code().into()))
+            }
+            Err(error) => match error.status() {
+                Some(code) if error.is_permanent() => {
+                    Ok(Tried::Refused(code.into(), plain(&error)))
+                }
+                Some(code) => Ok(Tried::Later(code.into(), plain(&error))),
+                None => Err(error.into()),
+            },
+        }
+    }
+
+    async fn connect(&self) -> Result<AsyncSmtpConnection> {
+        let found = tokio::net::lookup_host((self.host.as_str(), self.port)).await;
+        let addresses: Vec<SocketAddr> = found.context("the relay's name means nothing")?.collect();
+        let without_tls = matches!(self.security, Security::Nothing);
+        if without_tls && addresses.iter().any(|address| is_public(address.ip())) {
+            bail!("the relay is not within the network, and is to be spoken to without TLS");
+        }
+        let from_the_start = match &self.security {
+            Security::Tls(tls) => Some(tls.clone()),
+            Security::StartTls(_) | Security::Nothing => None,
+        };
+        let patience = Some(self.patience);
+        let mut relay = AsyncSmtpConnection::connect_tokio1(
+            addresses.as_slice(),
+            patience,
+            &self.name,
+            from_the_start,
+            None,
+        )
+        .await?;
+        if let Security::StartTls(tls) = &self.security {
+            relay.starttls(tls.clone(), &self.name).await?;
+        }
+        if let Some(credentials) = &self.credentials {
+            let known = [Mechanism::Plain, Mechanism::Login];
+            relay.auth(&known, credentials).await?;
+        }
+        Ok(relay)
+    }
+}
+
+fn tls_parameters(host: &str, authority: Option<&[u8]>) -> Result<TlsParameters> {
+    let mut parameters = TlsParameters::builder(host.to_owned());
+    if let Some(authority) = authority {
+        let certificate = Certificate::from_pem(authority).context("the authority is not PEM")?;
+        parameters = parameters.add_root_certificate(certificate);
+    }
+    Ok(parameters.build_rustls()?)
+}
+
+fn credentials(url: &Url) -> Result<Option<Credentials>> {
+    let decoded = |text| percent_decode_str(text).decode_utf8();
+    match (url.username(), url.password()) {
+        ("", None) => Ok(None),
+        ("", Some(_)) => bail!("has a password but no user"),
+        (_, None) => bail!("has a user but no password"),
+        (user, Some(password)) => Ok(Some(Credentials::new(
+            decoded(user)?.into_owned(),
+            decoded(password)?.into_owned(),
+        ))),
+    }
+}
+
+/// What the relay said, on one line.
+fn plain(error: &lettre::transport::smtp::Error) -> String {
+    let said = error.to_string();
+    said.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn problem(url: &str) -> Option<String> {
+        let relay = Relay::new(url, None, "binnacle.example");
+        relay.err().map(|error| format!("{error:#}"))
+    }
+
+    #[test]
+    fn a_relays_address_is_read_or_refused_without_its_password() {
+        for good in [
+            "smtps://ada:s%40cret@mail.example.com",
+            "smtp://ada:secret@mail.example.com:2525",
+            "smtp://mail.example.com/",
+            "smtp://localhost:25?tls=none",
+        ] {
+            assert_eq!(problem(good), None, "{good}");
+        }
+        for bad in [
+            "mail.example.com",
+            "smtp://",
+            "https://ada:secret@example.com",
+            "smtp://ada:secret@localhost?tls=none",
+            "smtps://ada:secret@example.com?tls=none",
+            "smtp://ada:secret@example.com?tls=maybe",
+            "smtp://ada:secret@example.com/path",
+            "smtp://ada@example.com",
+        ] {
+            let problem = problem(bad).unwrap_or_else(|| panic!("{bad} is taken"));
+            assert!(!problem.contains("secret"), "{problem}");
+        }
+    }
+}

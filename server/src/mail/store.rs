@@ -1,0 +1,176 @@
+//! Who gets mail, in the database.
+
+use super::recipient::{NewRecipient, Recipient};
+use crate::alerts::Severity;
+use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
+use crate::error::{Error, Result};
+use crate::ids::{AlertId, OperatorId, RecipientId};
+use crate::outbox::{self, Channel};
+use crate::time::Time;
+use uuid::Uuid;
+
+pub(super) async fn list(
+    db: &Db,
+    operator: OperatorId,
+    after: Option<Uuid>,
+    limit: i64,
+) -> DbResult<Vec<Recipient>> {
+    rows!(
+        db,
+        Recipient,
+        "SELECT m.id, m.address, m.severity, m.created_at,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = m.id AND d.state = 'pending') AS pending,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = m.id AND d.state = 'dead') AS dead
+         FROM mail_recipients m
+         WHERE m.operator_id = $1 AND m.id > $2
+         ORDER BY m.id
+         LIMIT $3",
+        operator,
+        after.unwrap_or_default(),
+        limit
+    )
+}
+
+/// Someone who gets mail of the operator's.
+///
+/// # Errors
+/// [`Error::NotFound`] when there is no such person.
+pub(super) async fn must_find(db: &Db, operator: OperatorId, id: RecipientId) -> Result<Recipient> {
+    row!(
+        db,
+        Recipient,
+        "SELECT m.id, m.address, m.severity, m.created_at,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = m.id AND d.state = 'pending') AS pending,
+                (SELECT COUNT(*) FROM deliveries d
+                 WHERE d.receiver_id = m.id AND d.state = 'dead') AS dead
+         FROM mail_recipients m
+         WHERE m.operator_id = $1 AND m.id = $2
+         ORDER BY m.id",
+        operator,
+        id
+    )?
+    .ok_or(Error::NotFound("mail recipient"))
+}
+
+/// # Errors
+/// When the address is on the operator's list.
+pub(super) async fn insert(
+    tx: &mut Tx,
+    operator: OperatorId,
+    id: RecipientId,
+    new: &NewRecipient,
+    now: Time,
+) -> Result<()> {
+    outbox::insert(tx, operator, id.0, Channel::Mail, true).await?;
+    let inserted = execute!(
+        tx,
+        "INSERT INTO mail_recipients (id, operator_id, address, severity, created_at)
+         VALUES ($1, $2, $3, $4, $5)
+         ON CONFLICT (operator_id, address) DO NOTHING",
+        id,
+        operator,
+        new.address.as_str(),
+        new.severity,
+        now
+    )?;
+    if inserted == 0 {
+        return Err(Error::Invalid {
+            field: "address",
+            detail: "is on the list already".to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// # Errors
+/// [`Error::NotFound`] when the operator has no such recipient.
+pub(super) async fn change(
+    tx: &mut Tx,
+    operator: OperatorId,
+    id: RecipientId,
+    severity: Severity,
+) -> Result<()> {
+    let changed = execute!(
+        tx,
+        "UPDATE mail_recipients SET severity = $3 WHERE operator_id = $1 AND id = $2",
+        operator,
+        id,
+        severity
+    )?;
+    if changed == 0 {
+        return Err(Error::NotFound("mail recipient"));
+    }
+    Ok(())
+}
+
+/// Where a recipient's mail goes; none if it was removed.
+pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Severity)>> {
+    row!(
+        db,
+        (String, Severity),
+        "SELECT address, severity FROM mail_recipients WHERE id = $1 ORDER BY id",
+        id
+    )
+}
+
+/// Whom an operator's alerts are told by mail, and from which severity on.
+pub(super) async fn wishes(
+    tx: &mut Tx,
+    operator: OperatorId,
+) -> DbResult<Vec<(RecipientId, Severity)>> {
+    rows!(
+        in tx,
+        (RecipientId, Severity),
+        "SELECT id, severity FROM mail_recipients WHERE operator_id = $1 ORDER BY id",
+        operator
+    )
+}
+
+/// The worst that a recipient was told of an alert; none if nothing.
+pub(super) async fn told(
+    tx: &mut Tx,
+    recipient: RecipientId,
+    alert: AlertId,
+) -> DbResult<Option<Severity>> {
+    let found = row!(
+        in tx,
+        (Severity,),
+        "SELECT severity FROM mail_told WHERE recipient_id = $1 AND alert_id = $2
+         ORDER BY alert_id",
+        recipient,
+        alert
+    )?;
+    Ok(found.map(|(severity,)| severity))
+}
+
+/// Notes what a recipient is told of an alert.
+pub(super) async fn tell(
+    tx: &mut Tx,
+    recipient: RecipientId,
+    alert: AlertId,
+    severity: Severity,
+) -> DbResult<()> {
+    execute!(
+        tx,
+        "INSERT INTO mail_told (recipient_id, alert_id, severity) VALUES ($1, $2, $3)
+         ON CONFLICT (recipient_id, alert_id) DO UPDATE SET severity = excluded.severity",
+        recipient,
+        alert,
+        severity
+    )?;
+    Ok(())
+}
+
+/// Forgets what was told of an alert that is over.
+pub(super) async fn forget(tx: &mut Tx, recipient: RecipientId, alert: AlertId) -> DbResult<()> {
+    execute!(
+        tx,
+        "DELETE FROM mail_told WHERE recipient_id = $1 AND alert_id = $2",
+        recipient,
+        alert
+    )?;
+    Ok(())
+}

@@ -1,0 +1,118 @@
+//! Messages, and deliveries as they are shown.
+
+use crate::ids::DeliveryId;
+use crate::time::Time;
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+use utoipa::{IntoParams, ToSchema};
+
+/// What carries messages to a receiver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, sqlx::Type)]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+pub enum Channel {
+    /// HTTP, to a program.
+    Webhook,
+    /// SMTP, to a person.
+    Mail,
+}
+
+/// What a message tells of.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ToSchema, sqlx::Type,
+)]
+#[sqlx(type_name = "text")]
+#[schema(as = MessageKind)]
+pub enum Kind {
+    /// An alert is new, or was acknowledged and got worse.
+    #[serde(rename = "alert.raised")]
+    #[sqlx(rename = "alert.raised")]
+    AlertRaised,
+    /// An alert is worse or less bad than it was.
+    #[serde(rename = "alert.updated")]
+    #[sqlx(rename = "alert.updated")]
+    AlertUpdated,
+    /// Someone acknowledged an alert.
+    #[serde(rename = "alert.acknowledged")]
+    #[sqlx(rename = "alert.acknowledged")]
+    AlertAcknowledged,
+    /// An alert is over.
+    #[serde(rename = "alert.cleared")]
+    #[sqlx(rename = "alert.cleared")]
+    AlertCleared,
+    /// Someone asked for a test.
+    #[serde(rename = "test")]
+    #[sqlx(rename = "test")]
+    Test,
+}
+
+/// Something to be told.
+#[derive(Clone, Debug)]
+pub struct Message {
+    /// The event's id.
+    pub id: DeliveryId,
+    /// What it tells of.
+    pub kind: Kind,
+    /// JSON.
+    pub body: String,
+}
+
+/// How a delivery stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+pub enum DeliveryState {
+    /// It waits for its turn or its next try.
+    Pending,
+    /// The receiver took it.
+    Delivered,
+    /// It was refused for good, or tried for a day in vain.
+    Dead,
+}
+
+/// A message and what became of it.
+#[derive(Debug, Serialize, ToSchema)]
+pub struct Delivery {
+    /// The event's id, which a webhook's body names too.
+    pub id: DeliveryId,
+    /// What it tells of.
+    pub kind: Kind,
+    /// How it stands.
+    pub state: DeliveryState,
+    /// When it was written.
+    pub created_at: Time,
+    /// How often it was tried since it was last to be sent.
+    pub attempts: i64,
+    /// When it is tried next, while it waits.
+    #[schema(required)]
+    pub next_attempt_at: Option<Time>,
+    /// The last answer's HTTP status or SMTP reply code.
+    #[schema(required, example = 503)]
+    pub last_status: Option<i64>,
+    /// Why the last try failed.
+    #[schema(required)]
+    pub last_error: Option<String>,
+    /// When it was delivered.
+    #[schema(required)]
+    pub delivered_at: Option<Time>,
+    /// What a webhook is sent, or a mail's `subject` and `text`.
+    #[schema(value_type = Object)]
+    pub body: Box<RawValue>,
+}
+
+/// A page of deliveries.
+#[derive(Serialize, ToSchema)]
+pub struct DeliveryList {
+    /// The newest first.
+    pub items: Vec<Delivery>,
+    /// `after` of the next page.
+    #[schema(required)]
+    pub next: Option<String>,
+}
+
+/// Which deliveries.
+#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+pub struct Filter {
+    /// Only those that stand so; `dead` are the dead letters.
+    pub state: Option<DeliveryState>,
+}

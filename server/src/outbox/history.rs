@@ -1,0 +1,107 @@
+//! What became of a receiver's messages.
+
+use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Kind};
+use crate::db::{Db, Tx, execute, row, rows};
+use crate::error::{Error, Result};
+use crate::http::Page;
+use crate::ids::DeliveryId;
+use crate::time::Time;
+use serde_json::value::RawValue;
+use uuid::Uuid;
+
+#[derive(sqlx::FromRow)]
+struct Row {
+    id: DeliveryId,
+    kind: Kind,
+    state: DeliveryState,
+    created_at: Time,
+    attempts: i64,
+    next_attempt_at: Time,
+    last_status: Option<i64>,
+    last_error: Option<String>,
+    delivered_at: Option<Time>,
+    number: i64,
+    body: String,
+}
+
+/// A page of a receiver's deliveries, the newest first.
+pub async fn list(db: &Db, receiver: Uuid, filter: Filter, page: &Page) -> Result<DeliveryList> {
+    let found = rows!(
+        db,
+        Row,
+        "SELECT id, kind, state, created_at, attempts, next_attempt_at, last_status, last_error,
+                delivered_at, number, body
+         FROM deliveries
+         WHERE receiver_id = $1 AND number < $2 AND ($3 IS NULL OR state = $3)
+         ORDER BY number DESC
+         LIMIT $4",
+        receiver,
+        page.after_number()?.unwrap_or(i64::MAX),
+        filter.state,
+        page.fetch()
+    )?;
+    let listed = page.cut(found, |row| row.number.to_string());
+    let items: Result<Vec<Delivery>> = listed.items.into_iter().map(Row::read).collect();
+    Ok(DeliveryList {
+        items: items?,
+        next: listed.next,
+    })
+}
+
+/// A receiver's delivery.
+///
+/// # Errors
+/// [`Error::NotFound`] when it has none of that id.
+pub async fn must_find(db: &Db, receiver: Uuid, id: DeliveryId) -> Result<Delivery> {
+    let found = row!(
+        db,
+        Row,
+        "SELECT id, kind, state, created_at, attempts, next_attempt_at, last_status, last_error,
+                delivered_at, number, body
+         FROM deliveries
+         WHERE receiver_id = $1 AND id = $2
+         ORDER BY number",
+        receiver,
+        id
+    )?;
+    found.ok_or(Error::NotFound("delivery"))?.read()
+}
+
+/// Has a delivery tried again at once, and for another day; one that waits too.
+///
+/// # Errors
+/// [`Error::NotFound`] when the receiver has none of that id.
+pub async fn send_again(tx: &mut Tx, receiver: Uuid, id: DeliveryId, now: Time) -> Result<()> {
+    let changed = execute!(
+        tx,
+        "UPDATE deliveries
+         SET state = 'pending', attempts = 0, tries_since = $3, next_attempt_at = $3,
+             lease_until = NULL, delivered_at = NULL
+         WHERE receiver_id = $1 AND id = $2",
+        receiver,
+        id,
+        now
+    )?;
+    if changed == 0 {
+        return Err(Error::NotFound("delivery"));
+    }
+    Ok(())
+}
+
+impl Row {
+    fn read(self) -> Result<Delivery> {
+        let waits = self.state == DeliveryState::Pending;
+        Ok(Delivery {
+            id: self.id,
+            kind: self.kind,
+            state: self.state,
+            created_at: self.created_at,
+            attempts: self.attempts,
+            next_attempt_at: Some(self.next_attempt_at).filter(|_| waits),
+            last_status: self.last_status,
+            last_error: self.last_error,
+            delivered_at: self.delivered_at,
+            body: RawValue::from_string(self.body)?,
+        })
+    }
+}

@@ -1,0 +1,21 @@
+//! Messages on their way out, whatever carries them: a queue for each receiver.
+//!
+//! What always holds:
+//!
+//! - A message is queued in the transaction that makes it true, and sent at least
+//!   once; its id tells a receiver that it had it before.
+//! - Each receiver gets its messages in order: the next is not sent before this one
+//!   was delivered, refused for good, or given up after a day of tries.
+//! - What waits survives a restart, and any server process may send it.
+
+mod delivery;
+mod history;
+mod queue;
+mod receivers;
+mod worker;
+
+pub use delivery::{Channel, Delivery, DeliveryList, Filter, Kind, Message};
+pub use history::{list, must_find, send_again};
+pub use queue::{Claimed, queue};
+pub use receivers::{delete, enable, insert};
+pub use worker::{Carrier, Sent, Tried, run, step};

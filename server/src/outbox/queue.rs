@@ -1,0 +1,228 @@
+//! The queues in the database, one for each receiver.
+//!
+//! What always holds: a receiver's deliveries are numbered in the order in which
+//! their transactions commit, and only the first that waits is due. One worker at a
+//! time has it, the one that holds its lease. Webhooks are always taken before mail
+//! recipients, and each in the order of their ids, so that no two transactions wait
+//! for each other.
+
+use super::delivery::{Channel, DeliveryState, Message};
+use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::ids::DeliveryId;
+use crate::time::Time;
+use sha2::{Digest, Sha256};
+use uuid::Uuid;
+
+/// How long a try may take before another worker may try: longer than any does.
+const LEASE_S: f64 = 90.0;
+const FIRST_RETRY_S: f64 = 10.0;
+const LONGEST_RETRY_S: f64 = 3600.0;
+/// What could not be delivered for so long is given up.
+const GIVEN_UP_AFTER_S: f64 = 86_400.0;
+/// What was delivered or given up is forgotten after so long.
+const KEPT_FOR_S: f64 = 30.0 * 86_400.0;
+
+/// A delivery that a worker has claimed.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub struct Claimed {
+    /// Who is to get it.
+    pub receiver_id: Uuid,
+    /// Its place in the receiver's queue.
+    pub number: i64,
+    /// The event's id.
+    pub id: DeliveryId,
+    /// This one included; tells this lease from later ones.
+    pub attempts: i64,
+    /// When it was written.
+    pub created_at: Time,
+    /// Since when it is to be sent.
+    pub tries_since: Time,
+    /// The message, JSON.
+    pub body: String,
+}
+
+/// Queues a message for a receiver; for one that was removed meanwhile, nothing.
+pub async fn queue(tx: &mut Tx, receiver: Uuid, message: &Message, now: Time) -> Result<()> {
+    // Taking the receiver's row puts transactions in line until they commit.
+    let number = row!(
+        in &mut *tx,
+        (i64,),
+        "UPDATE receivers SET last_number = last_number + 1 WHERE id = $1 RETURNING last_number",
+        receiver
+    )?;
+    let Some((number,)) = number else {
+        return Ok(());
+    };
+    execute!(
+        &mut *tx,
+        "INSERT INTO deliveries (receiver_id, number, id, kind, body, state, created_at,
+                                 tries_since, attempts, next_attempt_at)
+         VALUES ($1, $2, $3, $4, $5, 'pending', $6, $6, 0, $6)",
+        receiver,
+        number,
+        message.id,
+        message.kind,
+        message.body.as_str(),
+        now
+    )?;
+    execute!(
+        &mut *tx,
+        "DELETE FROM deliveries
+         WHERE receiver_id = $1 AND state <> 'pending' AND created_at < $2",
+        receiver,
+        Time(now.0.plus_seconds(-KEPT_FOR_S))
+    )?;
+    Ok(())
+}
+
+macro_rules! claim_sql {
+    ($lock:literal) => {
+        concat!(
+            "UPDATE deliveries SET attempts = attempts + 1, lease_until = $2
+             WHERE (receiver_id, number) = (
+                 SELECT d.receiver_id, d.number FROM deliveries d
+                 JOIN receivers r ON r.id = d.receiver_id AND r.enabled AND r.channel = $3
+                 WHERE d.state = 'pending' AND d.next_attempt_at <= $1
+                   AND (d.lease_until IS NULL OR d.lease_until <= $1)
+                   AND NOT EXISTS (
+                       SELECT 1 FROM deliveries e
+                       WHERE e.receiver_id = d.receiver_id AND e.state = 'pending'
+                         AND e.number < d.number)
+                 ORDER BY d.next_attempt_at, d.receiver_id
+                 LIMIT 1",
+            $lock,
+            ") RETURNING receiver_id, number, id, attempts, created_at, tries_since, body"
+        )
+    };
+}
+
+/// Takes the delivery of a channel that has been due for longest.
+pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option<Claimed>> {
+    // Asking first keeps an idle worker from taking SQLite's write lock.
+    let due = rows!(
+        db,
+        (i64,),
+        "SELECT d.number FROM deliveries d
+         JOIN receivers r ON r.id = d.receiver_id AND r.enabled AND r.channel = $2
+         WHERE d.state = 'pending' AND d.next_attempt_at <= $1
+           AND (d.lease_until IS NULL OR d.lease_until <= $1)
+           AND NOT EXISTS (
+               SELECT 1 FROM deliveries e
+               WHERE e.receiver_id = d.receiver_id AND e.state = 'pending'
+                 AND e.number < d.number)
+         ORDER BY d.next_attempt_at
+         LIMIT 1",
+        now,
+        channel
+    )?;
+    if due.is_empty() {
+        return Ok(None);
+    }
+    let lease_until = Time(now.0.plus_seconds(LEASE_S));
+    let mut tx = db.begin().await?;
+    let claimed = match &mut tx {
+        Tx::Sqlite(tx) => {
+            sqlx::query_as(claim_sql!(""))
+                .bind(now)
+                .bind(lease_until)
+                .bind(channel)
+                .fetch_optional(&mut **tx)
+                .await?
+        }
+        // Workers of other processes take other receivers rather than wait.
+        Tx::Postgres(tx) => {
+            sqlx::query_as(claim_sql!(" FOR UPDATE OF d SKIP LOCKED"))
+                .bind(now)
+                .bind(lease_until)
+                .bind(channel)
+                .fetch_optional(&mut **tx)
+                .await?
+        }
+    };
+    tx.commit().await?;
+    Ok(claimed)
+}
+
+/// Notes that a delivery arrived.
+pub(super) async fn succeed(db: &Db, claimed: &Claimed, status: u16, now: Time) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "UPDATE deliveries
+         SET state = 'delivered', delivered_at = $4, lease_until = NULL, last_status = $5,
+             last_error = NULL
+         WHERE receiver_id = $1 AND number = $2 AND attempts = $3 AND state = 'pending'",
+        claimed.receiver_id,
+        claimed.number,
+        claimed.attempts,
+        now,
+        i64::from(status)
+    )?;
+    tx.commit().await
+}
+
+/// Whether a delivery has been tried for as long as anything is.
+pub(super) fn is_tried_enough(claimed: &Claimed, now: Time) -> bool {
+    now.0.seconds_since(claimed.tries_since.0) >= GIVEN_UP_AFTER_S
+}
+
+/// Puts a delivery back for later, or gives it up.
+pub(super) async fn fail(
+    db: &Db,
+    claimed: &Claimed,
+    status: Option<u16>,
+    error: &str,
+    dead: bool,
+    now: Time,
+) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "UPDATE deliveries
+         SET state = $4, next_attempt_at = $5, lease_until = NULL, last_status = $6,
+             last_error = $7
+         WHERE receiver_id = $1 AND number = $2 AND attempts = $3 AND state = 'pending'",
+        claimed.receiver_id,
+        claimed.number,
+        claimed.attempts,
+        if dead {
+            DeliveryState::Dead
+        } else {
+            DeliveryState::Pending
+        },
+        Time(now.0.plus_seconds(retry_s(claimed.id, claimed.attempts))),
+        status.map(i64::from),
+        error
+    )?;
+    tx.commit().await
+}
+
+/// Seconds until the next try: twice as long each time, up to an hour, and within a
+/// quarter more that the delivery's id decides, so that receivers that were away
+/// are not called upon by everyone at once.
+fn retry_s(id: DeliveryId, attempts: i64) -> f64 {
+    let doubled_s = FIRST_RETRY_S * 2_f64.powi(attempts.clamp(1, 20) as i32 - 1);
+    let digest = Sha256::digest(format!("{id} {attempts}"));
+    let share = f64::from(u16::from_be_bytes([digest[0], digest[1]])) / 65_536.0;
+    doubled_s.min(LONGEST_RETRY_S) * (1.0 + 0.25 * share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tries_come_ever_more_seldom_and_not_all_at_once() {
+        let (one, other) = (DeliveryId::new(), DeliveryId::new());
+        for attempts in 1..40 {
+            let least_s = (10.0 * 2_f64.powi(attempts - 1)).min(3600.0);
+            let wait_s = retry_s(one, i64::from(attempts));
+            assert!(
+                (least_s..1.25 * least_s).contains(&wait_s),
+                "{attempts}: {wait_s}"
+            );
+        }
+        assert_ne!(retry_s(one, 3).to_bits(), retry_s(other, 3).to_bits());
+        assert_eq!(retry_s(one, 3).to_bits(), retry_s(one, 3).to_bits());
+    }
+}

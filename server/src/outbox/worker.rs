@@ -1,0 +1,125 @@
+//! Sends what is due, one delivery after the other.
+
+use super::delivery::Channel;
+use super::queue::{self, Claimed};
+use crate::app::App;
+use metrics::counter;
+use std::future::Future;
+use std::time::Duration;
+use tracing::{error, info, warn};
+
+/// How often to look for deliveries that nobody was told of.
+const LOOK_EVERY: Duration = Duration::from_secs(2);
+/// Longest text that is kept of an error, characters.
+const MAX_ERROR: usize = 300;
+
+/// What brings messages to the receivers of one channel.
+pub trait Carrier: Send + Sync {
+    /// Which channel.
+    const CHANNEL: Channel;
+
+    /// Tries a delivery once.
+    ///
+    /// # Errors
+    /// When there was no answer; it will be tried again.
+    fn carry(
+        &self,
+        app: &App,
+        claimed: &Claimed,
+    ) -> impl Future<Output = anyhow::Result<Tried>> + Send;
+}
+
+/// What a receiver answered to a try, with its status.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Tried {
+    /// It took the message.
+    Taken(u16),
+    /// Not now, for this reason.
+    Later(u16, String),
+    /// Never, for this reason.
+    Refused(u16, String),
+}
+
+/// What a step did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sent {
+    /// The receiver has it.
+    Delivered,
+    /// It will be tried again.
+    Failed,
+    /// It was given up.
+    Dead,
+}
+
+/// Sends until the server stops.
+pub async fn run<C: Carrier>(app: App, carrier: C) {
+    while !app.stopping.is_cancelled() {
+        match step(&app, &carrier).await {
+            Ok(Some(_)) => continue,
+            Ok(None) => {}
+            Err(error) => error!(
+                error = format!("{error:#}"),
+                "messages cannot reach their queue"
+            ),
+        }
+        tokio::select! {
+            () = app.stopping.cancelled() => {}
+            () = tokio::time::sleep(LOOK_EVERY) => {}
+        }
+    }
+}
+
+/// Makes one delivery, if one is due.
+///
+/// # Errors
+/// When the queue cannot be reached; a delivery that fails is not an error here.
+pub async fn step<C: Carrier>(app: &App, carrier: &C) -> anyhow::Result<Option<Sent>> {
+    let now = app.clock.now().into();
+    let Some(claimed) = queue::claim(&app.db, C::CHANNEL, now).await? else {
+        return Ok(None);
+    };
+    let tried = carrier.carry(app, &claimed).await;
+    let sent = note(app, &claimed, tried).await?;
+    let result = match sent {
+        Sent::Delivered => "delivered",
+        Sent::Failed => "failed",
+        Sent::Dead => "dead",
+    };
+    let channel = C::CHANNEL.name();
+    counter!("binnacle_delivery_tries_total", "channel" => channel, "result" => result)
+        .increment(1);
+    Ok(Some(sent))
+}
+
+async fn note(app: &App, claimed: &Claimed, tried: anyhow::Result<Tried>) -> anyhow::Result<Sent> {
+    let now = app.clock.now().into();
+    let receiver = claimed.receiver_id;
+    let (status, problem, for_good) = match tried {
+        Ok(Tried::Taken(status)) => {
+            queue::succeed(&app.db, claimed, status, now).await?;
+            info!(%receiver, event = %claimed.id, "a message was delivered");
+            return Ok(Sent::Delivered);
+        }
+        Ok(Tried::Later(status, problem)) => (Some(status), problem, false),
+        Ok(Tried::Refused(status, problem)) => (Some(status), problem, true),
+        Err(error) => (None, format!("{error:#}"), false),
+    };
+    let problem: String = problem.chars().take(MAX_ERROR).collect();
+    let dead = for_good || queue::is_tried_enough(claimed, now);
+    queue::fail(&app.db, claimed, status, &problem, dead, now).await?;
+    if dead {
+        warn!(%receiver, event = %claimed.id, problem, "a message was given up");
+        return Ok(Sent::Dead);
+    }
+    info!(%receiver, event = %claimed.id, problem, "a message will be tried again");
+    Ok(Sent::Failed)
+}
+
+impl Channel {
+    fn name(self) -> &'static str {
+        match self {
+            Channel::Webhook => "webhook",
+            Channel::Mail => "mail",
+        }
+    }
+}
