@@ -343,7 +343,6 @@ export const text = {
       unknown: 'A change of unknown cause',
     } satisfies Record<ChangeCause, string>,
     unconfirmed: 'not certain yet',
-    lasting: 'lasting',
     overSince: (when: string) => `over since ${when}`,
     between: (earliest: string, latest: string) => `some time between ${earliest} and ${latest}`,
     found: (later: string) => `Found ${later} after that.`,
@@ -370,7 +369,8 @@ export const text = {
     difference: 'Change',
     noCurve: {
       before: 'There is no model from before: only the curve after it is shown.',
-      after: 'There is no model from after it yet: only the curve before is shown, and it no longer holds.',
+      after:
+        'There is no model from after it yet: only the curve before is shown, and it no longer holds.',
       both: 'There is no model from before nor from after: no curve can be shown.',
     },
     compared: (place: string) => `Both at ${place}, where she was last, with their 95 % bands.`,
@@ -380,17 +380,15 @@ export const text = {
       `Compass ${compass}\nbefore ${before}\nafter ${after}`,
     table: 'The curves as a table',
     tableCaption: 'Deviation before and after, every 30° of compass heading',
-    epoch: 'Epoch',
     epochBegan: 'A new epoch began',
     epochFirst: 'First sample',
     epochResumes: (since: string) => `Her magnetism is again what it was ${since}.`,
     fromTheStart: 'at first',
     sinceDay: (day: string) => `from ${day} on`,
-    epochModel: (samples: string, rms: string) => `Model of ${samples} samples, residuals ${rms} rms.`,
+    epochModel: (samples: string, rms: string) =>
+      `Model of ${samples} samples, residuals ${rms} rms.`,
     epochNoModel: 'No model of this epoch yet.',
     reported: (what: string) => `Reported: ${what}`,
-    bar: 'From the first sample to the last',
-    marks: { own: 'the ship’s magnetism', passing: 'passing by, or a reference', entry: 'report' },
   },
 
   logbook: {

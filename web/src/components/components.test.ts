@@ -3,10 +3,12 @@ import { describe, expect, test } from 'vitest';
 import { Problem } from '../api/problem';
 import type {
   AgentStream,
+  Change,
   Coverage,
   DeviationTable as Table,
   ModelVersion,
   SailNext,
+  Timeline,
   Vessel,
 } from '../api/types';
 import AgentPanel from './AgentPanel.svelte';
@@ -16,6 +18,7 @@ import DeviationTable from './DeviationTable.svelte';
 import ParameterPanel from './ParameterPanel.svelte';
 import NoModel from './NoModel.svelte';
 import SailNextPanel from './SailNextPanel.svelte';
+import TimelinePanel from './TimelinePanel.svelte';
 import TrustPanel from './TrustPanel.svelte';
 import VesselTable from './VesselTable.svelte';
 import Worst from './Worst.svelte';
@@ -370,4 +373,90 @@ test('a worst deviation without a band claims none', () => {
     render(Worst, { props: { worst: { compass_deg: 0, deviation_deg: 1, band95_deg: null } } }),
   );
   expect(shown).toBe('1.0° E small on 000°');
+});
+
+describe('the timeline', () => {
+  const calm: Timeline = {
+    compass_id: 'c',
+    analysed_at: '2026-11-11T00:00:00Z',
+    place: null,
+    changes: [],
+    epochs: [
+      {
+        from: null,
+        to: null,
+        begun_by: null,
+        begun_by_change: null,
+        resumes: null,
+        data_from: '2026-10-20T00:00:00Z',
+        data_until: '2026-11-10T00:00:00Z',
+        model_version: 1,
+        rms_deg: 0.31,
+        samples_used: 412,
+        curve: [],
+        refusal: null,
+      },
+    ],
+  };
+  const struck: Change = {
+    from: '2026-11-09T00:00:00Z',
+    from_earliest: '2026-11-08T23:40:00Z',
+    from_latest: '2026-11-09T00:10:00Z',
+    detected_at: '2026-11-09T02:00:00Z',
+    confirmed: true,
+    cause: 'lightning_or_shock',
+    causes: [
+      { cause: 'lightning_or_shock', probability: 0.96 },
+      { cause: 'magnetic_cargo', probability: 0.04 },
+      { cause: 'drift', probability: 0.0001 },
+    ],
+    evidence: ['it began at sea'],
+    deviation_change_deg: -6.24,
+    step: { bx_nt: 3000, by_nt: -2000, bx_se_nt: 120, by_se_nt: 95 },
+    ended: null,
+    epoch_before: 0,
+    epoch_after: null,
+    epoch_ended: null,
+  };
+  const shown = (timeline: Timeline) =>
+    words(render(TimelinePanel, { props: { timeline, entries: [] } }));
+
+  test('says since when no change was found', () => {
+    const calmly = shown(calm);
+    expect(calmly).toContain('No change found since 20 Oct 2026');
+    expect(calmly).toContain('Model of 412 samples, residuals 0.3° rms.');
+    const nothing = { ...calm, analysed_at: null, epochs: [] };
+    expect(shown(nothing)).toContain('Nothing has been analysed yet');
+  });
+
+  test('says what changed, how much, and why', () => {
+    const said = shown({ ...calm, changes: [struck] });
+    for (const part of [
+      'Lightning or a shock some time between 8 Nov 2026, 23:40 UTC and 9 Nov 2026, 00:10 UTC',
+      'Deviation changed by 6.2° on the heading where it changed most.',
+      '+3.0 ± 0.1 µT fore-and-aft',
+      '−2.0 ± 0.1 µT athwartships',
+      'Found 2 h after that.',
+      'It began at sea.',
+      'Lightning or a shock 96 %, all but certain',
+      'Magnetic cargo 4 %, unlikely',
+    ]) {
+      expect(said).toContain(part);
+    }
+    expect(said).not.toContain('Slow drift');
+  });
+
+  test('blames the compass for nothing that a reference did', () => {
+    const fault: Change = {
+      ...struck,
+      cause: 'reference_fault',
+      deviation_change_deg: null,
+      step: null,
+      confirmed: false,
+      ended: '2026-11-09T06:00:00Z',
+    };
+    const said = shown({ ...calm, changes: [fault] });
+    expect(said).toContain('Gyro or satellite compass at fault not certain yet over since 9 Nov');
+    expect(said).toContain('The ship’s own magnetism did not change.');
+  });
 });

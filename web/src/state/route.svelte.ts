@@ -1,7 +1,8 @@
 /** Which page the address names, and moving between pages without reloading. */
 
 export type Route =
-  { page: 'vessels' | 'alerts' | 'mail' | 'webhooks' | 'not-found' } | { page: 'vessel'; id: string };
+  | { page: 'vessels' | 'alerts' | 'mail' | 'webhooks' | 'not-found' }
+  | { page: 'vessel'; id: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
