@@ -15,6 +15,7 @@ export type Line =
 
 /** What only disturbs the compass, or is no matter of the compass at all. */
 const passing: readonly ChangeCause[] = [
+  'compass_fault',
   'reference_fault',
   'local_anomaly',
   'magnetic_storm',

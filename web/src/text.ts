@@ -336,6 +336,7 @@ export const text = {
       magnetic_cargo: 'Magnetic cargo',
       adjustment_or_repair: 'Adjustment or repair',
       drift: 'Slow drift',
+      compass_fault: 'The compass sticks',
       reference_fault: 'Gyro or satellite compass at fault',
       local_anomaly: 'Local anomaly',
       magnetic_storm: 'Magnetic storm',
