@@ -361,8 +361,7 @@ export const scenarios = {
       await page.getByRole('alert').getByText('is not an address').waitFor();
       await page.getByRole('textbox', { name: 'Address' }).fill('bridge@example.com');
       await page.getByRole('combobox', { name: 'Alerts' }).selectOption('notice');
-      await page.keyboard.press('Tab');
-      await page.keyboard.press('Enter');
+      await add.click();
       const card = page.getByRole('article').filter({ hasText: 'bridge@example.com' });
       await card.getByText('All alerts').first().waitFor();
       await card.getByRole('combobox').selectOption('critical');
