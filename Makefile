@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-peer study study-changes methods clean
+.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-peer bench-changes study study-changes methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -57,6 +57,9 @@ methods: setup ## Compare the published fit, least squares, Huber and Binnacle o
 
 bench-peer: setup ## Compare the fit with the same model in statsmodels and NumPy, in pairs
 	scripts/bench-peer
+
+bench-changes: setup ## Compare how soon changes are found with simpler detectors (SHIPS=20)
+	scripts/bench-changes $(SHIPS)
 
 clean: ## Remove what was built (tools in .tools are kept)
 	rm -rf target web/dist web/node_modules .demo tests/artefacts

@@ -53,19 +53,25 @@ fn covariance_of_parameters(voyage: &Voyage) -> DMatrix<f64> {
             slopes(&voyage.truth.parameters, magnetic, o.h_nt, o.z_nt)
         })
         .collect();
-    let swings = Swings::new(voyage);
-    let noise = DMatrix::from_fn(n, n, |i, j| {
-        let (i, j) = (i.min(j), i.max(j));
-        swings.covariance(i, j) / (cos_lat(&rows[i]) * cos_lat(&rows[j]))
-            + other_noise(&rows[i], &rows[j], &voyage.sizes)
-            + drift(voyage, i, j, &slopes)
-    });
+    let mut noise = noise(voyage);
+    noise += DMatrix::from_fn(n, n, |i, j| drift(voyage, i.min(j), i.max(j), &slopes));
     let x = DMatrix::from_fn(n, 8, |i, j| slopes[i][j]);
     let sd = population(&voyage.sizes);
     let mut information =
         DMatrix::from_diagonal(&DVector::from_iterator(8, sd.map(|s| 1.0 / (s * s))));
     information += x.transpose() * noise.cholesky().unwrap().solve(&x);
     information.cholesky().unwrap().inverse()
+}
+
+/// The true covariance of the noise in a voyage's deviations, drift aside.
+pub(crate) fn noise(voyage: &Voyage) -> DMatrix<f64> {
+    let rows = &voyage.observations;
+    let swings = Swings::new(voyage);
+    DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
+        let (i, j) = (i.min(j), i.max(j));
+        swings.covariance(i, j) / (cos_lat(&rows[i]) * cos_lat(&rows[j]))
+            + other_noise(&rows[i], &rows[j], &voyage.sizes)
+    })
 }
 
 /// Slopes of the deviation, degrees, by the parameters and the constant, on a
@@ -139,19 +145,26 @@ struct Swings {
     later: Vec<RowVector2<f64>>,
 }
 
+/// A minute of the gyro's swing and its rate, and the variances that come to both,
+/// as one error, in every minute and at a turn.
+pub(super) fn swing(schuler_deg: f64) -> (Matrix2<f64>, f64, f64) {
+    let omega = TAU / 84.4;
+    // rate' = (1 − 0.4 ω) rate − ω² swing; swing' = swing + rate'.
+    let step = Matrix2::new(
+        1.0 - omega * omega,
+        1.0 - 0.4 * omega,
+        -omega * omega,
+        1.0 - 0.4 * omega,
+    );
+    let noise = schuler_deg.powi(2) * omega * omega * (4.0 * 0.2 * omega * 0.3);
+    let kick = (1.2 * schuler_deg * omega).powi(2);
+    (step, noise, kick)
+}
+
 impl Swings {
     fn new(voyage: &Voyage) -> Swings {
         let schuler = voyage.sizes.schuler_deg;
-        let omega = TAU / 84.4;
-        // rate' = (1 − 0.4 ω) rate − ω² swing; swing' = swing + rate'.
-        let step = Matrix2::new(
-            1.0 - omega * omega,
-            1.0 - 0.4 * omega,
-            -omega * omega,
-            1.0 - 0.4 * omega,
-        );
-        let noise = schuler.powi(2) * omega * omega * (4.0 * 0.2 * omega * 0.3);
-        let kick = (1.2 * schuler * omega).powi(2);
+        let (step, noise, kick) = swing(schuler);
         let start = voyage.start;
         let ends: Vec<i64> = voyage
             .observations

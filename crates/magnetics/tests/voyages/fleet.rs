@@ -6,6 +6,7 @@
 use super::{Errors, Faults, Mean, Passage, Truth, Variety, gauss};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
 use binnacle_magnetics::field::{FieldAt, FieldModel};
+use binnacle_magnetics::model::Parameters;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
@@ -88,6 +89,13 @@ pub(crate) struct Log {
     pub(crate) happened: Vec<Happened>,
     /// The ship at the end.
     pub(crate) truth: Truth,
+    /// Her magnetism just before the planned step or cargo, and just after.
+    pub(crate) changed: Option<[Parameters; 2]>,
+    /// Her first minute, the sizes of what went wrong, and minutes of the turns that
+    /// upset the gyro.
+    pub(crate) start: Timestamp,
+    pub(crate) sizes: Faults,
+    pub(crate) turns: Vec<i64>,
 }
 
 /// A patch of magnetic sea bed.
@@ -128,6 +136,7 @@ struct World {
     patch: Option<(Patch, usize)>,
     gyro_fault: Option<(f64, i64)>,
     base: [f64; 7],
+    changed: Option<[Parameters; 2]>,
     /// What lightning left that will fade.
     fading: [f64; 2],
     state: Stage,
@@ -176,9 +185,11 @@ impl World {
         let at_sea = at_sea_for > 600;
         match (self.state, plan.event) {
             (Stage::ToCome, Event::Step(nt) | Event::Lightning(nt)) if due && at_sea => {
+                let before = truth.parameters;
                 let (sin, cos) = (TAU * rng.random::<f64>()).sin_cos();
                 truth.parameters.bx_nt += nt * cos;
                 truth.parameters.by_nt += nt * sin;
+                self.changed = Some([before, truth.parameters]);
                 let is_lightning = matches!(plan.event, Event::Lightning(_));
                 if is_lightning {
                     self.fading = [nt * cos / 3.0, nt * sin / 3.0];
@@ -192,13 +203,15 @@ impl World {
                 self.state = Stage::Over;
             }
             (Stage::ToCome, Event::Cargo | Event::Refit) if due && arrived => {
-                self.base = truth.parameters.to_array();
+                let before = truth.parameters;
+                self.base = before.to_array();
                 let sd = [600.0, 0.005, 600.0, 0.0025, 0.008, 0.003, 0.003];
                 let mut laden = self.base;
                 for (p, sd) in laden.iter_mut().zip(sd) {
                     *p += sd * gauss(rng);
                 }
-                truth.parameters = binnacle_magnetics::model::Parameters::from_array(laden);
+                truth.parameters = Parameters::from_array(laden);
+                self.changed = Some([before, truth.parameters]);
                 let is_cargo = plan.event == Event::Cargo;
                 self.note(if is_cargo { Name::Cargo } else { Name::Refit }, minute);
                 self.state = if is_cargo {
@@ -210,7 +223,7 @@ impl World {
             (Stage::Laden(calls), _) if arrived => {
                 self.state = Stage::Laden(calls - 1);
                 if calls == 1 {
-                    truth.parameters = binnacle_magnetics::model::Parameters::from_array(self.base);
+                    truth.parameters = Parameters::from_array(self.base);
                     self.end(Name::Cargo, minute);
                     self.state = Stage::Over;
                 }
@@ -299,18 +312,23 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         patch: None,
         gyro_fault: None,
         base: [0.0; 7],
+        changed: None,
         fading: [0.0; 2],
         state: Stage::ToCome,
     };
     let mut field = FieldAt::time(FieldModel::Igrf14, start).unwrap();
     let mut mean = Mean::default();
     let mut samples = Vec::new();
+    let mut turns = Vec::new();
     let mut at_sea_for = 0;
     for minute in 0..(plan.days * 1440.0) as i64 {
         if minute % 1440 == 0 {
             field = FieldAt::time(FieldModel::Igrf14, world.time(minute + 720)).unwrap();
         }
         let turned = passage.minute(&mut rng);
+        if turned.abs() > 20.0 {
+            turns.push(minute);
+        }
         if minute % 60 == 0 {
             let hourly = faults.drift_nt / 720.0_f64.sqrt();
             truth.parameters.bx_nt += hourly * gauss(&mut rng);
@@ -361,5 +379,9 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         samples,
         happened: world.happened,
         truth,
+        changed: world.changed,
+        start,
+        sizes: *faults,
+        turns,
     }
 }

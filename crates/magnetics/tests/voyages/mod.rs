@@ -10,6 +10,8 @@
 pub(crate) mod bound;
 #[allow(dead_code, reason = "only what is about changes asks for it")]
 pub(crate) mod fleet;
+#[allow(dead_code, reason = "only the comparison of detectors asks for it")]
+pub(crate) mod lorden;
 pub(crate) mod tally;
 
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
