@@ -88,7 +88,7 @@ impl Runs {
             let covariance = run.covariance();
             let off = residual_deg - deg_per_ut.dot(&(covariance * run.score));
             let variance = self.noise_variance + deg_per_ut.dot(&(covariance * deg_per_ut));
-            run.log_weight -= (off * off / variance + variance.ln()) / 2.0;
+            run.log_weight -= 0.5 * (off * off / variance + variance.ln());
             run.information += deg_per_ut * deg_per_ut.transpose() / self.noise_variance;
             run.score += deg_per_ut * (residual_deg / self.noise_variance);
             run.hours += 1;

@@ -32,7 +32,7 @@ const GAP_S: f64 = 1800.0;
 /// Where it is larger, or the fit does not know the deviation, at a magnetic latitude
 /// that the ship has not met, residuals count for less.
 const NOISE_DEG: f64 = 0.2;
-const HOUR_S: f64 = 3600.0;
+const HOUR_MICROS: i64 = 3_600_000_000;
 /// What lies further from an hour's median, in standard deviations, is wild.
 const WILD: f64 = 3.0;
 
@@ -231,7 +231,7 @@ fn row(o: &Observation, model: &Model, before: Option<Timestamp>) -> Row {
 }
 
 fn hours(rows: &[Row]) -> Vec<Hour> {
-    let hour = |row: &Row| (row.time.micros() as f64 / (1e6 * HOUR_S)).floor();
+    let hour = |row: &Row| row.time.micros().div_euclid(HOUR_MICROS);
     let usual = spread(rows.iter().map(|row| row.residual_deg));
     let mut last = 0;
     let of_one = |rows: &[Row]| {

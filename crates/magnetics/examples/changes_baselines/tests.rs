@@ -92,10 +92,22 @@ fn by_a_gyro_alone_the_information_is_that_of_the_dense_covariance() {
 #[test]
 fn a_cumulative_sum_counts_what_exceeds_the_slack_in_its_own_quadrant() {
     let mut sums = Sums::default();
-    let found = [2.0, 1.0, -3.0, 0.5].map(|innovation| sums.take(10.0, innovation));
-    assert_eq!(found, [1.5, 2.0, 2.5, 1.5]);
-    assert_eq!(sums.take(100.0, 1.0), 0.5);
-    assert_eq!(sums.take(350.0, -0.7), 0.7 - 0.5);
+    let taken = [
+        (10.0, 2.0, 1.5),
+        (10.0, 1.0, 2.0),
+        // Downwards now.
+        (10.0, -3.0, 2.5),
+        (10.0, 0.5, 1.5),
+        (100.0, 1.0, 0.5),
+        (350.0, -0.7, 0.2),
+    ];
+    for (compass_deg, innovation, expected) in taken {
+        let found = sums.take(compass_deg, innovation);
+        assert!(
+            (found - expected).abs() < 1e-12,
+            "{found} is not {expected}"
+        );
+    }
 }
 
 #[test]
