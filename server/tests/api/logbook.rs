@@ -21,6 +21,8 @@ on_both!(
     words_alone_make_no_new_model,
     a_report_from_on_board_counts_once_however_often_it_comes,
     a_ship_reaches_only_what_she_reported_herself,
+    entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline,
+    a_thousand_entries_are_one_analysis,
 );
 
 const DAY: &str = "2026-11-15T00:00:00Z";
@@ -452,5 +454,85 @@ async fn a_ship_reaches_only_what_she_reported_herself(shore: Shore) {
     wrong["revision"] = json!(0);
     assert_eq!(nao.put_report(id, &wrong).await.problem(), "invalid");
     assert_eq!(nao.put_report("x", &report).await.problem(), "not-found");
+    shore.finish().await;
+}
+
+/// A compass's epochs, after seeing that each begins where the one before ends and
+/// says by what it may be steered, or why not.
+async fn sound_epochs(person: &Person, ship: &Ship) -> Vec<Value> {
+    let timeline = person.get(&ship.path("/changes")).await.good();
+    let epochs = timeline["epochs"].as_array().unwrap().clone();
+    assert_eq!(epochs[0]["from"], Value::Null);
+    assert_eq!(epochs[epochs.len() - 1]["to"], Value::Null);
+    for pair in epochs.windows(2) {
+        assert_eq!(pair[0]["to"], pair[1]["from"]);
+        assert!(
+            pair[1]["from"].as_str() < pair[1]["to"].as_str().or(Some("9")),
+            "{pair:?}"
+        );
+    }
+    for epoch in &epochs {
+        assert_ne!(
+            epoch["curve"].is_null(),
+            epoch["refusal"].is_null(),
+            "{epoch}"
+        );
+    }
+    epochs
+}
+
+async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    for entry in [
+        // Long before the first sample, and twice the same,
+        json!({ "kind": "adjustment", "from": "1987-03-01T00:00:00Z" }),
+        json!({ "kind": "adjustment", "from": "1987-03-01T00:00:00Z" }),
+        json!({ "kind": "lightning", "from": "1999-12-31T00:00:00Z" }),
+        // two cargoes and a berth that overlap,
+        json!({ "kind": "magnetic_cargo", "from": "2026-11-15T02:00:00Z", "to": "2026-11-15T05:55:00Z" }),
+        json!({ "kind": "magnetic_cargo", "from": "2026-11-15T04:00:00Z", "to": "2026-11-15T07:55:00Z" }),
+        json!({ "kind": "berth", "from": "2026-11-15T03:00:00Z", "to": "2026-11-15T04:55:00Z" }),
+        // a stay without an end from before it all, and work still to come today.
+        json!({ "kind": "berth", "from": "2000-01-01T00:00:00Z" }),
+        json!({ "kind": "dry_docking", "from": "2026-11-21T12:00:00Z", "to": "2099-01-01T00:00:00Z" }),
+    ] {
+        nao.report(&ada, &entry).await;
+    }
+    nao.put(1, &passage(DAY, 300)).await.good();
+    shore.advance(A_WHILE_S);
+    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    let epochs = sound_epochs(&ada, &nao).await;
+    let begun: Vec<&Value> = epochs.iter().map(|epoch| &epoch["begun_by"]).collect();
+    assert_eq!(
+        begun,
+        [&Value::Null, &json!("adjustment"), &json!("dry_docking")]
+    );
+    assert_eq!(epochs[0]["refusal"]["reason"], "too_few_samples");
+    assert!(
+        epochs[1]["samples_used"].as_u64().unwrap() > 200,
+        "{}",
+        epochs[1]
+    );
+    // Six hours at a sample every ten minutes, each left out once.
+    let out = left_out(&ada, &nao, "magnetic_cargo").await + left_out(&ada, &nao, "berth").await;
+    assert_eq!(out, 36);
+    shore.finish().await;
+}
+
+async fn a_thousand_entries_are_one_analysis(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    for minute in 0..1000 {
+        let from = format!("2026-11-15T{:02}:{:02}:00Z", minute / 60, minute % 60);
+        let kind = ["corrector_change", "magnetic_cargo", "lightning", "repair"][minute % 4];
+        nao.report(&ada, &json!({ "kind": kind, "from": from, "to": from }))
+            .await;
+    }
+    shore.advance(A_WHILE_S);
+    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    assert_eq!(sound_epochs(&ada, &nao).await.len(), 501);
+    assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 1);
     shore.finish().await;
 }
