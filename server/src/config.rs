@@ -137,7 +137,7 @@ pub struct Mail {
     /// Whom mail comes from, like "Binnacle <alerts@example.com>"
     #[arg(long, env = "BINNACLE_MAIL_FROM")]
     pub mail_from: Option<String>,
-    /// Where people reach the dashboard, like https://binnacle.example.com; mail links
+    /// Where people reach the dashboard, like `https://binnacle.example.com`; mail links
     /// to it
     #[arg(long, env = "BINNACLE_PUBLIC_URL")]
     pub public_url: Option<String>,

@@ -12,11 +12,12 @@
 #[path = "../tests/voyages/mod.rs"]
 mod voyages;
 
-use binnacle_magnetics::angle::wrap_180;
+use binnacle_magnetics::angle::{Deviation, wrap_180};
 use binnacle_magnetics::fit::fit_robust;
+use binnacle_magnetics::model::Model;
 use voyages::bound::{HEADINGS, bound, fair};
 use voyages::tally::{Held, Tally, options};
-use voyages::{Faults, Truth, Variety, predicted, true_deviation};
+use voyages::{Faults, Truth, Variety, predicted, sail, true_deviation};
 
 const VARIETIES: [Variety; 3] = [Variety::Rich, Variety::Medium, Variety::Poor];
 
@@ -26,6 +27,7 @@ fn main() {
     table_of_efficiency(ships);
     table_of_coverage(ships);
     table_of_the_unusual(ships);
+    table_of_what_is_wrong(ships);
 }
 
 /// Does a piece of work for every seed, on all cores, results in order.
@@ -176,4 +178,52 @@ fn table_of_the_unusual(ships: u64) {
         });
         print(name, &tally);
     }
+}
+
+/// What wild readings and a gyro's constant error do to the fit of a voyage of 30 days.
+fn table_of_what_is_wrong(ships: u64) {
+    println!("\nthe same voyages with something wrong, 30 days:");
+    for variety in VARIETIES {
+        let moved = each(8000..8000 + ships, |seed| moved(seed, variety));
+        let found: Vec<(f64, f64)> = moved.into_iter().flatten().collect();
+        let most = |of: fn(&(f64, f64)) -> f64| found.iter().map(of).fold(0.0, f64::max);
+        println!(
+            "{:8} ships {} of {ships}; 10 % wild by 20 degrees move the curve by {:.3} degrees at \
+             most, gyro off by 1.5 degrees moves bx, by, chi by {:.3} standard errors at most",
+            format!("{variety:?}"),
+            found.len(),
+            most(|m| m.0),
+            most(|m| m.1),
+        );
+    }
+}
+
+/// By how much the curve moves at most, degrees, when every tenth reading is 20°
+/// out; and a parameter, in standard errors, when the gyro is 1.5° off.
+fn moved(seed: u64, variety: Variety) -> Option<(f64, f64)> {
+    let voyage = sail(seed, variety, 30.0, &Faults::USUAL);
+    let options = options(&voyage.sizes);
+    let fitted = |wrong: &dyn Fn(usize) -> f64| {
+        let mut observations = voyage.observations.clone();
+        for (row, observation) in observations.iter_mut().enumerate() {
+            let deviation = observation.deviation.degrees_east() + wrong(row);
+            observation.deviation = Deviation::new(deviation).unwrap();
+        }
+        fit_robust(&observations, &options)
+            .ok()
+            .map(|fit| fit.model)
+    };
+    let right = fitted(&|_| 0.0)?;
+    let wild = fitted(&|row| if row.is_multiple_of(10) { 20.0 } else { 0.0 })?;
+    let off = fitted(&|_| 1.5)?;
+    let Truth { h_nt, z_nt, .. } = voyage.truth;
+    let curve = |model: &Model, k: usize| predicted(model, k as f64 * 10.0, h_nt, z_nt).0;
+    let by_wild = (0..HEADINGS).map(|k| (curve(&wild, k) - curve(&right, k)).abs());
+    let (a, b) = (
+        right.parameters_over_lambda.to_array(),
+        off.parameters_over_lambda.to_array(),
+    );
+    let covariance = right.covariance?;
+    let by_constant = (0..7).map(|j| (a[j] - b[j]).abs() / covariance[j][j].sqrt());
+    Some((by_wild.fold(0.0, f64::max), by_constant.fold(0.0, f64::max)))
 }

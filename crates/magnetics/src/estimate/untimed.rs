@@ -4,7 +4,7 @@
 //! (docs/science.md, §7), so that rows of half a day tell almost the same thing again.
 //! Rows on like headings may be of one such time, and are held to be: of n of them with a part ρ of their variance in common a mean is known as by
 //! n/(1 + (n − 1) ρ) independent ones (the design effect of a sample of clusters
-//! [Kish]).
+//! \[Kish\]).
 
 use super::noise::NoiseLevels;
 use crate::fit::Observation;

@@ -78,7 +78,7 @@ fn rows_within(there: &[(usize, f64)], near_deg: f64) -> impl Iterator<Item = &[
     })
 }
 
-/// Standard deviation of directions about their mean direction [Mardia].
+/// Standard deviation of directions about their mean direction \[Mardia\].
 fn circular_sd_deg(row: &[(usize, f64)]) -> f64 {
     let (sin, cos) = row.iter().fold((0.0, 0.0), |(sin, cos), (_, heading)| {
         let (s, c) = heading.to_radians().sin_cos();
