@@ -189,10 +189,11 @@ fn table_of_what_is_wrong(ships: u64) {
         let most = |of: fn(&(f64, f64)) -> f64| found.iter().map(of).fold(0.0, f64::max);
         println!(
             "{:8} ships {} of {ships}; 10 % wild by 20 degrees move the curve by {:.3} degrees at \
-             most, gyro off by 1.5 degrees moves bx, by, chi by {:.3} standard errors at most",
+             most, by over 0.3 in {}; gyro off by 1.5 degrees moves bx, by, chi by {:.3} standard errors at most",
             format!("{variety:?}"),
             found.len(),
             most(|m| m.0),
+            found.iter().filter(|m| m.0 >= 0.3).count(),
             most(|m| m.1),
         );
     }
