@@ -237,7 +237,11 @@ fn bad_input_is_refused_by_file_line_and_field() {
             &["short.csv:3"],
         ),
         ("few.csv", head.to_owned(), &["few.csv", "needed"]),
-        ("empty.csv", String::new(), &["empty.csv", "the file is empty"]),
+        (
+            "empty.csv",
+            String::new(),
+            &["empty.csv", "the file is empty"],
+        ),
     ];
     for (name, text, words) in cases {
         write(name, &text);
