@@ -1,0 +1,183 @@
+//! What is believed takes over from the filter, and becomes an event.
+
+use super::date::Dated;
+use super::event::snapshot;
+use super::learn::first_lesson;
+use super::{EVERY, Event, Leads, Search, What};
+use crate::change::bank::{Kind, upset};
+use crate::change::calls::{Base, Candidate};
+use crate::change::filter::Filter;
+
+impl Search<'_> {
+    /// The ship's magnetism or a reference changed: the copy that knew takes over.
+    pub(super) fn adopt(&mut self, k: usize, kind: Kind, leads: Leads) {
+        let Some(lead) = leads[kind as usize] else {
+            return;
+        };
+        let dated = self.date(lead.spawn, kind, k);
+        let before = self.bank.spawns[dated.from].origin.clone();
+        let before = self.run(
+            before,
+            dated.at_spawn..dated.first,
+            &dated.filter.unknowns(),
+        );
+        self.supersede_burst(dated.first);
+        let what = match kind {
+            Kind::Step => What::Step,
+            _ => self
+                .misled
+                .take_if(|(_, before)| dated.filter.has_constant_of(before))
+                .map_or(What::Reference, |(event, _)| What::Return(event)),
+        };
+        self.push(
+            k,
+            what,
+            dated.first,
+            dated.between,
+            leads,
+            Some((&before, &dated.filter)),
+        );
+        if kind == Kind::Step {
+            self.retrace(k, &dated, &before);
+        } else if what == What::Reference && self.misled.is_none() {
+            self.misled = Some((self.events.len() - 1, before));
+        }
+        self.take_over(k, dated.filter, dated.first);
+    }
+
+    /// The port calls since a step, and the one at which it happened, as the filter
+    /// that knows of the step would have met them.
+    pub(super) fn retrace(&mut self, k: usize, dated: &Dated, before: &Filter) {
+        let event = self.events.len() - 1;
+        let (earliest, latest) = dated.between;
+        let base = Base {
+            event,
+            filter: before.clone(),
+            at_port: (earliest..=latest).any(|row| self.is_call(row)),
+        };
+        self.calls.step(base);
+        let at = dated.filter.unknowns();
+        if self.is_call(dated.first) {
+            self.calls.call(dated.first, before, event);
+        }
+        let mut since = upset(before, Kind::Step);
+        for row in dated.first..=k {
+            if row > dated.first && self.is_call(row) {
+                self.calls.call(row, &since, usize::MAX);
+            }
+            let m = self.measure(row, &at);
+            since.take(&m, &self.noise, None);
+            self.calls.take_since(dated.first, &m, &self.noise);
+        }
+    }
+
+    /// A burst that went on until now ended where a change is dated; if it began
+    /// there too, it was the change's first sign and nothing else.
+    pub(super) fn supersede_burst(&mut self, first: usize) {
+        let Some(event) = self.burst.take() else {
+            return;
+        };
+        if self.events[event].first + 2 * EVERY >= first {
+            self.events.remove(event);
+        } else {
+            self.events[event].last = Some(first - 1);
+        }
+    }
+
+    pub(super) fn adopt_return(&mut self, k: usize, leads: Leads) {
+        let Some((lead, base)) = leads[Kind::Return as usize].zip(self.calls.bases.last()) else {
+            return;
+        };
+        let event = base.event;
+        let dated = self.date(lead.spawn, Kind::Return, k);
+        let before = self.bank.spawns[lead.spawn].origin.clone();
+        self.supersede_burst(dated.first);
+        self.push(
+            k,
+            What::Return(event),
+            dated.first,
+            dated.between,
+            leads,
+            Some((&before, &dated.filter)),
+        );
+        self.calls.returned(event);
+        self.take_over(k, dated.filter, dated.first);
+    }
+
+    /// The reference is itself again.
+    pub(super) fn adopt_mended(&mut self, k: usize, leads: Leads) {
+        let Some(lead) = leads[Kind::Return as usize] else {
+            return;
+        };
+        let dated = self.date(lead.spawn, Kind::Return, k);
+        let before = self.bank.spawns[lead.spawn].origin.clone();
+        self.supersede_burst(dated.first);
+        let Some((event, _)) = self.misled.take() else {
+            return;
+        };
+        self.push(
+            k,
+            What::Return(event),
+            dated.first,
+            dated.between,
+            leads,
+            Some((&before, &dated.filter)),
+        );
+        self.take_over(k, dated.filter, dated.first);
+    }
+
+    /// The ship has been herself again since a port call.
+    pub(super) fn adopt_call(&mut self, k: usize, back: Candidate, leads: Leads) {
+        self.supersede_burst(back.at);
+        // What was taken for a step to something else was this.
+        let mut places = 0..;
+        self.events.retain(|event| {
+            let is_later = places.next().is_some_and(|place| place > back.event);
+            let is_past = matches!(event.what, What::Burst | What::Reference);
+            !is_later || is_past || event.between.1 < back.at
+        });
+        let before = self.null.clone();
+        self.push(
+            k,
+            What::Return(back.event),
+            back.at,
+            (back.at, back.at),
+            leads,
+            Some((&before, &back.filter)),
+        );
+        self.calls.returned(back.event);
+        self.take_over(k, back.filter, back.at);
+    }
+
+    pub(super) fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
+        self.null = filter;
+        self.bank.clear();
+        self.spawned = k;
+        self.learn_from = first;
+        self.learn_next = first_lesson(self.observations, first);
+    }
+
+    pub(super) fn push(
+        &mut self,
+        k: usize,
+        what: What,
+        first: usize,
+        between: (usize, usize),
+        leads: Leads,
+        change: Option<(&Filter, &Filter)>,
+    ) {
+        let (before, after) = change.unwrap_or((&self.null, &self.null));
+        let event = Event {
+            what,
+            first,
+            between,
+            told: k.max(self.start_until.saturating_sub(1)),
+            leads: leads.map(|lead| lead.map_or(0.0, |lead| lead.nats)),
+            before: snapshot(before),
+            after: snapshot(after),
+            last: None,
+            confirmed: true,
+        };
+        self.events.push(event);
+    }
+}

@@ -1,0 +1,69 @@
+//! When a passing disturbance is over.
+
+use super::Search;
+use crate::change::bank::{BURST, BURST_S, Kind, upset};
+use crate::change::filter::VARIATION;
+
+/// And by this than a change for the filter to be that of the burst.
+const BURST_FOR_CERTAIN: f64 = 6.0;
+/// A burst has been over for this long when its filter takes over.
+const SETTLED_S: f64 = 6.0 * 3600.0;
+
+/// The variation is astray while it is off by more than this, degrees at 24 µT.
+const ASTRAY_DEG: f64 = 0.7;
+
+impl Search<'_> {
+    /// Once a burst has had its time, the filter that knew of it takes over if it is
+    /// still the likelier, so that the burst does not pass for the ship's.
+    pub(super) fn settle_burst(&mut self, k: usize) {
+        let age_s = |row: usize| match (self.observations[row].time, self.observations[k].time) {
+            (Some(then), Some(now)) => now.seconds_since(then),
+            _ => 0.0,
+        };
+        let leads = self.leads();
+        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let others = [Kind::Step, Kind::Reference, Kind::Return].map(nats);
+        let others = others.into_iter().fold(0.0, f64::max);
+        let knew = self.bank.lead(Kind::Over, &self.null).filter(|lead| {
+            age_s(self.bank.spawns[lead.spawn].at) >= SETTLED_S
+                && lead.nats > others + BURST_FOR_CERTAIN
+        });
+        let knew = knew.map(|lead| &self.bank.spawns[lead.spawn]);
+        let knew = knew.and_then(|spawn| Some((spawn.at, spawn.copy(Kind::Over)?.clone())));
+        let is_over = self
+            .burst
+            .is_some_and(|event| age_s(self.events[event].first) >= 1.2 * BURST_S);
+        if knew.is_none() && !is_over {
+            return;
+        }
+        if let Some(event) = self.burst.take() {
+            let first = self.events[event].first;
+            let until = knew.as_ref().map_or(k, |(until, _)| *until);
+            self.events[event].last = Some(self.last_astray(first, until));
+        }
+        if let Some((_, filter)) = knew {
+            self.null = filter;
+            self.bank.clear();
+            self.spawned = k;
+        }
+    }
+
+    /// The last row from `first` to `k` at which a filter that expects a burst found
+    /// the variation astray.
+    pub(super) fn last_astray(&self, first: usize, k: usize) -> usize {
+        let Some(spawn) = self.bank.spawns.iter().rfind(|s| s.at <= first) else {
+            return first;
+        };
+        let mut filter = upset(&spawn.origin, Kind::Burst);
+        let at = self.null.unknowns();
+        let mut last = first;
+        for row in spawn.at..k {
+            let m = self.measure(row, &at);
+            filter.take(&m, &self.noise, Some(&BURST));
+            if row >= first && filter.mean[VARIATION].abs() > ASTRAY_DEG {
+                last = row;
+            }
+        }
+        last
+    }
+}

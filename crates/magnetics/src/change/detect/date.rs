@@ -1,0 +1,129 @@
+//! When a change happened, to the row.
+
+use super::{Search, earlier};
+use crate::change::bank::{Kind, misled, upset};
+use crate::change::filter::Filter;
+use crate::estimate::Unknowns;
+
+/// Times tried for the date of a change, in each of two rounds.
+const DATES: usize = 40;
+/// Those less likely than the best by this or more are no date of it, nats.
+const DATE_NATS: f64 = 1.92;
+
+/// A step is dated at one of the last port calls, back to so many spawned times
+/// before its own, if that is less likely than the likeliest row by no more, nats.
+const CALLS: usize = 3;
+const CALL_SPAWNS: usize = 3;
+const CALL_NATS: f64 = 4.0;
+
+/// A change with its date.
+pub(super) struct Dated {
+    pub(super) first: usize,
+    pub(super) between: (usize, usize),
+    /// The filter that knew of it, now.
+    pub(super) filter: Filter,
+    /// The spawn that it was dated from, and that one's row.
+    pub(super) from: usize,
+    pub(super) at_spawn: usize,
+}
+
+impl Search<'_> {
+    /// When it happened, to the row.
+    pub(super) fn date(&self, winner: usize, kind: Kind, k: usize) -> Dated {
+        let spawns = &self.bank.spawns;
+        let from = winner.saturating_sub(1);
+        let origin = &spawns[from];
+        let until = spawns.get(winner + 1).map_or(k, |s| s.at);
+        let earlier = earlier(self.misled.as_ref(), &self.calls);
+        let began = |filter: &Filter, row: usize, at: &Unknowns| match (kind, earlier) {
+            (Kind::Return, Some(earlier)) => earlier.again(filter),
+            (Kind::Reference, _) => misled(filter, &self.measure(row, at)),
+            _ => upset(filter, kind),
+        };
+        // Twice, for the rows are to be linearised at where the ship is now.
+        let mut at = self.point(k);
+        let mut best = (origin.at, began(&origin.origin, origin.at, &at));
+        let mut likely = Vec::new();
+        for round in 0..2 {
+            let (low, high) = if round == 0 {
+                (origin.at, until)
+            } else {
+                let stride = (until - origin.at) / DATES + 1;
+                let low = best.0.saturating_sub(stride).max(origin.at);
+                (low, (best.0 + stride).min(until))
+            };
+            let stride = (high - low) / DATES + 1;
+            let mut before = self.run(origin.origin.clone(), origin.at..low, &at);
+            let mut tried: Vec<(usize, Filter)> = Vec::new();
+            let mut row = low;
+            while row <= high.min(k) {
+                let filter = self.run(began(&before, row, &at), row..k + 1, &at);
+                tried.push((row, filter));
+                let next = row + stride;
+                before = self.run(before, row..next.min(k + 1), &at);
+                row = next;
+            }
+            likely.extend(tried.iter().map(|(row, f)| (round, *row, f.log_likelihood)));
+            if let Some(found) = tried
+                .into_iter()
+                .max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))
+            {
+                best = found;
+            }
+            at = best.1.unknowns();
+        }
+        let (first, filter) = best;
+        if kind == Kind::Step
+            && let Some(dated) = self.date_at_call(winner, &filter, first, k)
+        {
+            return dated;
+        }
+        let near = |round: usize| {
+            let of_round = likely.iter().filter(move |(r, _, _)| *r == round);
+            let most = of_round
+                .clone()
+                .map(|x| x.2)
+                .fold(f64::NEG_INFINITY, f64::max);
+            of_round
+                .filter(move |x| x.2 > most - DATE_NATS)
+                .map(|x| x.1)
+                .collect::<Vec<_>>()
+        };
+        let rows: Vec<usize> = near(0).into_iter().chain(near(1)).chain([first]).collect();
+        let earliest = rows.iter().copied().min().unwrap_or(first);
+        let latest = rows.iter().copied().max().unwrap_or(first);
+        Dated {
+            first,
+            between: (earliest, latest),
+            filter,
+            from,
+            at_spawn: origin.at,
+        }
+    }
+
+    /// Whether it rather happened at a port call: many more steps do than at any one
+    /// time at sea. `filter` is of the likeliest row.
+    fn date_at_call(&self, winner: usize, filter: &Filter, row: usize, k: usize) -> Option<Dated> {
+        let spawns = &self.bank.spawns;
+        let from = winner.saturating_sub(CALL_SPAWNS);
+        let origin = &spawns[from];
+        let until = spawns.get(winner + 1).map_or(k, |s| s.at);
+        let calls = (origin.at.max(1)..=until.min(k)).rev();
+        let calls = calls.filter(|&row| self.is_call(row)).take(CALLS);
+        let at = filter.unknowns();
+        let tried = calls.map(|call| {
+            let before = self.run(origin.origin.clone(), origin.at..call, &at);
+            (call, self.run(upset(&before, Kind::Step), call..k + 1, &at))
+        });
+        let (call, filter) = tried
+            .filter(|(_, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
+            .max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))?;
+        Some(Dated {
+            first: call,
+            between: (call.min(row), call.max(row)),
+            filter,
+            from,
+            at_spawn: origin.at,
+        })
+    }
+}

@@ -1,0 +1,90 @@
+//! What the search is told, and what it tells.
+
+use crate::change::filter::Filter;
+use crate::estimate::{POPULATION_SD, Prior};
+use crate::model::{Covariance, Parameters};
+use crate::ship::PARAMETERS;
+use crate::time::Timestamp;
+
+/// What the search is told beside the rows.
+pub(crate) struct Given<'a> {
+    pub(crate) prior: &'a Prior,
+    /// Times at which people say that something happened.
+    pub(crate) reported: &'a [Timestamp],
+}
+
+/// The ship's seven parameters as a filter had them.
+#[derive(Clone, Debug)]
+pub(crate) struct Snapshot {
+    pub(crate) parameters: Parameters,
+    /// Of the parameters and the constant.
+    pub(crate) covariance: Covariance,
+}
+
+/// What an event is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum What {
+    Step,
+    Reference,
+    Burst,
+    /// The ship is again as she was before the event of this place in the list.
+    Return(usize),
+}
+
+/// Something that happened, found among the rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Event {
+    pub(crate) what: What,
+    /// The first row after it, and the first and last that may be.
+    pub(crate) first: usize,
+    pub(crate) between: (usize, usize),
+    /// The row that told.
+    pub(crate) told: usize,
+    /// Leads over nothing having happened, nats, by kind.
+    pub(crate) leads: [f64; 4],
+    /// Before and when it was told.
+    pub(crate) before: Snapshot,
+    pub(crate) after: Snapshot,
+    /// The last row of a burst, once it is over.
+    pub(crate) last: Option<usize>,
+    /// Whether it is certain.
+    pub(crate) confirmed: bool,
+}
+
+/// What the rows tell.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Told {
+    pub(crate) events: Vec<Event>,
+    /// A return that may have been, and is not among the events.
+    pub(crate) perhaps: Option<Perhaps>,
+}
+
+/// Something that is as yet neither likely enough to be believed nor unlikely
+/// enough to be forgotten.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Perhaps {
+    /// The event that would have ended.
+    pub(crate) of: usize,
+    /// The first row after its end.
+    pub(crate) first: usize,
+    pub(crate) probability: f64,
+}
+
+pub(super) fn snapshot(filter: &Filter) -> Snapshot {
+    let mut scale = [1.0; PARAMETERS + 1];
+    scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
+    let mut parameters = [0.0; PARAMETERS];
+    let mut covariance = [[0.0; PARAMETERS + 1]; PARAMETERS + 1];
+    for i in 0..=PARAMETERS {
+        if i < PARAMETERS {
+            parameters[i] = filter.mean[i] * scale[i];
+        }
+        for j in 0..=PARAMETERS {
+            covariance[i][j] = filter.covariance[i][j] * scale[i] * scale[j];
+        }
+    }
+    Snapshot {
+        parameters: Parameters::from_array(parameters),
+        covariance,
+    }
+}

@@ -1,0 +1,134 @@
+//! Whether what leads leads by enough to be believed.
+
+use super::{EVERY, Event, Leads, Search, What};
+use crate::change::bank::{Kind, Lead};
+use crate::change::calls::Candidate;
+use crate::fit::Observation;
+
+/// A step must be likelier by this than a burst, nats; or by that, when its lead
+/// over nothing is large.
+const STEP_NATS: f64 = 10.0;
+const STEP_AT_LEAST: f64 = 3.0;
+const LARGE_NATS: f64 = 40.0;
+/// And it must have lasted for so many rows: the flank of an anomaly is as steep.
+const STEP_ROWS: usize = 6;
+/// While one of two references is out of use for more than this share of the rows,
+/// it must be likelier by that: the one that is left may be the one that fails.
+const ONE_REFERENCE_SHARE: f64 = 0.3;
+const ONE_REFERENCE_NATS: f64 = 30.0;
+/// A reference's step must be likelier by this than a burst.
+const REFERENCE_NATS: f64 = 12.0;
+/// So must a return to what was before, away from port.
+const RETURN_AT_SEA_NATS: f64 = 14.0;
+/// A return at a port call is believed when it is as likely as this, and unlikelier
+/// than a step to something else by no more than that, nats.
+const RETURNED: f64 = 0.9;
+const RETURN_BELOW_STEP: f64 = 6.0;
+/// A burst is unlikelier beforehand than a return at a port call by about this, nats.
+const BURST_BELOW_RETURN: f64 = 3.0;
+/// With one reference a step of the ship and one of the reference must differ by
+/// this; with both there were two readings among so many rows.
+const CLEAR_NATS: f64 = 4.0;
+const LATELY: usize = 36;
+/// A reference that is itself again must be likelier by this than a burst, and no
+/// less likely by this than another change.
+const MENDED_NATS: f64 = 8.0;
+const MENDED_BELOW: f64 = 3.0;
+/// A burst must be likelier by this than nothing, and by this than a change.
+const BURST_NATS: f64 = 9.0;
+const BURST_OVER_STEP: f64 = 3.0;
+
+impl Search<'_> {
+    pub(super) fn judge(&mut self, k: usize) {
+        let leads = self.leads();
+        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let burst = nats(Kind::Burst).max(0.0);
+        let back = nats(Kind::Return);
+        if let Some(candidate) = self.candidate(&leads)
+            && candidate.probability > RETURNED
+        {
+            return self.adopt_call(k, candidate, leads);
+        }
+        let rival = nats(Kind::Step).max(nats(Kind::Reference));
+        if self.misled.is_some() && back - burst > MENDED_NATS && back > rival - MENDED_BELOW {
+            return self.adopt_mended(k, leads);
+        }
+        if self.misled.is_none() && back - burst > RETURN_AT_SEA_NATS && back > nats(Kind::Step) {
+            return self.adopt_return(k, leads);
+        }
+        let (kind, lasting, other) = if nats(Kind::Step) >= nats(Kind::Reference) {
+            (Kind::Step, nats(Kind::Step), nats(Kind::Reference))
+        } else {
+            (Kind::Reference, nats(Kind::Reference), nats(Kind::Step))
+        };
+        let over_burst = lasting - burst;
+        // One reference on one heading cannot tell a fault of its own from a change
+        // of the ship.
+        let is_clear = lasting - other.max(0.0) > CLEAR_NATS || self.has_both(k);
+        let is_told = is_clear
+            && match kind {
+                Kind::Reference => over_burst > REFERENCE_NATS,
+                _ => self.has_lasted(k, &leads) && self.is_step(k, lasting, over_burst, &leads),
+            };
+        if is_told {
+            return self.adopt(k, kind, leads);
+        }
+        if self.burst.is_none() && burst > BURST_NATS && burst - lasting > BURST_OVER_STEP {
+            let Some(lead) = leads[Kind::Burst as usize] else {
+                return;
+            };
+            let spawn = &self.bank.spawns[lead.spawn];
+            let first = spawn
+                .astray_from
+                .filter(|_| self.is_over(lead))
+                .unwrap_or(spawn.at);
+            // One that has had its time keeps its lead, but is told once.
+            let same = |event: &Event| event.what == What::Burst && event.first + EVERY >= first;
+            if self.events.last().is_some_and(same) {
+                return;
+            }
+            self.burst = Some(self.events.len());
+            self.push(k, What::Burst, first, (first, first), leads, None);
+        }
+    }
+
+    pub(super) fn has_lasted(&self, k: usize, leads: &Leads) -> bool {
+        leads[Kind::Step as usize]
+            .is_some_and(|lead| k + 1 >= self.bank.spawns[lead.spawn].at + STEP_ROWS)
+    }
+
+    pub(super) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
+        if over_burst <= STEP_AT_LEAST || (over_burst <= STEP_NATS && lead <= LARGE_NATS) {
+            return false;
+        }
+        let since = leads[Kind::Step as usize].map_or(k, |lead| self.bank.spawns[lead.spawn].at);
+        let with_one = |rows: &[Observation]| {
+            let one = rows.iter().filter(|o| o.gyro_less_satellite_deg.is_none());
+            one.count() as f64 > ONE_REFERENCE_SHARE * rows.len() as f64
+        };
+        let usually = &self.observations[..since.max(1)];
+        let is_half_blind = with_one(&self.observations[since..=k]) && !with_one(usually);
+        over_burst > ONE_REFERENCE_NATS || !is_half_blind
+    }
+
+    /// The likeliest return at a port call, if a step to something else is not
+    /// likelier by far.
+    pub(super) fn candidate(&self, leads: &Leads) -> Option<Candidate> {
+        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let rival = (nats(Kind::Burst) - BURST_BELOW_RETURN).max(0.0);
+        let likeliest = self.calls.likeliest(&self.null, rival)?;
+        (likeliest.nats > nats(Kind::Step) - RETURN_BELOW_STEP).then_some(likeliest)
+    }
+
+    /// Whether both references were read lately.
+    pub(super) fn has_both(&self, k: usize) -> bool {
+        let lately = &self.observations[k.saturating_sub(LATELY)..=k];
+        lately.iter().any(|o| o.gyro_less_satellite_deg.is_some())
+    }
+
+    /// Whether a passing disturbance's lead is that of one that is over.
+    pub(super) fn is_over(&self, lead: Lead) -> bool {
+        let over = self.bank.lead(Kind::Over, &self.null);
+        over.is_some_and(|over| over.spawn == lead.spawn && over.nats >= lead.nats)
+    }
+}

@@ -1,0 +1,78 @@
+//! The sizes of noise, learnt from the rows so far.
+
+use crate::change::filter::{Filter, Noise};
+use crate::estimate::{NoiseLevels, Prior, Unknowns};
+use crate::fit::{Observation, learn};
+use crate::ship::PARAMETERS;
+
+/// Days of data from which the sizes of noise are learnt, again and again.
+const LEARN_DAYS: [f64; 4] = [10.0, 20.0, 40.0, 80.0];
+
+/// What a stretch of rows told.
+#[derive(Clone, Copy)]
+pub(super) struct Learnt {
+    pub(super) levels: NoiseLevels,
+    pub(super) noise: Noise,
+    pub(super) unknowns: Unknowns,
+    /// Rows that it was of.
+    pub(super) until: usize,
+}
+
+impl Learnt {
+    /// From the first days that suffice.
+    pub(super) fn first(observations: &[Observation], prior: &Prior) -> Option<Learnt> {
+        LEARN_DAYS.iter().find_map(|days| {
+            let until = rows_within(observations, 0, *days);
+            Learnt::of(observations, 0..until, prior, None)
+        })
+    }
+
+    /// From `rows`, beginning with the levels learnt before.
+    pub(super) fn of(
+        observations: &[Observation],
+        rows: std::ops::Range<usize>,
+        prior: &Prior,
+        before: Option<&NoiseLevels>,
+    ) -> Option<Learnt> {
+        let until = rows.end;
+        let rough = learn(&observations[rows], prior, before)?;
+        let noise = Noise::new(&NoiseLevels {
+            drift_nt: rough.levels.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
+            ..rough.levels
+        });
+        let mut mean = [rough.constant_deg; PARAMETERS + 1];
+        mean[..PARAMETERS].copy_from_slice(&rough.parameters.to_array());
+        let known = Prior {
+            mean,
+            covariance: prior.covariance,
+        };
+        Some(Learnt {
+            levels: rough.levels,
+            noise,
+            unknowns: Filter::new(&known, &noise).unknowns(),
+            until,
+        })
+    }
+}
+
+/// The row at which levels are learnt again that were learnt at row `k`, of those
+/// from row `from` on.
+pub(super) fn next_lesson(observations: &[Observation], from: usize, k: usize) -> usize {
+    let lessons = LEARN_DAYS.iter();
+    let mut lessons = lessons.map(|days| rows_within(observations, from, *days));
+    lessons.find(|&row| row > k).unwrap_or(usize::MAX)
+}
+
+/// The row at which the first stretch of learning from row `from` ends.
+pub(super) fn first_lesson(observations: &[Observation], from: usize) -> usize {
+    rows_within(observations, from, LEARN_DAYS[0])
+}
+
+/// The row after the last within `days` of row `from`.
+fn rows_within(observations: &[Observation], from: usize, days: f64) -> usize {
+    let start = observations.get(from).and_then(|o| o.time);
+    from + observations[from..].partition_point(|o| match (o.time, start) {
+        (Some(time), Some(start)) => time.seconds_since(start) <= days * 86_400.0,
+        _ => true,
+    })
+}

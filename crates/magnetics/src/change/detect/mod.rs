@@ -1,0 +1,253 @@
+//! The search: one filter runs forward over the rows, a bank of what else may have
+//! happened beside it, and what proves likelier by far takes its place.
+//!
+//! What always holds: a row is read once in order of time and nothing later than it
+//! decides what it tells; every event lies between two rows; the search ends.
+
+mod adopt;
+mod burst;
+mod date;
+mod event;
+mod judge;
+mod learn;
+mod port;
+
+pub(crate) use event::{Event, Given, Perhaps, Snapshot, Told, What};
+pub(crate) use port::at_port;
+
+use super::bank::{Bank, Earlier, Kind, Lead};
+use super::calls::Calls;
+use super::filter::{Filter, Measurement, Noise, measurement};
+use crate::estimate::{NoiseLevels, Prior, Station, USUAL_FUSION, Unknowns, row, stations};
+use crate::fit::Observation;
+use crate::time::Timestamp;
+use learn::{Learnt, next_lesson};
+
+/// Rows between times that are tried: about an hour of sailing.
+const EVERY: usize = 6;
+/// After a gap of this the next row is a time to be tried, whatever the count.
+const GAP_S: f64 = 2.0 * 3600.0;
+/// Before so many rows no change is told from learning.
+const YOUNG: usize = 300;
+/// A change that is dated among the first rows of all is none.
+const FIRST: usize = 100;
+/// Something is up when a lead is beyond this, though not yet what.
+const SUSPECTED_NATS: f64 = 8.0;
+
+/// Searches rows, which are in order of time and all have one.
+pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Told {
+    let Some(learnt) = Learnt::first(observations, given.prior) else {
+        return Told::default();
+    };
+    let mut search = Search::new(observations, given, learnt);
+    for k in 0..observations.len() {
+        search.step(k);
+    }
+    search.finish()
+}
+
+struct Search<'a> {
+    observations: &'a [Observation],
+    stations: Vec<Station>,
+    reported: &'a [Timestamp],
+    prior: &'a Prior,
+    levels: NoiseLevels,
+    noise: Noise,
+    /// What rows are linearised at until the filter itself knows.
+    start: Unknowns,
+    start_until: usize,
+    /// Where the present stretch of learning began, and which comes next.
+    learn_from: usize,
+    learn_next: usize,
+    null: Filter,
+    bank: Bank,
+    spawned: usize,
+    /// What the ship was before steps, and where she may have become it again.
+    calls: Calls,
+    /// A reference's fault that goes on, if one does: its place in the list of
+    /// events, and the filter before.
+    misled: Option<(usize, Filter)>,
+    /// The burst that goes on, if one does.
+    burst: Option<usize>,
+    events: Vec<Event>,
+}
+
+impl<'a> Search<'a> {
+    fn new(observations: &'a [Observation], given: &Given<'a>, learnt: Learnt) -> Search<'a> {
+        Search {
+            observations,
+            stations: stations(observations),
+            reported: given.reported,
+            prior: given.prior,
+            null: Filter::new(given.prior, &learnt.noise),
+            levels: learnt.levels,
+            noise: learnt.noise,
+            start: learnt.unknowns,
+            start_until: learnt.until,
+            learn_from: 0,
+            learn_next: next_lesson(observations, 0, learnt.until),
+            bank: Bank::default(),
+            spawned: 0,
+            calls: Calls::default(),
+            misled: None,
+            burst: None,
+            events: Vec::new(),
+        }
+    }
+
+    fn step(&mut self, k: usize) {
+        if k >= self.learn_next {
+            self.learn(k);
+        }
+        if k >= FIRST && self.is_due(k) {
+            self.settle_burst(k);
+            let earlier = earlier(self.misled.as_ref(), &self.calls);
+            self.bank.spawn(k, &self.null, earlier);
+            self.spawned = k;
+        }
+        if self.is_call(k) {
+            self.calls.call(k, &self.null, usize::MAX);
+        }
+        let at = self.point(k);
+        let m = self.measure(k, &at);
+        self.null.take(&m, &self.noise, None);
+        self.calls.take(&m, &self.noise, &self.null);
+        let earlier = earlier(self.misled.as_ref(), &self.calls);
+        self.bank.take(k, m, &self.noise, (&self.null, earlier));
+        if k >= YOUNG {
+            self.judge(k);
+        }
+    }
+
+    /// Steps', references', bursts' (those that are over, too) and returns' best.
+    fn leads(&self) -> Leads {
+        [
+            self.bank.lead(Kind::Step, &self.null),
+            self.bank.lead(Kind::Reference, &self.null),
+            self.bank.passing(&self.null),
+            self.bank.lead(Kind::Return, &self.null),
+        ]
+    }
+
+    /// Where row `k` is linearised.
+    fn point(&self, k: usize) -> Unknowns {
+        if k < self.start_until {
+            self.start
+        } else {
+            self.null.unknowns()
+        }
+    }
+
+    fn measure(&self, k: usize, at: &Unknowns) -> Measurement {
+        let (o, station) = (&self.observations[k], &self.stations[k]);
+        let row = row(o, station, at, USUAL_FUSION);
+        measurement(station, &row, at, self.seconds(k), &self.noise)
+    }
+
+    /// Since the row before.
+    fn seconds(&self, k: usize) -> f64 {
+        let earlier = k.checked_sub(1).and_then(|j| self.observations[j].time);
+        match (earlier, self.observations[k].time) {
+            (Some(earlier), Some(time)) => time.seconds_since(earlier).max(0.0),
+            _ => 0.0,
+        }
+    }
+
+    fn is_due(&self, k: usize) -> bool {
+        let reported = || {
+            let Some((before, now)) = k
+                .checked_sub(1)
+                .and_then(|j| self.observations[j].time)
+                .zip(self.observations[k].time)
+            else {
+                return false;
+            };
+            self.reported.iter().any(|t| before < *t && *t <= now)
+        };
+        k >= self.spawned + EVERY || (k > 0 && self.seconds(k) > GAP_S) || reported()
+    }
+
+    /// The sizes of noise again, from the longer stretch there is now.
+    fn learn(&mut self, k: usize) {
+        let rows = self.learn_from..k;
+        if let Some(learnt) = Learnt::of(self.observations, rows, self.prior, Some(&self.levels)) {
+            self.levels = learnt.levels;
+            self.noise = learnt.noise;
+        }
+        self.learn_next = next_lesson(self.observations, self.learn_from, k);
+    }
+
+    fn is_call(&self, k: usize) -> bool {
+        at_port(self.observations, k) == Some(true)
+    }
+
+    /// A filter over some rows, all linearised at one point.
+    fn run(&self, mut filter: Filter, rows: std::ops::Range<usize>, at: &Unknowns) -> Filter {
+        for k in rows {
+            filter.take(&self.measure(k, at), &self.noise, None);
+        }
+        filter
+    }
+
+    /// What is suspected when the rows end.
+    fn finish(mut self) -> Told {
+        let leads = self.leads();
+        let perhaps = self.candidate(&leads).map(|candidate| Perhaps {
+            of: candidate.event,
+            first: candidate.at,
+            probability: candidate.any,
+        });
+        self.suspect();
+        Told {
+            events: self.events,
+            perhaps,
+        }
+    }
+
+    fn suspect(&mut self) {
+        let Some(k) = self.observations.len().checked_sub(1) else {
+            return;
+        };
+        if let Some(event) = self.burst {
+            let last = self.last_astray(self.events[event].first, k + 1);
+            self.events[event].last = (last + EVERY < k).then_some(last);
+            return;
+        }
+        let leads = self.leads();
+        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let likeliest = [Kind::Step, Kind::Reference, Kind::Burst]
+            .into_iter()
+            .max_by(|a, b| nats(*a).total_cmp(&nats(*b)))
+            .filter(|kind| nats(*kind) > SUSPECTED_NATS);
+        let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))
+        else {
+            return;
+        };
+        if k < YOUNG {
+            return;
+        }
+        let what = match kind {
+            Kind::Reference => What::Reference,
+            Kind::Burst => What::Burst,
+            Kind::Step | Kind::Return | Kind::Over => What::Step,
+        };
+        let spawn = &self.bank.spawns[lead.spawn];
+        let first = spawn.at;
+        let filters = spawn.copy(kind).map(|f| (spawn.origin.clone(), f.clone()));
+        let change = filters.as_ref().map(|(before, after)| (before, after));
+        self.push(k, what, first, (first, first), leads, change);
+        if let Some(event) = self.events.last_mut() {
+            event.confirmed = false;
+        }
+    }
+}
+
+/// What may be again what it was: a reference first, which is soon mended.
+fn earlier<'a>(misled: Option<&'a (usize, Filter)>, calls: &'a Calls) -> Option<Earlier<'a>> {
+    let reference = misled.map(|(_, before)| Earlier::Reference(before));
+    let ship = || calls.bases.last().map(|base| Earlier::Ship(&base.filter));
+    reference.or_else(ship)
+}
+
+/// The likeliest copies by kind, in the order of [`Kind`].
+type Leads = [Option<Lead>; 4];
