@@ -1,0 +1,110 @@
+//! Faults of a reference that the other one showed.
+
+use super::Found;
+use crate::change::{Cause, CauseProbability, Change};
+use crate::fit::{HeadingReading, Observation};
+use crate::time::Timestamp;
+
+/// So many readings with a dropped reference in a row are a fault, and gaps
+/// shorter than this do not end it.
+const FAULT_ROWS: usize = 3;
+const FAULT_GAP_S: f64 = 1.5 * 3600.0;
+const DAY_S: f64 = 86_400.0;
+
+/// Stretches over which a reference was dropped.
+pub(super) fn faults(
+    readings: &[(HeadingReading, Option<Observation>)],
+    changes: &mut Vec<Change>,
+) {
+    let mut dropped: Vec<(usize, Timestamp, &'static str)> = Vec::new();
+    for (index, (reading, observation)) in readings.iter().enumerate() {
+        let both = reading.gyro.is_some() && reading.satellite.is_some();
+        let share = observation.as_ref().map(|o| o.gyro_share);
+        let which = match share {
+            None => "neither could be shown to be right",
+            Some(share) if both && share < 0.01 => "the gyro had failed",
+            Some(share) if both && share > 0.99 => "the satellite compass had failed",
+            Some(_) => continue,
+        };
+        if let Some(time) = reading.time {
+            dropped.push((index, time, which));
+        }
+    }
+    let spells = dropped.chunk_by(|a, b| b.1.seconds_since(a.1) < FAULT_GAP_S);
+    for spell in spells.filter(|spell| spell.len() >= FAULT_ROWS) {
+        let (first, last) = (&spell[0], &spell[spell.len() - 1]);
+        let before = first.0.checked_sub(1).and_then(|i| readings[i].0.time);
+        let goes_on = last.0 + 1 == readings.len();
+        changes.push(Change {
+            from: first.1,
+            from_earliest: before.unwrap_or(first.1),
+            from_latest: first.1,
+            detected_at: spell[FAULT_ROWS - 1].1,
+            confirmed: true,
+            cause: Cause::ReferenceFault,
+            causes: vec![CauseProbability {
+                cause: Cause::ReferenceFault,
+                probability: 1.0,
+            }],
+            evidence: vec![format!(
+                "gyro and satellite compass parted in {} samples; held against the magnetic \
+                 compass, {}",
+                spell.len(),
+                first.2
+            )],
+            deviation_change_deg: None,
+            step: None,
+            ended: (!goes_on).then_some(last.1),
+        });
+    }
+}
+
+/// Puts reference faults that follow closely on each other, or are found in two
+/// ways, together.
+pub(super) fn merge_faults(found: &mut Found) {
+    let mut order: Vec<usize> = (0..found.changes.len())
+        .filter(|&i| found.changes[i].cause == Cause::ReferenceFault)
+        .filter(|&i| found.boundaries.iter().all(|b| b.change != i))
+        .collect();
+    order.sort_by_key(|&i| found.changes[i].from);
+    let mut into: Option<usize> = None;
+    let mut gone = Vec::new();
+    for i in order {
+        let (from, ended) = (found.changes[i].from, found.changes[i].ended);
+        let earlier = into.map(|into| &mut found.changes[into]);
+        match earlier {
+            Some(earlier)
+                if earlier
+                    .ended
+                    .is_none_or(|end| from.seconds_since(end) < DAY_S) =>
+            {
+                earlier.ended = match (earlier.ended, ended) {
+                    (Some(a), Some(b)) => Some(a.max(b)),
+                    // A step has no end of its own; what it was part of may.
+                    (one, other) => one.or(other),
+                };
+                let detected_at = found.changes[i].detected_at;
+                let told = found.changes[i].evidence.clone();
+                if let Some(earlier) = into.map(|into| &mut found.changes[into]) {
+                    earlier.detected_at = earlier.detected_at.min(detected_at);
+                    earlier.evidence.extend(told);
+                    earlier.evidence.dedup();
+                }
+                gone.push(i);
+            }
+            _ => into = Some(i),
+        }
+    }
+    gone.sort_unstable();
+    for i in gone.into_iter().rev() {
+        found.changes.remove(i);
+        for boundary in &mut found.boundaries {
+            if boundary.change > i {
+                boundary.change -= 1;
+            }
+        }
+        if let Some(ended) = found.perhaps.as_mut().filter(|ended| ended.change > i) {
+            ended.change -= 1;
+        }
+    }
+}

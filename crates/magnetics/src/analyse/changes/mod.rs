@@ -1,0 +1,169 @@
+//! Changes found among the readings of one epoch of the logbook: the epochs that
+//! they make of it, and what they say of its samples.
+
+mod fault;
+mod size;
+mod teller;
+
+pub(super) use size::sharpen;
+
+use super::SampleReason;
+use super::epoch::Reference;
+use super::logbook::{LogbookEntry, LogbookKind};
+use super::reading::Reading;
+use crate::change::{Cause, Change, Given, What, detect};
+use crate::estimate::Prior;
+use crate::fit::Observation;
+use crate::time::Timestamp;
+use fault::{faults, merge_faults};
+use teller::Teller;
+
+/// What was found in one epoch of the logbook.
+pub(super) struct Found {
+    pub(super) changes: Vec<Change>,
+    /// Where epochs begin beside the logbook's.
+    pub(super) boundaries: Vec<Boundary>,
+    /// The end that a change may have had, if that is open.
+    pub(super) perhaps: Option<Ended>,
+}
+
+/// A change that may be over.
+pub(super) struct Ended {
+    /// When it would have ended.
+    pub(super) at: Timestamp,
+    /// Its place in the list.
+    pub(super) change: usize,
+    pub(super) probability: f64,
+}
+
+/// The beginning of an epoch that a change made.
+pub(super) struct Boundary {
+    pub(super) at: Timestamp,
+    /// The change's place in the list.
+    pub(super) change: usize,
+    /// Whether the change ended here, and the ship is as she was before it.
+    pub(super) resumes: bool,
+}
+
+/// An observation with the reading it is of.
+struct Row {
+    reading: usize,
+    observation: Observation,
+}
+
+/// Searches the readings of one epoch of the logbook and marks those that a
+/// passing disturbance or a failed reference spoilt.
+pub(super) fn find(
+    readings: &mut [Reading],
+    reference: &Reference,
+    logbook: &[LogbookEntry],
+    prior: &Prior,
+) -> Found {
+    let mut found = Found {
+        changes: Vec::new(),
+        boundaries: Vec::new(),
+        perhaps: None,
+    };
+    let usable = |reading: &Reading| {
+        matches!(
+            reading.diagnostic.reason,
+            None | Some(SampleReason::MagneticCargo)
+        )
+    };
+    let usable: Vec<usize> = (0..readings.len())
+        .filter(|&index| usable(&readings[index]))
+        .collect();
+    let read = usable
+        .iter()
+        .filter_map(|&index| Some((reference.readings[index]?, reference.observations[index])));
+    faults(&read.collect::<Vec<_>>(), &mut found.changes);
+    let rows: Vec<Row> = usable
+        .into_iter()
+        .filter_map(|reading| {
+            Some(Row {
+                reading,
+                observation: reference.observations[reading]?,
+            })
+        })
+        .collect();
+    let observations: Vec<Observation> = rows.iter().map(|row| row.observation).collect();
+    let reported: Vec<Timestamp> = logbook
+        .iter()
+        .filter(|entry| cause_of(entry.kind).is_some())
+        .flat_map(|entry| [Some(entry.from), entry.to])
+        .flatten()
+        .collect();
+    let told = detect(
+        &observations,
+        &Given {
+            prior,
+            reported: &reported,
+        },
+    );
+    let events = told.events;
+    let teller = Teller {
+        observations: &observations,
+        logbook,
+        events: &events,
+    };
+    let mut place_of = vec![None; events.len()];
+    for (index, event) in events.iter().enumerate() {
+        if let What::Return(of) = event.what {
+            let place: Option<usize> = place_of.get(of).copied().flatten();
+            if let Some(place) = place {
+                let at = teller.date(event.first);
+                found.changes[place].ended = Some(at);
+                if events[of].what == What::Step {
+                    found.boundaries.push(Boundary {
+                        at,
+                        change: place,
+                        resumes: true,
+                    });
+                }
+            }
+            continue;
+        }
+        place_of[index] = Some(found.changes.len());
+        let change = teller.tell(index);
+        if event.what == What::Step && event.confirmed {
+            found.boundaries.push(Boundary {
+                at: change.from,
+                change: found.changes.len(),
+                resumes: false,
+            });
+        }
+        let spoilt = match event.what {
+            What::Burst => Some(SampleReason::Disturbance),
+            What::Reference if event.confirmed => teller
+                .one_reference()
+                .then_some(SampleReason::ReferenceFailed),
+            _ => None,
+        };
+        if let Some(reason) = spoilt {
+            let last = teller.last_spoilt(index);
+            for row in &rows[event.first..=last] {
+                let of = &mut readings[row.reading].diagnostic.reason;
+                *of = of.or(Some(reason));
+            }
+        }
+        found.changes.push(change);
+    }
+    found.perhaps = told.perhaps.and_then(|perhaps| {
+        let change = place_of.get(perhaps.of).copied().flatten()?;
+        let evidence = &mut found.changes[change].evidence;
+        teller.tell_end(&perhaps, change, evidence)
+    });
+    merge_faults(&mut found);
+    found
+}
+
+/// What an entry of the logbook is a report of.
+fn cause_of(kind: LogbookKind) -> Option<Cause> {
+    match kind {
+        LogbookKind::Lightning | LogbookKind::Shock => Some(Cause::LightningOrShock),
+        LogbookKind::MagneticCargo => Some(Cause::MagneticCargo),
+        LogbookKind::Berth => Some(Cause::BerthSteel),
+        LogbookKind::Note => None,
+        _ => Some(Cause::AdjustmentOrRepair),
+    }
+}

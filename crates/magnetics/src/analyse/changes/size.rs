@@ -1,0 +1,68 @@
+//! How large a change is: as a step of magnetism and as one of deviation.
+
+use crate::analyse::Epoch;
+use crate::analyse::reading::Reading;
+use crate::change::{Change, Snapshot, Step};
+use crate::model::{Model, Parameters};
+use crate::ship::EarthField;
+
+const HEADINGS: u32 = 36;
+
+/// The largest change of deviation over headings in a field, degrees.
+pub(super) fn worst_change(before: &Parameters, after: &Parameters, earth: EarthField) -> f64 {
+    (0..HEADINGS)
+        .map(|k| {
+            let magnetic = f64::from(k * 360 / HEADINGS).to_radians();
+            let compass = |p: &Parameters| {
+                let [x, y] = p.field_over_lambda(magnetic, earth);
+                crate::ship::compass_rad(x, y)
+            };
+            crate::ship::wrap_pi(compass(before) - compass(after)).abs()
+        })
+        .fold(0.0, f64::max)
+        .to_degrees()
+}
+
+pub(super) fn step(before: &Snapshot, after: &Snapshot) -> Step {
+    let se = |j: usize| {
+        (before.covariance[j][j] + after.covariance[j][j])
+            .max(0.0)
+            .sqrt()
+    };
+    Step {
+        bx_nt: after.parameters.bx_nt - before.parameters.bx_nt,
+        by_nt: after.parameters.by_nt - before.parameters.by_nt,
+        bx_se_nt: se(0),
+        by_se_nt: se(2),
+    }
+}
+
+/// Says the step anew by the models of the epochs on both sides.
+pub(in crate::analyse) fn sharpen(
+    change: &mut Change,
+    before: &Epoch,
+    after: &Epoch,
+    readings: &[Reading],
+) {
+    let (Some(old), Some(new)) = (&before.model, &after.model) else {
+        return;
+    };
+    let mut until = readings
+        .iter()
+        .filter(|r| r.sample.time <= change.detected_at);
+    let Some(earth) = until.next_back().and_then(|reading| reading.earth) else {
+        return;
+    };
+    let (Some(old), Some(new)) = (of_model(old), of_model(new)) else {
+        return;
+    };
+    change.step = Some(step(&old, &new));
+    change.deviation_change_deg = Some(worst_change(&old.parameters, &new.parameters, earth));
+}
+
+fn of_model(model: &Model) -> Option<Snapshot> {
+    Some(Snapshot {
+        parameters: model.parameters_over_lambda,
+        covariance: model.covariance?,
+    })
+}

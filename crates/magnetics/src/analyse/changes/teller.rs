@@ -1,0 +1,193 @@
+//! Puts events into words and dates.
+
+use super::{Ended, cause_of, size};
+use crate::analyse::logbook::LogbookEntry;
+use crate::change::{Cause, Change, Circumstances, Event, Perhaps, What, at_port, causes};
+use crate::fit::Observation;
+use crate::ship::EarthField;
+use crate::time::Timestamp;
+
+/// People write down when they noticed, not when it happened.
+const REPORT_S: f64 = 2.0 * 86_400.0;
+/// What is less likely than this makes no band wider.
+const SELDOM: f64 = 0.02;
+
+/// Puts events into words and dates.
+pub(super) struct Teller<'a> {
+    pub(super) observations: &'a [Observation],
+    pub(super) logbook: &'a [LogbookEntry],
+    pub(super) events: &'a [Event],
+}
+
+impl Teller<'_> {
+    fn time(&self, row: usize) -> Timestamp {
+        let time = self.observations[row].time;
+        time.expect("every sample has a time")
+    }
+
+    fn earth(&self, row: usize) -> EarthField {
+        let o = &self.observations[row];
+        EarthField {
+            h_nt: o.h_nt,
+            z_nt: o.z_nt,
+        }
+    }
+
+    /// Between the row and the one before.
+    pub(super) fn date(&self, row: usize) -> Timestamp {
+        let Some(before) = row.checked_sub(1) else {
+            return self.time(row);
+        };
+        let gap_s = self.time(row).seconds_since(self.time(before));
+        self.time(before).plus_seconds(gap_s / 2.0)
+    }
+
+    /// Whether any of the rows from which the event may date followed a port call.
+    fn began_at_port(&self, event: &Event) -> Option<bool> {
+        let (earliest, latest) = event.between;
+        let calls = (earliest..=latest).map(|row| at_port(self.observations, row));
+        calls.reduce(|a, b| Some(a? || b?)).flatten()
+    }
+
+    pub(super) fn one_reference(&self) -> bool {
+        let mut all = self.observations.iter();
+        all.all(|o| o.gyro_less_satellite_deg.is_none())
+    }
+
+    /// The last row that an event spoilt: a burst's, or that before a reference was
+    /// itself again.
+    pub(super) fn last_spoilt(&self, index: usize) -> usize {
+        let event = &self.events[index];
+        let last = self.observations.len() - 1;
+        match event.what {
+            What::Burst => event.last.unwrap_or(last),
+            _ => self.events[index + 1..]
+                .iter()
+                .find(|later| self.is_mended(later))
+                .map_or(last, |later| later.first.saturating_sub(1).max(event.first)),
+        }
+    }
+
+    fn is_mended(&self, event: &Event) -> bool {
+        match event.what {
+            What::Return(of) => self.events[of].what == What::Reference,
+            _ => false,
+        }
+    }
+
+    pub(super) fn tell(&self, index: usize) -> Change {
+        let event = &self.events[index];
+        let (earliest, latest) = event.between;
+        let from = self.date(event.first);
+        let from_earliest = self.time(earliest.saturating_sub(1));
+        let from_latest = self.time(latest);
+        let back = self.events[index + 1..]
+            .iter()
+            .find(|later| later.what == What::Return(index));
+        let ended_row = match event.what {
+            What::Burst => event.last,
+            _ => back.map(|later| later.first),
+        };
+        let known = Circumstances {
+            leads: event.leads,
+            at_port: self.began_at_port(event),
+            ended_at_port: back.and_then(|later| self.began_at_port(later)),
+            burst_s: event
+                .last
+                .map(|last| self.time(last).seconds_since(self.time(event.first))),
+            told_after_s: self.time(event.told).seconds_since(from),
+            reported: self.reported(from_earliest, from_latest),
+        };
+        let causes = causes(event.what, &known);
+        let is_step = event.what == What::Step;
+        let worst = size::worst_change(
+            &event.before.parameters,
+            &event.after.parameters,
+            self.earth(event.told),
+        );
+        Change {
+            from,
+            from_earliest: from_earliest.min(from),
+            from_latest: from_latest.max(from),
+            detected_at: self.time(event.told),
+            confirmed: event.confirmed,
+            cause: causes.first().map_or(Cause::Unknown, |c| c.cause),
+            evidence: evidence(event, &known, worst),
+            causes,
+            deviation_change_deg: is_step.then_some(worst),
+            step: is_step.then(|| size::step(&event.before, &event.after)),
+            ended: ended_row.map(|row| self.time(row)),
+        }
+    }
+
+    /// That a change may be over, if that is neither certain nor out of question.
+    pub(super) fn tell_end(
+        &self,
+        perhaps: &Perhaps,
+        change: usize,
+        evidence: &mut Vec<String>,
+    ) -> Option<Ended> {
+        let probability = perhaps.probability;
+        if !(SELDOM..1.0 - SELDOM).contains(&probability) {
+            return None;
+        }
+        evidence.push(format!(
+            "it may have ended at the port call before {}: {:.0} %",
+            self.time(perhaps.first),
+            100.0 * probability
+        ));
+        Some(Ended {
+            at: self.date(perhaps.first),
+            change,
+            probability,
+        })
+    }
+
+    /// What people reported around the interval.
+    fn reported(&self, earliest: Timestamp, latest: Timestamp) -> Vec<Cause> {
+        let near = |time: Timestamp| {
+            time.seconds_since(earliest) > -REPORT_S && latest.seconds_since(time) > -REPORT_S
+        };
+        let entries = self.logbook.iter().filter(|entry| near(entry.from));
+        entries.filter_map(|entry| cause_of(entry.kind)).collect()
+    }
+}
+
+fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String> {
+    let [step, reference, burst, _] = event.leads;
+    let mut told = vec![match event.what {
+        What::Step | What::Return(_) => format!(
+            "samples since then fit a change of the ship's own magnetism, up to {worst_deg:.1} \
+             degrees of deviation, better by {step:.0} nats than none; a passing disturbance by \
+             {burst:.0}, a fault of the reference by {reference:.0}"
+        ),
+        What::Reference => format!(
+            "the change is the same on every heading: a fault of the reference explains it \
+             better by {reference:.0} nats than none, a change of the ship by {step:.0}"
+        ),
+        What::Burst => format!(
+            "variation went astray and came back: a passing disturbance explains it better by \
+             {burst:.0} nats than none, a change of the ship by {step:.0}"
+        ),
+    }];
+    match known.at_port {
+        Some(true) => told.push("it began at a port call".to_owned()),
+        Some(false) => told.push("it began at sea".to_owned()),
+        None => {}
+    }
+    match known.ended_at_port {
+        Some(true) => told.push("the ship was herself again after a port call".to_owned()),
+        Some(false) => told.push("the ship became herself again at sea".to_owned()),
+        None => {}
+    }
+    if let Some(seconds) = known.burst_s {
+        told.push(format!("it lasted {:.1} hours", seconds / 3600.0));
+    }
+    if !known.reported.is_empty() {
+        told.push("the logbook has a report of that time".to_owned());
+    }
+    if !event.confirmed {
+        told.push("not yet certain: more samples will tell".to_owned());
+    }
+    told
+}
