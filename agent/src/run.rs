@@ -17,7 +17,7 @@ use crate::page::{self, Page};
 use crate::sampler::Tally;
 use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
-use crate::spool::{Pending, Seal, Spool};
+use crate::spool::{MOST_PENDING, Pending, Seal, Spool};
 use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{Backoff, LinkState, LinkStatus, Shore, Tell, Uplink};
 use binnacle_magnetics::sample::Sample;
@@ -59,6 +59,7 @@ struct Agent {
     ship: Ship,
     silence: SilenceConfig,
     spool: Spool,
+    spool_limit_bytes: u64,
     observations: mpsc::Receiver<Vec<Observation>>,
     inputs: Vec<(String, Arc<InputStats>)>,
     outputs: Outputs,
@@ -176,6 +177,7 @@ impl Agent {
             ship,
             silence: config.silence,
             spool,
+            spool_limit_bytes: config.spool_mb.bytes(),
             observations,
             inputs,
             outputs,
@@ -375,6 +377,11 @@ impl Agent {
                 }
                 if sealed > 0 {
                     self.sealed.notify_one();
+                }
+                if (sealed > 0 || unstored.pending.samples > MOST_PENDING)
+                    && let Err(error) = self.spool.make_room(self.spool_limit_bytes).await
+                {
+                    tracing::error!(%error, "the spool cannot be thinned");
                 }
             }
             Err(error) => {

@@ -228,6 +228,13 @@ impl Status {
             "\nspool      {} samples not sealed, {} batches to send, {} acknowledged",
             spool.pending_samples, spool.waiting_batches, spool.acknowledged_batches
         )?;
+        if spool.thinned_batches > 0 {
+            writeln!(
+                out,
+                "           {} batches were thinned for want of room",
+                spool.thinned_batches
+            )?;
+        }
         if spool.parked_batches > 0 {
             let because = spool.parked_because.as_deref().unwrap_or("no reason given");
             writeln!(

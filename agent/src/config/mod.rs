@@ -27,6 +27,9 @@ use toml::Spanned;
 pub(crate) struct Config {
     /// Where the spool is kept.
     pub(crate) data_dir: PathBuf,
+    /// How much of the disk the spool may take.
+    #[serde(default)]
+    pub(crate) spool_mb: SpoolLimit,
     /// What is listened to, by the name that roles refer to.
     #[serde(default)]
     pub(crate) inputs: BTreeMap<String, InputConfig>,
@@ -137,6 +140,35 @@ impl Default for SilenceConfig {
     fn default() -> SilenceConfig {
         SilenceConfig {
             stale_s: PositiveSeconds(15.0),
+        }
+    }
+}
+
+/// Megabytes (of a million bytes), from 4 to 100 000.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "f64")]
+pub(crate) struct SpoolLimit(f64);
+
+impl SpoolLimit {
+    /// In bytes.
+    pub(crate) fn bytes(self) -> u64 {
+        (self.0 * 1e6) as u64
+    }
+}
+
+impl Default for SpoolLimit {
+    fn default() -> SpoolLimit {
+        SpoolLimit(64.0)
+    }
+}
+
+impl TryFrom<f64> for SpoolLimit {
+    type Error = String;
+    fn try_from(megabytes: f64) -> Result<SpoolLimit, String> {
+        if (4.0..=100_000.0).contains(&megabytes) {
+            Ok(SpoolLimit(megabytes))
+        } else {
+            Err(format!("{megabytes} is not from 4 to 100000 megabytes"))
         }
     }
 }
@@ -323,6 +355,7 @@ stale_s = 15
         let example = parse(include_str!("../../agent.example.toml"));
         let example = example.map_err(|w| w.problem).unwrap();
         let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
+        assert_eq!(example.spool_mb, bare.spool_mb);
         assert_eq!(example.uplink.poll_s, bare.uplink.poll_s);
         assert_eq!(example.uplink.retry_min_s, bare.uplink.retry_min_s);
         assert_eq!(example.uplink.retry_max_s, bare.uplink.retry_max_s);

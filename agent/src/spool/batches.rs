@@ -38,6 +38,12 @@ pub(crate) struct Standing {
     pub(crate) acknowledged_samples: u64,
     /// Every batch up to this one is durable on shore.
     pub(crate) contiguous_seq: u64,
+    /// What all of that takes on the disk.
+    #[serde(default)]
+    pub(crate) used_bytes: u64,
+    /// Batches that were thinned for want of room and wait.
+    #[serde(default)]
+    pub(crate) thinned_batches: u64,
 }
 
 impl Spool {
@@ -55,6 +61,19 @@ impl Spool {
             bytes,
             urgent,
         }))
+    }
+
+    /// Notes that these very bytes are about to be sent: they are not changed any more.
+    /// `false` when the batch is another by now.
+    pub(crate) async fn note_try(&self, batch: &SealedBatch) -> sqlx::Result<bool> {
+        let mut tx = self.write().await?;
+        let noted = sqlx::query("UPDATE batches SET tried = TRUE WHERE seq = $1 AND bytes = $2")
+            .bind(batch.seq.cast_signed())
+            .bind(&batch.bytes)
+            .execute(&mut *tx)
+            .await?;
+        tx.commit().await?;
+        Ok(noted.rows_affected() > 0)
     }
 
     /// The shore has this batch: notes it, and deletes what is acknowledged at
@@ -132,9 +151,10 @@ impl Spool {
     pub(crate) async fn standing(&self) -> sqlx::Result<Standing> {
         let pending_samples = self.pending().await?.samples;
         let mut connection = self.pool.acquire().await?;
-        let (waiting, parked, because): (i64, i64, Option<String>) = sqlx::query_as(
+        let (waiting, parked, thinned, because): (i64, i64, i64, Option<String>) = sqlx::query_as(
             "SELECT COUNT(*) FILTER (WHERE standing = 'waiting'),
                     COUNT(*) FILTER (WHERE standing = 'parked'),
+                    COUNT(*) FILTER (WHERE standing <> 'acknowledged' AND thinned > 0),
                     (SELECT problem FROM batches WHERE standing = 'parked'
                      ORDER BY seq DESC LIMIT 1)
              FROM batches",
@@ -153,6 +173,8 @@ impl Spool {
             acknowledged_batches: batches.cast_unsigned(),
             acknowledged_samples: samples.cast_unsigned(),
             contiguous_seq: get(&mut connection, CONTIGUOUS_SEQ).await?.unwrap_or(0),
+            used_bytes: super::room::used_bytes(&mut connection).await?,
+            thinned_batches: thinned.cast_unsigned(),
         })
     }
 }

@@ -4,8 +4,9 @@
 //! point (WAL, every commit synced):
 //!
 //! - A sample is in exactly one place: pending, or in one sealed batch.
-//! - A sealed batch is never changed. Batches of a stream are numbered from 1
-//!   without gaps, and sent again byte for byte until they are acknowledged.
+//! - A sealed batch is never changed once it was tried; before that it may be thinned
+//!   for want of room, and says so. Batches of a stream are numbered from 1 without
+//!   gaps, and sent again byte for byte until they are acknowledged.
 //! - A batch is deleted only when the shore acknowledged that very batch and
 //!   everything before it; a record of its number, size and checksum remains.
 //! - An alert and the batch that carries it ashore are here from the same moment on.
@@ -19,12 +20,14 @@
 mod batches;
 mod repair;
 mod reports;
+mod room;
 mod seal;
 
 pub(crate) use batches::{SealedBatch, Standing};
 #[cfg(test)]
 pub(crate) use reports::ReportStanding;
 pub(crate) use reports::{NotKept, StoredReport};
+pub(crate) use room::MOST_PENDING;
 pub(crate) use seal::{Pending, Seal};
 
 use crate::alert::Aboard;
@@ -85,6 +88,24 @@ const HOLD: &str = "hold";
 const PAGE: &str = "page";
 const LAST_CONTACT: &str = "last_contact";
 const ALERT: &str = "alert";
+const THINNED: &str = "thinned";
+
+/// Columns of `batches` that earlier agents did not have.
+const LATER_COLUMNS: [(&str, &str); 3] = [
+    (
+        "urgent",
+        "ALTER TABLE batches ADD COLUMN urgent BOOLEAN NOT NULL DEFAULT FALSE",
+    ),
+    // What an earlier agent left may have been sent.
+    (
+        "tried",
+        "ALTER TABLE batches ADD COLUMN tried BOOLEAN NOT NULL DEFAULT TRUE",
+    ),
+    (
+        "thinned",
+        "ALTER TABLE batches ADD COLUMN thinned BIGINT NOT NULL DEFAULT 0",
+    ),
+];
 
 impl Spool {
     /// Opens the spool in a directory, which is made if need be; both are the
@@ -107,14 +128,15 @@ impl Spool {
 
     /// A spool that an older agent made lacks what came later.
     async fn add_missing_columns(&self) -> sqlx::Result<()> {
-        let known: Option<i64> =
-            sqlx::query_scalar("SELECT 1 FROM pragma_table_info('batches') WHERE name = 'urgent'")
-                .fetch_optional(&self.pool)
-                .await?;
-        if known.is_none() {
-            sqlx::query("ALTER TABLE batches ADD COLUMN urgent BOOLEAN NOT NULL DEFAULT FALSE")
-                .execute(&self.pool)
-                .await?;
+        for (column, statement) in LATER_COLUMNS {
+            let known: Option<i64> =
+                sqlx::query_scalar("SELECT 1 FROM pragma_table_info('batches') WHERE name = $1")
+                    .bind(column)
+                    .fetch_optional(&self.pool)
+                    .await?;
+            if known.is_none() {
+                sqlx::query(statement).execute(&self.pool).await?;
+            }
         }
         Ok(())
     }

@@ -155,6 +155,11 @@ async fn carry_over(aside: &Path, spool: &Spool) {
         let copied = insert_batch(&mut connection, seq, &bytes, count, urgent).await;
         batches += usize::from(copied.is_ok());
     }
+    // Any of them may have been sent.
+    let tried = sqlx::query("UPDATE batches SET tried = TRUE");
+    if let Err(error) = tried.execute(&spool.pool).await {
+        tracing::error!(%error, "the batches carried over cannot be kept from being thinned");
+    }
     let reports = carry_reports_over(&damaged, spool).await;
     damaged.close().await;
     tracing::warn!(

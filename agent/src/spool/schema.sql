@@ -17,7 +17,9 @@ CREATE TABLE IF NOT EXISTS batches (
     samples  BIGINT NOT NULL,
     standing TEXT NOT NULL CHECK (standing IN ('waiting', 'acknowledged', 'parked')),
     problem  TEXT,
-    urgent   BOOLEAN NOT NULL DEFAULT FALSE
+    urgent   BOOLEAN NOT NULL DEFAULT FALSE,
+    tried    BOOLEAN NOT NULL DEFAULT FALSE,
+    thinned  BIGINT NOT NULL DEFAULT 0
 );
 CREATE TABLE IF NOT EXISTS acknowledged (
     id      INTEGER PRIMARY KEY,

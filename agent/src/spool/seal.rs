@@ -1,6 +1,6 @@
 //! From samples to sealed batches, in one transaction.
 
-use super::{ALERT, IDENTITY, Identity, NEXT_SEQ, Spool, get, put};
+use super::{ALERT, IDENTITY, Identity, NEXT_SEQ, Spool, THINNED, forget, get, put};
 use crate::alert::Aboard;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
@@ -181,6 +181,10 @@ async fn seal_one(
     }
     let mut samples: Vec<Sample> = rows.iter().filter_map(|(_, text)| readable(text)).collect();
     samples.sort_by_key(|sample| sample.time);
+    let thinned = get(tx, THINNED).await?;
+    if thinned.is_some() {
+        forget(tx, THINNED).await?;
+    }
     let seq = next_seq(tx).await?;
     let count = samples.len();
     let batch = Batch {
@@ -192,7 +196,7 @@ async fn seal_one(
             .map(|(reason, windows)| (reason, windows.unsigned_abs()))
             .collect(),
         alerts: alerts.to_vec(),
-        thinned: None,
+        thinned,
     };
     let bytes = binnacle_wire::encode(&batch).map_err(|e| sqlx::Error::Encode(e.into()))?;
     insert_batch(tx, seq, &bytes, count, !alerts.is_empty()).await?;
@@ -230,8 +234,8 @@ pub(super) async fn insert_batch(
     urgent: bool,
 ) -> sqlx::Result<()> {
     sqlx::query(
-        "INSERT INTO batches (seq, bytes, samples, standing, urgent)
-         VALUES ($1, $2, $3, 'waiting', $4)",
+        "INSERT INTO batches (seq, bytes, samples, standing, urgent, tried)
+         VALUES ($1, $2, $3, 'waiting', $4, FALSE)",
     )
     .bind(seq.cast_signed())
     .bind(bytes)

@@ -337,7 +337,7 @@ async fn sealing_goes_on_when_damage_took_the_counter() {
     assert_eq!((standing.waiting_batches, standing.pending_samples), (2, 0));
 }
 
-fn alert(revision: u32) -> ShipAlert {
+pub(super) fn alert(revision: u32) -> ShipAlert {
     ShipAlert {
         id: Uuid::from_u128(0xa1),
         revision,

@@ -154,6 +154,9 @@ impl Uplink {
             settings: self.tell.settings.borrow().version,
         };
         let result = if let Some(batch) = &batch {
+            if !self.spool.note_try(batch).await? {
+                return Ok(Next::GoOn);
+            }
             self.shore.put_batch(&identity, batch, have).await
         } else {
             let idle = answered.map(|at| at.elapsed());

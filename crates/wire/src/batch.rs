@@ -37,8 +37,8 @@ pub struct Batch {
 }
 
 /// Samples that were sealed in a batch and left out again before it was sent. Which
-/// ones was decided by heading and time alone, never by what the compass read: what
-/// is left is as good a picture, of fewer windows.
+/// ones was decided by heading, time and length alone, never by how far compass and
+/// reference differed: what is left is as good a picture, of fewer windows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Thinned {
     /// How many samples.

@@ -1,0 +1,381 @@
+//! Keeps the spool within its limit: what has waited longest for a link is thinned,
+//! again and again if need be, and never dropped whole.
+//!
+//! What always holds:
+//!
+//! - Bytes that were tried are never touched: the shore may have them.
+//! - Evidence of alerts is never touched.
+//! - Samples are left out by heading, time and length alone, in each batch by itself,
+//!   and the batch says how many. What each window of the tally became can be told.
+
+use super::{Spool, THINNED, get, put};
+use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::batch::Thinned;
+use sqlx::SqliteConnection;
+use std::collections::BTreeMap;
+
+/// Thinning begins when so much of the limit is used, and goes on until it is less.
+const FULL_SHARE: f64 = 0.9;
+/// So many batches are thinned in one transaction.
+const BATCHES_AT_ONCE: i64 = 64;
+/// Without an identity nothing is sealed: more samples than these are thinned as they are.
+pub(crate) const MOST_PENDING: u64 = 20_000;
+/// Batches that cannot be read are for a person to look at; more than these are not.
+const MOST_QUARANTINED: i64 = 100;
+const BIN_DEG: f64 = 10.0;
+
+/// Of each 10° of heading, so many samples in so many seconds. Six an hour cost the
+/// estimate nothing, two an hour some 5 % of its error (the study behind
+/// docs/science.md); the last one leaves a ship offline for years with a sample for
+/// each heading and day.
+const LEVELS: [(i64, usize); 5] = [
+    (3_600, 6),
+    (3_600, 2),
+    (3_600, 1),
+    (6 * 3_600, 1),
+    (24 * 3_600, 1),
+];
+/// A batch of this level cannot be thinned further; 0 is one that was not thinned.
+const DEEPEST: i64 = 5;
+
+impl Spool {
+    /// Thins until what is in use is within the limit, or nothing is left to thin.
+    pub(crate) async fn make_room(&self, limit_bytes: u64) -> sqlx::Result<()> {
+        let full = (limit_bytes as f64 * FULL_SHARE) as u64;
+        loop {
+            let mut tx = self.write().await?;
+            if used_bytes(&mut tx).await? <= full {
+                return Ok(());
+            }
+            sqlx::query("DELETE FROM quarantine WHERE id <= (SELECT MAX(id) FROM quarantine) - $1")
+                .bind(MOST_QUARANTINED)
+                .execute(&mut *tx)
+                .await?;
+            let touched = thin_batches(&mut tx).await? + thin_pending(&mut tx).await?;
+            tx.commit().await?;
+            if touched == 0 {
+                tracing::warn!(limit_bytes, "the spool is full of what cannot be thinned");
+                return Ok(());
+            }
+        }
+    }
+}
+
+pub(super) async fn used_bytes(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
+    let (pages, free, size): (i64, i64, i64) = sqlx::query_as(
+        "SELECT page_count, freelist_count, page_size
+         FROM pragma_page_count, pragma_freelist_count, pragma_page_size",
+    )
+    .fetch_one(connection)
+    .await?;
+    Ok(((pages - free) * size).unsigned_abs())
+}
+
+/// Thins the oldest of those batches that were thinned least; says how many.
+async fn thin_batches(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
+    let rows: Vec<(i64, Vec<u8>, i64)> = sqlx::query_as(
+        "SELECT seq, bytes, thinned FROM batches
+         WHERE standing <> 'acknowledged' AND NOT tried AND NOT urgent AND thinned < $1
+         ORDER BY thinned, seq LIMIT $2",
+    )
+    .bind(DEEPEST)
+    .bind(BATCHES_AT_ONCE)
+    .fetch_all(&mut *tx)
+    .await?;
+    for (seq, bytes, level) in &rows {
+        let level = level + 1;
+        let (bytes, samples) = match thinner(bytes, level) {
+            Ok(thinner) => thinner,
+            Err(problem) => {
+                tracing::error!(seq, problem, "a batch cannot be thinned");
+                (bytes.clone(), 0)
+            }
+        };
+        sqlx::query(
+            "UPDATE batches SET bytes = $2, thinned = $3,
+                    samples = CASE WHEN $4 > 0 THEN $4 ELSE samples END
+             WHERE seq = $1",
+        )
+        .bind(seq)
+        .bind(bytes)
+        .bind(level)
+        .bind(samples)
+        .execute(&mut *tx)
+        .await?;
+    }
+    Ok(rows.len())
+}
+
+/// A batch with fewer samples, and how many they are.
+fn thinner(bytes: &[u8], level: i64) -> Result<(Vec<u8>, i64), String> {
+    let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
+    let before = std::mem::take(&mut batch.samples);
+    let (kept, left_out) = thin(before, level);
+    if left_out.samples == 0 {
+        return Ok((bytes.to_vec(), count(&kept)));
+    }
+    batch.samples = kept;
+    batch.thinned = Some(sum(batch.thinned.unwrap_or_default(), left_out));
+    let bytes = binnacle_wire::encode(&batch).map_err(|e| e.to_string())?;
+    Ok((bytes, count(&batch.samples)))
+}
+
+/// Thins samples that are not sealed, where there are very many; says how many.
+async fn thin_pending(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
+    let rows: Vec<(i64, String)> = sqlx::query_as(
+        "SELECT id, sample FROM pending_samples
+         WHERE (SELECT COUNT(*) FROM pending_samples) > $1 ORDER BY time_micros, id",
+    )
+    .bind(MOST_PENDING.cast_signed())
+    .fetch_all(&mut *tx)
+    .await?;
+    if rows.is_empty() {
+        return Ok(0);
+    }
+    let read = |(id, text): &(i64, String)| Some((*id, serde_json::from_str::<Sample>(text).ok()?));
+    let samples: Vec<(i64, Sample)> = rows.iter().filter_map(read).collect();
+    for level in 1..=DEEPEST {
+        let keep = kept_rows(samples.iter().map(|(_, sample)| sample), level);
+        let left_out: Vec<&(i64, Sample)> = samples
+            .iter()
+            .zip(&keep)
+            .filter(|(_, keep)| !**keep)
+            .map(|(row, _)| row)
+            .collect();
+        // Little at a time would come back with every sample.
+        if left_out.len() * 4 < samples.len() && level < DEEPEST {
+            continue;
+        }
+        let mut thinned = get::<Thinned>(tx, THINNED).await?.unwrap_or_default();
+        for (id, sample) in &left_out {
+            sqlx::query("DELETE FROM pending_samples WHERE id = $1")
+                .bind(id)
+                .execute(&mut *tx)
+                .await?;
+            thinned = sum(thinned, one(sample));
+        }
+        put(tx, THINNED, &thinned).await?;
+        return Ok(left_out.len());
+    }
+    Ok(0)
+}
+
+/// The samples to keep, and what is left out.
+fn thin(samples: Vec<Sample>, level: i64) -> (Vec<Sample>, Thinned) {
+    let keep = kept_rows(samples.iter(), level);
+    let left_out = samples.iter().zip(&keep).filter(|(_, keep)| !**keep);
+    let left_out = left_out.fold(Thinned::default(), |all, (sample, _)| sum(all, one(sample)));
+    let kept = samples.into_iter().zip(keep).filter(|(_, keep)| *keep);
+    (kept.map(|(sample, _)| sample).collect(), left_out)
+}
+
+/// Of each heading and time those of the most windows, the earliest of equals.
+fn kept_rows<'a>(samples: impl Iterator<Item = &'a Sample>, level: i64) -> Vec<bool> {
+    let index = usize::try_from(level - 1).unwrap_or_default();
+    let (seconds, most) = LEVELS[index.min(LEVELS.len() - 1)];
+    let mut groups: BTreeMap<(i64, i64), Vec<(u16, usize)>> = BTreeMap::new();
+    let mut rows = 0;
+    for sample in samples {
+        let reference = sample.gyro.or(sample.satellite);
+        let heading_deg = reference.map_or(sample.compass.degrees(), TrueHeading::degrees);
+        let time = sample.time.micros().div_euclid(seconds * 1_000_000);
+        let bin = (heading_deg / BIN_DEG).floor() as i64;
+        let group = groups.entry((time, bin)).or_default();
+        group.push((sample.windows, rows));
+        rows += 1;
+    }
+    let mut keep = vec![false; rows];
+    for group in groups.values_mut() {
+        group.sort_by_key(|(windows, row)| (std::cmp::Reverse(*windows), *row));
+        for (_, row) in group.iter().take(most) {
+            keep[*row] = true;
+        }
+    }
+    keep
+}
+
+fn count(samples: &[Sample]) -> i64 {
+    i64::try_from(samples.len()).unwrap_or(i64::MAX)
+}
+
+fn one(sample: &Sample) -> Thinned {
+    Thinned {
+        samples: 1,
+        windows: u64::from(sample.windows),
+    }
+}
+
+fn sum(a: Thinned, b: Thinned) -> Thinned {
+    Thinned {
+        samples: a.samples.saturating_add(b.samples),
+        windows: a.windows.saturating_add(b.windows),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{accepted, alert, identity, sample};
+    use super::*;
+    use crate::spool::{Seal, Spool};
+    use binnacle_wire::batch::Batch;
+    use std::collections::BTreeSet;
+    use tempfile::TempDir;
+
+    /// A spool of many days at ten-second samples, as nobody sends them.
+    async fn stuffed(batches: i64) -> (TempDir, Spool) {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        spool.enrol(&identity(7)).await.unwrap();
+        for number in 0..batches {
+            let mut samples: Vec<Sample> = (0..240)
+                .map(|i| Sample {
+                    time: sample(number * 60).time.plus_seconds(15.0 * f64::from(i)),
+                    windows: 1 + (i % 3) as u16,
+                    sog_kn: Some(f64::from(i * 7_919 % 1_000) / 10.0),
+                    spread_deg: Some(f64::from(i * 104_729 % 1_000) / 100.0),
+                    ..sample(0)
+                })
+                .collect();
+            samples[17].windows = 60;
+            let windows = samples.iter().map(|s| u64::from(s.windows)).sum();
+            let tally = accepted(windows);
+            spool.store(&samples, &tally, Seal::All).await.unwrap();
+        }
+        (directory, spool)
+    }
+
+    async fn all(spool: &Spool) -> Vec<Batch> {
+        let rows: Vec<(Vec<u8>,)> = sqlx::query_as("SELECT bytes FROM batches ORDER BY seq")
+            .fetch_all(&spool.pool)
+            .await
+            .unwrap();
+        let read = |(bytes,): &(Vec<u8>,)| binnacle_wire::decode(bytes).unwrap();
+        rows.iter().map(read).collect()
+    }
+
+    fn windows(batch: &Batch) -> u64 {
+        let kept: u64 = batch.samples.iter().map(|s| u64::from(s.windows)).sum();
+        kept + batch.thinned.map_or(0, |thinned| thinned.windows)
+    }
+
+    #[tokio::test]
+    async fn a_full_spool_thins_and_says_so_and_every_window_is_accounted_for() {
+        let (_directory, spool) = stuffed(300).await;
+        let before = spool.standing().await.unwrap().used_bytes;
+        let limit = before / 2;
+        spool.make_room(limit).await.unwrap();
+        assert!(spool.standing().await.unwrap().used_bytes <= limit);
+        let batches = all(&spool).await;
+        assert_eq!(batches.len(), 300);
+        for (batch, seq) in batches.iter().zip(1..) {
+            assert_eq!(batch.seq, seq);
+            assert_eq!(windows(batch), batch.tally["accepted"]);
+            assert!(!batch.samples.is_empty());
+            let longest = batch.samples.iter().map(|s| s.windows).max();
+            assert_eq!(longest, Some(60), "the longest is kept");
+        }
+        let counted: usize = batches.iter().map(|batch| batch.samples.len()).sum();
+        let stated: (i64,) = sqlx::query_as("SELECT SUM(samples) FROM batches")
+            .fetch_one(&spool.pool)
+            .await
+            .unwrap();
+        assert_eq!(stated.0, i64::try_from(counted).unwrap());
+        assert!(batches.iter().any(|batch| batch.thinned.is_some()));
+    }
+
+    #[tokio::test]
+    async fn what_was_tried_and_what_is_evidence_stays_to_the_byte() {
+        let (_directory, spool) = stuffed(40).await;
+        let evidence: Vec<Sample> = (0..100).map(|i| sample(90_000 + i)).collect();
+        spool
+            .store_evidence(&evidence, &accepted(1), &[alert(2)], None)
+            .await
+            .unwrap();
+        let urgent = spool.next_batch().await.unwrap().unwrap();
+        assert!(urgent.urgent);
+        spool.park(urgent.seq, "refused").await.unwrap();
+        let tried = spool.next_batch().await.unwrap().unwrap();
+        assert!(spool.note_try(&tried).await.unwrap());
+        spool.make_room(1).await.unwrap();
+        spool.unpark().await.unwrap();
+        assert_eq!(spool.next_batch().await.unwrap().unwrap(), urgent);
+        let batches = all(&spool).await;
+        assert_eq!(batches[0], binnacle_wire::decode(&tried.bytes).unwrap());
+        assert_eq!(batches[40].alerts, [alert(2)]);
+        assert!(batches[1..40].iter().all(|batch| batch.samples.len() <= 2));
+    }
+
+    #[tokio::test]
+    async fn a_batch_that_was_thinned_after_it_was_read_is_not_sent_as_it_was() {
+        let (_directory, spool) = stuffed(3).await;
+        let stale = spool.next_batch().await.unwrap().unwrap();
+        spool.make_room(1).await.unwrap();
+        assert!(!spool.note_try(&stale).await.unwrap());
+        let fresh = spool.next_batch().await.unwrap().unwrap();
+        assert_ne!(fresh.bytes, stale.bytes);
+        assert!(spool.note_try(&fresh).await.unwrap());
+    }
+
+    #[tokio::test]
+    async fn what_was_thinned_before_enrolment_is_said_in_the_first_batch() {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        let samples: Vec<Sample> = (0..21_000).map(sample).collect();
+        let tally = accepted(1);
+        spool.store(&samples, &tally, Seal::All).await.unwrap();
+        spool.make_room(1).await.unwrap();
+        let left = spool.pending().await.unwrap().samples;
+        assert!(left < 16_000, "{left}");
+        spool.enrol(&identity(7)).await.unwrap();
+        let tally = accepted(0);
+        spool.store(&[], &tally, Seal::All).await.unwrap();
+        let batches = all(&spool).await;
+        let thinned: u64 = batches
+            .iter()
+            .filter_map(|batch| batch.thinned)
+            .map(|t| t.samples)
+            .sum();
+        assert_eq!(left + thinned, 21_000);
+    }
+
+    #[tokio::test]
+    async fn half_a_year_of_samples_takes_a_small_part_of_the_limit() {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        spool.enrol(&identity(7)).await.unwrap();
+        for quarter_day in 0..4 * 180 {
+            let samples: Vec<Sample> = (0..36)
+                .map(|i| sample(quarter_day * 360 + i * 10))
+                .collect();
+            let tally = accepted(2160);
+            spool.store(&samples, &tally, Seal::All).await.unwrap();
+        }
+        let used = spool.standing().await.unwrap().used_bytes;
+        assert!(used < 2_000_000, "{used}");
+    }
+
+    #[test]
+    fn each_level_keeps_the_headings_and_fewer_of_each() {
+        let samples: Vec<Sample> = (0..48 * 60)
+            .map(|minute| Sample {
+                gyro: binnacle_magnetics::angle::TrueHeading::new(
+                    10.0 * (minute / 8 % 36) as f64 + 5.0,
+                ),
+                ..sample(minute)
+            })
+            .collect();
+        let mut before = samples.len() + 1;
+        for level in 1..=DEEPEST {
+            let (kept, left_out) = thin(samples.clone(), level);
+            assert!(kept.len() < before, "{level}");
+            before = kept.len();
+            assert_eq!(kept.len() as u64 + left_out.samples, samples.len() as u64);
+            let bins: BTreeSet<i64> = kept
+                .iter()
+                .map(|s| (s.gyro.unwrap().degrees() / 10.0) as i64)
+                .collect();
+            assert_eq!(bins.len(), 36, "{level}");
+        }
+    }
+}
