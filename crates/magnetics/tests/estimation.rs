@@ -5,7 +5,7 @@
 
 mod voyages;
 
-use binnacle_magnetics::angle::{Deviation, wrap_180};
+use binnacle_magnetics::angle::{CompassHeading, Deviation, wrap_180};
 use binnacle_magnetics::estimate::Prior;
 use binnacle_magnetics::fit::{Observation, RobustOptions, fit_known_ship, fit_robust};
 use binnacle_magnetics::model::{Caution, Model, Parameters};
@@ -63,27 +63,36 @@ fn one_wild_reading_in_thirty_does_no_harm() {
     assert_eq!((tally.refused, tally.passed), (0, tally.ships));
 }
 
-/// One row in ten is 20° out, and always to the same side.
+/// One row in ten is 20° out by one instrument, and always to the same side. The first
+/// three are the voyages that suffered most while a wild reading passed for a turn.
 #[test]
 fn one_reading_in_ten_that_is_20_degrees_out_moves_the_prediction_by_less_than_a_third() {
     for (seed, variety) in [
-        (2100, Variety::Rich),
-        (2101, Variety::Medium),
+        (8001, Variety::Rich),
+        (8023, Variety::Rich),
+        (8049, Variety::Medium),
         (2102, Variety::Poor),
     ] {
         let voyage = sail(seed, variety, 30.0, &Faults::USUAL);
-        let mut upset = voyage.observations.clone();
-        for observation in upset.iter_mut().step_by(10) {
-            let wrong = observation.deviation.degrees_east() + 20.0;
-            observation.deviation = Deviation::new(wrong).unwrap();
-        }
-        let (before, after) = (fitted(&voyage.observations), fitted(&upset));
-        let Truth { h_nt, z_nt, .. } = voyage.truth;
-        for heading in 0..36 {
-            let compass = f64::from(heading) * 10.0;
-            let moved = predicted(&after, compass, h_nt, z_nt).0
-                - predicted(&before, compass, h_nt, z_nt).0;
-            assert!(moved.abs() < 0.3, "{variety:?} {compass}: {moved}");
+        let before = fitted(&voyage.observations);
+        for is_compass in [false, true] {
+            let mut upset = voyage.observations.clone();
+            for observation in upset.iter_mut().step_by(10) {
+                let wrong = observation.deviation.degrees_east() + 20.0;
+                observation.deviation = Deviation::new(wrong).unwrap();
+                if is_compass {
+                    let wrong = observation.compass.degrees() - 20.0;
+                    observation.compass = CompassHeading::new(wrong.rem_euclid(360.0)).unwrap();
+                }
+            }
+            let after = fitted(&upset);
+            let Truth { h_nt, z_nt, .. } = voyage.truth;
+            for heading in 0..36 {
+                let compass = f64::from(heading) * 10.0;
+                let moved = predicted(&after, compass, h_nt, z_nt).0
+                    - predicted(&before, compass, h_nt, z_nt).0;
+                assert!(moved.abs() < 0.25, "{seed} {is_compass} {compass}: {moved}");
+            }
         }
     }
 }

@@ -37,8 +37,8 @@ const SLACK: f64 = 0.06;
 
 /// Rivals are awake from when a step leads by this until nothing leads by that,
 /// nats; they know of so many measurements at most.
-const WAKE_NATS: f64 = 4.0;
-const SLEEP_NATS: f64 = 3.0;
+const WAKE_NATS: f64 = 6.0;
+const SLEEP_NATS: f64 = 4.0;
 const REMEMBERED: usize = 432;
 /// A step that trails by this, after so many rows, is given up.
 const COLD_NATS: f64 = 2.0;
@@ -114,9 +114,11 @@ impl Spawn {
     fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
         let bursting = (self.age_s < BURST_S).then_some(BURST);
         self.age_s += m.seconds;
-        if kinds.contains(&Kind::Reference) && std::mem::take(&mut self.is_fresh) {
-            let copy = &mut self.copies[Kind::Reference as usize];
-            *copy = copy.take().map(|copy| misled(&copy, m));
+        if kinds.contains(&Kind::Reference)
+            && std::mem::take(&mut self.is_fresh)
+            && let Some(copy) = &mut self.copies[Kind::Reference as usize]
+        {
+            *copy = misled(copy, m);
         }
         for &kind in kinds {
             let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
@@ -141,8 +143,8 @@ pub(super) struct Lead {
 
 #[derive(Default)]
 pub(super) struct Bank {
-    /// From the oldest to the latest.
-    pub(super) spawns: Vec<Spawn>,
+    /// From the oldest to the latest; boxed, as they move up whenever one is given up.
+    pub(super) spawns: Vec<Box<Spawn>>,
     /// The last measurements, the latest last, and its row.
     memory: VecDeque<Measurement>,
     latest: usize,
@@ -177,7 +179,7 @@ impl Bank {
                 spawn.copies[Kind::Over as usize] = astray.copy(Kind::Burst).cloned();
             }
         }
-        self.spawns.push(spawn);
+        self.spawns.push(Box::new(spawn));
     }
 
     /// Takes in the measurement of row `at`; `null` has taken it in before.
@@ -231,7 +233,9 @@ impl Bank {
         let hopeless = null.log_likelihood - COLD_NATS;
         for spawn in self.spawns.iter_mut().filter(|s| at - s.at > COLD_AFTER) {
             let step = &mut spawn.copies[Kind::Step as usize];
-            *step = step.take().filter(|step| step.log_likelihood > hopeless);
+            if step.as_ref().is_some_and(|s| s.log_likelihood <= hopeless) {
+                *step = None;
+            }
         }
     }
 

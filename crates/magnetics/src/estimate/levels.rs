@@ -56,6 +56,8 @@ pub(crate) enum Sought {
     /// As if the unknowns were known where they are likeliest.
     Roughly,
     /// With what the unknowns' fit takes from the residuals.
+    Fairly,
+    /// The same, until nothing more is to be gained.
     Well,
 }
 
@@ -131,7 +133,7 @@ impl Search<'_> {
 
     fn enough(&self) -> f64 {
         match self.sought {
-            Sought::Roughly => LITTLE_TO_GAIN,
+            Sought::Roughly | Sought::Fairly => LITTLE_TO_GAIN,
             Sought::Well => NOTHING_TO_GAIN,
         }
     }

@@ -123,14 +123,16 @@ fn transition(step: &mut Step, earlier: &Observation, later: &Observation) -> Tr
         }
         _ => later.sog_kn.unwrap_or(TYPICAL_SPEED_KN).abs() * seconds / 3600.0,
     };
-    let turn = near(heading_deg(later) - heading_deg(earlier));
     *step = step.again(seconds);
-    step.sailing(miles, turn.abs() > TURN_DEG)
+    step.sailing(miles, has_turned(earlier, later))
 }
 
-/// True, by the reference, but for whole turns.
-fn heading_deg(o: &Observation) -> f64 {
-    o.compass.degrees() + o.deviation.degrees_east() + o.variation.degrees_east()
+/// Whether both compass and reference say so: a wild reading of either is no turn.
+fn has_turned(earlier: &Observation, later: &Observation) -> bool {
+    let by_compass = near(later.compass.degrees() - earlier.compass.degrees());
+    let correction = |o: &Observation| o.deviation.degrees_east() + o.variation.degrees_east();
+    let by_reference = near(by_compass + correction(later) - correction(earlier));
+    by_compass.abs().min(by_reference.abs()) > TURN_DEG
 }
 
 fn station(o: &Observation, transition: Transition, both: bool) -> Station {

@@ -8,7 +8,7 @@
 use super::noise::{LEVELS, NoiseLevels, STATES, Transition};
 use super::products::Products;
 use super::row::{Row, Station, UNKNOWNS};
-use super::whiten::{loss_slope, weight};
+use super::whiten::{loss_slope, weight_among_many};
 
 /// By how much a level's logarithm is nudged: far below what matters, far above
 /// what rounding does.
@@ -194,7 +194,7 @@ impl<const N: usize> Filters<N> {
         }
         let mut per_variance = variance.map(f64::recip);
         for (per_variance, value) in per_variance.iter_mut().zip(&value) {
-            *per_variance *= weight(value * value * *per_variance);
+            *per_variance *= weight_among_many(value * value * *per_variance);
         }
         for (s, row) in self.covariance.iter_mut().enumerate() {
             // Nothing is told of a state that has no part in anything measured.

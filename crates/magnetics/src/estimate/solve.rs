@@ -69,8 +69,8 @@ pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> O
     let problem = Problem::new(&sorted, options.prior)?;
     let few = few(&sorted);
     let (solution, levels) = match &few {
-        Some(few) => seek(&problem.by(few), begin(&problem, None))?,
-        None => seek(&problem, begin(&problem, None))?,
+        Some(few) => seek(&problem.by(few), begin(&problem, None), Sought::Well)?,
+        None => seek(&problem, begin(&problem, None), Sought::Well)?,
     };
     let (solution, judged) = problem.settle(solution, &levels, SETTLED)?;
 
@@ -142,7 +142,7 @@ pub(crate) fn rough(
     let sorted = sorted(observations, &order);
     let few = few(&sorted);
     let problem = Problem::new(few.as_deref().unwrap_or(&sorted), prior)?;
-    let (solution, levels) = seek(&problem, begin(&problem, before))?;
+    let (solution, levels) = seek(&problem, begin(&problem, before), Sought::Fairly)?;
     let (solution, drift) = problem.descend(solution, &levels, ROUGHLY_SETTLED)?;
     let (parameters, constant_deg) = in_own_units(&solution.at_last(&drift));
     Some(Rough {
@@ -214,9 +214,9 @@ fn begin(problem: &Problem<'_>, before: Option<&NoiseLevels>) -> Begun {
     }
 }
 
-/// Levels and parameters in turn; the parameters by the last levels are the caller's
-/// to find.
-fn seek(problem: &Problem<'_>, begun: Begun) -> Option<(Solution, NoiseLevels)> {
+/// Levels, in the end as well as `last` says, and parameters in turn; the parameters
+/// by the last levels are the caller's to find.
+fn seek(problem: &Problem<'_>, begun: Begun, last: Sought) -> Option<(Solution, NoiseLevels)> {
     let Begun {
         mut solution,
         typical,
@@ -227,7 +227,7 @@ fn seek(problem: &Problem<'_>, begun: Begun) -> Option<(Solution, NoiseLevels)> 
         (levels, solution.fusion) = problem.levels_at(&solution, &typical, &levels, sought);
         (solution, _) = problem.descend(solution, &levels, ROUGHLY_SETTLED)?;
     }
-    (levels, solution.fusion) = problem.levels_at(&solution, &typical, &levels, Sought::Well);
+    (levels, solution.fusion) = problem.levels_at(&solution, &typical, &levels, last);
     Some((solution, levels))
 }
 

@@ -150,7 +150,7 @@ impl Filter {
         let variance = scalar.white + told;
         let per_variance = 1.0 / variance;
         let z_squared = innovations[0] * innovations[0] * per_variance;
-        let weight = weight(z_squared);
+        let weight = weight_among_many(z_squared);
         let weight_per_variance = weight * per_variance;
         for (s, gain_of_s) in loaded(&gain) {
             let step = gain_of_s * weight_per_variance;
@@ -212,7 +212,7 @@ fn loaded(parts: &[f64; STATES]) -> impl Iterator<Item = (usize, f64)> {
 
 /// The weight of an innovation by its size in standard deviations, squared: 1 up
 /// to [`DOUBTED`], then falling with the square, so that the wilder an innovation,
-/// the less it moves the fit.
+/// the less it moves what is believed.
 pub(crate) fn weight(z_squared: f64) -> f64 {
     let bound = DOUBTED * DOUBTED;
     if z_squared <= bound {
@@ -220,6 +220,13 @@ pub(crate) fn weight(z_squared: f64) -> f64 {
     } else {
         bound / z_squared
     }
+}
+
+/// The weight in a fit of many rows at once, which falls faster beyond [`GROSS`]:
+/// wild readings that are all to one side add up. It is never 0, lest a fit that
+/// began far off stayed there.
+pub(super) fn weight_among_many(z_squared: f64) -> f64 {
+    weight(z_squared) * (GROSS * GROSS / z_squared).min(1.0)
 }
 
 /// The loss whose slope is twice the weighted innovation, but no more than at
