@@ -2,8 +2,9 @@
 //! from it at different times, each with one thing upset.
 //!
 //! Copies with a step run all the time. Those with anything else, its rivals, are
-//! of use only once a step leads: then they are made of what the steps began from,
-//! and of the last measurements, and given up again when nothing leads.
+//! of use only once a step leads, or one row after another surprises: then they are
+//! made of what the steps began from, and of the last measurements, and given up again
+//! when nothing leads.
 //!
 //! What always holds: at most [`CAPACITY`] times are kept, their ages spaced
 //! about geometrically; the time of the likeliest copy of every kind is among them.
@@ -35,10 +36,15 @@ const WORTH: f64 = 3.0;
 /// population units.
 const SLACK: f64 = 0.06;
 
-/// Rivals are awake from when a step leads by this until nothing leads by that,
-/// nats; they know of so many measurements at most.
+/// Rivals are awake from when a step leads by this, or surprises have added up to
+/// as much, until nothing leads by that, nats; they know of so many measurements at
+/// most.
 const WAKE_NATS: f64 = 6.0;
 const SLEEP_NATS: f64 = 4.0;
+/// A surprise counts for so much at most, lest one wild reading wakes them, and so
+/// much a row is forgotten.
+const SURPRISE_NATS: f64 = 2.5;
+const FORGOTTEN_NATS: f64 = 0.75;
 const REMEMBERED: usize = 432;
 /// A step that trails by this, after so many rows, is given up.
 const COLD_NATS: f64 = 2.0;
@@ -149,6 +155,8 @@ pub(super) struct Bank {
     memory: VecDeque<Measurement>,
     latest: usize,
     are_rivals_awake: bool,
+    /// What surprises have added up to since the rivals woke, nats.
+    surprise: f64,
 }
 
 impl Bank {
@@ -182,13 +190,15 @@ impl Bank {
         self.spawns.push(Box::new(spawn));
     }
 
-    /// Takes in the measurement of row `at`; `null` has taken it in before.
+    /// Takes in the measurement of row `at`; `null` has taken it in before, and it
+    /// surprised by so much.
     pub(super) fn take(
         &mut self,
         at: usize,
         m: Measurement,
         noise: &Noise,
-        (null, earlier): (&Filter, Option<Earlier<'_>>),
+        (null, surprise): (&Filter, f64),
+        earlier: Option<Earlier<'_>>,
     ) {
         for spawn in &mut self.spawns {
             spawn.take(&m, noise, &KINDS);
@@ -198,10 +208,10 @@ impl Bank {
         }
         self.memory.push_back(m);
         self.latest = at;
-        let leads = self
-            .lead(Kind::Step, null)
-            .is_some_and(|lead| lead.nats > WAKE_NATS);
-        if leads && !self.are_rivals_awake {
+        let counted = surprise.min(SURPRISE_NATS) - FORGOTTEN_NATS;
+        self.surprise = (self.surprise + counted).max(0.0);
+        let step = self.lead(Kind::Step, null).map_or(0.0, |lead| lead.nats);
+        if step.max(self.surprise) > WAKE_NATS && !self.are_rivals_awake {
             self.wake(noise, earlier);
         }
     }
@@ -209,6 +219,7 @@ impl Bank {
     /// Makes the rivals, as if they had run all along.
     fn wake(&mut self, noise: &Noise, earlier: Option<Earlier<'_>>) {
         self.are_rivals_awake = true;
+        self.surprise = 0.0;
         let known_from = self.latest + 1 - self.memory.len();
         for spawn in self.spawns.iter_mut().filter(|s| s.at >= known_from) {
             spawn.wake(earlier);

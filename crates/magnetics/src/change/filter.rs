@@ -142,13 +142,11 @@ impl Filter {
     }
 
     /// Takes in what was measured; `burst` is what the variation does meanwhile, if
-    /// not the usual.
-    pub(super) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) {
+    /// not the usual. By how much that surprised, nats: 0 on the average.
+    pub(super) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) -> f64 {
         self.advance(m, noise, burst);
-        if let Some(difference) = &m.difference {
-            self.update(difference);
-        }
-        self.update(&m.deviation);
+        let by_difference = m.difference.as_ref().map(|scalar| self.update(scalar));
+        by_difference.unwrap_or(0.0) + self.update(&m.deviation)
     }
 
     fn advance(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) {
@@ -205,7 +203,7 @@ impl Filter {
         }
     }
 
-    fn update(&mut self, scalar: &Scalar) {
+    fn update(&mut self, scalar: &Scalar) -> f64 {
         let load = &scalar.load;
         let mut gain = [0.0; STATES];
         for (row, l) in self.covariance.iter().zip(load) {
@@ -224,7 +222,8 @@ impl Filter {
             variance += load[s] * gain[s];
         }
         let z_squared = innovation * innovation / variance;
-        self.log_likelihood -= 0.5 * (loss_of(z_squared) + variance.ln());
+        let loss = loss_of(z_squared);
+        self.log_likelihood -= 0.5 * (loss + variance.ln());
         let raised = variance / weight(z_squared);
         for s in 0..STATES {
             let step = gain[s] / raised;
@@ -233,6 +232,7 @@ impl Filter {
                 *c -= step * other;
             }
         }
+        0.5 * (loss - 1.0)
     }
 }
 

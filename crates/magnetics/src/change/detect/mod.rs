@@ -110,10 +110,11 @@ impl<'a> Search<'a> {
         }
         let at = self.point(k);
         let m = self.measure(k, &at);
-        self.null.take(&m, &self.noise, None);
+        let surprise = self.null.take(&m, &self.noise, None);
         self.calls.take(&m, &self.noise, &self.null);
         let earlier = earlier(self.misled.as_ref(), &self.calls);
-        self.bank.take(k, m, &self.noise, (&self.null, earlier));
+        let null = (&self.null, surprise);
+        self.bank.take(k, m, &self.noise, null, earlier);
         if k >= YOUNG {
             self.judge(k);
         }
