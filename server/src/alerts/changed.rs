@@ -10,9 +10,12 @@ use super::alert::{AlertWanted, Cause, Evidence, Severity};
 use super::findings::{Findings, FoundChange};
 use super::limits::AlertLimits;
 use binnacle_magnetics::change;
+use std::fmt::Write as _;
 
 /// A change of deviation of this size is to be acted on, degrees.
 const WARN_DEG: f64 = 2.0;
+/// A size elsewhere that is larger by less than this is not worth a word, degrees.
+const WORTH_A_WORD_DEG: f64 = 0.5;
 /// So long a change is news, even if the model has learnt it, seconds.
 const NEWS_S: f64 = 7.0 * 86_400.0;
 /// A model of fewer days than this after a change may yet turn out wrong, seconds.
@@ -119,12 +122,13 @@ fn alert(found: &FoundChange, cause: Cause, stage: Stage, limits: &AlertLimits) 
     }
 }
 
-/// As bad as the deviation that it causes where the ship is now.
+/// As bad as the deviation that it causes, here or on the waters ahead.
 fn severity(found: &FoundChange, stage: Stage, limits: &AlertLimits) -> Severity {
     if found.change.cause == change::Cause::CompassFault {
         return Severity::Critical;
     }
-    let size_deg = found.size_deg.unwrap_or(0.0);
+    let ahead_deg = found.size_ahead_deg.unwrap_or(0.0);
+    let size_deg = found.size_deg.unwrap_or(0.0).max(ahead_deg);
     let by_size = if size_deg >= limits.deviation_deg {
         Severity::Critical
     } else if size_deg >= WARN_DEG || found.change.cause == change::Cause::ReferenceFault {
@@ -150,15 +154,28 @@ fn words(cause: change::Cause) -> &'static str {
     }
 }
 
+/// The change's size on the waters ahead, where it is worth a word beside that here.
+fn ahead_deg(found: &FoundChange) -> Option<f64> {
+    let (here, ahead) = found.size_deg.zip(found.size_ahead_deg)?;
+    (ahead > here + WORTH_A_WORD_DEG).then_some(ahead)
+}
+
 fn summary(found: &FoundChange, stage: Stage) -> String {
     let change = &found.change;
     let (since, cause) = (change.from, words(change.cause));
     if change.cause == change::Cause::CompassFault {
         return format!("Since about {since} the compass stands still while the ship turns.");
     }
-    let size = found
+    let mut size = found
         .size_deg
         .map_or(String::new(), |degrees| format!(" by up to {degrees:.1}°"));
+    if let Some(ahead_deg) = ahead_deg(found) {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            size,
+            " here, {ahead_deg:.1}° on the waters of the last weeks"
+        );
+    }
     match stage {
         Stage::Doubtful => format!(
             "Since about {since} the compass may be astray{size}; perhaps {cause}. It is not \

@@ -29,6 +29,7 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
         epoch_ended: None,
         expected: false,
         size_deg: Some(size_deg),
+        size_ahead_deg: None,
         position: None,
     }
 }
@@ -45,6 +46,19 @@ fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<
         ..Findings::default()
     };
     changed(&findings, &AlertLimits::default())
+}
+
+#[test]
+fn a_change_that_is_small_here_and_large_on_the_waters_ahead_is_as_bad_as_there() {
+    let mut change = found(Found::LightningOrShock, 1.0);
+    change.size_ahead_deg = Some(6.0);
+    let wanted = sailed(vec![change], 0.0, None);
+    assert_eq!(wanted[0].severity, Severity::Critical);
+    let summary = &wanted[0].summary;
+    assert!(
+        summary.contains("1.0° here, 6.0° on the waters"),
+        "{summary}"
+    );
 }
 
 #[test]

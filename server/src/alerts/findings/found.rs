@@ -2,7 +2,8 @@
 //!
 //! What always holds: a change that began an epoch, or ended when one began, says
 //! which; its size is of the place of the last sample where models on both sides of it
-//! tell, and else of where it was found.
+//! tell, and else of where it was found. Ships mostly come back to where they were: the
+//! waters of the last weeks stand for those ahead.
 
 use binnacle_magnetics::analyse::{Analysis, LogbookEntry, SampleReason};
 use binnacle_magnetics::angle::{CompassHeading, wrap_180};
@@ -17,6 +18,10 @@ use serde::{Deserialize, Serialize};
 const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
 /// Degrees of compass heading between those on which two models are compared.
 const STEP_DEG: u32 = 5;
+/// How far back the waters reach that stand for those ahead, and how far apart the
+/// places are that are looked at, seconds.
+const TRADE_S: f64 = 60.0 * 86_400.0;
+const PLACES_S: f64 = 86_400.0;
 
 /// A change, and what alerts and the timeline say beside it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -37,6 +42,9 @@ pub struct FoundChange {
     /// where it does most; none where that cannot be told.
     #[serde(default)]
     pub size_deg: Option<f64>,
+    /// The same on the waters of the last sixty days, which stand for those ahead.
+    #[serde(default)]
+    pub size_ahead_deg: Option<f64>,
     /// About where the ship was while it lasted, for what passes by.
     #[serde(default)]
     pub position: Option<Position>,
@@ -57,17 +65,31 @@ fn found(change: &Change, analysis: &Analysis, logbook: &[LogbookEntry]) -> Foun
     let is_boundary = change.confirmed && change.cause.is_the_ships();
     let epoch = Some(change.from).filter(|_| is_boundary).and_then(begun_at);
     let spoilt = Spoilt::by(change, analysis);
-    let parted_deg = epoch.and_then(|after| {
+    let sides = epoch.and_then(|after| {
         let before = epochs.get(after.checked_sub(1)?)?.model.as_ref()?;
-        parted_deg(before, epochs[after].model.as_ref()?, analysis)
+        Some((before, epochs[after].model.as_ref()?))
+    });
+    let parted_here = sides
+        .zip(analysis.last_place)
+        .and_then(|((before, after), place)| {
+            let earth = EarthField {
+                h_nt: place.h_nt,
+                z_nt: place.z_nt,
+            };
+            parted_deg(before, after, earth)
+        });
+    let parted_ahead = sides.and_then(|(before, after)| {
+        let parted = waters_ahead(analysis).filter_map(|earth| parted_deg(before, after, earth));
+        parted.reduce(f64::max)
     });
     FoundChange {
         epoch,
         epoch_ended: change.ended.filter(|_| is_boundary).and_then(begun_at),
         expected: change.cause == Cause::AdjustmentOrRepair && is_reported(change, logbook),
-        size_deg: parted_deg
+        size_deg: parted_here
             .or(change.deviation_change_deg.map(f64::abs))
             .or(spoilt.most_deg),
+        size_ahead_deg: parted_ahead,
         position: spoilt.position,
         change: change.clone(),
     }
@@ -85,13 +107,26 @@ fn is_reported(change: &Change, logbook: &[LogbookEntry]) -> bool {
         })
 }
 
-/// By how much two models part at most where the last sample was taken, degrees.
-fn parted_deg(before: &Model, after: &Model, analysis: &Analysis) -> Option<f64> {
-    let place = analysis.last_place?;
-    let earth = EarthField {
-        h_nt: place.h_nt,
-        z_nt: place.z_nt,
-    };
+/// The fields of the last weeks' waters, a day apart.
+fn waters_ahead(analysis: &Analysis) -> impl Iterator<Item = EarthField> {
+    let since = analysis
+        .data_until
+        .map(|until| until.plus_seconds(-TRADE_S));
+    let mut next = since;
+    let samples = analysis.samples.iter();
+    samples.filter_map(move |s| {
+        next.filter(|next| s.sample.time >= *next)?;
+        let earth = EarthField {
+            h_nt: s.h_nt?,
+            z_nt: s.z_nt?,
+        };
+        next = Some(s.sample.time.plus_seconds(PLACES_S));
+        Some(earth)
+    })
+}
+
+/// By how much two models part at most in a field, degrees.
+fn parted_deg(before: &Model, after: &Model, earth: EarthField) -> Option<f64> {
     let deviation_deg = |model: &Model, compass| {
         let predicted = model.deviation(compass, earth).ok()?;
         Some(predicted.deviation.degrees_east())
