@@ -35,6 +35,9 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Listens to the instruments, sends samples ashore, puts the corrected heading out.
+    ///
+    /// How often it sends, and for how many octets a day, is the `profile` of `[uplink]`
+    /// in the configuration: standard, broadband, vsat, metered or very-metered.
     Run {
         /// The configuration file.
         #[arg(long, default_value = "agent.toml")]

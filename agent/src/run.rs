@@ -19,16 +19,15 @@ use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
 use crate::spool::{MOST_PENDING, Pending, Seal, Spool};
 use crate::status::{InputReport, ModelStatus, Status};
-use crate::uplink::{Backoff, LinkState, LinkStatus, Shore, Tell, Uplink};
+use crate::uplink::{self, LinkState, LinkStatus, Plan, Told};
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::ShipAlert;
-use binnacle_wire::messages::{CardWithdrawn, ModelDownlink, Settings};
-use rand::rngs::StdRng;
-use rand::{RngExt, SeedableRng};
+use binnacle_wire::messages::Settings;
+use rand::RngExt;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::sync::{Notify, mpsc, watch};
+use tokio::sync::{mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
@@ -60,14 +59,12 @@ struct Agent {
     silence: SilenceConfig,
     spool: Spool,
     spool_limit_bytes: u64,
+    plan: Plan,
+    told: Told,
     observations: mpsc::Receiver<Vec<Observation>>,
     inputs: Vec<(String, Arc<InputStats>)>,
     outputs: Outputs,
     interval: Duration,
-    model: watch::Receiver<Option<ModelDownlink>>,
-    withdrawn: watch::Receiver<Option<CardWithdrawn>>,
-    settings: watch::Receiver<Settings>,
-    link: watch::Receiver<LinkStatus>,
     hold: watch::Sender<Option<Hold>>,
     lookout: Lookout,
     /// What the spool has of the lookout's alert.
@@ -75,8 +72,6 @@ struct Agent {
     acknowledged: watch::Receiver<Option<Uuid>>,
     alarm: Option<AlarmSentence>,
     status: watch::Sender<Arc<Status>>,
-    sealed: Arc<Notify>,
-    urgent: Arc<Notify>,
     uplink: tokio::task::JoinHandle<()>,
     unstored: Unstored,
     windows: Tally,
@@ -101,17 +96,13 @@ impl Agent {
         spool: Spool,
         shutdown: &CancellationToken,
     ) -> anyhow::Result<Agent> {
-        let settings = spool.settings().await?;
-        let model = spool.model().await?;
+        let (uplink, told) = uplink::prepare(&config.uplink, &spool).await?;
         let hold = spool.hold().await?;
         let alert_kept = spool.alert().await?;
-        let judged_by = model.as_ref().map(|model| model.id);
-        let ship = Ship::new(
-            &config.roles,
-            config.silence.stale_s.0,
-            settings.clone(),
-            hold,
-        );
+        let judged_by = told.model.borrow().as_ref().map(|model| model.id);
+        let settings = told.settings.borrow().clone();
+        let stale_s = config.silence.stale_s.0;
+        let ship = Ship::new(&config.roles, stale_s, settings, hold);
         let unstored = Unstored {
             pending: spool.pending().await?,
             ..Unstored::default()
@@ -120,7 +111,6 @@ impl Agent {
         let outputs = Outputs::open(&config.output, shutdown).await?;
         let hold = watch::Sender::new(hold);
         let status = watch::Sender::new(Arc::new(Status::default()));
-        let (sealed, urgent) = (Arc::new(Notify::new()), Arc::new(Notify::new()));
         let acknowledged = watch::Sender::new(None);
         let acknowledged_rx = acknowledged.subscribe();
         let served = Page {
@@ -128,39 +118,9 @@ impl Agent {
             status: status.subscribe(),
             hold: hold.clone(),
             acknowledged,
-            news: sealed.clone(),
+            news: told.sealed.clone(),
         };
         let page = page::serve(config.page.as_ref(), served, shutdown).await?;
-        let model = watch::Sender::new(model);
-        let withdrawn = watch::Sender::new(spool.card_withdrawn().await?);
-        let withdrawn_rx = withdrawn.subscribe();
-        let settings = watch::Sender::new(settings);
-        let link = watch::Sender::new(LinkStatus {
-            last_contact: spool.last_contact().await?,
-            ..LinkStatus::default()
-        });
-        let (model_rx, settings_rx, link_rx) =
-            (model.subscribe(), settings.subscribe(), link.subscribe());
-        let uplink = Uplink {
-            spool: spool.clone(),
-            token: spool.identity().await?.map(|identity| identity.token),
-            shore: Shore::new(config.uplink.pinned_ca.as_deref())?,
-            backoff: Backoff::new(
-                config.uplink.retry_min_s.get_ref().duration(),
-                config.uplink.retry_max_s.get_ref().duration(),
-            ),
-            poll: config.uplink.poll_s.duration(),
-            tell: Tell {
-                model,
-                withdrawn,
-                settings,
-                link,
-            },
-            no_reports_before: None,
-            sealed: sealed.clone(),
-            urgent: urgent.clone(),
-            rng: StdRng::from_rng(&mut rand::rng()),
-        };
         let uplink = tokio::spawn(uplink.run(shutdown.clone()));
 
         let (tx, observations) = mpsc::channel(CHANNEL);
@@ -178,22 +138,18 @@ impl Agent {
             silence: config.silence,
             spool,
             spool_limit_bytes: config.spool_mb.bytes(),
+            plan: config.uplink.plan(),
+            told,
             observations,
             inputs,
             outputs,
             interval: config.output.interval_s.duration(),
-            model: model_rx,
-            withdrawn: withdrawn_rx,
-            settings: settings_rx,
-            link: link_rx,
             hold,
             lookout: Lookout::new(config.alert, alert_kept, judged_by),
             alert_kept,
             acknowledged: acknowledged_rx,
             alarm: config.output.alarm_sentence.then(AlarmSentence::default),
             status,
-            sealed,
-            urgent,
             uplink,
             unstored,
             windows: Tally::default(),
@@ -213,8 +169,8 @@ impl Agent {
                 Some(observations) = self.observations.recv() => self.observe(&observations).await,
                 _ = second.tick() => self.every_second().await,
                 _ = output.tick() => self.send_heading(),
-                Ok(()) = self.settings.changed() => {
-                    let settings = self.settings.borrow_and_update().clone();
+                Ok(()) = self.told.settings.changed() => {
+                    let settings = self.told.settings.borrow_and_update().clone();
                     self.ship.sampler.set_settings(settings);
                 }
                 Ok(()) = hold.changed() => {
@@ -272,6 +228,7 @@ impl Agent {
             self.store(seal).await;
         }
         self.keep_alert().await;
+        self.told.ship_time.send_replace(self.ship.time());
         match self.spool.hold().await {
             Ok(hold) => {
                 // The command line sets it there when it finds no page.
@@ -286,7 +243,7 @@ impl Agent {
 
     /// Looks at what has settled since; the samples of an alert end with it.
     fn look_out(&mut self) {
-        let (model, withdrawn) = (self.model.borrow(), self.withdrawn.borrow());
+        let (model, withdrawn) = (self.told.model.borrow(), self.told.withdrawn.borrow());
         let card = Card {
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
@@ -339,7 +296,7 @@ impl Agent {
         let Some(now) = self.ship.time() else {
             return Seal::Full;
         };
-        let seal_s = f64::from(self.settings.borrow().seal_s);
+        let seal_s = f64::from(self.seal_s());
         let older = |since: Option<Timestamp>, seconds: f64| {
             since.is_some_and(|since| now.seconds_since(since).abs() >= seconds)
         };
@@ -350,7 +307,18 @@ impl Agent {
         if due { Seal::All } else { Seal::Full }
     }
 
+    /// As the profile has it, unless the shore wants other than the usual.
+    fn seal_s(&self) -> u32 {
+        let asked = self.told.settings.borrow().seal_s;
+        if asked == Settings::default().seal_s {
+            self.plan.seal_s
+        } else {
+            asked
+        }
+    }
+
     async fn store(&mut self, seal: Seal) {
+        self.told.ship_time.send_replace(self.ship.time());
         let unstored = &mut self.unstored;
         let tally = unstored.tally.by_name();
         let has_evidence = !unstored.alerts.is_empty();
@@ -367,7 +335,7 @@ impl Agent {
                 if has_evidence {
                     self.alert_kept = self.lookout.aboard().copied();
                     unstored.alerts.clear();
-                    self.urgent.notify_one();
+                    self.told.urgent.notify_one();
                 }
                 unstored.samples.clear();
                 unstored.tally = Tally::default();
@@ -375,13 +343,11 @@ impl Agent {
                 if has_evidence || seal == Seal::All {
                     unstored.tally_since = self.ship.time();
                 }
-                if sealed > 0 {
-                    self.sealed.notify_one();
+                if sealed > 0 || unstored.pending.samples > MOST_PENDING {
+                    self.make_room().await;
                 }
-                if (sealed > 0 || unstored.pending.samples > MOST_PENDING)
-                    && let Err(error) = self.spool.make_room(self.spool_limit_bytes).await
-                {
-                    tracing::error!(%error, "the spool cannot be thinned");
+                if sealed > 0 {
+                    self.told.sealed.notify_one();
                 }
             }
             Err(error) => {
@@ -392,9 +358,21 @@ impl Agent {
         }
     }
 
+    /// Within the disk, and within what the link may cost.
+    async fn make_room(&self) {
+        let within_disk = self.spool.make_room(self.spool_limit_bytes).await;
+        let within_budget = match self.plan.backlog_octets() {
+            Some(octets) => self.spool.thin_backlog(octets).await,
+            None => Ok(()),
+        };
+        if let Err(error) = within_disk.and(within_budget) {
+            tracing::error!(%error, "the spool cannot be thinned");
+        }
+    }
+
     fn correct(&self) -> (Corrected, Vec<corrected::CardRow>) {
-        let model = self.model.borrow();
-        let withdrawn = self.withdrawn.borrow();
+        let model = self.told.model.borrow();
+        let withdrawn = self.told.withdrawn.borrow();
         let now = Instant::now();
         let readings = &self.ship.readings;
         let from = Ingredients {
@@ -422,14 +400,14 @@ impl Agent {
     }
 
     fn model_status(&self) -> Option<ModelStatus> {
-        let model = self.model.borrow();
+        let model = self.told.model.borrow();
         let model = model.as_ref()?;
         let now = self.ship.time().unwrap_or_else(clock::now);
         Some(ModelStatus {
             version: model.version,
             data_until: model.data_until,
             age_days: Some(now.seconds_since(model.data_until).max(0.0) / 86_400.0),
-            withdrawn: self.withdrawn.borrow().clone(),
+            withdrawn: self.told.withdrawn.borrow().clone(),
             replaces: model.replaces.clone(),
         })
     }
@@ -457,7 +435,7 @@ impl Agent {
         status.inputs = inputs
             .map(|(name, stats)| InputReport::new(name, stats.status()))
             .collect();
-        status.link = self.link.borrow().clone();
+        status.link = self.told.link.borrow().clone();
         status
     }
 }
@@ -492,6 +470,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
             last_contact,
         },
         spool: spool.standing().await?,
+        budget: spool.account().await?,
         alert: spool.alert().await?.as_ref().map(Aboard::status),
         ..Status::default()
     })

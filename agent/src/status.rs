@@ -5,7 +5,7 @@ use crate::corrected::{CardRow, Corrected};
 use crate::hold::Hold;
 use crate::input::InputStatus;
 use crate::spool::Standing;
-use crate::uplink::LinkStatus;
+use crate::uplink::{Account, LinkStatus};
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::ShipAlertState;
@@ -43,6 +43,9 @@ pub(crate) struct Status {
     pub(crate) inputs: Vec<InputReport>,
     pub(crate) link: LinkStatus,
     pub(crate) spool: Standing,
+    /// What the link may cost, and what is left of it.
+    #[serde(default)]
+    pub(crate) budget: Option<Account>,
 }
 
 /// The model in use.
@@ -222,10 +225,19 @@ impl Status {
         if let Some(contact) = self.link.last_contact {
             write!(out, ", last answer {contact}")?;
         }
+        writeln!(out)?;
+        if let Some(budget) = &self.budget {
+            write!(out, "profile    {}", budget.profile)?;
+            if let Some(day) = budget.day_octets {
+                let left = budget.left_octets;
+                write!(out, ", {left:.0} octets left at {day:.0} a day")?;
+            }
+            writeln!(out)?;
+        }
         let spool = &self.spool;
         writeln!(
             out,
-            "\nspool      {} samples not sealed, {} batches to send, {} acknowledged",
+            "spool      {} samples not sealed, {} batches to send, {} acknowledged",
             spool.pending_samples, spool.waiting_batches, spool.acknowledged_batches
         )?;
         if spool.thinned_batches > 0 {
@@ -250,6 +262,7 @@ impl Status {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::uplink::Profile;
 
     #[test]
     fn the_text_says_what_is_wrong() {
@@ -260,6 +273,12 @@ mod tests {
                 problem: Some("there is no model yet".to_owned()),
                 ..Corrected::default()
             },
+            budget: Some(Account {
+                profile: Profile::Metered,
+                day_octets: Some(8_000.0),
+                left_octets: -120.4,
+                ship_time: None,
+            }),
             spool: Standing {
                 parked_batches: 2,
                 parked_because: Some("422 undecodable".to_owned()),
@@ -273,6 +292,7 @@ mod tests {
             "berthed: nothing is sampled",
             "not corrected: there is no model yet",
             "link       not enrolled\n",
+            "profile    metered, -120 octets left at 8000 a day\n",
             "2 batches were refused by the shore: 422 undecodable",
         ] {
             assert!(text.contains(wanted), "{wanted:?} is not in\n{text}");

@@ -13,12 +13,14 @@ pub(crate) use alert::GyroError;
 pub(crate) use roles::{RolesConfig, SourceConfig};
 
 use crate::input::InputConfig;
+use crate::uplink::{Plan, Profile};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
 use std::net::SocketAddr;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use toml::Spanned;
 
 /// All of `agent.toml`.
@@ -109,8 +111,13 @@ pub(crate) struct PageConfig {
 pub(crate) struct UplinkConfig {
     /// A PEM file: the only authority whose certificates are believed.
     pub(crate) pinned_ca: Option<PathBuf>,
-    /// Asks for news when nothing was sent for so many seconds.
-    pub(crate) poll_s: PositiveSeconds,
+    /// What the link costs: how often the shore is spoken to, and for how much.
+    pub(crate) profile: Profile,
+    /// A budget in place of the profile's.
+    pub(crate) day_kb: Option<DayBudget>,
+    /// Asks for news when nothing was sent for so many seconds, in place of the
+    /// profile's time.
+    pub(crate) poll_s: Option<PositiveSeconds>,
     /// The first pause after a failure, at most.
     pub(crate) retry_min_s: Spanned<PositiveSeconds>,
     /// The longest pause after failures.
@@ -121,10 +128,25 @@ impl Default for UplinkConfig {
     fn default() -> UplinkConfig {
         UplinkConfig {
             pinned_ca: None,
-            poll_s: PositiveSeconds(21_600.0),
+            profile: Profile::default(),
+            day_kb: None,
+            poll_s: None,
             retry_min_s: Spanned::new(0..0, PositiveSeconds(30.0)),
             retry_max_s: Spanned::new(0..0, PositiveSeconds(3_600.0)),
         }
+    }
+}
+
+impl UplinkConfig {
+    /// What the profile and the budget come to.
+    pub(crate) fn plan(&self) -> Plan {
+        self.profile.plan(self.day_kb.map(DayBudget::octets))
+    }
+
+    /// Asks for news when nothing was sent for so long.
+    pub(crate) fn poll(&self) -> Duration {
+        self.poll_s
+            .map_or_else(|| self.plan().poll(), PositiveSeconds::duration)
     }
 }
 
@@ -173,6 +195,31 @@ impl TryFrom<f64> for SpoolLimit {
     }
 }
 
+/// Kilobytes (of a thousand bytes) a day, from 3, one exchange, to a million.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "f64")]
+pub(crate) struct DayBudget(f64);
+
+impl DayBudget {
+    /// In octets.
+    pub(crate) fn octets(self) -> f64 {
+        self.0 * 1e3
+    }
+}
+
+impl TryFrom<f64> for DayBudget {
+    type Error = String;
+    fn try_from(kilobytes: f64) -> Result<DayBudget, String> {
+        if (3.0..=1e6).contains(&kilobytes) {
+            Ok(DayBudget(kilobytes))
+        } else {
+            Err(format!(
+                "{kilobytes} is not from 3 to 1000000 kilobytes a day"
+            ))
+        }
+    }
+}
+
 /// Seconds, from a hundredth to a year.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Deserialize)]
 #[serde(try_from = "f64")]
@@ -180,8 +227,8 @@ pub(crate) struct PositiveSeconds(pub(crate) f64);
 
 impl PositiveSeconds {
     /// As the standard library has it.
-    pub(crate) fn duration(self) -> std::time::Duration {
-        std::time::Duration::from_secs_f64(self.0)
+    pub(crate) fn duration(self) -> Duration {
+        Duration::from_secs_f64(self.0)
     }
 }
 
@@ -356,7 +403,8 @@ stale_s = 15
         let example = example.map_err(|w| w.problem).unwrap();
         let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
         assert_eq!(example.spool_mb, bare.spool_mb);
-        assert_eq!(example.uplink.poll_s, bare.uplink.poll_s);
+        assert_eq!(example.uplink.profile, bare.uplink.profile);
+        assert_eq!(example.uplink.poll(), bare.uplink.poll());
         assert_eq!(example.uplink.retry_min_s, bare.uplink.retry_min_s);
         assert_eq!(example.uplink.retry_max_s, bare.uplink.retry_max_s);
         assert_eq!(example.silence.stale_s, bare.silence.stale_s);
@@ -400,6 +448,35 @@ stale_s = 15
         let wrong = WHOLE.replace("talker = \"HC\"", "talker = \"COMPASS\"");
         assert!(message(&wrong).starts_with("agent.toml:6: talker: "));
         assert!(message("").contains("data_dir"));
+    }
+
+    #[test]
+    fn a_profile_says_how_often_and_for_how_much_and_single_settings_override_it() {
+        let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
+        let plan = bare.uplink.plan();
+        assert_eq!((plan.seal_s, plan.day_octets), (21_600, None));
+        let uplink = |lines: &str| {
+            let text = format!("data_dir = \"d\"\n[uplink]\n{lines}");
+            parse(&text).map_err(|w| w.problem).unwrap().uplink
+        };
+        let metered = uplink("profile = \"metered\"");
+        assert_eq!(metered.plan().seal_s, 86_400);
+        assert_eq!(metered.plan().day_octets, Some(8_000.0));
+        assert_eq!(metered.poll(), Duration::from_hours(36));
+        let own = uplink("profile = \"very-metered\"\nday_kb = 12\npoll_s = 60");
+        assert_eq!(own.plan().day_octets, Some(12_000.0));
+        assert_eq!(own.poll(), Duration::from_mins(1));
+        let wrong = WHOLE.replace("poll_s = 21600", "profile = \"modem\"");
+        let said = message(&wrong);
+        assert!(
+            said.starts_with("agent.toml:19: profile: ") && said.contains("very-metered"),
+            "{said}"
+        );
+        let wrong = WHOLE.replace("poll_s = 21600", "day_kb = 0.5");
+        assert_eq!(
+            message(&wrong),
+            "agent.toml:19: day_kb: 0.5 is not from 3 to 1000000 kilobytes a day"
+        );
     }
 
     #[test]

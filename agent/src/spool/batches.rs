@@ -19,6 +19,8 @@ pub(crate) struct SealedBatch {
     pub(crate) bytes: Vec<u8>,
     /// Whether it goes before everything else.
     pub(crate) urgent: bool,
+    /// How many it holds.
+    pub(crate) samples: u64,
 }
 
 /// How far the shore has come with what is here.
@@ -48,18 +50,20 @@ pub(crate) struct Standing {
 
 impl Spool {
     /// The batch that is to be sent next: evidence of alerts, the newest first, then
-    /// the others, the oldest first.
+    /// what has samples, then the rest, the oldest first.
     pub(crate) async fn next_batch(&self) -> sqlx::Result<Option<SealedBatch>> {
-        let row: Option<(i64, Vec<u8>, bool)> = sqlx::query_as(
-            "SELECT seq, bytes, urgent FROM batches WHERE standing = 'waiting'
-             ORDER BY urgent DESC, CASE WHEN urgent THEN -seq ELSE seq END LIMIT 1",
+        let row: Option<(i64, Vec<u8>, bool, i64)> = sqlx::query_as(
+            "SELECT seq, bytes, urgent, samples FROM batches WHERE standing = 'waiting'
+             ORDER BY urgent DESC, NOT urgent AND samples = 0,
+                      CASE WHEN urgent THEN -seq ELSE seq END LIMIT 1",
         )
         .fetch_optional(&self.pool)
         .await?;
-        Ok(row.map(|(seq, bytes, urgent)| SealedBatch {
+        Ok(row.map(|(seq, bytes, urgent, samples)| SealedBatch {
             seq: seq.cast_unsigned(),
             bytes,
             urgent,
+            samples: samples.unsigned_abs(),
         }))
     }
 

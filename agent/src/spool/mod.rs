@@ -32,6 +32,7 @@ pub(crate) use seal::{Pending, Seal};
 
 use crate::alert::Aboard;
 use crate::hold::Hold;
+use crate::uplink::Account;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::batch::StreamId;
@@ -89,6 +90,7 @@ const PAGE: &str = "page";
 const LAST_CONTACT: &str = "last_contact";
 const ALERT: &str = "alert";
 const THINNED: &str = "thinned";
+const ACCOUNT: &str = "account";
 
 /// Columns of `batches` that earlier agents did not have.
 const LATER_COLUMNS: [(&str, &str); 3] = [
@@ -207,6 +209,18 @@ impl Spool {
     pub(crate) async fn keep_alert(&self, aboard: &Aboard) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, ALERT, aboard).await?;
+        tx.commit().await
+    }
+
+    /// What is left of the budget of the link.
+    pub(crate) async fn account(&self) -> sqlx::Result<Option<Account>> {
+        self.get(ACCOUNT).await
+    }
+
+    /// Keeps what is left of the budget.
+    pub(crate) async fn keep_account(&self, account: &Account) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        put(&mut tx, ACCOUNT, account).await?;
         tx.commit().await
     }
 

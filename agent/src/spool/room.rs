@@ -1,5 +1,5 @@
-//! Keeps the spool within its limit: what has waited longest for a link is thinned,
-//! again and again if need be, and never dropped whole.
+//! Keeps the spool within its limit, and what waits within what the link may cost: what
+//! has waited longest is thinned, again and again if need be, and never dropped whole.
 //!
 //! What always holds:
 //!
@@ -9,6 +9,7 @@
 //!   and the batch says how many. What each window of the tally became can be told.
 
 use super::{Spool, THINNED, get, put};
+use crate::uplink::REQUEST_OCTETS;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::Thinned;
@@ -60,6 +61,30 @@ impl Spool {
             }
         }
     }
+}
+
+impl Spool {
+    /// Thins until what waits costs no more than so many octets to send, or nothing is
+    /// left to thin.
+    pub(crate) async fn thin_backlog(&self, limit_octets: u64) -> sqlx::Result<()> {
+        loop {
+            let mut tx = self.write().await?;
+            if backlog_octets(&mut tx).await? <= limit_octets || thin_batches(&mut tx).await? == 0 {
+                return Ok(());
+            }
+            tx.commit().await?;
+        }
+    }
+}
+
+async fn backlog_octets(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
+    let (bytes, batches): (i64, i64) = sqlx::query_as(
+        "SELECT COALESCE(SUM(LENGTH(bytes)), 0), COUNT(*) FROM batches
+         WHERE standing = 'waiting'",
+    )
+    .fetch_one(connection)
+    .await?;
+    Ok(bytes.unsigned_abs() + batches.unsigned_abs() * REQUEST_OCTETS)
 }
 
 pub(super) async fn used_bytes(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
@@ -287,6 +312,27 @@ mod tests {
             .unwrap();
         assert_eq!(stated.0, i64::try_from(counted).unwrap());
         assert!(batches.iter().any(|batch| batch.thinned.is_some()));
+    }
+
+    #[tokio::test]
+    async fn a_backlog_beyond_the_budget_is_thinned_the_oldest_first_and_no_further() {
+        let (_directory, spool) = stuffed(300).await;
+        let mut connection = spool.pool.acquire().await.unwrap();
+        let before = backlog_octets(&mut connection).await.unwrap();
+        drop(connection);
+        spool.thin_backlog(before).await.unwrap();
+        assert!(
+            all(&spool)
+                .await
+                .iter()
+                .all(|batch| batch.thinned.is_none())
+        );
+        spool.thin_backlog(before * 3 / 4).await.unwrap();
+        let batches = all(&spool).await;
+        assert!(batches[0].thinned.is_some() && batches[299].thinned.is_none());
+        assert!(batches.iter().all(|b| windows(b) == b.tally["accepted"]));
+        let mut connection = spool.pool.acquire().await.unwrap();
+        assert!(backlog_octets(&mut connection).await.unwrap() <= before * 3 / 4);
     }
 
     #[tokio::test]

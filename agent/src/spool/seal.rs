@@ -10,8 +10,9 @@ use binnacle_wire::codec;
 use sqlx::SqliteConnection;
 use std::collections::BTreeMap;
 
-/// A batch is sealed when it holds so many samples.
-pub(crate) const SAMPLES_PER_BATCH: u32 = 256;
+/// A batch is sealed when it holds so many samples, some 4 kB: what a connection costs
+/// is little beside it.
+pub(crate) const SAMPLES_PER_BATCH: u32 = 512;
 
 /// Whether to seal what is pending.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -90,7 +90,7 @@ async fn a_sealed_batch_holds_the_samples_and_the_tally_once() {
 }
 
 #[tokio::test]
-async fn before_enrolment_samples_wait_and_then_go_in_batches_of_256() {
+async fn before_enrolment_samples_wait_and_then_go_in_batches_of_512() {
     let directory = TempDir::new().unwrap();
     let spool = Spool::open(directory.path()).await.unwrap();
     seal(&spool, 0..600).await;
@@ -100,8 +100,20 @@ async fn before_enrolment_samples_wait_and_then_go_in_batches_of_256() {
         .store(&[], &BTreeMap::new(), Seal::Full)
         .await
         .unwrap();
-    assert_eq!((pending.samples, sealed), (600 - 512, 2));
+    assert_eq!((pending.samples, sealed), (600 - 512, 1));
     assert_eq!(pending.since, Some(sample(512).time));
+}
+
+#[tokio::test]
+async fn samples_go_before_counts_without_any() {
+    let (_directory, spool) = enrolled().await;
+    let counts = BTreeMap::from([("slow".to_owned(), 4)]);
+    spool.store(&[], &counts, Seal::All).await.unwrap();
+    seal(&spool, 1..2).await;
+    let first = spool.next_batch().await.unwrap().unwrap();
+    assert_eq!((first.seq, first.samples), (2, 1));
+    spool.park(2, "refused").await.unwrap();
+    assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 1);
 }
 
 #[tokio::test]
@@ -393,14 +405,14 @@ async fn an_alert_goes_without_samples_and_behind_more_than_one_batch_of_them() 
     let none = BTreeMap::new();
     let alone = spool.store_evidence(&[], &none, &[alert(1)], None).await;
     assert_eq!(alone.unwrap().1, 1);
-    let samples: Vec<Sample> = (0..400).map(sample).collect();
+    let samples: Vec<Sample> = (0..800).map(sample).collect();
     let many = spool
         .store_evidence(&samples, &none, &[alert(2)], None)
         .await;
     assert_eq!(many.unwrap(), (Pending::default(), 2));
     let newest = spool.next_batch().await.unwrap().unwrap();
     let batch = binnacle_wire::decode(&newest.bytes).unwrap();
-    assert_eq!((newest.seq, batch.samples.len()), (3, 144));
+    assert_eq!((newest.seq, batch.samples.len()), (3, 288));
     assert_eq!(batch.alerts, [alert(2)]);
 }
 

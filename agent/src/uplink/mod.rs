@@ -7,15 +7,24 @@
 //!   before. Until then it is sent again, byte for byte.
 //! - No failure loses data or stops the agent; each is on the page in words.
 //! - Evidence of an alert goes before everything else, and cuts a pause short.
+//! - Nothing is sent that the day's budget does not allow ([`plan`]); it is paid for,
+//!   and that is kept, before it is sent.
 //! - A report for the logbook goes before the other batches: it is short, and changes
 //!   how they are read. One that the shore does not take keeps nothing else back.
 //! - A model or settings that arrive are kept first and then in effect at once.
 
 mod backoff;
+mod plan;
 mod shore;
+mod start;
 
-pub(crate) use backoff::Backoff;
-pub(crate) use shore::{Have, Shore, Trouble};
+pub(crate) use plan::{Account, Plan, Profile, REQUEST_OCTETS};
+pub(crate) use shore::{Shore, Trouble};
+pub(crate) use start::{Told, prepare};
+
+use backoff::Backoff;
+use plan::{Budget, Class, Now};
+use shore::{Have, IDLE_CONNECTION};
 
 use crate::spool::{Identity, SealedBatch, Spool, StoredReport};
 use binnacle_magnetics::time::Timestamp;
@@ -80,6 +89,8 @@ pub(crate) struct Uplink {
     pub(crate) backoff: Backoff,
     /// Asks for news when nothing was sent for so long.
     pub(crate) poll: Duration,
+    pub(crate) budget: Budget,
+    pub(crate) ship_time: watch::Receiver<Option<Timestamp>>,
     pub(crate) tell: Tell,
     /// The token that the model and settings in effect came with.
     pub(crate) token: Option<String>,
@@ -107,6 +118,9 @@ impl Uplink {
     pub(crate) async fn run(mut self, shutdown: CancellationToken) {
         if let Err(error) = self.spool.unpark().await {
             tracing::error!(%error, "cannot look at the parked batches");
+        }
+        if let Err(error) = self.spool.keep_account(&self.budget.account()).await {
+            tracing::error!(%error, "the budget cannot be kept");
         }
         let mut answered = None;
         loop {
@@ -153,18 +167,32 @@ impl Uplink {
             model: self.tell.model.borrow().as_ref().map(|model| model.id),
             settings: self.tell.settings.borrow().version,
         };
-        let result = if let Some(batch) = &batch {
-            if !self.spool.note_try(batch).await? {
-                return Ok(Next::GoOn);
-            }
-            self.shore.put_batch(&identity, batch, have).await
-        } else {
+        let (class, octets) = match &batch {
+            Some(batch) if batch.urgent => (Class::Alert, batch.bytes.len()),
+            Some(batch) if batch.samples > 0 => (Class::Samples, batch.bytes.len()),
+            Some(batch) => (Class::Rest, batch.bytes.len()),
+            None => (Class::Rest, 0),
+        };
+        if batch.is_none() {
             let idle = answered.map(|at| at.elapsed());
             if let Some(left) = idle.and_then(|idle| self.poll.checked_sub(idle)) {
                 return Ok(Next::Idle(left));
             }
-            self.shore.downlink(&identity, have).await
+        }
+        if let Some(wait) = self.budget.wait(class, octets, self.now()) {
+            return Ok(Next::Idle(wait));
+        }
+        if let Some(batch) = &batch
+            && !self.spool.note_try(batch).await?
+        {
+            return Ok(Next::GoOn);
+        }
+        let cost = self.spend(octets).await?;
+        let result = match &batch {
+            Some(batch) => self.shore.put_batch(&identity, batch, have).await,
+            None => self.shore.downlink(&identity, have).await,
         };
+        self.settle(cost, result.as_ref().err()).await?;
         match result {
             Ok(downlink) => {
                 *answered = Some(Instant::now());
@@ -172,6 +200,30 @@ impl Uplink {
             }
             Err(trouble) => self.fail(&identity, batch.as_ref(), trouble).await,
         }
+    }
+
+    fn now(&self) -> Now {
+        Now {
+            monotonic: Instant::now(),
+            ship: *self.ship_time.borrow(),
+        }
+    }
+
+    /// Pays for a request, and keeps that: an agent that dies of it again and again
+    /// does not spend more.
+    async fn spend(&mut self, octets: usize) -> sqlx::Result<f64> {
+        let cost = self.budget.spend(octets, self.now());
+        self.spool.keep_account(&self.budget.account()).await?;
+        Ok(cost)
+    }
+
+    /// Pays for the answer, or takes back what no connection cost.
+    async fn settle(&mut self, cost: f64, trouble: Option<&Trouble>) -> sqlx::Result<()> {
+        if let Some(Trouble::NoConnection(_)) = trouble {
+            self.budget.take_back(cost);
+        }
+        self.budget.answered(self.shore.take_octets());
+        self.spool.keep_account(&self.budget.account()).await
     }
 
     async fn next_report(&self) -> sqlx::Result<Option<StoredReport>> {
@@ -189,7 +241,14 @@ impl Uplink {
         identity: &Identity,
         report: &StoredReport,
     ) -> sqlx::Result<Next> {
-        match self.shore.put_report(identity, report).await {
+        let octets = serde_json::to_vec(&report.sent).map_or(0, |text| text.len());
+        if let Some(wait) = self.budget.wait(Class::Report, octets, self.now()) {
+            return Ok(Next::Idle(wait));
+        }
+        let cost = self.spend(octets).await?;
+        let result = self.shore.put_report(identity, report).await;
+        self.settle(cost, result.as_ref().err()).await?;
+        match result {
             Ok(answer) => {
                 if self.spool.identity().await?.as_ref() == Some(identity) {
                     self.spool.report_answered(report, &answer).await?;
@@ -349,7 +408,9 @@ impl Uplink {
                     retry_after.map_or(pause, |asked| asked.max(pause)),
                 )
             }
-            (Trouble::Link(_), _) => (LinkState::Down, self.backoff.next(&mut self.rng)),
+            (Trouble::Link(_) | Trouble::NoConnection(_), _) => {
+                (LinkState::Down, self.backoff.next(&mut self.rng))
+            }
         };
         tracing::warn!(problem, pause_s = pause.as_secs_f64(), "not sent");
         self.tell.link.send_modify(|link| {

@@ -15,6 +15,8 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::fmt;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use uuid::Uuid;
 
@@ -22,9 +24,11 @@ use uuid::Uuid;
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
 /// Between two bytes.
 const READ_TIMEOUT: Duration = Duration::from_secs(90);
-/// Several batches go over one connection, which is then closed: keeping it
-/// alive would cost more than opening it again.
-const IDLE_CONNECTION: Duration = Duration::from_secs(5);
+/// Several batches go over one connection. It is trusted for so long after the last of
+/// them, no longer: behind a satellite or a firewall it may be gone without a word, and
+/// keeping it alive would cost more than opening it again. A new one resumes the TLS
+/// session of the one before.
+pub(crate) const IDLE_CONNECTION: Duration = Duration::from_secs(5);
 /// However long somebody on the way asks the agent to stay away.
 const LONGEST_RETRY_AFTER: Duration = Duration::from_hours(6);
 /// No answer is longer.
@@ -34,6 +38,8 @@ const LARGEST_ANSWER: usize = 1 << 20;
 #[derive(Clone, Debug)]
 pub(crate) struct Shore {
     http: reqwest::Client,
+    /// Of answers, since it was last asked.
+    octets: Arc<AtomicU64>,
 }
 
 /// What the agent already has of what the shore decides.
@@ -50,6 +56,8 @@ pub(crate) struct Have {
 pub(crate) enum Trouble {
     /// No answer, or none from the shore: try again.
     Link(String),
+    /// Not even a connection: try again.
+    NoConnection(String),
     /// The shore cannot take it now.
     Busy {
         /// What it said.
@@ -68,10 +76,11 @@ pub(crate) enum Trouble {
 impl fmt::Display for Trouble {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Trouble::Link(problem) | Trouble::Unknown(problem) | Trouble::Refused(problem) => {
-                f.write_str(problem)
-            }
-            Trouble::Busy { problem, .. } => f.write_str(problem),
+            Trouble::Link(problem)
+            | Trouble::NoConnection(problem)
+            | Trouble::Unknown(problem)
+            | Trouble::Refused(problem)
+            | Trouble::Busy { problem, .. } => f.write_str(problem),
             Trouble::Forked => f.write_str("the shore has another batch of this number"),
         }
     }
@@ -91,13 +100,26 @@ struct Problem {
 impl Shore {
     /// A client that believes the usual authorities, or only the pinned one.
     pub(crate) fn new(pinned_ca: Option<&Path>) -> anyhow::Result<Shore> {
+        Shore::with_idle_connections(pinned_ca, IDLE_CONNECTION)
+    }
+
+    /// The same, with connections that serve again when they were idle for less than this.
+    pub(super) fn with_idle_connections(
+        pinned_ca: Option<&Path>,
+        longest: Duration,
+    ) -> anyhow::Result<Shore> {
         let mut builder = reqwest::Client::builder()
             .http1_only()
             .redirect(redirect::Policy::none())
             .connect_timeout(CONNECT_TIMEOUT)
             .read_timeout(READ_TIMEOUT)
-            .pool_idle_timeout(IDLE_CONNECTION)
+            .tcp_keepalive(None)
+            .pool_idle_timeout(longest)
             .pool_max_idle_per_host(1);
+        #[cfg(target_os = "linux")]
+        {
+            builder = builder.tcp_user_timeout(READ_TIMEOUT);
+        }
         if let Some(path) = pinned_ca {
             let name = path.display();
             let pem = std::fs::read(path).with_context(|| format!("{name}: pinned_ca"))?;
@@ -110,7 +132,15 @@ impl Shore {
             builder = builder.tls_certs_only(certificates);
         }
         let http = builder.build().context("cannot set up TLS")?;
-        Ok(Shore { http })
+        Ok(Shore {
+            http,
+            octets: Arc::default(),
+        })
+    }
+
+    /// The octets of answers since the last call.
+    pub(crate) fn take_octets(&self) -> u64 {
+        self.octets.swap(0, Ordering::Relaxed)
     }
 
     /// Exchanges a one-time code for a token.
@@ -120,14 +150,14 @@ impl Shore {
             agent_version: env!("CARGO_PKG_VERSION").to_owned(),
         };
         let url = format!("{server}/api/v1/agents/enrol");
-        answer(self.http.post(url).json(&request)).await
+        self.answer(self.http.post(url).json(&request)).await
     }
 
     /// Opens a new stream for the same compass.
     pub(crate) async fn open_stream(&self, identity: &Identity) -> Result<StreamId, Trouble> {
         let url = format!("{}/api/v1/streams", identity.server);
         let request = self.http.post(url).bearer_auth(&identity.token);
-        let opened: OpenStreamAnswer = answer(request).await?;
+        let opened: OpenStreamAnswer = self.answer(request).await?;
         Ok(opened.stream)
     }
 
@@ -145,7 +175,7 @@ impl Shore {
             .bearer_auth(&identity.token)
             .header(CONTENT_TYPE, "application/octet-stream")
             .body(batch.bytes.clone());
-        answer(request).await
+        self.answer(request).await
     }
 
     /// Sends a report for the logbook.
@@ -156,7 +186,7 @@ impl Shore {
     ) -> Result<LogbookAnswer, Trouble> {
         let url = format!("{}/api/v1/agents/logbook/{}", identity.server, report.id);
         let request = self.http.put(url).bearer_auth(&identity.token);
-        answer(request.json(&report.sent)).await
+        self.answer(request.json(&report.sent)).await
     }
 
     /// Asks for news.
@@ -169,7 +199,13 @@ impl Shore {
             .http
             .get(stream_url(identity, "downlink", have))
             .bearer_auth(&identity.token);
-        answer(request).await
+        self.answer(request).await
+    }
+}
+
+impl Shore {
+    async fn answer<T: DeserializeOwned>(&self, request: RequestBuilder) -> Result<T, Trouble> {
+        answer(&self.octets, request).await
     }
 }
 
@@ -183,11 +219,14 @@ fn stream_url(identity: &Identity, path: &str, have: Have) -> String {
     format!("{server}/api/v1/streams/{stream}/{path}?{model}settings={settings}")
 }
 
-async fn answer<T: DeserializeOwned>(request: RequestBuilder) -> Result<T, Trouble> {
+async fn answer<T: DeserializeOwned>(
+    octets: &AtomicU64,
+    request: RequestBuilder,
+) -> Result<T, Trouble> {
     let response = request.send().await.map_err(|e| link_trouble(&e))?;
     let status = response.status();
     let retry_after = retry_after(&response);
-    let body = body(response).await?;
+    let body = body(octets, response).await?;
     if status.is_success() {
         return serde_json::from_slice(&body).map_err(|_| not_the_shore(status));
     }
@@ -246,9 +285,10 @@ fn asked_pause(text: &str) -> Option<Duration> {
     Some(asked.min(LONGEST_RETRY_AFTER))
 }
 
-async fn body(mut response: Response) -> Result<Vec<u8>, Trouble> {
+async fn body(octets: &AtomicU64, mut response: Response) -> Result<Vec<u8>, Trouble> {
     let mut body = Vec::new();
     while let Some(chunk) = response.chunk().await.map_err(|e| link_trouble(&e))? {
+        octets.fetch_add(chunk.len() as u64, Ordering::Relaxed);
         body.extend_from_slice(&chunk);
         if body.len() > LARGEST_ANSWER {
             return Err(not_the_shore(response.status()));
@@ -270,7 +310,12 @@ fn link_trouble(error: &reqwest::Error) -> Trouble {
     } else {
         "the connection broke"
     };
-    Trouble::Link(format!("{kind}: {cause}"))
+    let problem = format!("{kind}: {cause}");
+    if error.is_connect() {
+        Trouble::NoConnection(problem)
+    } else {
+        Trouble::Link(problem)
+    }
 }
 
 #[cfg(test)]

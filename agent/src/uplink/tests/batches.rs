@@ -1,0 +1,128 @@
+//! Batches, whatever the shore and the link do.
+
+use super::*;
+
+#[tokio::test]
+async fn every_batch_is_sent_and_then_forgotten() {
+    let mut rig = rig(3, Fake::default()).await;
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2, 3]);
+    seal(&rig.spool, 3).await;
+    rig.sealed.notify_one();
+    rig.link.mark_unchanged();
+    rig.all_sent().await;
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!(
+        (standing.acknowledged_samples, standing.contiguous_seq),
+        (4, 4)
+    );
+    assert_eq!(standing.waiting_batches, 0);
+    assert_eq!(rig.link.borrow().last_contact, Some(time()));
+}
+
+#[tokio::test]
+async fn no_failure_of_the_link_loses_a_batch() {
+    let login = "<html>Welcome to Harbour Wi-Fi</html>";
+    let answers = [
+        (StatusCode::OK, login).into_response(),
+        (StatusCode::FOUND, [("location", "http://portal/")]).into_response(),
+        (StatusCode::FORBIDDEN, login).into_response(),
+        (StatusCode::OK, "{\"contiguous_seq\":").into_response(),
+        (StatusCode::BAD_GATEWAY, "nginx").into_response(),
+        problem(StatusCode::SERVICE_UNAVAILABLE, "busy"),
+    ];
+    let fake = Fake {
+        answers: answers.into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2]);
+    assert_eq!(rig.fake.lock().unwrap().requests, 6 + 2);
+    assert_eq!(rig.spool.standing().await.unwrap().acknowledged_batches, 2);
+}
+
+#[tokio::test]
+async fn the_shore_is_given_the_time_it_asks_for() {
+    let busy = (
+        StatusCode::TOO_MANY_REQUESTS,
+        [("retry-after", "1")],
+        "slow down",
+    );
+    let fake = Fake {
+        answers: [busy.into_response()].into(),
+        ..Fake::default()
+    };
+    let before = Instant::now();
+    let mut rig = rig(1, fake).await;
+    rig.all_sent().await;
+    assert!(before.elapsed() >= Duration::from_secs(1));
+}
+
+#[tokio::test]
+async fn a_forked_stream_is_left_for_a_new_one() {
+    let mut fake = Fake::default();
+    fake.batches.insert((STREAM, 1), b"other bytes".to_vec());
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    let new = Uuid::from_u128(1001);
+    assert_eq!(rig.seqs(new), [1, 2]);
+    let fake = rig.fake.lock().unwrap();
+    for seq in [1, 2] {
+        let batch = binnacle_wire::decode(&fake.batches[&(new, seq)]).unwrap();
+        assert_eq!(
+            (batch.stream.0, batch.seq, batch.samples.len()),
+            (new, seq, 1)
+        );
+    }
+}
+
+#[tokio::test]
+async fn a_shore_that_lost_its_batches_gets_a_new_stream() {
+    let mut rig = rig(3, Fake::default()).await;
+    rig.all_sent().await;
+    rig.fake.lock().unwrap().batches.clear();
+    seal(&rig.spool, 3).await;
+    seal(&rig.spool, 4).await;
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [4]);
+    assert_eq!(rig.seqs(Uuid::from_u128(1001)), [1]);
+}
+
+#[tokio::test]
+async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
+    let fake = Fake {
+        answers: [problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable")].into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(2, fake).await;
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [2]);
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!((standing.parked_batches, standing.contiguous_seq), (1, 0));
+    assert_eq!(
+        standing.parked_because.as_deref(),
+        Some("422 undecodable: why")
+    );
+}
+
+#[tokio::test]
+async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
+    let fake = Fake {
+        answers: [
+            problem(StatusCode::UNAUTHORIZED, "unauthorized"),
+            problem(StatusCode::NOT_FOUND, "not-found"),
+        ]
+        .into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(1, fake).await;
+    rig.link
+        .wait_for(|link| link.state == LinkState::Refused)
+        .await
+        .unwrap();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1]);
+}

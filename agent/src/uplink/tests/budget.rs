@@ -1,0 +1,69 @@
+//! What a day's budget allows, and what of that outlives the agent.
+
+use super::alerts::seal_evidence;
+use super::*;
+
+fn left(octets: f64) -> Account {
+    Account {
+        profile: Profile::Metered,
+        day_octets: Some(8_000.0),
+        left_octets: octets,
+        ship_time: Some(time()),
+    }
+}
+
+#[tokio::test]
+async fn what_cannot_be_afforded_waits_until_the_ships_clock_has_earned_it() {
+    let plan = Profile::Metered.plan(None);
+    let mut rig = rig_with(2, Fake::default(), &plan, Some(left(0.0))).await;
+    seal_evidence(&rig.spool, 2).await;
+    rig.urgent.notify_one();
+    rig.sealed.notify_one();
+    let up = rig.link.wait_for(|link| link.state == LinkState::Up);
+    up.await.unwrap();
+    assert_eq!(rig.seqs(STREAM), [3], "the evidence, on credit");
+    let overdrawn = rig.spool.account().await.unwrap().unwrap();
+    assert!(overdrawn.left_octets < 0.0, "{overdrawn:?}");
+    rig.ship_time
+        .send_replace(Some(time().plus_seconds(2.0 * 86_400.0)));
+    rig.sealed.notify_one();
+    rig.link.mark_unchanged();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2, 3]);
+}
+
+#[tokio::test]
+async fn a_request_is_paid_for_before_it_is_made_and_the_answer_after() {
+    let plan = Profile::Metered.plan(None);
+    let mut rig = rig_with(1, Fake::default(), &plan, Some(left(8_000.0))).await;
+    rig.all_sent().await;
+    let kept = rig.spool.account().await.unwrap().unwrap();
+    let fake = rig.fake.lock().unwrap();
+    let sent = fake.batches[&(STREAM, 1)].len();
+    let answer = downlink(&fake, STREAM).to_string().len();
+    // A connection, a request, and the segments of both bodies.
+    let cost = 1_700.0 + 389.0 + 1.07 * (sent + answer) as f64;
+    assert!((kept.left_octets + cost - 8_000.0).abs() < 1.0, "{kept:?}");
+}
+
+#[tokio::test]
+async fn an_ordinary_exchange_is_one_request() {
+    let settings = Settings {
+        version: 3,
+        ..Settings::default()
+    };
+    let fake = Fake {
+        settings: Some(settings.clone()),
+        ..Fake::default()
+    };
+    let mut rig = rig(1, fake).await;
+    rig.all_sent().await;
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!(
+        (standing.acknowledged_batches, standing.waiting_batches),
+        (1, 0)
+    );
+    assert_eq!(*rig.settings.borrow(), settings);
+    let fake = rig.fake.lock().unwrap();
+    assert_eq!((fake.requests, fake.polls), (1, 0));
+}

@@ -1,0 +1,95 @@
+//! What a connection is used for, over real TLS.
+
+use super::*;
+use axum::serve::Listener;
+use rcgen::{CertifiedKey, generate_simple_self_signed};
+use rustls::HandshakeKind;
+use rustls::pki_types::PrivateKeyDer;
+use std::net::SocketAddr;
+use tokio::net::{TcpListener, TcpStream};
+use tokio_rustls::TlsAcceptor;
+use tokio_rustls::server::TlsStream;
+
+type Kinds = Arc<Mutex<Vec<Option<HandshakeKind>>>>;
+
+/// Notes how hands were shaken.
+struct Tls {
+    listener: TcpListener,
+    acceptor: TlsAcceptor,
+    kinds: Kinds,
+}
+
+impl Listener for Tls {
+    type Io = TlsStream<TcpStream>;
+    type Addr = SocketAddr;
+
+    async fn accept(&mut self) -> (TlsStream<TcpStream>, SocketAddr) {
+        loop {
+            let (stream, address) = self.listener.accept().await.unwrap();
+            if let Ok(stream) = self.acceptor.accept(stream).await {
+                let kind = stream.get_ref().1.handshake_kind();
+                self.kinds.lock().unwrap().push(kind);
+                return (stream, address);
+            }
+        }
+    }
+
+    fn local_addr(&self) -> std::io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+}
+
+/// A shore with a certificate of its own, asked for news so many times in a row; how
+/// hands were shaken.
+async fn asked(times: usize, idle: Duration) -> Vec<Option<HandshakeKind>> {
+    rustls::crypto::ring::default_provider()
+        .install_default()
+        .ok();
+    let CertifiedKey { cert, signing_key } =
+        generate_simple_self_signed(vec!["localhost".to_owned()]).unwrap();
+    let key = PrivateKeyDer::try_from(signing_key.serialize_der()).unwrap();
+    let config = rustls::ServerConfig::builder()
+        .with_no_client_auth()
+        .with_single_cert(vec![cert.der().clone()], key)
+        .unwrap();
+    let tls = Tls {
+        listener: TcpListener::bind("127.0.0.1:0").await.unwrap(),
+        acceptor: TlsAcceptor::from(Arc::new(config)),
+        kinds: Kinds::default(),
+    };
+    let kinds = tls.kinds.clone();
+    let port = tls.local_addr().unwrap().port();
+    let router = Router::new()
+        .route("/api/v1/streams/{stream}/downlink", get(get_downlink))
+        .with_state(Shared::default());
+    tokio::spawn(async move { axum::serve(tls, router).await });
+
+    let directory = TempDir::new().unwrap();
+    let pinned = directory.path().join("ca.pem");
+    std::fs::write(&pinned, cert.pem()).unwrap();
+    let shore = Shore::with_idle_connections(Some(&pinned), idle).unwrap();
+    let identity = Identity {
+        server: format!("https://localhost:{port}"),
+        token: "t".to_owned(),
+        stream: StreamId(STREAM),
+        vessel_name: "Txori".to_owned(),
+        compass_name: "Standard compass".to_owned(),
+    };
+    for _ in 0..times {
+        shore.downlink(&identity, Have::default()).await.unwrap();
+        assert!(shore.take_octets() > 20);
+    }
+    kinds.lock().unwrap().clone()
+}
+
+#[tokio::test]
+async fn what_follows_at_once_goes_over_the_same_connection() {
+    assert_eq!(asked(3, IDLE_CONNECTION).await.len(), 1);
+}
+
+#[tokio::test]
+async fn a_connection_that_was_idle_for_too_long_is_left_and_its_session_resumed() {
+    let kinds = asked(2, Duration::from_nanos(1)).await;
+    let wanted = [Some(HandshakeKind::Full), Some(HandshakeKind::Resumed)];
+    assert_eq!(kinds, wanted);
+}

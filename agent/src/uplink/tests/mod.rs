@@ -1,0 +1,268 @@
+//! The uplink against a made-up shore on a real socket.
+
+mod alerts;
+mod batches;
+mod budget;
+mod connection;
+mod reports;
+mod told;
+
+use super::*;
+use crate::spool::Seal;
+use axum::body::Bytes;
+use axum::extract::{Path, Query, State};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post, put};
+use axum::{Json, Router};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::batch::StreamId;
+use binnacle_wire::messages::{CardWithdrawn, LogbookReport};
+use rand::SeedableRng;
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::sync::Mutex;
+use tempfile::TempDir;
+use uuid::Uuid;
+
+/// What the shore was sent, and what it is to answer before it behaves well.
+#[derive(Default)]
+struct Fake {
+    batches: BTreeMap<(Uuid, u64), Vec<u8>>,
+    streams: u128,
+    queries: Vec<HashMap<String, String>>,
+    answers: VecDeque<Response>,
+    settings: Option<Settings>,
+    withdrawn: Option<CardWithdrawn>,
+    /// A model as no agent knows it.
+    unreadable: Option<Value>,
+    requests: u32,
+    polls: u32,
+    reports: Vec<(Uuid, LogbookReport)>,
+    report_answers: VecDeque<Response>,
+    /// The batches that were kept, in order; 0 for a report.
+    order: Vec<u64>,
+}
+
+type Shared = Arc<Mutex<Fake>>;
+
+fn time() -> Timestamp {
+    Timestamp::parse("2026-11-21T07:00:00Z").unwrap()
+}
+
+fn problem(status: StatusCode, kind: &str) -> Response {
+    let body =
+        json!({"type": format!("https://x/problems/{kind}"), "title": kind, "detail": "why"});
+    (status, Json(body)).into_response()
+}
+
+async fn put_batch(
+    State(fake): State<Shared>,
+    Path((stream, seq)): Path<(Uuid, u64)>,
+    Query(query): Query<HashMap<String, String>>,
+    body: Bytes,
+) -> Response {
+    let mut fake = fake.lock().unwrap();
+    fake.requests += 1;
+    fake.queries.push(query);
+    if let Some(answer) = fake.answers.pop_front() {
+        return answer;
+    }
+    let known = fake
+        .batches
+        .entry((stream, seq))
+        .or_insert(body.to_vec())
+        .clone();
+    if known != body {
+        return problem(StatusCode::CONFLICT, "stream-forked");
+    }
+    fake.order.push(seq);
+    Json(downlink(&fake, stream)).into_response()
+}
+
+async fn put_report(
+    State(fake): State<Shared>,
+    Path(id): Path<Uuid>,
+    Json(report): Json<LogbookReport>,
+) -> Response {
+    let mut fake = fake.lock().unwrap();
+    let revision = report.revision;
+    fake.reports.push((id, report));
+    fake.order.push(0);
+    if let Some(answer) = fake.report_answers.pop_front() {
+        return answer;
+    }
+    Json(json!({ "revision": revision, "withdrawn": false })).into_response()
+}
+
+async fn get_downlink(State(fake): State<Shared>, Path(stream): Path<Uuid>) -> Json<Value> {
+    let mut fake = fake.lock().unwrap();
+    fake.polls += 1;
+    Json(downlink(&fake, stream))
+}
+
+async fn open_stream(State(fake): State<Shared>) -> Response {
+    let mut fake = fake.lock().unwrap();
+    fake.streams += 1;
+    let stream = Uuid::from_u128(1000 + fake.streams);
+    (StatusCode::CREATED, Json(json!({"stream": stream}))).into_response()
+}
+
+fn downlink(fake: &Fake, stream: Uuid) -> Value {
+    let contiguous_seq = (1..).take_while(|seq| fake.batches.contains_key(&(stream, *seq)));
+    let downlink = Downlink {
+        contiguous_seq: contiguous_seq.last().unwrap_or(0),
+        model: None,
+        unread: None,
+        card_withdrawn: fake.withdrawn.clone(),
+        settings: fake.settings.clone(),
+        server_time: time(),
+    };
+    let mut sent = serde_json::to_value(downlink).unwrap();
+    if let Some(model) = &fake.unreadable {
+        sent["model"] = model.clone();
+    }
+    sent
+}
+
+struct Rig {
+    fake: Shared,
+    spool: Spool,
+    link: watch::Receiver<LinkStatus>,
+    settings: watch::Receiver<Settings>,
+    withdrawn: watch::Receiver<Option<CardWithdrawn>>,
+    sealed: Arc<Notify>,
+    urgent: Arc<Notify>,
+    ship_time: watch::Sender<Option<Timestamp>>,
+    shutdown: CancellationToken,
+    _directory: TempDir,
+}
+
+impl Drop for Rig {
+    fn drop(&mut self) {
+        self.shutdown.cancel();
+    }
+}
+
+const STREAM: Uuid = Uuid::from_u128(7);
+
+/// An enrolled agent's spool with `batches` sealed, and a shore to send to.
+async fn rig(batches: i64, fake: Fake) -> Rig {
+    rig_with(batches, fake, &Profile::Standard.plan(None), None).await
+}
+
+/// The same with a budget, of which so much is left.
+async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account>) -> Rig {
+    rustls::crypto::ring::default_provider()
+        .install_default()
+        .ok();
+    let fake = Arc::new(Mutex::new(fake));
+    let router = Router::new()
+        .route("/api/v1/streams/{stream}/batches/{seq}", put(put_batch))
+        .route("/api/v1/streams/{stream}/downlink", get(get_downlink))
+        .route("/api/v1/streams", post(open_stream))
+        .route("/api/v1/agents/logbook/{id}", put(put_report))
+        .with_state(fake.clone());
+    let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let server = format!("http://{}", listener.local_addr().unwrap());
+    tokio::spawn(async move { axum::serve(listener, router).await });
+
+    let directory = TempDir::new().unwrap();
+    let spool = Spool::open(directory.path()).await.unwrap();
+    let identity = Identity {
+        server,
+        token: "t".to_owned(),
+        stream: StreamId(STREAM),
+        vessel_name: "Txori".to_owned(),
+        compass_name: "Standard compass".to_owned(),
+    };
+    spool.enrol(&identity).await.unwrap();
+    for number in 0..batches {
+        seal(&spool, number).await;
+    }
+    let (link_tx, link) = watch::channel(LinkStatus::default());
+    let (settings_tx, settings) = watch::channel(Settings::default());
+    let (withdrawn_tx, withdrawn) = watch::channel(None);
+    let ship_time = watch::Sender::new(Some(time()));
+    let sealed = Arc::new(Notify::new());
+    let urgent = Arc::new(Notify::new());
+    let uplink = Uplink {
+        spool: spool.clone(),
+        token: Some(identity.token.clone()),
+        shore: Shore::new(None).unwrap(),
+        backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
+        poll: Duration::from_hours(1),
+        budget: Budget::new(plan, account, IDLE_CONNECTION, Instant::now()),
+        ship_time: ship_time.subscribe(),
+        tell: Tell {
+            model: watch::channel(None).0,
+            withdrawn: withdrawn_tx,
+            settings: settings_tx,
+            link: link_tx,
+        },
+        no_reports_before: None,
+        sealed: sealed.clone(),
+        urgent: urgent.clone(),
+        rng: StdRng::seed_from_u64(1),
+    };
+    let shutdown = CancellationToken::new();
+    tokio::spawn(uplink.run(shutdown.clone()));
+    Rig {
+        fake,
+        spool,
+        link,
+        settings,
+        withdrawn,
+        sealed,
+        urgent,
+        ship_time,
+        shutdown,
+        _directory: directory,
+    }
+}
+
+async fn seal(spool: &Spool, number: i64) {
+    let sample = Sample {
+        time: time().plus_seconds(number as f64 * 600.0),
+        position: Position::new(43.0, -3.0).unwrap(),
+        compass: CompassHeading::new(100.0).unwrap(),
+        gyro: TrueHeading::new(98.0),
+        satellite: None,
+        sog_kn: Some(12.0),
+        rate_of_turn_deg_min: Some(0.0),
+        spread_deg: Some(0.1),
+        windows: 60,
+    };
+    spool
+        .store(&[sample], &BTreeMap::new(), Seal::All)
+        .await
+        .unwrap();
+}
+
+impl Rig {
+    /// Waits until nothing is left to send.
+    async fn all_sent(&mut self) {
+        loop {
+            if self.spool.next_batch().await.unwrap().is_none()
+                && self.link.borrow().state == LinkState::Up
+            {
+                return;
+            }
+            let changed = self.link.changed();
+            timeout(Duration::from_secs(20), changed)
+                .await
+                .expect("the link says nothing new")
+                .unwrap();
+        }
+    }
+
+    fn seqs(&self, stream: Uuid) -> Vec<u64> {
+        let fake = self.fake.lock().unwrap();
+        let keys = fake.batches.keys();
+        keys.filter(|(s, _)| *s == stream)
+            .map(|(_, seq)| *seq)
+            .collect()
+    }
+}
