@@ -1,4 +1,4 @@
-//! The commands: `run`, `status`, `enrol`, `hold`, `replay`.
+//! The commands: `run`, `status`, `enrol`, `hold`, `export`, `replay`.
 //!
 //! Exit code 2 and one line for what the one who typed it got wrong, 1 for
 //! everything else that fails.
@@ -7,11 +7,14 @@ use crate::config::{Config, ConfigError, RolesConfig, SilenceConfig};
 use crate::hold::Hold;
 use crate::page::{GUARD_HEADER, HoldRequest};
 use crate::replay;
+use crate::ring::{self, Span};
 use crate::run::{self, offline_status};
 use crate::spool::{Identity, Spool};
 use crate::status::Status;
 use crate::uplink::{Shore, Trouble};
+use crate::whole_file::write_whole;
 use anyhow::Context;
+use binnacle_magnetics::time::Timestamp;
 use clap::{Parser, Subcommand, ValueEnum};
 use std::io::Write;
 use std::net::SocketAddr;
@@ -71,6 +74,22 @@ enum Command {
         config: PathBuf,
         /// Why, or `off`.
         hold: HoldArgument,
+    },
+    /// Writes what the instruments said in each second, as far back as the ring goes, as
+    /// CSV: for download in port, also while the agent runs.
+    Export {
+        /// The configuration file.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+        /// From this time on, as `2026-11-21T06:00:00Z`.
+        #[arg(long)]
+        from: Option<String>,
+        /// Before this time.
+        #[arg(long)]
+        until: Option<String>,
+        /// Where the table goes, instead of standard output.
+        #[arg(long)]
+        csv: Option<PathBuf>,
     },
     /// Puts recorded sentences through the same sampler: samples as CSV, a tally
     /// as JSON on standard error.
@@ -155,6 +174,18 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 config,
             } => enrol(&load(&config)?, &server, &code).await,
             Command::Hold { config, hold } => set_hold(&load(&config)?, hold).await,
+            Command::Export {
+                config,
+                from,
+                until,
+                csv,
+            } => {
+                let span = Span {
+                    from: time("--from", from.as_deref())?,
+                    until: time("--until", until.as_deref())?,
+                };
+                tokio::task::block_in_place(|| export(&load(&config)?, span, csv.as_deref()))
+            }
             Command::Replay { files, config, csv } => {
                 tokio::task::block_in_place(|| replay(&files, config.as_deref(), csv.as_deref()))
             }
@@ -193,6 +224,25 @@ fn stop_on_signals(shutdown: &CancellationToken) -> anyhow::Result<()> {
     Ok(())
 }
 
+fn time(flag: &str, text: Option<&str>) -> Result<Option<Timestamp>, BadInput> {
+    text.map(Timestamp::parse)
+        .transpose()
+        .map_err(|error| BadInput(format!("{flag}: {error}")))
+}
+
+fn export(config: &Config, span: Span, csv: Option<&Path>) -> anyhow::Result<()> {
+    let ring = ring::path(&config.data_dir);
+    if !ring.exists() {
+        return Err(BadInput(format!("{}: there is no ring yet", ring.display())).into());
+    }
+    let rows = match csv {
+        Some(path) => write_whole(path, |out| ring::export(&ring, span, out))?,
+        None => ring::export(&ring, span, &mut std::io::stdout().lock())?,
+    };
+    writeln!(std::io::stderr(), "{rows} seconds")?;
+    Ok(())
+}
+
 fn replay(files: &[PathBuf], config: Option<&Path>, csv: Option<&Path>) -> anyhow::Result<()> {
     let (roles, silence) = match config {
         Some(path) => {
@@ -206,7 +256,8 @@ fn replay(files: &[PathBuf], config: Option<&Path>, csv: Option<&Path>) -> anyho
     let table = replayed.csv()?;
     match csv {
         Some(path) => {
-            replay::write_whole(path, &table).map_err(|e| BadInput(format!("{e:#}")))?;
+            write_whole(path, |out| Ok(out.write_all(&table)?))
+                .map_err(|e| BadInput(format!("{e:#}")))?;
         }
         None => std::io::stdout().write_all(&table)?,
     }

@@ -19,6 +19,7 @@ mod ship;
 mod ship_time;
 mod weak_field;
 
+mod ring;
 mod spool;
 mod uplink;
 
@@ -31,5 +32,6 @@ mod reports;
 mod status;
 
 mod replay;
+mod whole_file;
 
 mod clock;

@@ -12,9 +12,7 @@ use binnacle_magnetics::sample::Sample;
 use binnacle_wire::messages::Settings;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use tokio::time::Instant;
 
 /// What recordings came to.
@@ -129,49 +127,4 @@ fn number(value: Option<f64>, decimals: usize) -> String {
     value
         .map(|value| format!("{value:.decimals$}"))
         .unwrap_or_default()
-}
-
-/// Writes a file beside its place and then puts it there, so that what is there
-/// is whole. A device or a pipe is written to, never replaced.
-pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    if is_device(path) {
-        return fs::write(path, bytes).with_context(|| path.display().to_string());
-    }
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
-    let write = || -> std::io::Result<()> {
-        let mut file = fs::File::create(&partial)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&partial, path)
-    };
-    write().with_context(|| path.display().to_string())
-}
-
-/// What /dev/stdout stands for may be a file, but not one to be renamed to.
-fn is_device(path: &Path) -> bool {
-    path.starts_with("/dev")
-        || path.starts_with("/proc")
-        || fs::metadata(path).is_ok_and(|found| !found.is_file())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_table_takes_the_place_of_a_file_and_never_of_a_device() {
-        let directory = tempfile::TempDir::new().unwrap();
-        let path = directory.path().join("samples.csv");
-        for table in [&b"longer than the next"[..], b"whole"] {
-            write_whole(&path, table).unwrap();
-            assert_eq!(fs::read(&path).unwrap(), table);
-        }
-        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
-        assert!(!is_device(&path));
-        for device in ["/dev/null", "/dev/stdout", "/proc/self/fd/1"] {
-            assert!(is_device(Path::new(device)), "{device}");
-        }
-    }
 }

@@ -14,10 +14,11 @@ use crate::input::{self, InputStats};
 use crate::observation::Observation;
 use crate::output::Outputs;
 use crate::page::{self, Page};
+use crate::ring::{Ring, Second};
 use crate::sampler::Tally;
 use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
-use crate::spool::{MOST_PENDING, Pending, Seal, Spool};
+use crate::spool::{MOST_PENDING, Pending, Seal, Spool, is_want_of_room};
 use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{self, LinkState, LinkStatus, Plan, Told};
 use binnacle_magnetics::sample::Sample;
@@ -59,6 +60,7 @@ struct Agent {
     silence: SilenceConfig,
     spool: Spool,
     spool_limit_bytes: u64,
+    ring: Ring,
     plan: Plan,
     told: Told,
     observations: mpsc::Receiver<Vec<Observation>>,
@@ -138,6 +140,7 @@ impl Agent {
             silence: config.silence,
             spool,
             spool_limit_bytes: config.spool_mb.bytes(),
+            ring: Ring::open(&config.data_dir, config.ring_mb.bytes()),
             plan: config.uplink.plan(),
             told,
             observations,
@@ -194,6 +197,7 @@ impl Agent {
         self.ship.sampler.finish();
         self.collect();
         self.store(Seal::Full).await;
+        self.ring.flush(Instant::now());
         if let Err(error) = self.uplink.await {
             tracing::error!(%error, "the uplink ended badly");
         }
@@ -204,6 +208,11 @@ impl Agent {
         let heard = Instant::now();
         for observation in observations {
             self.ship.observe(observation, heard);
+            if let Some(time) = self.ship.time() {
+                let (readings, stale) = (&self.ship.readings, self.silence.stale_s.duration());
+                let second = || Second::of(time, readings, stale, heard);
+                self.ring.take(time, second, heard);
+            }
         }
         self.look_out();
         if !self.ship.sampler.has_samples() {
@@ -352,6 +361,9 @@ impl Agent {
             }
             Err(error) => {
                 tracing::error!(%error, waiting = unstored.samples.len(), "samples cannot be stored");
+                if is_want_of_room(&error) {
+                    self.ring.give_way(&error.to_string(), Instant::now());
+                }
                 let excess = unstored.samples.len().saturating_sub(MOST_UNSTORED);
                 unstored.samples.drain(..excess);
             }
@@ -436,6 +448,7 @@ impl Agent {
             .map(|(name, stats)| InputReport::new(name, stats.status()))
             .collect();
         status.link = self.told.link.borrow().clone();
+        status.ring = self.ring.status();
         status
     }
 }

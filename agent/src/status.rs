@@ -4,6 +4,7 @@ use crate::alert::AlertStatus;
 use crate::corrected::{CardRow, Corrected};
 use crate::hold::Hold;
 use crate::input::InputStatus;
+use crate::ring::RingStatus;
 use crate::spool::Standing;
 use crate::uplink::{Account, LinkStatus};
 use binnacle_magnetics::angle::TrueHeading;
@@ -46,6 +47,9 @@ pub(crate) struct Status {
     /// What the link may cost, and what is left of it.
     #[serde(default)]
     pub(crate) budget: Option<Account>,
+    /// What was said in each second, kept on board.
+    #[serde(default)]
+    pub(crate) ring: Option<RingStatus>,
 }
 
 /// The model in use.
@@ -246,6 +250,14 @@ impl Status {
                 "           {} batches were thinned for want of room",
                 spool.thinned_batches
             )?;
+        }
+        if let Some(ring) = &self.ring {
+            let (octets, limit) = (ring.octets as f64 / 1e6, ring.limit_octets as f64 / 1e6);
+            write!(out, "ring       {octets:.1} of {limit:.1} MB")?;
+            if let Some(problem) = &ring.problem {
+                write!(out, ", nothing is kept for now: {problem}")?;
+            }
+            writeln!(out)?;
         }
         if spool.parked_batches > 0 {
             let because = spool.parked_because.as_deref().unwrap_or("no reason given");

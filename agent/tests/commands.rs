@@ -6,6 +6,7 @@ mod common;
 
 use common::agent::{Agent, command};
 use common::bridge::{self, Bridge};
+use common::fetch;
 use common::shore::Shore;
 use serde_json::Value;
 use std::fmt::Write;
@@ -214,4 +215,43 @@ async fn what_has_settled_is_kept_when_the_agent_is_told_to_stop() {
     let status = agent.call(&["status", "--json"]).await;
     let status: Value = serde_json::from_slice(&status.stdout).unwrap();
     assert_eq!(status["spool"]["pending_samples"], 1);
+}
+
+#[tokio::test]
+async fn what_was_said_in_each_second_can_be_exported_and_bad_questions_are_refused() {
+    let bridge = Bridge::new(400).await;
+    let agent = Agent::new(bridge.address);
+    let early = agent.call(&["export"]).await;
+    assert_eq!(early.status.code(), Some(2), "{early:?}");
+    bridge.sail();
+    let running = agent.run().await;
+    while !fetch(running.page, "/api/status")
+        .await
+        .contains("00:06:39")
+    {
+        tokio::task::yield_now().await;
+    }
+    // Two blocks are on the disk, the rest is there after the end.
+    let done = agent.call(&["export"]).await;
+    assert_eq!(text(&done.stdout).lines().count(), 1 + 336, "{done:?}");
+    running.terminate().await;
+    let span = [
+        "--from",
+        "2026-09-01T00:06:30Z",
+        "--until",
+        "2026-09-01T01:00:00Z",
+    ];
+    let done = agent.call(&[&["export"], &span[..]].concat()).await;
+    let table = text(&done.stdout);
+    assert_eq!(table.lines().count(), 1 + 10, "{table}");
+    assert_eq!(
+        table.lines().nth(1),
+        Some("2026-09-01T00:06:30Z,43.5000000,-3.0000000,42.00,45.00,,12.00,0.0,")
+    );
+    let wrong = agent.call(&["export", "--from", "yesterday"]).await;
+    assert_eq!(wrong.status.code(), Some(2));
+    assert!(
+        text(&wrong.stderr).contains("--from: \"yesterday\""),
+        "{wrong:?}"
+    );
 }

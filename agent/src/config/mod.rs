@@ -32,6 +32,9 @@ pub(crate) struct Config {
     /// How much of the disk the spool may take.
     #[serde(default)]
     pub(crate) spool_mb: SpoolLimit,
+    /// How much of the disk what was heard in each second may take; 0 keeps nothing.
+    #[serde(default)]
+    pub(crate) ring_mb: RingLimit,
     /// What is listened to, by the name that roles refer to.
     #[serde(default)]
     pub(crate) inputs: BTreeMap<String, InputConfig>,
@@ -191,6 +194,37 @@ impl TryFrom<f64> for SpoolLimit {
             Ok(SpoolLimit(megabytes))
         } else {
             Err(format!("{megabytes} is not from 4 to 100000 megabytes"))
+        }
+    }
+}
+
+/// Megabytes (of a million bytes), from 1 to 10 000, or 0 for none.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "f64")]
+pub(crate) struct RingLimit(f64);
+
+impl RingLimit {
+    /// In bytes.
+    pub(crate) fn bytes(self) -> u64 {
+        (self.0 * 1e6) as u64
+    }
+}
+
+impl Default for RingLimit {
+    fn default() -> RingLimit {
+        RingLimit(64.0)
+    }
+}
+
+impl TryFrom<f64> for RingLimit {
+    type Error = String;
+    fn try_from(megabytes: f64) -> Result<RingLimit, String> {
+        if megabytes == 0.0 || (1.0..=10_000.0).contains(&megabytes) {
+            Ok(RingLimit(megabytes))
+        } else {
+            Err(format!(
+                "{megabytes} is neither 0 nor from 1 to 10000 megabytes"
+            ))
         }
     }
 }
@@ -403,6 +437,7 @@ stale_s = 15
         let example = example.map_err(|w| w.problem).unwrap();
         let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
         assert_eq!(example.spool_mb, bare.spool_mb);
+        assert_eq!(example.ring_mb, bare.ring_mb);
         assert_eq!(example.uplink.profile, bare.uplink.profile);
         assert_eq!(example.uplink.poll(), bare.uplink.poll());
         assert_eq!(example.uplink.retry_min_s, bare.uplink.retry_min_s);
@@ -447,6 +482,11 @@ stale_s = 15
         );
         let wrong = WHOLE.replace("talker = \"HC\"", "talker = \"COMPASS\"");
         assert!(message(&wrong).starts_with("agent.toml:6: talker: "));
+        let wrong = WHOLE.replace("\"state\"", "\"state\"\nring_mb = 0.5");
+        assert_eq!(
+            message(&wrong),
+            "agent.toml:3: ring_mb: 0.5 is neither 0 nor from 1 to 10000 megabytes"
+        );
         assert!(message("").contains("data_dir"));
     }
 

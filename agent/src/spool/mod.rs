@@ -27,7 +27,7 @@ pub(crate) use batches::{SealedBatch, Standing};
 #[cfg(test)]
 pub(crate) use reports::ReportStanding;
 pub(crate) use reports::{NotKept, StoredReport};
-pub(crate) use room::MOST_PENDING;
+pub(crate) use room::{MOST_PENDING, is_want_of_room};
 pub(crate) use seal::{Pending, Seal};
 
 use crate::alert::Aboard;

@@ -40,6 +40,20 @@ const LEVELS: [(i64, usize); 5] = [
 /// A batch of this level cannot be thinned further; 0 is one that was not thinned.
 const DEEPEST: i64 = 5;
 
+/// SQLite's primary result codes for a file that cannot be read or written, as on a disk
+/// without room for the journal's index, and for a full disk.
+const IO_ERROR: i32 = 10;
+const FULL: i32 = 13;
+
+/// Whether a disk with more room would have helped, as far as can be told.
+pub(crate) fn is_want_of_room(error: &sqlx::Error) -> bool {
+    let sqlx::Error::Database(error) = error else {
+        return false;
+    };
+    let code = error.code().and_then(|code| code.parse::<i32>().ok());
+    code.is_some_and(|code| matches!(code & 0xff, IO_ERROR | FULL))
+}
+
 impl Spool {
     /// Thins until what is in use is within the limit, or nothing is left to thin.
     pub(crate) async fn make_room(&self, limit_bytes: u64) -> sqlx::Result<()> {
@@ -312,6 +326,20 @@ mod tests {
             .unwrap();
         assert_eq!(stated.0, i64::try_from(counted).unwrap());
         assert!(batches.iter().any(|batch| batch.thinned.is_some()));
+    }
+
+    #[tokio::test]
+    async fn a_full_disk_is_told_from_other_trouble() {
+        let (_directory, spool) = stuffed(1).await;
+        sqlx::query("PRAGMA max_page_count = 1")
+            .execute(&spool.pool)
+            .await
+            .unwrap();
+        let many: Vec<Sample> = (0..5_000).map(restless).collect();
+        let full = spool.store(&many, &accepted(1), Seal::Full).await;
+        assert!(is_want_of_room(&full.unwrap_err()));
+        let wrong = sqlx::query("SELECT nothing").execute(&spool.pool).await;
+        assert!(!is_want_of_room(&wrong.unwrap_err()));
     }
 
     #[tokio::test]

@@ -1,0 +1,152 @@
+//! Blocks of the ring: 4 096 octets, all numbers little-endian.
+//!
+//! | at | octets | what |
+//! |---|---|---|
+//! | 0 | 4 | `BNR1` |
+//! | 4 | 8 | number, rising |
+//! | 12 | 4 | CRC-32 of the above |
+//! | 16 | 168 × 24 | seconds, see below |
+//! | 4048 | 2 | how many of them count |
+//! | 4092 | 4 | CRC-32 of 16 to 4092 |
+//!
+//! A second is its time since 1970 (u32), latitude and longitude in 10⁻⁷ degree (i32),
+//! compass, gyro and satellite compass in 0.01° (u16), speed over ground in 0.01 knot
+//! (u16), rate of turn in 0.1° a minute and roll in 0.01° (i16). The least number of a
+//! signed field, and the greatest of an unsigned one, stand for what was not there.
+
+use super::Second;
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+
+pub(super) const BLOCK_OCTETS: u64 = 4_096;
+pub(super) const HEAD_OCTETS: usize = 16;
+/// Seconds of one block.
+pub(super) const RECORDS: usize = 168;
+const RECORD_OCTETS: usize = 24;
+const COUNT_AT: usize = HEAD_OCTETS + RECORDS * RECORD_OCTETS;
+const CHECKSUM_AT: usize = BLOCK_OCTETS as usize - 4;
+const MAGIC: [u8; 4] = *b"BNR1";
+
+/// What a whole block holds.
+#[derive(Debug, PartialEq)]
+pub(super) struct Block {
+    pub(super) number: u64,
+    pub(super) seconds: Vec<Second>,
+}
+
+/// Writes a block of at most [`RECORDS`] seconds.
+pub(super) fn write(number: u64, seconds: &[Second]) -> Vec<u8> {
+    let mut octets = Vec::with_capacity(BLOCK_OCTETS as usize);
+    octets.extend(MAGIC);
+    octets.extend(number.to_le_bytes());
+    octets.extend(crc32fast::hash(&octets).to_le_bytes());
+    let seconds = &seconds[..seconds.len().min(RECORDS)];
+    for second in seconds {
+        write_second(&mut octets, second);
+    }
+    octets.resize(COUNT_AT, 0);
+    octets.extend((seconds.len() as u16).to_le_bytes());
+    octets.resize(CHECKSUM_AT, 0);
+    let checksum = crc32fast::hash(&octets[HEAD_OCTETS..]);
+    octets.extend(checksum.to_le_bytes());
+    octets
+}
+
+/// The number in a head, if it is whole.
+pub(super) fn number(head: &[u8; HEAD_OCTETS]) -> Option<u64> {
+    let (stated, checksum) = head.split_last_chunk::<4>()?;
+    let (magic, number) = stated.split_first_chunk::<4>()?;
+    let whole = *magic == MAGIC && crc32fast::hash(stated) == u32::from_le_bytes(*checksum);
+    let number = u64::from_le_bytes(number.try_into().ok()?);
+    // A number that leaves none for the next block is none that was ever written.
+    (whole && number < u64::MAX).then_some(number)
+}
+
+/// Reads a block, if it is whole.
+pub(super) fn read(octets: &[u8]) -> Option<Block> {
+    let (head, rest) = octets.split_first_chunk::<HEAD_OCTETS>()?;
+    let number = number(head)?;
+    let (content, checksum) = rest.split_last_chunk::<4>()?;
+    if octets.len() as u64 != BLOCK_OCTETS
+        || crc32fast::hash(content) != u32::from_le_bytes(*checksum)
+    {
+        return None;
+    }
+    let (records, tail) = content.split_at_checked(RECORDS * RECORD_OCTETS)?;
+    let count = u16::from_le_bytes(*tail.first_chunk()?);
+    let records = records.chunks_exact(RECORD_OCTETS).take(count.into());
+    Some(Block {
+        number,
+        seconds: records.filter_map(read_second).collect(),
+    })
+}
+
+fn write_second(octets: &mut Vec<u8>, second: &Second) {
+    let seconds = second.time.micros().div_euclid(1_000_000);
+    octets.extend(u32::try_from(seconds).unwrap_or_default().to_le_bytes());
+    let place =
+        |degrees: Option<f64>| signed(degrees, 1e7, i32::MIN.into(), i32::MAX.into()) as i32;
+    let position = second.position;
+    octets.extend(place(position.map(Position::lat_deg)).to_le_bytes());
+    octets.extend(place(position.map(Position::lon_deg)).to_le_bytes());
+    let headings = [
+        second.compass.map(CompassHeading::degrees),
+        second.gyro.map(TrueHeading::degrees),
+        second.satellite.map(TrueHeading::degrees),
+    ];
+    for value in headings.into_iter().chain([second.sog_kn]) {
+        let hundredths = value.map(|value| (value * 100.0).round().clamp(0.0, 65_534.0) as u16);
+        octets.extend(hundredths.unwrap_or(u16::MAX).to_le_bytes());
+    }
+    let small = |value, steps| signed(value, steps, i16::MIN.into(), i16::MAX.into()) as i16;
+    octets.extend(small(second.rate_of_turn_deg_min, 10.0).to_le_bytes());
+    octets.extend(small(second.roll_deg, 100.0).to_le_bytes());
+}
+
+/// In steps, or `none`.
+fn signed(value: Option<f64>, steps: f64, none: i64, most: i64) -> i64 {
+    value.map_or(none, |value| {
+        ((value * steps).round() as i64).clamp(none + 1, most)
+    })
+}
+
+/// A second that no ship can have is passed over.
+fn read_second(octets: &[u8]) -> Option<Second> {
+    let mut rest = octets;
+    let seconds = u32::from_le_bytes(take(&mut rest)?);
+    let place = |octets: [u8; 4]| {
+        let steps = i32::from_le_bytes(octets);
+        (steps != i32::MIN).then(|| f64::from(steps) / 1e7)
+    };
+    let (lat, lon) = (place(take(&mut rest)?), place(take(&mut rest)?));
+    let mut hundredths = || {
+        let steps = u16::from_le_bytes(take(&mut rest)?);
+        Some((steps != u16::MAX).then(|| f64::from(steps) / 100.0))
+    };
+    let (compass, gyro, satellite) = (hundredths()?, hundredths()?, hundredths()?);
+    let sog_kn = hundredths()?;
+    let mut small = |steps: f64| {
+        let value = i16::from_le_bytes(take(&mut rest)?);
+        Some((value != i16::MIN).then(|| f64::from(value) / steps))
+    };
+    Some(Second {
+        time: Timestamp::from_micros(i64::from(seconds) * 1_000_000).ok()?,
+        position: match (lat, lon) {
+            (Some(lat), Some(lon)) => Position::new(lat, lon).ok(),
+            _ => None,
+        },
+        compass: compass.and_then(CompassHeading::new),
+        gyro: gyro.and_then(TrueHeading::new),
+        satellite: satellite.and_then(TrueHeading::new),
+        sog_kn,
+        rate_of_turn_deg_min: small(10.0)?,
+        roll_deg: small(100.0)?,
+    })
+}
+
+fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
+    let (taken, left) = rest.split_first_chunk::<N>()?;
+    *rest = left;
+    Some(*taken)
+}

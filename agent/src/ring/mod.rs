@@ -1,0 +1,243 @@
+//! What the instruments said in each second, in a file of its own with a size limit:
+//! for download in port, never sent.
+//!
+//! What always holds:
+//!
+//! - The file never grows beyond its limit; what is oldest is written over.
+//! - Blocks are whole or not read: each has checksums, and losing power costs the block
+//!   that was being written and the seconds that were not in one yet.
+//! - The spool comes first: when the disk is full for either, the ring lets go of all it
+//!   has, and begins again an hour later at the earliest.
+//! - No trouble with the ring stops the agent or keeps a sample from the spool.
+
+mod block;
+mod export;
+
+pub(crate) use export::{Span, export};
+
+use crate::ship::{Latest, Readings};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use block::{BLOCK_OCTETS, Block, RECORDS};
+use serde::{Deserialize, Serialize};
+use std::fs::{File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// After the disk was full.
+const REST: Duration = Duration::from_hours(1);
+
+/// What the instruments said in one second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Second {
+    pub(crate) time: Timestamp,
+    pub(crate) position: Option<Position>,
+    pub(crate) compass: Option<CompassHeading>,
+    pub(crate) gyro: Option<TrueHeading>,
+    pub(crate) satellite: Option<TrueHeading>,
+    pub(crate) sog_kn: Option<f64>,
+    pub(crate) rate_of_turn_deg_min: Option<f64>,
+    pub(crate) roll_deg: Option<f64>,
+}
+
+impl Second {
+    /// What of the readings is not older than `stale`.
+    pub(crate) fn of(time: Timestamp, readings: &Readings, stale: Duration, now: Instant) -> Self {
+        Second {
+            time,
+            position: Latest::within(readings.position, stale, now),
+            compass: Latest::within(readings.compass, stale, now),
+            gyro: Latest::within(readings.gyro, stale, now),
+            satellite: Latest::within(readings.satellite, stale, now),
+            sog_kn: Latest::within(readings.sog_kn, stale, now),
+            rate_of_turn_deg_min: Latest::within(readings.rate_of_turn_deg_min, stale, now),
+            roll_deg: Latest::within(readings.roll_deg, stale, now),
+        }
+    }
+}
+
+/// How the ring is, for the page and `status`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RingStatus {
+    pub(crate) octets: u64,
+    pub(crate) limit_octets: u64,
+    /// Why nothing is kept for now.
+    pub(crate) problem: Option<String>,
+}
+
+/// The ring of a running agent.
+#[derive(Debug)]
+pub(crate) struct Ring {
+    path: PathBuf,
+    /// Blocks that the file may have; none: there is no ring.
+    slots: u64,
+    file: Option<File>,
+    problem: Option<String>,
+    /// Not tried again before this.
+    rests_until: Option<Instant>,
+    /// Where the next block goes, and its number.
+    slot: u64,
+    number: u64,
+    seconds: Vec<Second>,
+    /// The last second that was taken, since 1970.
+    last_s: Option<i64>,
+}
+
+/// The ring's file in a data directory.
+pub(crate) fn path(data_dir: &Path) -> PathBuf {
+    data_dir.join("ring.bin")
+}
+
+impl Ring {
+    /// Goes on where the file ends. One that cannot be used is a ring that keeps nothing.
+    pub(crate) fn open(data_dir: &Path, limit_octets: u64) -> Ring {
+        let mut ring = Ring {
+            path: path(data_dir),
+            slots: limit_octets / BLOCK_OCTETS,
+            file: None,
+            problem: None,
+            rests_until: None,
+            slot: 0,
+            number: 1,
+            seconds: Vec::with_capacity(RECORDS),
+            last_s: None,
+        };
+        if ring.slots == 0 {
+            // What an earlier configuration kept is the owner's; it is not removed.
+            return ring;
+        }
+        if let Err(error) = ring.find_end() {
+            ring.give_way(&error.to_string(), Instant::now());
+        }
+        ring
+    }
+
+    fn find_end(&mut self) -> io::Result<()> {
+        let mut file = open_private(&self.path)?;
+        let blocks = file.metadata()?.len() / BLOCK_OCTETS;
+        if blocks > self.slots {
+            file.set_len(self.slots * BLOCK_OCTETS)?;
+        }
+        for slot in 0..blocks.min(self.slots) {
+            if let Some(number) = number_at(&mut file, slot)?
+                && number >= self.number
+            {
+                (self.slot, self.number) = ((slot + 1) % self.slots, number + 1);
+            }
+        }
+        self.file = Some(file);
+        Ok(())
+    }
+
+    /// Takes a second, unless it is the one before again; a whole block is written.
+    pub(crate) fn take(&mut self, time: Timestamp, second: impl FnOnce() -> Second, now: Instant) {
+        let second_s = time.micros().div_euclid(1_000_000);
+        if self.slots == 0 || self.last_s.replace(second_s) == Some(second_s) {
+            return;
+        }
+        self.seconds.push(second());
+        if self.seconds.len() >= RECORDS {
+            self.flush(now);
+        }
+    }
+
+    /// Writes what is there as a block, as at the end.
+    pub(crate) fn flush(&mut self, now: Instant) {
+        if self.rests_until.is_some_and(|until| now < until) {
+            self.seconds.clear();
+        }
+        if self.seconds.is_empty() {
+            return;
+        }
+        let written = self.write_block();
+        self.seconds.clear();
+        match written {
+            Ok(()) => {
+                self.problem = None;
+                self.rests_until = None;
+            }
+            Err(error) => self.give_way(&error.to_string(), now),
+        }
+    }
+
+    fn write_block(&mut self) -> io::Result<()> {
+        if self.file.is_none() {
+            self.file = Some(open_private(&self.path)?);
+        }
+        let Some(file) = &mut self.file else {
+            return Ok(());
+        };
+        let block = block::write(self.number, &self.seconds);
+        file.seek(SeekFrom::Start(self.slot * BLOCK_OCTETS))?;
+        file.write_all(&block)?;
+        self.slot = (self.slot + 1) % self.slots;
+        self.number += 1;
+        Ok(())
+    }
+
+    /// Lets go of everything, for the spool's sake.
+    pub(crate) fn give_way(&mut self, problem: &str, now: Instant) {
+        if self.slots == 0 {
+            return;
+        }
+        if self.problem.is_none() {
+            tracing::warn!(problem, "the ring gives way; it begins again in an hour");
+        }
+        let emptied = self.file.take().map(|file| file.set_len(0));
+        if let Some(Err(error)) = emptied {
+            tracing::warn!(%error, "the ring cannot be emptied");
+        }
+        self.problem = Some(problem.to_owned());
+        self.rests_until = Some(now + REST);
+        self.slot = 0;
+        self.seconds.clear();
+    }
+
+    /// How it is; none when there is to be no ring.
+    pub(crate) fn status(&self) -> Option<RingStatus> {
+        let length = |file: &File| file.metadata().map_or(0, |found| found.len());
+        (self.slots > 0).then(|| RingStatus {
+            octets: self.file.as_ref().map_or(0, length),
+            limit_octets: self.slots * BLOCK_OCTETS,
+            problem: self.problem.clone(),
+        })
+    }
+}
+
+/// The number of the block there, if its head is whole.
+fn number_at(file: &mut File, slot: u64) -> io::Result<Option<u64>> {
+    let mut head = [0; block::HEAD_OCTETS];
+    file.seek(SeekFrom::Start(slot * BLOCK_OCTETS))?;
+    match file.read_exact(&mut head) {
+        Ok(()) => Ok(block::number(&head)),
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+fn block_at(file: &mut File, slot: u64) -> io::Result<Option<Block>> {
+    let mut octets = vec![0; BLOCK_OCTETS as usize];
+    file.seek(SeekFrom::Start(slot * BLOCK_OCTETS))?;
+    match file.read_exact(&mut octets) {
+        Ok(()) => Ok(block::read(&octets)),
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+fn open_private(path: &Path) -> io::Result<File> {
+    let mut options = OpenOptions::new();
+    options.read(true).write(true).create(true);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::OpenOptionsExt;
+        options.mode(0o600);
+    }
+    options.open(path)
+}
+
+#[cfg(test)]
+mod tests;
