@@ -8,10 +8,12 @@
 
 #[allow(dead_code, reason = "only the studies ask for it")]
 pub(crate) mod bound;
+mod errors;
 #[allow(dead_code, reason = "only what is about changes asks for it")]
 pub(crate) mod fleet;
 #[allow(dead_code, reason = "only the comparison of detectors asks for it")]
 pub(crate) mod lorden;
+mod passage;
 pub(crate) mod tally;
 
 use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
@@ -22,6 +24,9 @@ use binnacle_magnetics::time::Timestamp;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
+
+pub(crate) use errors::Errors;
+pub(crate) use passage::Passage;
 
 /// The gyro's share of the reference where both are read.
 const GYRO_SHARE_OF_BOTH: f64 = 0.7;
@@ -296,168 +301,6 @@ impl Truth {
     }
 }
 
-/// Where the ship is and what she does.
-pub(crate) struct Passage {
-    variety: Variety,
-    ports: Vec<(f64, f64)>,
-    bound_for: usize,
-    lat: f64,
-    lon: f64,
-    speed_kn: f64,
-    course: f64,
-    leg_minutes: f64,
-    berth_minutes: f64,
-    turning_minutes: f64,
-}
-
-impl Passage {
-    pub(crate) fn new(variety: Variety, rng: &mut ChaCha8Rng) -> Passage {
-        let ports = ports(variety, rng);
-        Passage {
-            variety,
-            bound_for: 1,
-            lat: ports[0].0,
-            lon: ports[0].1,
-            ports,
-            speed_kn: 12.0 + 4.0 * rng.random::<f64>(),
-            course: 0.0,
-            leg_minutes: 0.0,
-            berth_minutes: 0.0,
-            turning_minutes: 0.0,
-        }
-    }
-
-    /// One minute on; by how much she turned to a new leg.
-    pub(crate) fn minute(&mut self, rng: &mut ChaCha8Rng) -> f64 {
-        if self.berth_minutes > 0.0 {
-            self.berth_minutes -= 1.0;
-            return 0.0;
-        }
-        self.turning_minutes -= 1.0;
-        self.leg_minutes -= 1.0;
-        let course = self.course.to_radians();
-        self.lat += self.speed_kn / 3600.0 * course.cos();
-        let east = self.speed_kn / 3600.0 * course.sin() / self.lat.to_radians().cos();
-        self.lon = wrap_180(self.lon + east);
-        if self.leg_minutes > 0.0 {
-            return 0.0;
-        }
-        let (to_lat, to_lon) = self.ports[self.bound_for];
-        let east = wrap_180(to_lon - self.lon) * self.lat.to_radians().cos();
-        let north = to_lat - self.lat;
-        if east.hypot(north) < 2.0 {
-            self.bound_for = (self.bound_for + 1) % self.ports.len();
-            self.berth_minutes = 720.0 + 1440.0 * rng.random::<f64>();
-        }
-        let wanted = east.atan2(north).to_degrees() + 30.0 * gauss(rng);
-        let usual = if self.variety == Variety::Poor {
-            150.0
-        } else {
-            360.0
-        };
-        self.leg_minutes = (usual * (0.8 * gauss(rng)).exp()).clamp(20.0, 2000.0);
-        let turn = wrap_180(wanted - self.course);
-        self.course = wanted.rem_euclid(360.0);
-        self.turning_minutes = 6.0;
-        turn
-    }
-}
-
-/// Everything that goes wrong, stepped by the minute.
-pub(crate) struct Errors {
-    pub(crate) swing: f64,
-    rate: f64,
-    slow: f64,
-    compass_swing: f64,
-    crust: f64,
-    storm: f64,
-    storm_minutes: f64,
-    speed_error: f64,
-    multipath: f64,
-}
-
-impl Errors {
-    pub(crate) fn new(faults: &Faults, rng: &mut ChaCha8Rng) -> Errors {
-        Errors {
-            swing: faults.schuler_deg * gauss(rng),
-            rate: 0.0,
-            slow: faults.slow_gyro_deg * gauss(rng),
-            compass_swing: 0.0,
-            crust: faults.variation_deg * gauss(rng),
-            storm: 0.0,
-            storm_minutes: 0.0,
-            speed_error: faults.speed_error * gauss(rng),
-            multipath: 0.0,
-        }
-    }
-
-    pub(crate) fn minute(
-        &mut self,
-        faults: &Faults,
-        on: &Passage,
-        turned: f64,
-        rng: &mut ChaCha8Rng,
-    ) {
-        let omega = TAU / 84.4;
-        let kick = if turned.abs() > 20.0 {
-            1.2 * faults.schuler_deg * gauss(rng)
-        } else {
-            0.0
-        };
-        let noise = faults.schuler_deg * omega * (4.0_f64 * 0.2 * omega * 0.3).sqrt();
-        self.rate += kick * omega - (omega * omega * self.swing + 0.4 * omega * self.rate)
-            + noise * gauss(rng);
-        self.swing += self.rate;
-        step(&mut self.slow, 1.0 / 4320.0, faults.slow_gyro_deg, rng);
-        step(&mut self.compass_swing, 1.0 / 20.0, faults.swing_deg, rng);
-        step(&mut self.multipath, 1.0 / 30.0, 0.2, rng);
-        if on.berth_minutes <= 0.0 {
-            step(
-                &mut self.crust,
-                on.speed_kn / 3600.0,
-                faults.variation_deg,
-                rng,
-            );
-        }
-        if self.storm_minutes > 0.0 {
-            self.storm_minutes -= 1.0;
-            step(&mut self.storm, 1.0 / 60.0, 1.0, rng);
-            return;
-        }
-        self.storm = 0.0;
-        if rng.random::<f64>() < faults.storms_per_month / 43_200.0 {
-            self.storm_minutes = 240.0 + 600.0 * rng.random::<f64>();
-        }
-    }
-
-    /// What compass, gyro and satellite compass show in the field (variation, H, Z) of the models.
-    fn read(
-        &self,
-        truth: &Truth,
-        on: &Passage,
-        minute: i64,
-        (variation, h, z): (f64, f64, f64),
-        rng: &mut ChaCha8Rng,
-    ) -> [f64; 3] {
-        let true_heading = on.course + gauss(rng);
-        let daily = 0.12 * (TAU * (minute as f64 / 1440.0 + on.lon / 360.0)).sin();
-        let magnetic = true_heading - variation - (self.crust + daily + self.storm) * 24_000.0 / h;
-        let compass = needle(&truth.parameters, magnetic, h, z) - truth.alignment_deg
-            + self.compass_swing
-            + 0.35 * gauss(rng);
-        let cos_lat = on.lat.to_radians().cos();
-        let northerly = on.speed_kn * on.course.to_radians().cos() / (902.5 * cos_lat);
-        let gyro = true_heading
-            + truth.gyro_constant_deg
-            + (self.swing + self.slow) / cos_lat
-            + self.speed_error * northerly.to_degrees()
-            + 0.15 * gauss(rng);
-        let satellite =
-            true_heading + truth.satellite_constant_deg + self.multipath + 0.4 * gauss(rng);
-        [compass, gyro, satellite]
-    }
-}
-
 /// The mean of ten readings of each instrument on one course.
 #[derive(Default)]
 struct Mean {
@@ -480,12 +323,6 @@ impl Mean {
     }
 }
 
-/// One step of a process that forgets `share` of itself and keeps its spread.
-fn step(x: &mut f64, share: f64, sd: f64, rng: &mut ChaCha8Rng) {
-    let keep = (-share).exp();
-    *x = *x * keep + sd * (1.0 - keep * keep).sqrt() * gauss(rng);
-}
-
 /// Where the needle settles on a magnetic heading: Poisson's equations over λ.
 fn needle(p: &Parameters, magnetic_deg: f64, h: f64, z: f64) -> f64 {
     let (sin, cos) = magnetic_deg.to_radians().sin_cos();
@@ -494,34 +331,4 @@ fn needle(p: &Parameters, magnetic_deg: f64, h: f64, z: f64) -> f64 {
     let x = (1.0 + half) * forward + p.chi12 * starboard + p.chi13 * z + p.bx_nt;
     let y = p.chi21 * forward + (1.0 - half) * starboard + p.chi23 * z + p.by_nt;
     (-y).atan2(x).to_degrees()
-}
-
-fn ports(variety: Variety, rng: &mut ChaCha8Rng) -> Vec<(f64, f64)> {
-    let at = |rng: &mut ChaCha8Rng, lat: f64, lon: f64, spread: f64| {
-        (
-            lat + spread * gauss(rng) / 2.0,
-            lon + spread * gauss(rng) / 2.0,
-        )
-    };
-    match variety {
-        Variety::Rich => vec![
-            at(rng, 48.0, -8.0, 5.0),
-            at(rng, 10.0, -20.0, 5.0),
-            at(rng, -34.0, 15.0, 3.0),
-            at(rng, -23.0, -40.0, 5.0),
-        ],
-        Variety::Medium => vec![
-            at(rng, 50.0, -10.0, 4.0),
-            at(rng, 25.0, -30.0, 6.0),
-            at(rng, 40.0, -60.0, 4.0),
-        ],
-        Variety::Poor => {
-            let (lat, lon) = if rng.random::<bool>() {
-                (56.0, 4.0)
-            } else {
-                (16.0, -68.0)
-            };
-            (0..6).map(|_| at(rng, lat, lon, 6.0)).collect()
-        }
-    }
 }
