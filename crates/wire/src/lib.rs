@@ -2,12 +2,13 @@
 //!
 //! Samples go up as binary [`batch`]es, immutable once sealed, in the frame of
 //! [`codec`], with the [`reasons`] why windows were refused and the [`alert`]s that
-//! the ship raised herself; enrolment,
+//! the ship raised herself, cut into [`burst`]s where a link takes no more; enrolment,
 //! acknowledgement, models, [`settings`] and reports for the [`logbook`] are the
 //! JSON [`messages`].
 
 pub mod alert;
 pub mod batch;
+pub mod burst;
 pub mod codec;
 pub mod logbook;
 pub mod messages;

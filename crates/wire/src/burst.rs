@@ -1,0 +1,268 @@
+//! Frames cut into short-burst messages, and joined again: for a link that carries a
+//! few hundred octets at a time and forgets, repeats and reorders.
+//!
+//! What always holds: what is joined is a frame that [`decode`](crate::decode) reads;
+//! however messages come, [`Joiner`] keeps no more than [`MOST_OPEN`] frames' worth of
+//! them; no octets make either panic.
+
+use crate::batch::StreamId;
+use crate::codec::{self, DecodeError};
+use std::collections::VecDeque;
+
+/// The largest message that any of these modems takes.
+pub const MESSAGE_OCTETS: usize = 340;
+/// Parts of one frame.
+pub const PARTS_MAX: usize = 16;
+/// Frames that a joiner waits for the rest of.
+pub const MOST_OPEN: usize = 256;
+
+/// First octet of a part of a frame.
+const PART: u8 = 0xb1;
+/// First octet of an acknowledgement.
+const ACK: u8 = 0xb2;
+/// Kind and check.
+const HEAD_OCTETS: usize = 3;
+const TAG_OCTETS: usize = 4;
+const VARINT_MAX: usize = 10;
+
+/// Why a frame cannot be cut, or a message not be read.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BurstError {
+    /// Not a frame, whole or joined.
+    #[error(transparent)]
+    Frame(#[from] DecodeError),
+    /// It would take more than [`PARTS_MAX`] messages.
+    #[error("a frame of {0} octets is too large for {PARTS_MAX} messages")]
+    TooLarge(usize),
+    /// More than [`MESSAGE_OCTETS`].
+    #[error("a message of {0} octets is too long")]
+    TooLong(usize),
+    /// Not one of these messages.
+    #[error("not a short-burst message")]
+    NotOurs,
+    /// Ends within its head.
+    #[error("the message is cut short")]
+    Truncated,
+    /// The check does not fit.
+    #[error("the message is damaged")]
+    Damaged,
+    /// A part beyond the last.
+    #[error("part {part} of {parts}")]
+    NoSuchPart {
+        /// From 0.
+        part: usize,
+        /// How many there are.
+        parts: usize,
+    },
+}
+
+/// What stands for a stream in a message: the end of its UUID.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct StreamTag([u8; TAG_OCTETS]);
+
+impl StreamTag {
+    /// Of a stream.
+    pub fn of(stream: StreamId) -> StreamTag {
+        let octets = stream.0.as_bytes();
+        let mut tag = [0; TAG_OCTETS];
+        tag.copy_from_slice(&octets[octets.len() - TAG_OCTETS..]);
+        StreamTag(tag)
+    }
+}
+
+/// Every batch up to this one is durable on shore.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Ack {
+    /// Whose.
+    pub stream: StreamTag,
+    /// As in [`Downlink`](crate::messages::Downlink).
+    pub contiguous_seq: u64,
+}
+
+/// The octets of a frame that so many messages carry, whatever its number.
+pub const fn capacity(messages: usize) -> usize {
+    messages * (MESSAGE_OCTETS - HEAD_OCTETS - TAG_OCTETS - VARINT_MAX - 1)
+}
+
+/// Cuts a frame into messages, as even as they can be.
+///
+/// # Errors
+/// When it is not a frame, or too large.
+pub fn split(frame: &[u8]) -> Result<Vec<Vec<u8>>, BurstError> {
+    let batch = codec::decode(frame)?;
+    let mut head = StreamTag::of(batch.stream).0.to_vec();
+    put_varint(&mut head, batch.seq);
+    let room = MESSAGE_OCTETS - HEAD_OCTETS - head.len() - 1;
+    let parts = frame.len().div_ceil(room);
+    if parts > PARTS_MAX {
+        return Err(BurstError::TooLarge(frame.len()));
+    }
+    let chunks = frame.chunks(frame.len().div_ceil(parts));
+    let messages = chunks.enumerate().map(|(part, chunk)| {
+        let mut content = head.clone();
+        content.push((part << 4 | (parts - 1)) as u8);
+        content.extend(chunk);
+        message(PART, &content)
+    });
+    Ok(messages.collect())
+}
+
+/// The shore's answer.
+pub fn write_ack(ack: Ack) -> Vec<u8> {
+    let mut content = ack.stream.0.to_vec();
+    put_varint(&mut content, ack.contiguous_seq);
+    message(ACK, &content)
+}
+
+/// Reads what [`write_ack`] wrote; what a later shore may add to it is passed over.
+///
+/// # Errors
+/// When the message is another one, or damaged.
+pub fn read_ack(octets: &[u8]) -> Result<Ack, BurstError> {
+    let mut rest = content(ACK, octets)?;
+    Ok(Ack {
+        stream: take_tag(&mut rest)?,
+        contiguous_seq: take_varint(&mut rest)?,
+    })
+}
+
+/// Joins the parts of frames, in whatever order they come.
+#[derive(Debug, Default)]
+pub struct Joiner {
+    /// The one that was begun first in front.
+    open: VecDeque<Open>,
+}
+
+/// A frame of which not everything is there.
+#[derive(Debug)]
+struct Open {
+    stream: StreamTag,
+    seq: u64,
+    parts: Vec<Option<Vec<u8>>>,
+}
+
+impl Joiner {
+    /// Takes a message; the frame, when it was the last part of one.
+    ///
+    /// A part that came before in other octets begins its frame anew: an agent's spool
+    /// may have been lost. A frame that was joined and begins again is joined again.
+    ///
+    /// # Errors
+    /// When the message is none, or what was joined is no frame; that one is forgotten.
+    pub fn take(&mut self, octets: &[u8]) -> Result<Option<Vec<u8>>, BurstError> {
+        let mut rest = content(PART, octets)?;
+        let (stream, seq) = (take_tag(&mut rest)?, take_varint(&mut rest)?);
+        let (&place, chunk) = rest.split_first().ok_or(BurstError::Truncated)?;
+        let (part, parts) = (usize::from(place >> 4), usize::from(place & 15) + 1);
+        if part >= parts {
+            return Err(BurstError::NoSuchPart { part, parts });
+        }
+        let known = |open: &Open| (open.stream, open.seq) == (stream, seq);
+        let mut open = match self.open.iter().position(known) {
+            Some(index) => self
+                .open
+                .remove(index)
+                .unwrap_or(Open::new(stream, seq, parts)),
+            None => Open::new(stream, seq, parts),
+        };
+        let is_other = |known: &Vec<u8>| known != chunk;
+        if open.parts.len() != parts || open.parts[part].as_ref().is_some_and(is_other) {
+            open = Open::new(stream, seq, parts);
+        }
+        open.parts[part] = Some(chunk.to_vec());
+        let Some(chunks) = open.parts.iter().cloned().collect::<Option<Vec<_>>>() else {
+            self.open.push_back(open);
+            if self.open.len() > MOST_OPEN {
+                self.open.pop_front();
+            }
+            return Ok(None);
+        };
+        let frame = chunks.concat();
+        codec::decode(&frame)?;
+        Ok(Some(frame))
+    }
+
+    /// Frames of which parts are missing: the stream, the number, and how many are there
+    /// of how many.
+    pub fn incomplete(&self) -> impl Iterator<Item = (StreamTag, u64, usize, usize)> {
+        self.open.iter().map(|open| {
+            let there = open.parts.iter().flatten().count();
+            (open.stream, open.seq, there, open.parts.len())
+        })
+    }
+}
+
+impl Open {
+    fn new(stream: StreamTag, seq: u64, parts: usize) -> Open {
+        Open {
+            stream,
+            seq,
+            parts: vec![None; parts],
+        }
+    }
+}
+
+fn message(kind: u8, content: &[u8]) -> Vec<u8> {
+    let mut octets = vec![kind];
+    octets.extend(check(kind, content).to_le_bytes());
+    octets.extend(content);
+    octets
+}
+
+/// What follows kind and check, if they are right.
+fn content(kind: u8, octets: &[u8]) -> Result<&[u8], BurstError> {
+    if octets.len() > MESSAGE_OCTETS {
+        return Err(BurstError::TooLong(octets.len()));
+    }
+    let (head, content) = octets
+        .split_first_chunk::<HEAD_OCTETS>()
+        .ok_or(BurstError::Truncated)?;
+    if head[0] != kind {
+        return Err(BurstError::NotOurs);
+    }
+    if u16::from_le_bytes([head[1], head[2]]) != check(kind, content) {
+        return Err(BurstError::Damaged);
+    }
+    Ok(content)
+}
+
+/// The low half of the CRC-32 of kind and content.
+fn check(kind: u8, content: &[u8]) -> u16 {
+    let mut crc = crc32fast::Hasher::new();
+    crc.update(&[kind]);
+    crc.update(content);
+    crc.finalize() as u16
+}
+
+fn put_varint(octets: &mut Vec<u8>, mut value: u64) {
+    while value >= 0x80 {
+        octets.push(value as u8 | 0x80);
+        value >>= 7;
+    }
+    octets.push(value as u8);
+}
+
+fn take_varint(rest: &mut &[u8]) -> Result<u64, BurstError> {
+    let mut value = 0_u64;
+    for shift in (0..64).step_by(7) {
+        let (&octet, left) = rest.split_first().ok_or(BurstError::Truncated)?;
+        *rest = left;
+        let bits = u64::from(octet & 0x7f);
+        if bits << shift >> shift != bits {
+            return Err(BurstError::Damaged);
+        }
+        value |= bits << shift;
+        if octet & 0x80 == 0 {
+            return Ok(value);
+        }
+    }
+    Err(BurstError::Damaged)
+}
+
+fn take_tag(rest: &mut &[u8]) -> Result<StreamTag, BurstError> {
+    let (tag, left) = rest
+        .split_first_chunk::<TAG_OCTETS>()
+        .ok_or(BurstError::Truncated)?;
+    *rest = left;
+    Ok(StreamTag(*tag))
+}

@@ -1,0 +1,170 @@
+//! Frames over a link of short messages.
+
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
+mod support;
+
+use binnacle_wire::burst::{
+    Ack, BurstError, Joiner, MESSAGE_OCTETS, MOST_OPEN, StreamTag, capacity, read_ack, split,
+    write_ack,
+};
+use binnacle_wire::encode;
+use proptest::prelude::*;
+use std::fmt::Write as _;
+use std::path::Path;
+use support::{Dice, batch, voyage};
+
+fn day(seed: u64) -> Vec<u8> {
+    encode(&batch(40 + seed, voyage(seed, 144))).unwrap()
+}
+
+#[test]
+fn an_ordinary_day_fits_into_three_messages() {
+    // Not one ten minutes of the day is missing; most days have fewer samples.
+    for seed in 0..50 {
+        let messages = split(&day(seed)).unwrap();
+        assert!(messages.len() <= 3, "seed {seed}: {}", messages.len());
+        assert!(messages.iter().all(|m| m.len() <= MESSAGE_OCTETS));
+    }
+}
+
+#[test]
+fn what_the_capacity_promises_fits() {
+    for samples in 1..400 {
+        let mut sent = batch(u64::MAX >> 12, voyage(3, samples));
+        sent.seq = u64::MAX;
+        let frame = encode(&sent).unwrap();
+        let parts = split(&frame).unwrap().len();
+        assert!(frame.len() > capacity(parts - 1), "{samples}");
+    }
+}
+
+#[test]
+fn days_come_back_whatever_is_repeated_reordered_and_mixed() {
+    let mut dice = Dice(5);
+    let frames: Vec<Vec<u8>> = (0..20).map(day).collect();
+    let once: Vec<Vec<u8>> = frames.iter().flat_map(|f| split(f).unwrap()).collect();
+    let mut messages = [once.clone(), once].concat();
+    for index in (1..messages.len()).rev() {
+        messages.swap(index, dice.next() as usize % (index + 1));
+    }
+    let mut joiner = Joiner::default();
+    let joined = messages.iter().filter_map(|m| joiner.take(m).unwrap());
+    let mut joined: Vec<Vec<u8>> = joined.collect();
+    joined.sort();
+    joined.dedup();
+    let mut wanted = frames;
+    wanted.sort();
+    assert_eq!(joined, wanted);
+}
+
+#[test]
+fn a_damaged_message_is_refused_and_the_frame_waits_for_a_whole_one() {
+    let frame = day(1);
+    let messages = split(&frame).unwrap();
+    for bit in 0..messages[0].len() * 8 {
+        let mut damaged = messages[0].clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        assert!(Joiner::default().take(&damaged).is_err(), "bit {bit}");
+    }
+    let mut joiner = Joiner::default();
+    let mut damaged = messages[1].clone();
+    damaged[100] ^= 4;
+    assert_eq!(joiner.take(&messages[0]), Ok(None));
+    assert_eq!(joiner.take(&damaged), Err(BurstError::Damaged));
+    assert_eq!(joiner.take(&messages[2]), Ok(None));
+    let incomplete: Vec<_> = joiner.incomplete().collect();
+    assert_eq!(incomplete.len(), 1);
+    assert_eq!(
+        (incomplete[0].1, incomplete[0].2, incomplete[0].3),
+        (41, 2, 3)
+    );
+    assert_eq!(joiner.take(&messages[1]), Ok(Some(frame)));
+    assert_eq!(joiner.incomplete().count(), 0);
+}
+
+#[test]
+fn parts_of_two_frames_of_one_number_are_never_mixed() {
+    let first = split(&encode(&batch(9, voyage(1, 144))).unwrap()).unwrap();
+    let frame = encode(&batch(9, voyage(2, 144))).unwrap();
+    let second = split(&frame).unwrap();
+    let mut joiner = Joiner::default();
+    joiner.take(&first[0]).unwrap();
+    joiner.take(&first[1]).unwrap();
+    joiner.take(&second[0]).unwrap();
+    joiner.take(&second[1]).unwrap();
+    assert_eq!(joiner.take(&second[2]), Ok(Some(frame)));
+}
+
+#[test]
+fn what_never_completes_is_forgotten_in_time() {
+    let mut joiner = Joiner::default();
+    for seq in 0..2 * MOST_OPEN as u64 {
+        let frame = encode(&batch(seq + 1, voyage(1, 114))).unwrap();
+        joiner.take(&split(&frame).unwrap()[0]).unwrap();
+    }
+    assert_eq!(joiner.incomplete().count(), MOST_OPEN);
+    assert!(joiner.incomplete().all(|open| open.1 > MOST_OPEN as u64));
+}
+
+#[test]
+fn too_much_for_sixteen_messages_is_refused() {
+    let frame = encode(&batch(1, voyage(1, 3000))).unwrap();
+    assert_eq!(split(&frame), Err(BurstError::TooLarge(frame.len())));
+    assert!(matches!(split(&frame[1..]), Err(BurstError::Frame(_))));
+}
+
+#[test]
+fn an_acknowledgement_is_read_with_what_a_later_shore_adds() {
+    let ack = Ack {
+        stream: StreamTag::of(batch(1, Vec::new()).stream),
+        contiguous_seq: 300,
+    };
+    assert_eq!(read_ack(&write_ack(ack)), Ok(ack));
+    assert_eq!(read_ack(&write_ack(ack)[..5]), Err(BurstError::Damaged));
+    let part = &split(&day(1)).unwrap()[0];
+    assert_eq!(read_ack(part), Err(BurstError::NotOurs));
+}
+
+fn hex(octets: &[u8]) -> String {
+    let mut text = String::new();
+    for octet in octets {
+        write!(text, "{octet:02x}").unwrap();
+    }
+    text
+}
+
+/// One message a line; the last line is the frame. Never changed, as the frames are.
+#[test]
+fn the_vector_is_what_is_written() {
+    let frame = encode(&batch(130, voyage(2, 114))).unwrap();
+    let ack = Ack {
+        stream: StreamTag::of(batch(1, Vec::new()).stream),
+        contiguous_seq: 130,
+    };
+    let mut lines: Vec<String> = split(&frame).unwrap().iter().map(|m| hex(m)).collect();
+    lines.push(hex(&write_ack(ack)));
+    lines.push(hex(&frame));
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/bursts/day.txt");
+    if std::env::var_os("UPDATE_VECTORS").is_some() && !path.exists() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, lines.join("\n") + "\n").unwrap();
+    }
+    let vector = std::fs::read_to_string(&path).unwrap();
+    assert_eq!(vector.lines().collect::<Vec<_>>(), lines);
+}
+
+proptest! {
+    #[test]
+    fn no_octets_make_the_joiner_panic(octets in prop::collection::vec(any::<u8>(), 0..400)) {
+        let _ = Joiner::default().take(&octets);
+        let _ = read_ack(&octets);
+        // With a check that fits, so that what lies behind it is reached.
+        for kind in [0xb1_u8, 0xb2] {
+            let crc = crc32fast::hash(&[&[kind][..], &octets[..]].concat()) as u16;
+            let message = [&[kind][..], &crc.to_le_bytes(), &octets[..]].concat();
+            let _ = Joiner::default().take(&message);
+            let _ = read_ack(&message);
+        }
+    }
+}
