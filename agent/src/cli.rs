@@ -40,7 +40,8 @@ enum Command {
     /// Listens to the instruments, sends samples ashore, puts the corrected heading out.
     ///
     /// How often it sends, and for how many octets a day, is the `profile` of `[uplink]`
-    /// in the configuration: standard, broadband, vsat, metered or very-metered.
+    /// in the configuration: standard, broadband, vsat, metered, very-metered
+    /// or short-burst.
     Run {
         /// The configuration file.
         #[arg(long, default_value = "agent.toml")]

@@ -21,6 +21,8 @@ mod weak_field;
 
 mod ring;
 mod spool;
+
+mod burst;
 mod uplink;
 
 mod corrected;

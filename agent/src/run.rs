@@ -6,6 +6,7 @@
 //! played fast is throttled and never lost.
 
 use crate::alert::{Aboard, AlarmSentence, Card, Lookout};
+use crate::burst::{self, FileModem};
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
 use crate::corrected::{self, Corrected, Ingredients};
@@ -21,6 +22,7 @@ use crate::ship::{Latest, Ship};
 use crate::spool::{MOST_PENDING, Pending, Seal, Spool, is_want_of_room};
 use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{self, LinkState, LinkStatus, Plan, Told};
+use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::ShipAlert;
@@ -124,6 +126,11 @@ impl Agent {
         };
         let page = page::serve(config.page.as_ref(), served, shutdown).await?;
         let uplink = tokio::spawn(uplink.run(shutdown.clone()));
+        if let Some(modem) = &config.modem {
+            let modem = FileModem::open(modem.directory())
+                .with_context(|| modem.directory().display().to_string())?;
+            tokio::spawn(burst::run(spool.clone(), modem, shutdown.clone()));
+        }
 
         let (tx, observations) = mpsc::channel(CHANNEL);
         let mut inputs = Vec::new();
@@ -373,11 +380,15 @@ impl Agent {
     /// Within the disk, and within what the link may cost.
     async fn make_room(&self) {
         let within_disk = self.spool.make_room(self.spool_limit_bytes).await;
+        let within_messages = match self.plan.batch_octets() {
+            Some(octets) => self.spool.thin_each(octets).await,
+            None => Ok(()),
+        };
         let within_budget = match self.plan.backlog_octets() {
             Some(octets) => self.spool.thin_backlog(octets).await,
             None => Ok(()),
         };
-        if let Err(error) = within_disk.and(within_budget) {
+        if let Err(error) = within_messages.and(within_disk).and(within_budget) {
             tracing::error!(%error, "the spool cannot be thinned");
         }
     }

@@ -6,14 +6,15 @@
 
 mod alert;
 mod roles;
+mod uplink;
 
 pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
 pub(crate) use roles::{RolesConfig, SourceConfig};
+pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
 use crate::input::InputConfig;
-use crate::uplink::{Plan, Profile};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -21,7 +22,6 @@ use std::net::SocketAddr;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use toml::Spanned;
 
 /// All of `agent.toml`.
 #[derive(Debug, Deserialize)]
@@ -49,6 +49,8 @@ pub(crate) struct Config {
     /// How the shore is spoken to.
     #[serde(default)]
     pub(crate) uplink: UplinkConfig,
+    /// What carries short-burst messages.
+    pub(crate) modem: Option<ModemConfig>,
     /// When the agent raises its own alert.
     #[serde(default)]
     pub(crate) alert: AlertConfig,
@@ -106,51 +108,6 @@ fn standard_baud() -> u32 {
 pub(crate) struct PageConfig {
     /// Address and port; port 0 takes a free one.
     pub(crate) listen: SocketAddr,
-}
-
-/// How the shore is spoken to.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct UplinkConfig {
-    /// A PEM file: the only authority whose certificates are believed.
-    pub(crate) pinned_ca: Option<PathBuf>,
-    /// What the link costs: how often the shore is spoken to, and for how much.
-    pub(crate) profile: Profile,
-    /// A budget in place of the profile's.
-    pub(crate) day_kb: Option<DayBudget>,
-    /// Asks for news when nothing was sent for so many seconds, in place of the
-    /// profile's time.
-    pub(crate) poll_s: Option<PositiveSeconds>,
-    /// The first pause after a failure, at most.
-    pub(crate) retry_min_s: Spanned<PositiveSeconds>,
-    /// The longest pause after failures.
-    pub(crate) retry_max_s: Spanned<PositiveSeconds>,
-}
-
-impl Default for UplinkConfig {
-    fn default() -> UplinkConfig {
-        UplinkConfig {
-            pinned_ca: None,
-            profile: Profile::default(),
-            day_kb: None,
-            poll_s: None,
-            retry_min_s: Spanned::new(0..0, PositiveSeconds(30.0)),
-            retry_max_s: Spanned::new(0..0, PositiveSeconds(3_600.0)),
-        }
-    }
-}
-
-impl UplinkConfig {
-    /// What the profile and the budget come to.
-    pub(crate) fn plan(&self) -> Plan {
-        self.profile.plan(self.day_kb.map(DayBudget::octets))
-    }
-
-    /// Asks for news when nothing was sent for so long.
-    pub(crate) fn poll(&self) -> Duration {
-        self.poll_s
-            .map_or_else(|| self.plan().poll(), PositiveSeconds::duration)
-    }
 }
 
 /// When a source counts as silent.
@@ -229,31 +186,6 @@ impl TryFrom<f64> for RingLimit {
     }
 }
 
-/// Kilobytes (of a thousand bytes) a day, from 3, one exchange, to a million.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "f64")]
-pub(crate) struct DayBudget(f64);
-
-impl DayBudget {
-    /// In octets.
-    pub(crate) fn octets(self) -> f64 {
-        self.0 * 1e3
-    }
-}
-
-impl TryFrom<f64> for DayBudget {
-    type Error = String;
-    fn try_from(kilobytes: f64) -> Result<DayBudget, String> {
-        if (3.0..=1e6).contains(&kilobytes) {
-            Ok(DayBudget(kilobytes))
-        } else {
-            Err(format!(
-                "{kilobytes} is not from 3 to 1000000 kilobytes a day"
-            ))
-        }
-    }
-}
-
 /// Seconds, from a hundredth to a year.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Deserialize)]
 #[serde(try_from = "f64")]
@@ -315,6 +247,9 @@ impl Config {
         if let Some(ca) = &mut config.uplink.pinned_ca {
             *ca = directory.join(&ca);
         }
+        if let Some(modem) = &mut config.modem {
+            modem.resolve(directory);
+        }
         for input in config.inputs.values_mut() {
             input.resolve(directory);
         }
@@ -342,19 +277,7 @@ fn parse(text: &str) -> Result<Config, Wrong> {
             });
         }
     }
-    let (min, max) = (&config.uplink.retry_min_s, &config.uplink.retry_max_s);
-    if min.get_ref() > max.get_ref() {
-        // What was left out has no place in the file.
-        let (wrong, other) = if min.span().is_empty() {
-            (max, format!("less than retry_min_s, {}", min.get_ref().0))
-        } else {
-            (min, format!("more than retry_max_s, {}", max.get_ref().0))
-        };
-        return Err(Wrong {
-            span: Some(wrong.span()),
-            problem: format!("{} is {other}", wrong.get_ref().0),
-        });
-    }
+    config.uplink.check(config.modem.as_ref())?;
     Ok(config)
 }
 
@@ -391,14 +314,14 @@ fn key_before(text: &str) -> String {
 mod tests {
     use super::*;
 
-    fn message(text: &str) -> String {
+    pub(super) fn message(text: &str) -> String {
         parse(text)
             .expect_err("this configuration is wrong")
             .in_file(Path::new("agent.toml"), text)
             .to_string()
     }
 
-    const WHOLE: &str = r#"
+    pub(super) const WHOLE: &str = r#"
 data_dir = "state"
 [inputs.bridge]
 tcp = "127.0.0.1:10110"
@@ -488,35 +411,6 @@ stale_s = 15
             "agent.toml:3: ring_mb: 0.5 is neither 0 nor from 1 to 10000 megabytes"
         );
         assert!(message("").contains("data_dir"));
-    }
-
-    #[test]
-    fn a_profile_says_how_often_and_for_how_much_and_single_settings_override_it() {
-        let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
-        let plan = bare.uplink.plan();
-        assert_eq!((plan.seal_s, plan.day_octets), (21_600, None));
-        let uplink = |lines: &str| {
-            let text = format!("data_dir = \"d\"\n[uplink]\n{lines}");
-            parse(&text).map_err(|w| w.problem).unwrap().uplink
-        };
-        let metered = uplink("profile = \"metered\"");
-        assert_eq!(metered.plan().seal_s, 86_400);
-        assert_eq!(metered.plan().day_octets, Some(8_000.0));
-        assert_eq!(metered.poll(), Duration::from_hours(36));
-        let own = uplink("profile = \"very-metered\"\nday_kb = 12\npoll_s = 60");
-        assert_eq!(own.plan().day_octets, Some(12_000.0));
-        assert_eq!(own.poll(), Duration::from_mins(1));
-        let wrong = WHOLE.replace("poll_s = 21600", "profile = \"modem\"");
-        let said = message(&wrong);
-        assert!(
-            said.starts_with("agent.toml:19: profile: ") && said.contains("very-metered"),
-            "{said}"
-        );
-        let wrong = WHOLE.replace("poll_s = 21600", "day_kb = 0.5");
-        assert_eq!(
-            message(&wrong),
-            "agent.toml:19: day_kb: 0.5 is not from 3 to 1000000 kilobytes a day"
-        );
     }
 
     #[test]

@@ -183,7 +183,7 @@ impl Spool {
     }
 }
 
-async fn remember(
+pub(super) async fn remember(
     tx: &mut SqliteConnection,
     stream: StreamId,
     batch: &SealedBatch,

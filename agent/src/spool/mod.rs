@@ -18,6 +18,7 @@
 //!   ten minutes that the sampler is still in.
 
 mod batches;
+mod bursts;
 mod repair;
 mod reports;
 mod room;
@@ -93,7 +94,7 @@ const THINNED: &str = "thinned";
 const ACCOUNT: &str = "account";
 
 /// Columns of `batches` that earlier agents did not have.
-const LATER_COLUMNS: [(&str, &str); 3] = [
+const LATER_COLUMNS: [(&str, &str); 4] = [
     (
         "urgent",
         "ALTER TABLE batches ADD COLUMN urgent BOOLEAN NOT NULL DEFAULT FALSE",
@@ -106,6 +107,10 @@ const LATER_COLUMNS: [(&str, &str); 3] = [
     (
         "thinned",
         "ALTER TABLE batches ADD COLUMN thinned BIGINT NOT NULL DEFAULT 0",
+    ),
+    (
+        "burst",
+        "ALTER TABLE batches ADD COLUMN burst BIGINT NOT NULL DEFAULT 0",
     ),
 ];
 
@@ -372,4 +377,4 @@ fn create_private(directory: &Path, _file: &Path) -> std::io::Result<()> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -67,7 +67,7 @@ impl Spool {
                 .bind(MOST_QUARANTINED)
                 .execute(&mut *tx)
                 .await?;
-            let touched = thin_batches(&mut tx).await? + thin_pending(&mut tx).await?;
+            let touched = thin_batches(&mut tx, 0).await? + thin_pending(&mut tx).await?;
             tx.commit().await?;
             if touched == 0 {
                 tracing::warn!(limit_bytes, "the spool is full of what cannot be thinned");
@@ -83,7 +83,20 @@ impl Spool {
     pub(crate) async fn thin_backlog(&self, limit_octets: u64) -> sqlx::Result<()> {
         loop {
             let mut tx = self.write().await?;
-            if backlog_octets(&mut tx).await? <= limit_octets || thin_batches(&mut tx).await? == 0 {
+            if backlog_octets(&mut tx).await? <= limit_octets
+                || thin_batches(&mut tx, 0).await? == 0
+            {
+                return Ok(());
+            }
+            tx.commit().await?;
+        }
+    }
+
+    /// Thins every batch until it has no more than so many octets, as far as it may be.
+    pub(crate) async fn thin_each(&self, octets: usize) -> sqlx::Result<()> {
+        loop {
+            let mut tx = self.write().await?;
+            if thin_batches(&mut tx, octets).await? == 0 {
                 return Ok(());
             }
             tx.commit().await?;
@@ -111,15 +124,18 @@ pub(super) async fn used_bytes(connection: &mut SqliteConnection) -> sqlx::Resul
     Ok(((pages - free) * size).unsigned_abs())
 }
 
-/// Thins the oldest of those batches that were thinned least; says how many.
-async fn thin_batches(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
+/// Thins the oldest of those batches, larger than this, that were thinned least; says how
+/// many.
+async fn thin_batches(tx: &mut SqliteConnection, octets: usize) -> sqlx::Result<usize> {
     let rows: Vec<(i64, Vec<u8>, i64)> = sqlx::query_as(
         "SELECT seq, bytes, thinned FROM batches
          WHERE standing <> 'acknowledged' AND NOT tried AND NOT urgent AND thinned < $1
+               AND LENGTH(bytes) > $3
          ORDER BY thinned, seq LIMIT $2",
     )
     .bind(DEEPEST)
     .bind(BATCHES_AT_ONCE)
+    .bind(i64::try_from(octets).unwrap_or(i64::MAX))
     .fetch_all(&mut *tx)
     .await?;
     for (seq, bytes, level) in &rows {
@@ -258,10 +274,9 @@ fn sum(a: Thinned, b: Thinned) -> Thinned {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{accepted, alert, identity, sample};
+    use super::super::tests::{accepted, alert, identity, restless, sample};
     use super::*;
     use crate::spool::{Seal, Spool};
-    use binnacle_magnetics::angle::CompassHeading;
     use binnacle_wire::batch::Batch;
     use std::collections::BTreeSet;
     use tempfile::TempDir;
@@ -416,29 +431,6 @@ mod tests {
             .map(|t| t.samples)
             .sum();
         assert_eq!(left + thinned, 21_000);
-    }
-
-    /// A sample every ten seconds with noise in every column: the densest that any
-    /// settings allow, and what compresses least.
-    fn restless(window: i64) -> Sample {
-        // Multiplicative hashing: noise that is the same in every run.
-        let noise = |column: i64| {
-            let mixed = (window * 10 + column).cast_unsigned() + 1;
-            let mixed = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-            f64::from(((mixed ^ (mixed >> 29)) >> 40) as u32 & 0xffff) / 65_536.0
-        };
-        let heading_deg = 97.0 + 4.0 * noise(0);
-        Sample {
-            time: sample(0).time.plus_seconds(10.0 * window as f64),
-            compass: CompassHeading::new(heading_deg + 2.0 * noise(1)).unwrap(),
-            gyro: TrueHeading::new(heading_deg),
-            satellite: TrueHeading::new(heading_deg + noise(2)),
-            sog_kn: Some(12.0 + 3.0 * noise(3)),
-            rate_of_turn_deg_min: Some(10.0 * noise(4) - 5.0),
-            spread_deg: Some(noise(5)),
-            windows: 1,
-            ..sample(0)
-        }
     }
 
     #[tokio::test]

@@ -19,7 +19,8 @@ CREATE TABLE IF NOT EXISTS batches (
     problem  TEXT,
     urgent   BOOLEAN NOT NULL DEFAULT FALSE,
     tried    BOOLEAN NOT NULL DEFAULT FALSE,
-    thinned  BIGINT NOT NULL DEFAULT 0
+    thinned  BIGINT NOT NULL DEFAULT 0,
+    burst    BIGINT NOT NULL DEFAULT 0 -- messages that are out; -1 all, -2 none ever
 );
 CREATE TABLE IF NOT EXISTS acknowledged (
     id      INTEGER PRIMARY KEY,

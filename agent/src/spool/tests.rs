@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use tempfile::TempDir;
 use uuid::Uuid;
 
-pub(super) fn sample(minute: i64) -> Sample {
+pub(crate) fn sample(minute: i64) -> Sample {
     Sample {
         time: Timestamp::from_micros((1_700_000_000 + minute * 60) * 1_000_000).unwrap(),
         position: Position::new(43.0, -3.0).unwrap(),
@@ -23,7 +23,7 @@ pub(super) fn sample(minute: i64) -> Sample {
     }
 }
 
-pub(super) fn identity(stream: u128) -> Identity {
+pub(crate) fn identity(stream: u128) -> Identity {
     Identity {
         server: "http://127.0.0.1:1".to_owned(),
         token: "secret-token".to_owned(),
@@ -44,8 +44,31 @@ fn downlink(contiguous_seq: u64) -> Downlink {
     }
 }
 
-pub(super) fn accepted(windows: u64) -> BTreeMap<String, u64> {
+pub(crate) fn accepted(windows: u64) -> BTreeMap<String, u64> {
     BTreeMap::from([("accepted".to_owned(), windows)])
+}
+
+/// A sample every ten seconds with noise in every column: the densest that any
+/// settings allow, and what compresses least.
+pub(crate) fn restless(window: i64) -> Sample {
+    // Multiplicative hashing: noise that is the same in every run.
+    let noise = |column: i64| {
+        let mixed = (window * 10 + column).cast_unsigned() + 1;
+        let mixed = mixed.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        f64::from(((mixed ^ (mixed >> 29)) >> 40) as u32 & 0xffff) / 65_536.0
+    };
+    let heading_deg = 97.0 + 4.0 * noise(0);
+    Sample {
+        time: sample(0).time.plus_seconds(10.0 * window as f64),
+        compass: CompassHeading::new(heading_deg + 2.0 * noise(1)).unwrap(),
+        gyro: TrueHeading::new(heading_deg),
+        satellite: TrueHeading::new(heading_deg + noise(2)),
+        sog_kn: Some(12.0 + 3.0 * noise(3)),
+        rate_of_turn_deg_min: Some(10.0 * noise(4) - 5.0),
+        spread_deg: Some(noise(5)),
+        windows: 1,
+        ..sample(0)
+    }
 }
 
 async fn enrolled() -> (TempDir, Spool) {
@@ -349,7 +372,7 @@ async fn sealing_goes_on_when_damage_took_the_counter() {
     assert_eq!((standing.waiting_batches, standing.pending_samples), (2, 0));
 }
 
-pub(super) fn alert(revision: u32) -> ShipAlert {
+pub(crate) fn alert(revision: u32) -> ShipAlert {
     ShipAlert {
         id: Uuid::from_u128(0xa1),
         revision,

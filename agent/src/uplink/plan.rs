@@ -12,6 +12,7 @@
 //!   samples may not, and what has no samples leaves [`RESERVE_DAYS`] to those. What
 //!   cannot be afforded waits, and is never dropped.
 
+use crate::burst;
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -49,6 +50,8 @@ pub(crate) enum Profile {
     Metered,
     /// Every three days.
     VeryMetered,
+    /// Once a day, in three short messages over a modem.
+    ShortBurst,
 }
 
 impl fmt::Display for Profile {
@@ -59,6 +62,7 @@ impl fmt::Display for Profile {
             Profile::Vsat => "vsat",
             Profile::Metered => "metered",
             Profile::VeryMetered => "very-metered",
+            Profile::ShortBurst => "short-burst",
         })
     }
 }
@@ -82,6 +86,7 @@ impl Profile {
             Profile::Vsat => (3_600, Some(64_000.0)),
             Profile::Metered => (86_400, Some(8_000.0)),
             Profile::VeryMetered => (3 * 86_400, Some(3_000.0)),
+            Profile::ShortBurst => (86_400, None),
         };
         Plan {
             profile: self,
@@ -96,6 +101,11 @@ impl Plan {
     /// two batches, so that a ship under way never opens a connection for it.
     pub(crate) fn poll(&self) -> Duration {
         Duration::from_secs(u64::from(self.seal_s) * 3 / 2)
+    }
+
+    /// A batch is thinned when it is larger.
+    pub(crate) fn batch_octets(&self) -> Option<usize> {
+        (self.profile == Profile::ShortBurst).then(burst::batch_octets)
     }
 
     /// What may wait before it is thinned, in octets as they are paid for.
@@ -285,6 +295,7 @@ mod tests {
             Profile::Vsat,
             Profile::Metered,
             Profile::VeryMetered,
+            Profile::ShortBurst,
         ] {
             let name = serde_json::to_string(&profile).unwrap();
             assert_eq!(name, format!("\"{profile}\""));

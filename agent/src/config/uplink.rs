@@ -1,0 +1,189 @@
+//! How the shore is spoken to, and over what.
+
+use super::{PositiveSeconds, Wrong};
+use crate::uplink::{Plan, Profile};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use toml::Spanned;
+
+/// How the shore is spoken to.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct UplinkConfig {
+    /// A PEM file: the only authority whose certificates are believed.
+    pub(crate) pinned_ca: Option<PathBuf>,
+    /// What the link costs: how often the shore is spoken to, and for how much.
+    pub(crate) profile: Spanned<Profile>,
+    /// A budget in place of the profile's.
+    pub(crate) day_kb: Option<DayBudget>,
+    /// Asks for news when nothing was sent for so many seconds, in place of the
+    /// profile's time.
+    pub(crate) poll_s: Option<PositiveSeconds>,
+    /// The first pause after a failure, at most.
+    pub(crate) retry_min_s: Spanned<PositiveSeconds>,
+    /// The longest pause after failures.
+    pub(crate) retry_max_s: Spanned<PositiveSeconds>,
+}
+
+impl Default for UplinkConfig {
+    fn default() -> UplinkConfig {
+        UplinkConfig {
+            pinned_ca: None,
+            profile: Spanned::new(0..0, Profile::default()),
+            day_kb: None,
+            poll_s: None,
+            retry_min_s: Spanned::new(0..0, PositiveSeconds(30.0)),
+            retry_max_s: Spanned::new(0..0, PositiveSeconds(3_600.0)),
+        }
+    }
+}
+
+impl UplinkConfig {
+    /// What the profile and the budget come to.
+    pub(crate) fn plan(&self) -> Plan {
+        self.profile
+            .get_ref()
+            .plan(self.day_kb.map(DayBudget::octets))
+    }
+
+    /// Whether the settings go together.
+    pub(super) fn check(&self, modem: Option<&ModemConfig>) -> Result<(), Wrong> {
+        let is_burst = *self.profile.get_ref() == Profile::ShortBurst;
+        match modem {
+            None if is_burst => {
+                return Err(Wrong {
+                    span: Some(self.profile.span()),
+                    problem: "short-burst needs a [modem]".to_owned(),
+                });
+            }
+            Some(modem) if !is_burst => {
+                return Err(Wrong {
+                    span: Some(modem.directory.span()),
+                    problem: "a modem serves the profile short-burst only".to_owned(),
+                });
+            }
+            _ => {}
+        }
+        let (min, max) = (&self.retry_min_s, &self.retry_max_s);
+        if min.get_ref() > max.get_ref() {
+            // What was left out has no place in the file.
+            let (wrong, other) = if min.span().is_empty() {
+                (max, format!("less than retry_min_s, {}", min.get_ref().0))
+            } else {
+                (min, format!("more than retry_max_s, {}", max.get_ref().0))
+            };
+            return Err(Wrong {
+                span: Some(wrong.span()),
+                problem: format!("{} is {other}", wrong.get_ref().0),
+            });
+        }
+        Ok(())
+    }
+
+    /// Asks for news when nothing was sent for so long.
+    pub(crate) fn poll(&self) -> Duration {
+        self.poll_s
+            .map_or_else(|| self.plan().poll(), PositiveSeconds::duration)
+    }
+}
+
+/// What carries short-burst messages.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ModemConfig {
+    /// Messages are written to `out` and read from `in` in this folder.
+    directory: Spanned<PathBuf>,
+}
+
+impl ModemConfig {
+    /// The folder.
+    pub(crate) fn directory(&self) -> &Path {
+        self.directory.get_ref()
+    }
+
+    pub(super) fn resolve(&mut self, base: &Path) {
+        let directory = base.join(self.directory.get_ref());
+        *self.directory.get_mut() = directory;
+    }
+}
+
+/// Kilobytes (of a thousand bytes) a day, from 3, one exchange, to a million.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "f64")]
+pub(crate) struct DayBudget(f64);
+
+impl DayBudget {
+    /// In octets.
+    pub(crate) fn octets(self) -> f64 {
+        self.0 * 1e3
+    }
+}
+
+impl TryFrom<f64> for DayBudget {
+    type Error = String;
+    fn try_from(kilobytes: f64) -> Result<DayBudget, String> {
+        if (3.0..=1e6).contains(&kilobytes) {
+            Ok(DayBudget(kilobytes))
+        } else {
+            Err(format!(
+                "{kilobytes} is not from 3 to 1000000 kilobytes a day"
+            ))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{
+        parse,
+        tests::{WHOLE, message},
+    };
+    use super::*;
+
+    #[test]
+    fn a_profile_says_how_often_and_for_how_much_and_single_settings_override_it() {
+        let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
+        let plan = bare.uplink.plan();
+        assert_eq!((plan.seal_s, plan.day_octets), (21_600, None));
+        let uplink = |lines: &str| {
+            let text = format!("data_dir = \"d\"\n[uplink]\n{lines}");
+            parse(&text).map_err(|w| w.problem).unwrap().uplink
+        };
+        let metered = uplink("profile = \"metered\"");
+        assert_eq!(metered.plan().seal_s, 86_400);
+        assert_eq!(metered.plan().day_octets, Some(8_000.0));
+        assert_eq!(metered.poll(), Duration::from_hours(36));
+        let own = uplink("profile = \"very-metered\"\nday_kb = 12\npoll_s = 60");
+        assert_eq!(own.plan().day_octets, Some(12_000.0));
+        assert_eq!(own.poll(), Duration::from_mins(1));
+        let wrong = WHOLE.replace("poll_s = 21600", "profile = \"modem\"");
+        let said = message(&wrong);
+        assert!(
+            said.starts_with("agent.toml:19: profile: ") && said.contains("very-metered"),
+            "{said}"
+        );
+        let wrong = WHOLE.replace("poll_s = 21600", "day_kb = 0.5");
+        assert_eq!(
+            message(&wrong),
+            "agent.toml:19: day_kb: 0.5 is not from 3 to 1000000 kilobytes a day"
+        );
+    }
+
+    #[test]
+    fn short_bursts_and_a_modem_go_together() {
+        let short = WHOLE.replace("poll_s = 21600", "profile = \"short-burst\"");
+        assert_eq!(
+            message(&short),
+            "agent.toml:19: profile: short-burst needs a [modem]"
+        );
+        let with = format!("{short}\n[modem]\ndirectory = \"sat\"");
+        let config = parse(&with).map_err(|w| w.problem).unwrap();
+        assert_eq!(config.modem.unwrap().directory(), Path::new("sat"));
+        let alone = format!("{WHOLE}\n[modem]\ndirectory = \"sat\"");
+        assert_eq!(
+            message(&alone),
+            "agent.toml:26: directory: a modem serves the profile short-burst only"
+        );
+    }
+}

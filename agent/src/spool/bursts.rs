@@ -1,0 +1,96 @@
+//! Which batches went out as short messages.
+
+use super::batches::{SealedBatch, remember};
+use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, Spool, get, put};
+
+/// In place of the number of messages that are out.
+const ALL: i64 = -1;
+const NONE_EVER: i64 = -2;
+
+impl Spool {
+    /// The batch of which messages are to go out next, and how many of them did already.
+    /// Alerts first, the newest of them, then the oldest.
+    pub(crate) async fn next_burst(&self) -> sqlx::Result<Option<(SealedBatch, usize)>> {
+        let row: Option<(i64, Vec<u8>, bool, i64, i64)> = sqlx::query_as(
+            "SELECT seq, bytes, urgent, samples, burst FROM batches
+             WHERE standing = 'waiting' AND burst >= 0
+             ORDER BY urgent DESC, NOT urgent AND samples = 0,
+                      CASE WHEN urgent THEN -seq ELSE seq END LIMIT 1",
+        )
+        .fetch_optional(&self.pool)
+        .await?;
+        Ok(row.map(|(seq, bytes, urgent, samples, sent)| {
+            let batch = SealedBatch {
+                seq: seq.cast_unsigned(),
+                bytes,
+                urgent,
+                samples: samples.unsigned_abs(),
+            };
+            (batch, usize::try_from(sent).unwrap_or_default())
+        }))
+    }
+
+    /// So many messages of a batch are out, which may be all there are.
+    pub(crate) async fn note_burst(
+        &self,
+        batch: &SealedBatch,
+        sent: usize,
+        messages: usize,
+    ) -> sqlx::Result<()> {
+        let sent = i64::try_from(sent).unwrap_or(i64::MAX);
+        let is_all = sent >= i64::try_from(messages).unwrap_or(i64::MAX);
+        self.set_burst(batch, if is_all { ALL } else { sent }).await
+    }
+
+    /// No messages can carry this batch.
+    pub(crate) async fn not_for_bursts(&self, batch: &SealedBatch) -> sqlx::Result<()> {
+        self.set_burst(batch, NONE_EVER).await
+    }
+
+    async fn set_burst(&self, batch: &SealedBatch, burst: i64) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        sqlx::query("UPDATE batches SET burst = $3 WHERE seq = $1 AND bytes = $2")
+            .bind(batch.seq.cast_signed())
+            .bind(&batch.bytes)
+            .bind(burst)
+            .execute(&mut *tx)
+            .await?;
+        tx.commit().await
+    }
+
+    /// The shore has every batch up to this one: deletes what of them is out; how many.
+    pub(crate) async fn acknowledge_burst(
+        &self,
+        identity: &Identity,
+        contiguous_seq: u64,
+    ) -> sqlx::Result<usize> {
+        let mut tx = self.write().await?;
+        if get::<Identity>(&mut tx, IDENTITY).await?.as_ref() != Some(identity) {
+            return Ok(0);
+        }
+        let rows: Vec<(i64, Vec<u8>, bool, i64)> = sqlx::query_as(
+            "DELETE FROM batches WHERE seq <= $1 AND burst = $2 AND standing <> 'acknowledged'
+             RETURNING seq, bytes, urgent, samples",
+        )
+        .bind(i64::try_from(contiguous_seq).unwrap_or(i64::MAX))
+        .bind(ALL)
+        .fetch_all(&mut *tx)
+        .await?;
+        let acknowledged = rows.len();
+        for (seq, bytes, urgent, samples) in rows {
+            let batch = SealedBatch {
+                seq: seq.cast_unsigned(),
+                bytes,
+                urgent,
+                samples: samples.unsigned_abs(),
+            };
+            remember(&mut tx, identity.stream, &batch, samples).await?;
+        }
+        let known = get::<u64>(&mut tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
+        if acknowledged > 0 && known < contiguous_seq {
+            put(&mut tx, CONTIGUOUS_SEQ, &contiguous_seq).await?;
+        }
+        tx.commit().await?;
+        Ok(acknowledged)
+    }
+}
