@@ -162,10 +162,7 @@ async fn test_recipient(
         kind: Kind::Test,
         body: serde_json::to_string(&Letter::test())?,
     };
-    let mut tx = app.db.begin().await?;
-    outbox::queue(&mut tx, id.0, &message, app.clock.now().into()).await?;
-    tx.commit().await?;
-    let queued = outbox::must_find(&app.db, id.0, message.id).await?;
+    let queued = outbox::queue_one(&app.db, id.0, &message, app.clock.now().into()).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 
@@ -201,10 +198,8 @@ async fn send_letter_again(
     Id((id, delivery)): Id<(RecipientId, DeliveryId)>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
     store::must_find(&app.db, writer.operator, id).await?;
-    let mut tx = app.db.begin().await?;
-    outbox::send_again(&mut tx, id.0, delivery, app.clock.now().into()).await?;
-    tx.commit().await?;
-    let queued = outbox::must_find(&app.db, id.0, delivery).await?;
+    let now = app.clock.now().into();
+    let queued = outbox::send_again(&app.db, id.0, delivery, now).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 

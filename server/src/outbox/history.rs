@@ -1,7 +1,8 @@
 //! What became of a receiver's messages.
 
-use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Kind};
-use crate::db::{Db, Tx, execute, row, rows};
+use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Kind, Message};
+use super::queue::queue;
+use crate::db::{Db, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::http::Page;
 use crate::ids::DeliveryId;
@@ -52,7 +53,7 @@ pub async fn list(db: &Db, receiver: Uuid, filter: Filter, page: &Page) -> Resul
 ///
 /// # Errors
 /// [`Error::NotFound`] when it has none of that id.
-pub async fn must_find(db: &Db, receiver: Uuid, id: DeliveryId) -> Result<Delivery> {
+async fn must_find(db: &Db, receiver: Uuid, id: DeliveryId) -> Result<Delivery> {
     let found = row!(
         db,
         Row,
@@ -67,13 +68,25 @@ pub async fn must_find(db: &Db, receiver: Uuid, id: DeliveryId) -> Result<Delive
     found.ok_or(Error::NotFound("delivery"))?.read()
 }
 
+/// Queues one message by itself; the delivery that it makes.
+///
+/// # Errors
+/// [`Error::NotFound`] when the receiver was removed meanwhile.
+pub async fn queue_one(db: &Db, receiver: Uuid, message: &Message, now: Time) -> Result<Delivery> {
+    let mut tx = db.begin().await?;
+    queue(&mut tx, receiver, message, now).await?;
+    tx.commit().await?;
+    must_find(db, receiver, message.id).await
+}
+
 /// Has a delivery tried again at once, and for another day; one that waits too.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the receiver has none of that id.
-pub async fn send_again(tx: &mut Tx, receiver: Uuid, id: DeliveryId, now: Time) -> Result<()> {
+pub async fn send_again(db: &Db, receiver: Uuid, id: DeliveryId, now: Time) -> Result<Delivery> {
+    let mut tx = db.begin().await?;
     let changed = execute!(
-        tx,
+        &mut tx,
         "UPDATE deliveries
          SET state = 'pending', attempts = 0, tries_since = $3, next_attempt_at = $3,
              lease_until = NULL, delivered_at = NULL
@@ -85,7 +98,8 @@ pub async fn send_again(tx: &mut Tx, receiver: Uuid, id: DeliveryId, now: Time) 
     if changed == 0 {
         return Err(Error::NotFound("delivery"));
     }
-    Ok(())
+    tx.commit().await?;
+    must_find(db, receiver, id).await
 }
 
 impl Row {

@@ -15,7 +15,7 @@ mod receivers;
 mod worker;
 
 pub use delivery::{Channel, Delivery, DeliveryList, Filter, Kind, Message};
-pub use history::{list, must_find, send_again};
+pub use history::{list, queue_one, send_again};
 pub use queue::{Claimed, queue};
 pub use receivers::{delete, enable, insert};
 pub use worker::{Carrier, Sent, Tried, run, step};

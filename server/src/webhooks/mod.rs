@@ -166,10 +166,7 @@ async fn test_webhook(
         kind: Kind::Test,
         body,
     };
-    let mut tx = app.db.begin().await?;
-    outbox::queue(&mut tx, id.0, &message, now.into()).await?;
-    tx.commit().await?;
-    let queued = outbox::must_find(&app.db, id.0, message.id).await?;
+    let queued = outbox::queue_one(&app.db, id.0, &message, now.into()).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 
@@ -204,9 +201,7 @@ async fn send_delivery_again(
     Id((id, delivery)): Id<(WebhookId, DeliveryId)>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
     store::must_find(&app.db, writer.operator, id).await?;
-    let mut tx = app.db.begin().await?;
-    outbox::send_again(&mut tx, id.0, delivery, app.clock.now().into()).await?;
-    tx.commit().await?;
-    let queued = outbox::must_find(&app.db, id.0, delivery).await?;
+    let now = app.clock.now().into();
+    let queued = outbox::send_again(&app.db, id.0, delivery, now).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
