@@ -10,6 +10,7 @@ mod support;
 
 mod alerts;
 mod analysis;
+mod analysis_jobs;
 mod changes;
 mod commands;
 mod dashboard;
@@ -20,8 +21,10 @@ mod fit;
 mod fleet;
 mod ingest;
 mod logbook;
+mod logbook_effects;
 mod mail;
 mod mail_tls;
+mod mail_tries;
 mod sessions;
 mod ship_alerts;
 mod tenants;
