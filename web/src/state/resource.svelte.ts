@@ -41,3 +41,14 @@ export class Resource<T> {
     this.loading = false;
   }
 }
+
+/** Loads now and then again and again, while the page is looked at; what stops it. */
+export function kept(load: () => Promise<void>, everyMs: number): () => void {
+  void load();
+  const timer = setInterval(() => {
+    if (!document.hidden) void load();
+  }, everyMs);
+  return () => {
+    clearInterval(timer);
+  };
+}

@@ -1,7 +1,7 @@
 import { describe, expect, test, vi } from 'vitest';
 import { gathered, parseNews } from '../api/live.svelte';
 import { Problem } from '../api/problem';
-import { Resource } from './resource.svelte';
+import { kept, Resource } from './resource.svelte';
 import { parseRoute } from './route.svelte';
 
 describe('addresses', () => {
@@ -35,6 +35,26 @@ describe('what was fetched', () => {
     await resource.load(() => Promise.resolve(1));
     await resource.load(refuse(404));
     expect(resource.value).toBeUndefined();
+  });
+
+  test('is kept fresh while the page is looked at, until that is stopped', () => {
+    vi.useFakeTimers();
+    const page = { hidden: false };
+    vi.stubGlobal('document', page);
+    const load = vi.fn(() => Promise.resolve());
+    const stop = kept(load, 1000);
+    expect(load).toHaveBeenCalledTimes(1);
+    vi.advanceTimersByTime(2500);
+    expect(load).toHaveBeenCalledTimes(3);
+    page.hidden = true;
+    vi.advanceTimersByTime(5000);
+    expect(load).toHaveBeenCalledTimes(3);
+    page.hidden = false;
+    stop();
+    vi.advanceTimersByTime(5000);
+    expect(load).toHaveBeenCalledTimes(3);
+    vi.unstubAllGlobals();
+    vi.useRealTimers();
   });
 
   test('an answer that was overtaken is dropped', async () => {
