@@ -26,6 +26,8 @@ pub enum Command {
     Migrate(Database),
     /// Create operators and users
     Admin(Admin),
+    /// Store batches that came as short-burst messages
+    Bursts(Bursts),
     /// Print the OpenAPI document
     Openapi,
     /// Print the earth's field at a place and time as JSON
@@ -328,6 +330,24 @@ pub struct Deviation {
     /// Print JSON rather than a table
     #[arg(long)]
     pub json: bool,
+}
+
+/// `bursts`.
+#[derive(Debug, Args)]
+pub struct Bursts {
+    /// Which database.
+    #[command(flatten)]
+    pub database: Database,
+    /// The vessel whose messages they are
+    #[arg(long)]
+    pub vessel: Uuid,
+    /// A folder for answers to the ship, one message a stream
+    #[arg(long)]
+    pub answers: Option<PathBuf>,
+    /// Messages as they came, one a file, in any order; again with those before, until
+    /// a batch is whole
+    #[arg(required = true)]
+    pub messages: Vec<PathBuf>,
 }
 
 /// `analyse`.

@@ -14,6 +14,7 @@ fn main() -> Result<ExitCode> {
         Command::Serve(serve) => command::serve(serve),
         Command::Migrate(database) => command::migrate(&database),
         Command::Admin(admin) => command::admin(admin),
+        Command::Bursts(arguments) => command::bursts(&arguments),
         Command::Openapi => command::openapi(),
         Command::Field(arguments) => command::field(&arguments),
         Command::Fit(arguments) => command::fit(&arguments),

@@ -6,6 +6,7 @@
 
 mod admin;
 mod analyse;
+mod bursts;
 mod deviation;
 mod field;
 mod fit;
@@ -15,6 +16,7 @@ mod table;
 
 pub use admin::admin;
 pub use analyse::analyse;
+pub use bursts::bursts;
 pub use deviation::deviation;
 pub use field::field;
 pub use fit::fit;

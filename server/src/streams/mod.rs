@@ -10,14 +10,19 @@
 //! - `contiguous_seq` covers only batches that are here, all from 1 on.
 //! - An agent reaches its own streams and nothing else.
 
+mod bursts;
 mod downlink;
 mod store;
 
+pub use bursts::{Imported, Incomplete, Refused, import};
+
 use crate::access::Agent;
 use crate::app::App;
+use crate::db::Tx;
 use crate::enrolment;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Params};
+use crate::time::Time;
 use crate::{alerts, analysis, events};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
@@ -82,24 +87,44 @@ async fn put_batch(
     let batch = read(&bytes, StreamId(stream), seq)?;
     let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
-    let stored = store::insert(&mut tx, agent, &batch, &bytes, now).await?;
-    let mut told = Vec::new();
-    if stored {
-        let (vessel, compass) = (agent.vessel_id, agent.compass_id);
-        told.extend(alerts::from_ship(&mut tx, vessel, compass, &batch.alerts, now).await?);
-        if !batch.samples.is_empty() || !batch.alerts.is_empty() {
-            let delay_s = analysis_delay_s(&app, &batch);
-            analysis::enqueue(&mut tx, vessel, now, delay_s).await?;
-        }
-        told.push(events::insert(&mut tx, vessel, events::Kind::Batch, now).await?);
-    }
+    let delay_s = analysis_delay_s(&app, &batch);
+    let taken = take(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
     tx.commit().await?;
-    for event in told {
+    for event in taken.told {
         app.publish(event);
     }
-    let result = if stored { "stored" } else { "repeated" };
+    let result = if taken.is_new { "stored" } else { "repeated" };
     counter!("binnacle_batches_total", "result" => result).increment(1);
     Ok(Json(downlink::answer(&app, agent, stream, has).await?))
+}
+
+/// What a batch came to.
+struct Taken {
+    /// Whether it was not there already.
+    is_new: bool,
+    told: Vec<events::Event>,
+}
+
+/// Stores a batch and all that follows from it, whichever way it came.
+async fn take(
+    tx: &mut Tx,
+    agent: Agent,
+    batch: &Batch,
+    bytes: &[u8],
+    now: Time,
+    delay_s: f64,
+) -> Result<Taken> {
+    let is_new = store::insert(tx, agent, batch, bytes, now).await?;
+    let mut told = Vec::new();
+    if is_new {
+        let (vessel, compass) = (agent.vessel_id, agent.compass_id);
+        told.extend(alerts::from_ship(tx, vessel, compass, &batch.alerts, now).await?);
+        if !batch.samples.is_empty() || !batch.alerts.is_empty() {
+            analysis::enqueue(tx, vessel, now, delay_s).await?;
+        }
+        told.push(events::insert(tx, vessel, events::Kind::Batch, now).await?);
+    }
+    Ok(Taken { is_new, told })
 }
 
 /// Ask for what the shore has

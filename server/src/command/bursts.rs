@@ -1,0 +1,70 @@
+//! `bursts`: batches that came as short-burst messages, one a file.
+
+use super::operate::block_on;
+use super::{BadInput, answer, json};
+use crate::clock::Clock;
+use crate::config::Bursts;
+use crate::db::Db;
+use crate::ids::VesselId;
+use crate::streams;
+use anyhow::{Context, Result};
+use binnacle_wire::burst::MESSAGE_OCTETS;
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Stores the batches and prints what became of the messages as JSON. The exit code is 2
+/// when some were refused; the others are stored all the same.
+///
+/// # Errors
+/// When the database cannot be reached, or an answer not be written.
+pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
+    let mut messages = Vec::new();
+    for path in &arguments.messages {
+        let name = path.display().to_string();
+        match read(path) {
+            Ok(octets) => messages.push((name, octets)),
+            Err(error) => return answer(Err(BadInput(format!("{name}: {error}")))),
+        }
+    }
+    let vessel = VesselId(arguments.vessel);
+    let imported = block_on(async {
+        let db = Db::connect(&arguments.database.database_url).await?;
+        db.migrate().await?;
+        let now = Clock::System.now().into();
+        let imported = streams::import(&db, vessel, &messages, now).await;
+        db.close().await;
+        Ok(imported?)
+    })?;
+    if let Some(folder) = &arguments.answers {
+        for (stream, octets) in &imported.answers {
+            let path = folder.join(format!("{stream}.sbd"));
+            write_whole(&path, octets).with_context(|| path.display().to_string())?;
+        }
+    }
+    let told = answer(Ok(json(&imported)))?;
+    for refused in &imported.refused {
+        let (message, problem) = (&refused.message, &refused.problem);
+        writeln!(io::stderr().lock(), "binnacle-server: {message}: {problem}")?;
+    }
+    Ok(if imported.refused.is_empty() {
+        told
+    } else {
+        ExitCode::from(2)
+    })
+}
+
+/// One octet more than a message may have, so that what is longer is seen to be.
+fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut octets = Vec::new();
+    let most = MESSAGE_OCTETS as u64 + 1;
+    File::open(path)?.take(most).read_to_end(&mut octets)?;
+    Ok(octets)
+}
+
+fn write_whole(path: &Path, octets: &[u8]) -> io::Result<()> {
+    let partial = path.with_extension("partial");
+    fs::write(&partial, octets)?;
+    fs::rename(partial, path)
+}
