@@ -140,6 +140,10 @@ async fn put_batch(
     Json(shore.answer(&kept)).into_response()
 }
 
-async fn downlink(State(shore): State<Shore>) -> Json<Downlink> {
-    Json(shore.answer(&shore.kept.lock().unwrap()))
+async fn downlink(State(shore): State<Shore>) -> Response {
+    let kept = shore.kept.lock().unwrap();
+    if kept.down {
+        return StatusCode::SERVICE_UNAVAILABLE.into_response();
+    }
+    Json(shore.answer(&kept)).into_response()
 }
