@@ -247,7 +247,7 @@ impl Status {
         if spool.thinned_batches > 0 {
             writeln!(
                 out,
-                "           {} batches were thinned for want of room",
+                "           {} batches were thinned for want of room or budget",
                 spool.thinned_batches
             )?;
         }

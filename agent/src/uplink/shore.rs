@@ -297,6 +297,16 @@ async fn body(octets: &AtomicU64, mut response: Response) -> Result<Vec<u8>, Tro
     Ok(body)
 }
 
+/// Whether hands were being shaken: then there was somebody, and it cost something.
+fn spoke_tls(error: &(dyn std::error::Error + 'static)) -> bool {
+    // What an input or output error wraps is not among its causes.
+    let wrapped = error.downcast_ref::<std::io::Error>();
+    let wrapped = wrapped.and_then(std::io::Error::get_ref);
+    error.is::<rustls::Error>()
+        || wrapped.is_some_and(|inner| spoke_tls(inner))
+        || error.source().is_some_and(spoke_tls)
+}
+
 /// The innermost cause says most: "connection refused", "certificate expired".
 fn link_trouble(error: &reqwest::Error) -> Trouble {
     let mut cause: &dyn std::error::Error = error;
@@ -311,7 +321,7 @@ fn link_trouble(error: &reqwest::Error) -> Trouble {
         "the connection broke"
     };
     let problem = format!("{kind}: {cause}");
-    if error.is_connect() {
+    if error.is_connect() && !spoke_tls(error) {
         Trouble::NoConnection(problem)
     } else {
         Trouble::Link(problem)

@@ -39,9 +39,9 @@ impl Listener for Tls {
     }
 }
 
-/// A shore with a certificate of its own, asked for news so many times in a row; how
-/// hands were shaken.
-async fn asked(times: usize, idle: Duration) -> Vec<Option<HandshakeKind>> {
+/// A shore with a certificate of its own: where it is, the certificate, and how hands
+/// were shaken.
+async fn shore() -> (Identity, String, Kinds) {
     rustls::crypto::ring::default_provider()
         .install_default()
         .ok();
@@ -63,18 +63,31 @@ async fn asked(times: usize, idle: Duration) -> Vec<Option<HandshakeKind>> {
         .route("/api/v1/streams/{stream}/downlink", get(get_downlink))
         .with_state(Shared::default());
     tokio::spawn(async move { axum::serve(tls, router).await });
+    (identity(port), cert.pem(), kinds)
+}
 
-    let directory = TempDir::new().unwrap();
-    let pinned = directory.path().join("ca.pem");
-    std::fs::write(&pinned, cert.pem()).unwrap();
-    let shore = Shore::with_idle_connections(Some(&pinned), idle).unwrap();
-    let identity = Identity {
+fn identity(port: u16) -> Identity {
+    Identity {
         server: format!("https://localhost:{port}"),
         token: "t".to_owned(),
         stream: StreamId(STREAM),
         vessel_name: "Txori".to_owned(),
         compass_name: "Standard compass".to_owned(),
-    };
+    }
+}
+
+/// An agent that believes this certificate only.
+fn believer(pem: &str, idle: Duration) -> Shore {
+    let directory = TempDir::new().unwrap();
+    let pinned = directory.path().join("ca.pem");
+    std::fs::write(&pinned, pem).unwrap();
+    Shore::with_idle_connections(Some(&pinned), idle).unwrap()
+}
+
+/// How hands were shaken when the shore was asked for news so many times in a row.
+async fn asked(times: usize, idle: Duration) -> Vec<Option<HandshakeKind>> {
+    let (identity, pem, kinds) = shore().await;
+    let shore = believer(&pem, idle);
     for _ in 0..times {
         shore.downlink(&identity, Have::default()).await.unwrap();
         assert!(shore.take_octets() > 20);
@@ -92,4 +105,22 @@ async fn a_connection_that_was_idle_for_too_long_is_left_and_its_session_resumed
     let kinds = asked(2, Duration::from_nanos(1)).await;
     let wanted = [Some(HandshakeKind::Full), Some(HandshakeKind::Resumed)];
     assert_eq!(kinds, wanted);
+}
+
+#[tokio::test]
+async fn hands_that_were_not_shaken_are_paid_for_and_nobody_at_all_is_not() {
+    let (identity_there, pem, _) = shore().await;
+    let other = generate_simple_self_signed(vec!["localhost".to_owned()]).unwrap();
+    let suspicious = believer(&other.cert.pem(), IDLE_CONNECTION);
+    let refused = suspicious.downlink(&identity_there, Have::default()).await;
+    assert!(matches!(refused, Err(Trouble::Link(_))), "{refused:?}");
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let port = listener.local_addr().unwrap().port();
+    drop(listener);
+    let believer = believer(&pem, IDLE_CONNECTION);
+    let nobody = believer.downlink(&identity(port), Have::default()).await;
+    assert!(
+        matches!(nobody, Err(Trouble::NoConnection(_))),
+        "{nobody:?}"
+    );
 }
