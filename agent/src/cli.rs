@@ -1,4 +1,4 @@
-//! The commands: `run`, `status`, `enrol`, `hold`, `export`, `replay`.
+//! The commands: `run`, `status`, `enrol`, `rotate-token`, `hold`, `export`, `replay`.
 //!
 //! Exit code 2 and one line for what the one who typed it got wrong, 1 for
 //! everything else that fails.
@@ -64,6 +64,12 @@ enum Command {
         /// The one-time code.
         #[arg(long)]
         code: String,
+        /// The configuration file.
+        #[arg(long, default_value = "agent.toml")]
+        config: PathBuf,
+    },
+    /// Has the shore put a new token in place of the agent's, also while it runs.
+    RotateToken {
         /// The configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
@@ -174,6 +180,7 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 code,
                 config,
             } => enrol(&load(&config)?, &server, &code).await,
+            Command::RotateToken { config } => rotate_token(&load(&config)?).await,
             Command::Hold { config, hold } => set_hold(&load(&config)?, hold).await,
             Command::Export {
                 config,
@@ -356,12 +363,31 @@ async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> 
         .enrol(&Identity {
             server,
             token: answer.token,
+            other_token: None,
             stream: answer.stream,
             vessel_name: answer.vessel_name,
             compass_name: answer.compass_name,
         })
         .await?;
     writeln!(std::io::stdout(), "{said}")?;
+    Ok(())
+}
+
+/// The new token is kept before the shore is asked to know it, so that an answer that is
+/// lost locks nobody out: the agent then tries both.
+async fn rotate_token(config: &Config) -> anyhow::Result<()> {
+    let shore = Shore::new(config.uplink.pinned_ca.as_deref())?;
+    let spool = Spool::open(&config.data_dir).await?;
+    let Some(identity) = spool.identity().await? else {
+        return Err(BadInput("the agent is not enrolled".to_owned()).into());
+    };
+    let server = &identity.server;
+    let failed = |trouble: Trouble| anyhow::anyhow!("{server}: {trouble}");
+    let new = shore.propose_token(&identity).await.map_err(failed)?;
+    spool.keep_other_token(&new.token).await?;
+    shore.replace_token(&identity, &new).await.map_err(failed)?;
+    spool.swap_tokens(&identity.token).await?;
+    writeln!(std::io::stdout(), "the token was replaced")?;
     Ok(())
 }
 

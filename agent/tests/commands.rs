@@ -9,6 +9,8 @@ use common::bridge::{self, Bridge};
 use common::fetch;
 use common::shore::Shore;
 use serde_json::Value;
+use sqlx::sqlite::SqliteConnectOptions;
+use sqlx::{Connection, SqliteConnection};
 use std::fmt::Write;
 use std::net::SocketAddr;
 use std::path::Path;
@@ -254,4 +256,24 @@ async fn what_was_said_in_each_second_can_be_exported_and_bad_questions_are_refu
         text(&wrong.stderr).contains("--from: \"yesterday\""),
         "{wrong:?}"
     );
+}
+
+#[tokio::test]
+async fn a_token_is_replaced_on_board_when_the_shore_has_replaced_it() {
+    let shore = Shore::start(None, None).await;
+    let agent = Agent::new(nowhere());
+    let early = agent.call(&["rotate-token"]).await;
+    assert_eq!(early.status.code(), Some(2), "{early:?}");
+    agent.enrol(&shore.url).await;
+    let done = agent.call(&["rotate-token"]).await;
+    assert!(done.status.success(), "{done:?}");
+    assert!(!text(&done.stdout).contains("the-next-token"));
+    let spool = SqliteConnectOptions::new().filename(agent.spool());
+    let mut spool = SqliteConnection::connect_with(&spool).await.unwrap();
+    let identity: String = sqlx::query_scalar("SELECT value FROM state WHERE name = 'identity'")
+        .fetch_one(&mut spool)
+        .await
+        .unwrap();
+    let identity: Value = serde_json::from_str(&identity).unwrap();
+    assert_eq!(identity["token"], "the-next-token");
 }

@@ -30,6 +30,12 @@ pub fn new_vessel_token(vessel: Uuid) -> String {
     base64url(&bytes)
 }
 
+/// Whether a token may be one that [`new_vessel_token`] made for the vessel.
+pub fn is_vessel_token(token: &str, vessel: Uuid) -> bool {
+    from_base64url(token).is_some_and(|bytes| bytes.len() == 32)
+        && vessel_of_token(token) == Some(vessel)
+}
+
 /// The vessel that such a token names, whether or not the token is valid.
 pub fn vessel_of_token(token: &str) -> Option<Uuid> {
     let bytes = from_base64url(token)?;
@@ -136,6 +142,9 @@ mod tests {
         assert_eq!(token.len(), 43);
         assert_eq!(vessel_of_token(&token), Some(vessel));
         assert_ne!(token, new_vessel_token(vessel));
+        assert!(is_vessel_token(&token, vessel));
+        assert!(!is_vessel_token(&token, Uuid::now_v7()));
+        assert!(!is_vessel_token(&token[..40], vessel));
         assert_eq!(vessel_of_token("short"), None);
         assert_eq!(vessel_of_token(&"é".repeat(43)), None);
     }

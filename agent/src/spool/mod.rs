@@ -60,6 +60,10 @@ pub(crate) struct Identity {
     pub(crate) server: String,
     /// Bearer token; never logged.
     pub(crate) token: String,
+    /// What the shore may know instead: a new one of which it is not known whether it is
+    /// in place, or the one before.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) other_token: Option<String>,
     /// The stream that batches are numbered in.
     pub(crate) stream: StreamId,
     /// For the local page.
@@ -181,6 +185,33 @@ impl Spool {
         batches::renumber(&mut tx, identity.stream).await?;
         put(&mut tx, IDENTITY, identity).await?;
         tx.commit().await
+    }
+
+    /// Keeps another token beside the one in use.
+    pub(crate) async fn keep_other_token(&self, token: &str) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        if let Some(mut identity) = get::<Identity>(&mut tx, IDENTITY).await? {
+            identity.other_token = Some(token.to_owned());
+            put(&mut tx, IDENTITY, &identity).await?;
+        }
+        tx.commit().await
+    }
+
+    /// Uses the other token, if the one in use is still this; whether there was one.
+    pub(crate) async fn swap_tokens(&self, in_use: &str) -> sqlx::Result<bool> {
+        let mut tx = self.write().await?;
+        let Some(mut identity) = get::<Identity>(&mut tx, IDENTITY).await? else {
+            return Ok(false);
+        };
+        let Some(other) = identity.other_token.take() else {
+            return Ok(false);
+        };
+        if identity.token == in_use {
+            identity.other_token = Some(std::mem::replace(&mut identity.token, other));
+            put(&mut tx, IDENTITY, &identity).await?;
+            tx.commit().await?;
+        }
+        Ok(true)
     }
 
     /// The last model from shore.

@@ -27,6 +27,7 @@ pub(crate) fn identity(stream: u128) -> Identity {
     Identity {
         server: "http://127.0.0.1:1".to_owned(),
         token: "secret-token".to_owned(),
+        other_token: None,
         stream: StreamId(Uuid::from_u128(stream)),
         vessel_name: "Txori".to_owned(),
         compass_name: "Standard compass".to_owned(),

@@ -397,6 +397,10 @@ impl Uplink {
                 self.spool.park(batch.seq, &problem).await?;
                 (LinkState::Up, self.backoff.next(&mut self.rng))
             }
+            (Trouble::Unknown(_), _) if self.spool.swap_tokens(&identity.token).await? => {
+                tracing::warn!(problem, "trying the agent's other token");
+                (LinkState::Refused, self.backoff.next(&mut self.rng))
+            }
             (Trouble::Unknown(_) | Trouble::Refused(_), _) => {
                 tracing::error!(problem, "the shore refuses the agent: enrol it again");
                 (LinkState::Refused, self.backoff.most())

@@ -7,12 +7,12 @@ use crate::spool::{Identity, SealedBatch, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::messages::{
-    Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, OpenStreamAnswer,
+    Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, NewToken, OpenStreamAnswer,
 };
 use reqwest::header::{CONTENT_TYPE, RETRY_AFTER};
 use reqwest::{RequestBuilder, Response, StatusCode, redirect};
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -153,6 +153,31 @@ impl Shore {
         self.answer(self.http.post(url).json(&request)).await
     }
 
+    /// A token that may take the place of the agent's.
+    pub(crate) async fn propose_token(&self, identity: &Identity) -> Result<NewToken, Trouble> {
+        let url = format!("{}/api/v1/agents/token", identity.server);
+        self.answer(self.http.post(url).bearer_auth(&identity.token))
+            .await
+    }
+
+    /// Puts it in place; without an answer it may or may not be.
+    pub(crate) async fn replace_token(
+        &self,
+        identity: &Identity,
+        new: &NewToken,
+    ) -> Result<(), Trouble> {
+        let url = format!("{}/api/v1/agents/token", identity.server);
+        let request = self.http.put(url).bearer_auth(&identity.token).json(new);
+        let response = request.send().await.map_err(|e| link_trouble(&e))?;
+        if response.status() == StatusCode::NO_CONTENT {
+            return Ok(());
+        }
+        match read::<IgnoredAny>(&self.octets, response).await {
+            Ok(_) => Err(not_the_shore(StatusCode::OK)),
+            Err(trouble) => Err(trouble),
+        }
+    }
+
     /// Opens a new stream for the same compass.
     pub(crate) async fn open_stream(&self, identity: &Identity) -> Result<StreamId, Trouble> {
         let url = format!("{}/api/v1/streams", identity.server);
@@ -224,6 +249,10 @@ async fn answer<T: DeserializeOwned>(
     request: RequestBuilder,
 ) -> Result<T, Trouble> {
     let response = request.send().await.map_err(|e| link_trouble(&e))?;
+    read(octets, response).await
+}
+
+async fn read<T: DeserializeOwned>(octets: &AtomicU64, response: Response) -> Result<T, Trouble> {
     let status = response.status();
     let retry_after = retry_after(&response);
     let body = body(octets, response).await?;

@@ -58,6 +58,10 @@ impl Shore {
         };
         let router = Router::new()
             .route("/api/v1/agents/enrol", post(enrol))
+            .route(
+                "/api/v1/agents/token",
+                post(propose_token).put(replace_token),
+            )
             .route("/api/v1/streams/{stream}/batches/{seq}", put(put_batch))
             .route("/api/v1/streams/{stream}/downlink", get(downlink))
             .with_state(shore.clone());
@@ -138,6 +142,15 @@ async fn put_batch(
         return (StatusCode::BAD_GATEWAY, "lost").into_response();
     }
     Json(shore.answer(&kept)).into_response()
+}
+
+async fn propose_token() -> Json<Value> {
+    Json(json!({ "token": "the-next-token" }))
+}
+
+async fn replace_token(Json(new): Json<Value>) -> StatusCode {
+    assert_eq!(new["token"], "the-next-token");
+    StatusCode::NO_CONTENT
 }
 
 async fn downlink(State(shore): State<Shore>) -> Response {

@@ -33,6 +33,21 @@ pub struct EnrolAnswer {
     pub server_time: Timestamp,
 }
 
+/// The answer to `POST /api/v1/agents/token`, a token that is not valid yet, and the body
+/// of `PUT /api/v1/agents/token`, which puts it in place of the one that the request came
+/// with. An agent keeps the new one before it sends that, and the old one until it knows.
+#[derive(Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NewToken {
+    /// Bearer token.
+    pub token: String,
+}
+
+impl std::fmt::Debug for NewToken {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a token (withheld)")
+    }
+}
+
 /// `POST /api/v1/streams` with the agent's token: opens a new stream for the
 /// same compass, as an agent does whose spool was lost or restored from an old
 /// copy.

@@ -8,7 +8,7 @@ mod store;
 
 pub use store::{find_agent, open_stream};
 
-use crate::access::{Reader, Writer};
+use crate::access::{Agent, Reader, Writer};
 use crate::app::App;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
@@ -18,7 +18,7 @@ use crate::time::Time;
 use crate::{secret, vessels};
 use axum::extract::State;
 use axum::http::StatusCode;
-use binnacle_wire::messages::{EnrolAnswer, EnrolRequest};
+use binnacle_wire::messages::{EnrolAnswer, EnrolRequest, NewToken};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
@@ -34,9 +34,11 @@ pub fn router() -> OpenApiRouter<App> {
     OpenApiRouter::new().routes(routes!(list_agents, create_code))
 }
 
-/// The route that agents use.
+/// The routes that agents use.
 pub fn agent_router() -> OpenApiRouter<App> {
-    OpenApiRouter::new().routes(routes!(enrol))
+    OpenApiRouter::new()
+        .routes(routes!(enrol))
+        .routes(routes!(propose_token, replace_token))
 }
 
 /// A stream: one compass as one installation of the agent reports it.
@@ -121,6 +123,15 @@ struct EnrolAnswerSchema {
     server_time: Time,
 }
 
+/// An agent's next token.
+#[derive(ToSchema)]
+#[schema(as = NewToken)]
+#[allow(dead_code, reason = "describes binnacle_wire::messages::NewToken")]
+struct NewTokenSchema {
+    /// Bearer token.
+    token: String,
+}
+
 /// List the streams of a vessel's agents
 #[utoipa::path(get, path = "/vessels/{id}/agents", tag = "fleet",
     params(("id" = VesselId, Path), Page),
@@ -196,4 +207,34 @@ async fn enrol(
         compass_name: enrolled.compass_name,
         server_time: now,
     }))
+}
+
+/// Make a token that is to take the place of the agent's
+///
+/// It is not valid before it is put in place; nothing is stored of it here.
+#[utoipa::path(post, path = "/agents/token", tag = "agents", security(("token" = [])),
+    responses((status = 200, body = NewTokenSchema), (status = 401, body = Problem)))]
+async fn propose_token(agent: Agent) -> Json<NewToken> {
+    Json(NewToken {
+        token: secret::new_vessel_token(agent.vessel_id.0),
+    })
+}
+
+/// Put another token in place of the one that this request comes with
+#[utoipa::path(put, path = "/agents/token", tag = "agents", security(("token" = [])),
+    request_body = NewTokenSchema,
+    responses((status = 204), (status = 401, body = Problem), (status = 422, body = Problem)))]
+async fn replace_token(
+    State(app): State<App>,
+    agent: Agent,
+    Valid(new): Valid<NewToken>,
+) -> Result<StatusCode> {
+    if !secret::is_vessel_token(&new.token, agent.vessel_id.0) {
+        return Err(Error::Invalid {
+            field: "token",
+            detail: "is not one that was made for this agent".to_owned(),
+        });
+    }
+    store::replace_token(&app.db, agent, &new.token).await?;
+    Ok(StatusCode::NO_CONTENT)
 }

@@ -141,6 +141,19 @@ pub async fn find_agent(db: &Db, vessel: VesselId, token_hash: &[u8]) -> Result<
     )
 }
 
+/// From now on the agent is known by this token, and not by the one before.
+pub(super) async fn replace_token(db: &Db, agent: Agent, token: &str) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "UPDATE agents SET token_hash = $3 WHERE vessel_id = $1 AND id = $2",
+        agent.vessel_id,
+        agent.agent_id,
+        secret::hash(token)
+    )?;
+    tx.commit().await
+}
+
 #[derive(sqlx::FromRow)]
 pub(super) struct StreamRow {
     pub(super) stream: Uuid,

@@ -11,6 +11,7 @@ on_both!(
     a_code_may_be_typed_carelessly,
     a_code_for_another_vessels_compass_is_refused,
     an_agent_reaches_only_its_own_streams,
+    a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before,
 );
 
 async fn a_code_works_once(shore: Shore) {
@@ -96,5 +97,31 @@ async fn an_agent_reaches_only_its_own_streams(shore: Shore) {
     let path = format!("/streams/{stream}/batches/1");
     let put = Answer::of(nao.request(Method::PUT, &path).body(batch)).await;
     assert_eq!(put.good()["contiguous_seq"], 1);
+    shore.finish().await;
+}
+
+async fn a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let mut nao = shore.ship(&ada, "Nao").await;
+    let other = shore.ship(&ada, "Arrano").await;
+    let made = Answer::of(nao.request(Method::POST, "/agents/token")).await;
+    let new = made.good()["token"].as_str().unwrap().to_owned();
+    let old = std::mem::replace(&mut nao.token, new.clone());
+    let path = format!("/streams/{}/downlink", nao.stream);
+    let early = Answer::of(nao.request(Method::GET, &path)).await;
+    assert_eq!(early.status, 401, "it is not in place yet");
+    nao.token = old;
+    for wrong in [&other.token, "short", ""] {
+        let request = nao.request(Method::PUT, "/agents/token");
+        let refused = Answer::of(request.json(&json!({ "token": wrong }))).await;
+        assert_eq!(refused.status, 422, "{wrong}");
+    }
+    let request = nao.request(Method::PUT, "/agents/token");
+    let replaced = Answer::of(request.json(&json!({ "token": new }))).await;
+    assert_eq!(replaced.status, 204);
+    let late = Answer::of(nao.request(Method::GET, &path)).await;
+    assert_eq!(late.status, 401, "the old one is not known any more");
+    nao.token = new;
+    assert_eq!(nao.downlink("").await["contiguous_seq"], 0);
     shore.finish().await;
 }

@@ -70,6 +70,7 @@ fn identity(port: u16) -> Identity {
     Identity {
         server: format!("https://localhost:{port}"),
         token: "t".to_owned(),
+        other_token: None,
         stream: StreamId(STREAM),
         vessel_name: "Txori".to_owned(),
         compass_name: "Standard compass".to_owned(),

@@ -5,6 +5,7 @@ mod batches;
 mod budget;
 mod connection;
 mod reports;
+mod token;
 mod told;
 
 use super::*;
@@ -174,6 +175,7 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
     let identity = Identity {
         server,
         token: "t".to_owned(),
+        other_token: None,
         stream: StreamId(STREAM),
         vessel_name: "Txori".to_owned(),
         compass_name: "Standard compass".to_owned(),
