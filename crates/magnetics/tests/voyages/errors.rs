@@ -14,7 +14,7 @@ pub(crate) struct Errors {
     compass_swing: f64,
     crust: f64,
     storm: f64,
-    pub(super) storm_minutes: f64,
+    pub(crate) storm_minutes: f64,
     speed_error: f64,
     multipath: f64,
 }

@@ -31,6 +31,11 @@ pub(crate) enum Event {
     Refit,
     /// The gyro steps by so many degrees, for some days.
     GyroFault(f64),
+    /// A magnet of so many nT comes near the compass at sea, and is taken away again
+    /// after an hour and a half to three.
+    Magnet(f64),
+    /// The variation is off by so many degrees for as long.
+    Astray(f64),
 }
 
 /// What sails.
@@ -45,6 +50,8 @@ pub(crate) struct Plan {
     pub(crate) anomalies: f64,
     /// A year.
     pub(crate) gyro_faults: f64,
+    /// The sun's seed, if ships of one seed are to meet the same storms.
+    pub(crate) sun: Option<u64>,
     pub(crate) faults: Faults,
 }
 
@@ -57,6 +64,7 @@ impl Plan {
             event,
             anomalies: 1.0,
             gyro_faults: 1.0,
+            sun: None,
             faults: Faults {
                 satellite: true,
                 ..Faults::USUAL
@@ -80,6 +88,7 @@ pub(crate) enum Name {
     Cargo,
     Refit,
     GyroFault,
+    Brief,
     Storm,
     Anomaly,
 }
@@ -135,6 +144,8 @@ struct World {
     happened: Vec<Happened>,
     patch: Option<(Patch, usize)>,
     gyro_fault: Option<(f64, i64)>,
+    /// Degrees of variation, and until when.
+    astray: Option<(f64, i64)>,
     base: [f64; 7],
     changed: Option<[Parameters; 2]>,
     /// What lightning left that will fade.
@@ -147,6 +158,8 @@ enum Stage {
     ToCome,
     /// Cargo on board for so many port calls yet.
     Laden(u32),
+    /// A magnet of (bx, by) by the compass until some minute.
+    Beset([f64; 2], i64),
     Over,
 }
 
@@ -232,6 +245,26 @@ impl World {
                 self.break_gyro(degrees, minute, rng);
                 self.state = Stage::Over;
             }
+            (Stage::ToCome, Event::Magnet(nt)) if due && at_sea => {
+                let (sin, cos) = (TAU * rng.random::<f64>()).sin_cos();
+                let magnet = [nt * cos, nt * sin];
+                truth.parameters.bx_nt += magnet[0];
+                truth.parameters.by_nt += magnet[1];
+                self.note(Name::Brief, minute);
+                self.state = Stage::Beset(magnet, minute + brief_minutes(rng));
+            }
+            (Stage::Beset(magnet, until), _) if minute >= until => {
+                truth.parameters.bx_nt -= magnet[0];
+                truth.parameters.by_nt -= magnet[1];
+                self.end(Name::Brief, minute);
+                self.state = Stage::Over;
+            }
+            (Stage::ToCome, Event::Astray(degrees)) if due && at_sea => {
+                let side = if rng.random::<bool>() { 1.0 } else { -1.0 };
+                self.astray = Some((side * degrees, minute + brief_minutes(rng)));
+                self.note(Name::Brief, minute);
+                self.state = Stage::Over;
+            }
             _ => {}
         }
         // Half of what fades is gone in a fortnight.
@@ -285,11 +318,16 @@ impl World {
             self.gyro_fault = None;
             self.end(Name::GyroFault, minute);
         }
-        let mut variation = 0.0;
+        if self.astray.is_some_and(|(_, until)| until <= minute) {
+            self.astray = None;
+            self.end(Name::Brief, minute);
+        }
+        let mut variation = self.astray.map_or(0.0, |astray| astray.0);
         if let Some((patch, index)) = &self.patch {
-            variation = patch.at(on);
+            let off = patch.at(on);
+            variation += off;
             let hours = self.time(minute).seconds_since(self.happened[*index].from) / 3600.0;
-            if hours > 4.0 && variation.abs() < 0.05 {
+            if hours > 4.0 && off.abs() < 0.05 {
                 self.patch = None;
                 self.end(Name::Anomaly, minute);
             }
@@ -298,10 +336,41 @@ impl World {
     }
 }
 
+fn brief_minutes(rng: &mut ChaCha8Rng) -> i64 {
+    90 + (90.0 * rng.random::<f64>()) as i64
+}
+
+/// The minutes at which storms begin, and how long they last.
+fn storms(sun: u64, days: f64, a_month: f64) -> Vec<(i64, f64)> {
+    let mut rng = ChaCha8Rng::seed_from_u64(sun);
+    let mut storms: Vec<(i64, f64)> = Vec::new();
+    for minute in 0..(days * 1440.0) as i64 {
+        let calm = storms
+            .last()
+            .is_none_or(|(begun, minutes)| (minute - begun) as f64 > *minutes);
+        if calm && rng.random::<f64>() < a_month / 43_200.0 {
+            storms.push((minute, 240.0 + 600.0 * rng.random::<f64>()));
+        }
+    }
+    storms
+}
+
 /// Sails a ship and keeps what her agent would.
 pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let faults = &plan.faults.of_one_ship(&mut rng);
+    let shared = plan
+        .sun
+        .map(|sun| storms(sun, plan.days, faults.storms_per_month));
+    let faults = &Faults {
+        storms_per_month: if shared.is_some() {
+            0.0
+        } else {
+            faults.storms_per_month
+        },
+        ..*faults
+    };
+    let shared = shared.unwrap_or_default();
     let mut truth = Truth::of_any_ship(faults, &mut rng);
     let mut passage = Passage::new(plan.variety, &mut rng);
     let mut errors = Errors::new(faults, &mut rng);
@@ -311,6 +380,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         happened: Vec::new(),
         patch: None,
         gyro_fault: None,
+        astray: None,
         base: [0.0; 7],
         changed: None,
         fading: [0.0; 2],
@@ -333,6 +403,9 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
             let hourly = faults.drift_nt / 720.0_f64.sqrt();
             truth.parameters.bx_nt += hourly * gauss(&mut rng);
             truth.parameters.by_nt += hourly * gauss(&mut rng);
+        }
+        if let Some((_, minutes)) = shared.iter().find(|(begun, _)| *begun == minute) {
+            errors.storm_minutes = *minutes;
         }
         errors.minute(faults, &passage, turned, &mut rng);
         let alongside = passage.berth_minutes > 0.0;

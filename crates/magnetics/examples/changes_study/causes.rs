@@ -1,0 +1,152 @@
+//! What each kind of happening is taken for.
+
+use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, sail_log};
+use crate::{HOUR_S, alarms, each, planned, run, seeds, share, telling, variety, was_withdrawn};
+use binnacle_magnetics::analyse::Analysis;
+use binnacle_magnetics::change::{Change, Elsewhere, in_fleet};
+use binnacle_magnetics::time::Timestamp;
+use std::collections::BTreeMap;
+
+/// Ships of a fleet, which meet the same storms.
+const FLEET: u64 = 6;
+
+type Counts = BTreeMap<String, usize>;
+
+fn name_of(change: Option<&Change>) -> String {
+    change.map_or("nothing".to_owned(), |c| format!("{:?}", c.cause))
+}
+
+fn print(name: &str, counts: &Counts) {
+    let sum: usize = counts.values().sum();
+    println!("  {name} ({sum}): {counts:?}");
+}
+
+/// Lightning, cargo and faults of the gyro.
+pub(crate) fn causes(ships: u64) {
+    let kinds = [
+        (Name::Lightning, Event::Lightning(4000.0)),
+        (Name::Cargo, Event::Cargo),
+        (Name::GyroFault, Event::GyroFault(4.0)),
+    ];
+    println!("taken for:");
+    for (name, event) in kinds {
+        let found = each(seeds(300_000, ships), |seed| {
+            let mut plan = Plan::of(event, variety(seed));
+            plan.gyro_faults = 0.0;
+            let log = sail_log(seed, &plan);
+            let happened = planned(&log, name)?;
+            let analysis = run(&log.samples);
+            Some(name_of(telling(&analysis, &happened)))
+        });
+        let mut counts = Counts::new();
+        for called in found.into_iter().flatten() {
+            *counts.entry(called).or_default() += 1;
+        }
+        print(&format!("{name:?}"), &counts);
+    }
+}
+
+/// Storms that all ships of a fleet meet: by each ship alone, and in the light of the
+/// others.
+pub(crate) fn storms(ships: u64) {
+    let (mut alone, mut together) = (Counts::new(), Counts::new());
+    for fleet in seeds(600_000, ships.div_ceil(FLEET)) {
+        let fleet: Vec<(Log, Analysis)> = each(FLEET * fleet..FLEET * (fleet + 1), |seed| {
+            let plan = Plan {
+                sun: Some(seed / FLEET),
+                ..Plan::of(Event::Nothing, variety(seed))
+            };
+            let log = sail_log(seed, &plan);
+            let analysis = run(&log.samples);
+            (log, analysis)
+        });
+        for (ship, (log, analysis)) in fleet.iter().enumerate() {
+            let others = elsewhere(&fleet, ship);
+            let storms = log.happened.iter();
+            for storm in storms.filter(|h| h.what == Name::Storm && at_sea(log, h)) {
+                let told = telling(analysis, storm);
+                *alone.entry(name_of(told)).or_default() += 1;
+                let told = told.map(|c| {
+                    let until = log.samples.last().unwrap().time;
+                    in_fleet(c, position(log, c.from), until, &others)
+                });
+                *together.entry(name_of(told.as_ref())).or_default() += 1;
+            }
+        }
+    }
+    print("Storm, by one ship alone", &alone);
+    print(&format!("Storm, in a fleet of {FLEET}"), &together);
+}
+
+/// What the other ships tell, as the server keeps it.
+fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<Elsewhere> {
+    let others = fleet.iter().enumerate().filter(|(ship, _)| *ship != but);
+    let told = others.flat_map(|(ship, (log, analysis))| {
+        let passing = analysis.changes.iter().filter(|c| c.cause.passes_by());
+        passing.filter_map(move |c| {
+            let last = log.samples.last().unwrap().time;
+            Some(Elsewhere {
+                ship,
+                from: c.from,
+                until: c.ended.unwrap_or(last).max(c.from),
+                position: position(log, c.from)?,
+            })
+        })
+    });
+    told.collect()
+}
+
+fn position(log: &Log, at: Timestamp) -> Option<binnacle_magnetics::position::Position> {
+    let next = log.samples.partition_point(|s| s.time < at);
+    log.samples.get(next).map(|s| s.position)
+}
+
+/// Whether samples were taken through most of it.
+fn at_sea(log: &Log, h: &Happened) -> bool {
+    let to = h.to.unwrap_or(h.from);
+    let during = log
+        .samples
+        .iter()
+        .filter(|s| s.time >= h.from && s.time <= to);
+    during.count() as f64 * 600.0 > 0.7 * to.seconds_since(h.from)
+}
+
+/// What is over within an hour and a half to three, at sea.
+pub(crate) fn brief(ships: u64) {
+    let kinds = [
+        ("a magnet of 2 uT by the compass", Event::Magnet(2000.0)),
+        ("a magnet of 3 uT by the compass", Event::Magnet(3000.0)),
+        ("variation off by 4 degrees", Event::Astray(4.0)),
+        ("variation off by 8 degrees", Event::Astray(8.0)),
+    ];
+    println!("over within 1.5 to 3 hours at sea, taken for:");
+    for (name, event) in kinds {
+        let found = each(seeds(310_000, ships), |seed| {
+            let log = sail_log(seed, &Plan::of(event, variety(seed)));
+            let happened = planned(&log, Name::Brief)?;
+            let analysis = run(&log.samples);
+            for c in alarms(&analysis) {
+                let hours = |to: Timestamp| to.seconds_since(happened.from) / HOUR_S;
+                println!(
+                    "  seed {seed} alarm at {:.1} h, told {:.1} h, of {:.1?}: {:?}",
+                    hours(c.from),
+                    hours(c.detected_at),
+                    happened.to.map(hours),
+                    c.ended.map(hours)
+                );
+            }
+            let told = telling(&analysis, &happened);
+            Some((name_of(told), told.is_some_and(was_withdrawn)))
+        });
+        let found: Vec<_> = found.into_iter().flatten().collect();
+        let mut counts = Counts::new();
+        for (called, _) in &found {
+            *counts.entry(called.clone()).or_default() += 1;
+        }
+        print(name, &counts);
+        println!(
+            "    of which for a change of the ship at first {:.0} %",
+            share(&found, |f| f.1)
+        );
+    }
+}
