@@ -134,6 +134,75 @@ fn a_storm_is_no_step_and_its_samples_are_left_out() {
 }
 
 #[test]
+fn what_is_gone_within_hours_at_sea_is_no_strike() {
+    for (seed, event) in [
+        (1, Event::Magnet(3000.0)),
+        (2, Event::Magnet(3000.0)),
+        (1, Event::Astray(4.0)),
+        (2, Event::Astray(8.0)),
+        (3, Event::Astray(8.0)),
+    ] {
+        let log = sail_log(seed, &calm(event));
+        let began = began(&log, Name::Brief);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
+        let told = analysis.changes.iter().find(|c| c.detected_at >= began);
+        let told = told.unwrap_or_else(|| panic!("seed {seed}: {event:?} went unnoticed"));
+        assert_eq!(told.cause, Cause::LocalAnomaly, "seed {seed}: {told:?}");
+        let lasted_h = told.ended.unwrap().seconds_since(told.from) / HOUR_S;
+        assert!((0.5..5.0).contains(&lasted_h), "seed {seed}: {lasted_h} h");
+        assert_eq!(analysis.epochs.len(), 1);
+        let during = log
+            .samples
+            .iter()
+            .zip(&analysis.samples)
+            .filter(|(s, _)| s.time > told.from && Some(s.time) <= told.ended);
+        let reasons = during.map(|(_, s)| s.reason).collect::<Vec<_>>();
+        assert!(reasons.contains(&Some(SampleReason::Disturbance)));
+    }
+}
+
+#[test]
+fn a_step_that_was_told_and_is_gone_again_says_so_and_stays_one_change() {
+    let log = sail_log(2, &calm(Event::Astray(8.0)));
+    let analysis = run(&log.samples);
+    let told = &analysis.changes[0];
+    assert!(told.evidence[1].contains("at first taken for"), "{told:?}");
+    // In between it had been.
+    let before = log.samples.partition_point(|s| s.time <= told.detected_at);
+    let then = run(&log.samples[..before]);
+    assert_eq!(of_the_ship(&then).len(), 1, "{:?}", then.changes);
+}
+
+#[test]
+fn evidence_is_in_words_that_an_officer_knows() {
+    for (seed, event) in [
+        (1, Event::Step(2000.0)),
+        (31, Event::GyroFault(4.0)),
+        (2, Event::Astray(4.0)),
+    ] {
+        let analysis = run(&sail_log(seed, &calm(event)).samples);
+        let evidence = analysis.changes.iter().flat_map(|c| &c.evidence);
+        let told = evidence.cloned().collect::<Vec<_>>().join("; ");
+        for jargon in ["nat", "log likelihood", "NaN", "inf"] {
+            let words = || told.split(|c: char| !c.is_alphabetic());
+            assert!(
+                !words().any(|word| word == jargon || word == format!("{jargon}s")),
+                "{told}"
+            );
+        }
+        assert!(!told.is_empty());
+    }
+    let analysis = run(&sail_log(1, &calm(Event::Step(2000.0))).samples);
+    let evidence = &analysis.changes[0].evidence;
+    assert!(
+        evidence[0].contains("times likelier than a passing"),
+        "{evidence:?}"
+    );
+}
+
+#[test]
 fn a_gyro_fault_with_a_satellite_compass_on_board_is_named_at_once() {
     let log = sail_log(31, &calm(Event::GyroFault(4.0)));
     let broke = began(&log, Name::GyroFault);

@@ -6,6 +6,7 @@
 
 use super::bank::set_back;
 use super::filter::{Filter, Measurement, Noise};
+use crate::estimate::Unknowns;
 
 /// Calls and earlier states that are kept, the latest of each.
 const MOST: usize = 4;
@@ -101,10 +102,17 @@ impl Calls {
         self.calls.push(Call { at, returns });
     }
 
-    pub(super) fn take(&mut self, m: &Measurement, noise: &Noise, null: &Filter) {
+    /// Takes in a row, linearised at what each return has of the ship.
+    pub(super) fn take(
+        &mut self,
+        measure: impl Fn(&Unknowns) -> Measurement,
+        noise: &Noise,
+        null: &Filter,
+    ) {
         for call in &mut self.calls {
             for back in &mut call.returns {
-                back.filter.take(m, noise, None);
+                let m = measure(&back.filter.unknowns());
+                back.filter.take(&m, noise, None);
             }
             call.returns
                 .retain(|back| back.filter.log_likelihood > null.log_likelihood - HOPELESS_NATS);
@@ -113,10 +121,16 @@ impl Calls {
     }
 
     /// The same for calls at row `first` and later, which are being retraced.
-    pub(super) fn take_since(&mut self, first: usize, m: &Measurement, noise: &Noise) {
+    pub(super) fn take_since(
+        &mut self,
+        first: usize,
+        measure: impl Fn(&Unknowns) -> Measurement,
+        noise: &Noise,
+    ) {
         for call in self.calls.iter_mut().filter(|call| call.at >= first) {
             for back in &mut call.returns {
-                back.filter.take(m, noise, None);
+                let m = measure(&back.filter.unknowns());
+                back.filter.take(&m, noise, None);
             }
         }
     }

@@ -64,6 +64,11 @@ const LASTING: [Kind; 5] = [
     kind(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2]),
 ];
 
+/// The odds that a lead stands for.
+pub(crate) fn odds(nats: f64) -> f64 {
+    (TEMPER * nats).exp()
+}
+
 /// The causes of an event, the likeliest first.
 pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability> {
     let [step, reference, burst, _] = known.leads.map(|lead| TEMPER * lead);

@@ -141,6 +141,21 @@ impl Filter {
         off(&m.deviation).max(m.difference.as_ref().map_or(0.0, off))
     }
 
+    /// How far the deviation is from what is expected, squared standard deviations.
+    pub(super) fn z_squared(&self, m: &Measurement) -> f64 {
+        let Scalar {
+            value,
+            load,
+            variance,
+        } = &m.deviation;
+        let (mut innovation, mut variance) = (*value, *variance);
+        for ((row, l), x) in self.covariance.iter().zip(load).zip(&self.mean) {
+            innovation -= l * x;
+            variance += l * row.iter().zip(load).map(|(c, l)| c * l).sum::<f64>();
+        }
+        innovation * innovation / variance
+    }
+
     /// Takes in what was measured; `burst` is what the variation does meanwhile, if
     /// not the usual. By how much that surprised, nats: 0 on the average.
     pub(super) fn take(&mut self, m: &Measurement, noise: &Noise, burst: Option<&Burst>) -> f64 {

@@ -19,7 +19,7 @@ mod filter;
 mod fleet;
 mod found;
 
-pub(crate) use cause::{Circumstances, causes};
+pub(crate) use cause::{Circumstances, causes, odds};
 pub(crate) use detect::{Event, Given, Perhaps, Snapshot, What, at_port, detect};
 pub use fleet::{Elsewhere, in_fleet};
 pub use found::{Cause, CauseProbability, Change, Step};

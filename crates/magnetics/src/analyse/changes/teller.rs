@@ -2,7 +2,7 @@
 
 use super::{Ended, cause_of, size};
 use crate::analyse::logbook::LogbookEntry;
-use crate::change::{Cause, Change, Circumstances, Event, Perhaps, What, at_port, causes};
+use crate::change::{Cause, Change, Circumstances, Event, Perhaps, What, at_port, causes, odds};
 use crate::fit::Observation;
 use crate::ship::EarthField;
 use crate::time::Timestamp;
@@ -157,19 +157,31 @@ fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String>
     let [step, reference, burst, _] = event.leads;
     let mut told = vec![match event.what {
         What::Step | What::Return(_) => format!(
-            "samples since then fit a change of the ship's own magnetism, up to {worst_deg:.1} \
-             degrees of deviation, better by {step:.0} nats than none; a passing disturbance by \
-             {burst:.0}, a fault of the reference by {reference:.0}"
+            "a change of the ship's own magnetism, of up to {worst_deg:.1} degrees of deviation, \
+             explains the samples: {} none, {} a passing disturbance and {} a fault of the reference",
+            likelier(step),
+            likelier(step - burst),
+            likelier(step - reference)
         ),
         What::Reference => format!(
-            "the change is the same on every heading: a fault of the reference explains it \
-             better by {reference:.0} nats than none, a change of the ship by {step:.0}"
+            "what changed is the same on every heading: a fault of the reference is {} none and {} \
+             a change of the ship",
+            likelier(reference),
+            likelier(reference - step)
         ),
         What::Burst => format!(
-            "variation went astray and came back: a passing disturbance explains it better by \
-             {burst:.0} nats than none, a change of the ship by {step:.0}"
+            "the compass went astray, but not for good: a passing disturbance is {} none and {} a \
+             change of the ship",
+            likelier(burst),
+            likelier(burst - step)
         ),
     }];
+    if event.was_step {
+        told.push(
+            "at first taken for a change of the ship's own magnetism, until it was gone again at sea"
+                .to_owned(),
+        );
+    }
     match known.at_port {
         Some(true) => told.push("it began at a port call".to_owned()),
         Some(false) => told.push("it began at sea".to_owned()),
@@ -190,4 +202,19 @@ fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String>
         told.push("not yet certain: more samples will tell".to_owned());
     }
     told
+}
+
+/// By how much likelier than something one is that leads it by so many nats, with the
+/// temper of [`causes`]: the models are only nearly right.
+fn likelier(nats: f64) -> String {
+    let odds = odds(nats);
+    match odds {
+        ..0.7 => "less likely than".to_owned(),
+        ..1.5 => "about as likely as".to_owned(),
+        ..10.0 => format!("{odds:.1} times likelier than"),
+        ..100.0 => format!("{:.0} times likelier than", (odds / 10.0).round() * 10.0),
+        ..1000.0 => format!("{:.0} times likelier than", (odds / 100.0).round() * 100.0),
+        ..1e6 => "more than a thousand times likelier than".to_owned(),
+        _ => "more than a million times likelier than".to_owned(),
+    }
 }

@@ -4,9 +4,12 @@ use super::date::Dated;
 use super::event::snapshot;
 use super::learn::first_lesson;
 use super::{EVERY, Event, Leads, Search, What};
-use crate::change::bank::{Kind, upset};
+use crate::change::bank::{Kind, Lead, upset};
 use crate::change::calls::{Base, Candidate};
 use crate::change::filter::Filter;
+
+/// A change that is gone again within this, away from port, is none of the ship's.
+const BRIEF_S: f64 = 24.0 * 3600.0;
 
 impl Search<'_> {
     /// The ship's magnetism or a reference changed: the copy that knew takes over.
@@ -15,6 +18,17 @@ impl Search<'_> {
             return;
         };
         let dated = self.date(lead.spawn, kind, k);
+        let earlier = self.calls.bases.last();
+        let at_sea = earlier.is_some_and(|base| !base.at_port);
+        if kind == Kind::Step && self.misled.is_none() && at_sea {
+            // Linearised each at its own end, either may be the likelier.
+            let back = leads[Kind::Return as usize];
+            let back = back.map(|lead| (lead, self.date(lead.spawn, Kind::Return, k)));
+            let likelier = |d: &Dated| d.filter.log_likelihood > dated.filter.log_likelihood;
+            if let Some((lead, back)) = back.filter(|(_, back)| likelier(back)) {
+                return self.come_back(k, lead, back, leads);
+            }
+        }
         let before = self.bank.spawns[dated.from].origin.clone();
         let before = self.run(
             before,
@@ -67,7 +81,9 @@ impl Search<'_> {
             }
             let m = self.measure(row, &at);
             since.take(&m, &self.noise, None);
-            self.calls.take_since(dated.first, &m, &self.noise);
+            let mut calls = std::mem::take(&mut self.calls);
+            calls.take_since(dated.first, |at| self.measure(row, at), &self.noise);
+            self.calls = calls;
         }
     }
 
@@ -85,23 +101,47 @@ impl Search<'_> {
     }
 
     pub(super) fn adopt_return(&mut self, k: usize, leads: Leads) {
-        let Some((lead, base)) = leads[Kind::Return as usize].zip(self.calls.bases.last()) else {
+        let Some(lead) = leads[Kind::Return as usize] else {
+            return;
+        };
+        let dated = self.date(lead.spawn, Kind::Return, k);
+        self.come_back(k, lead, dated, leads);
+    }
+
+    /// The ship is herself again. What came and went within hours at sea was beside
+    /// her, and no change of her own.
+    fn come_back(&mut self, k: usize, lead: Lead, dated: Dated, leads: Leads) {
+        let Some(base) = self.calls.bases.last() else {
             return;
         };
         let event = base.event;
-        let dated = self.date(lead.spawn, Kind::Return, k);
         let before = self.bank.spawns[lead.spawn].origin.clone();
         self.supersede_burst(dated.first);
-        self.push(
-            k,
-            What::Return(event),
-            dated.first,
-            dated.between,
-            leads,
-            Some((&before, &dated.filter)),
-        );
+        if self.was_brief(&self.events[event], &dated) {
+            self.events[event].pass(dated.first);
+        } else {
+            self.push(
+                k,
+                What::Return(event),
+                dated.first,
+                dated.between,
+                leads,
+                Some((&before, &dated.filter)),
+            );
+        }
         self.calls.returned(event);
         self.take_over(k, dated.filter, dated.first);
+    }
+
+    fn was_brief(&self, event: &Event, back: &Dated) -> bool {
+        let time = |row: usize| self.observations[row].time;
+        let lasted_s = time(back.first)
+            .zip(time(event.first))
+            .map(|(end, begin)| end.seconds_since(begin));
+        let mut rows = event.between.0..=back.between.1.max(back.first);
+        event.what == What::Step
+            && lasted_s.is_some_and(|s| s < BRIEF_S)
+            && !rows.any(|row| self.is_call(row))
     }
 
     /// The reference is itself again.
@@ -177,6 +217,7 @@ impl Search<'_> {
             after: snapshot(after),
             last: None,
             confirmed: true,
+            was_step: false,
         };
         self.events.push(event);
     }

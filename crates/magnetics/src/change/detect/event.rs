@@ -49,6 +49,19 @@ pub(crate) struct Event {
     pub(crate) last: Option<usize>,
     /// Whether it is certain.
     pub(crate) confirmed: bool,
+    /// Whether a burst was at first told as a step.
+    pub(crate) was_step: bool,
+}
+
+impl Event {
+    /// What was told as a step was gone again before row `end`.
+    pub(super) fn pass(&mut self, end: usize) {
+        let [step, reference, burst, back] = self.leads;
+        self.what = What::Burst;
+        self.last = Some(end.saturating_sub(1).max(self.first));
+        self.leads = [0.0, reference, burst.max(step), back];
+        self.was_step = true;
+    }
 }
 
 /// What the rows tell.

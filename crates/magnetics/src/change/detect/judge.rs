@@ -16,14 +16,22 @@ const STEP_ROWS: usize = 6;
 /// it must be likelier by that: the one that is left may be the one that fails.
 const ONE_REFERENCE_SHARE: f64 = 0.3;
 const ONE_REFERENCE_NATS: f64 = 30.0;
-/// A reference's step must be likelier by this than a burst.
+/// A reference's step must be likelier by this than a burst, and have lasted for so
+/// many rows: one wild reading is no fault.
 const REFERENCE_NATS: f64 = 12.0;
+const REFERENCE_ROWS: usize = 3;
 /// So must a return to what was before, away from port.
 const RETURN_AT_SEA_NATS: f64 = 14.0;
+/// Cargo is not discharged at sea: what began in port must be likelier by this.
+const LOADED_RETURN_AT_SEA_NATS: f64 = 30.0;
 /// A return at a port call is believed when it is as likely as this, and unlikelier
 /// than a step to something else by no more than that, nats.
 const RETURNED: f64 = 0.9;
 const RETURN_BELOW_STEP: f64 = 6.0;
+/// A step that is certain is one, if it began within so many rows of the call and the
+/// return is likelier than not.
+const LIKELY: f64 = 0.5;
+const NEAR_CALL: usize = 18;
 /// A burst is unlikelier beforehand than a return at a port call by about this, nats.
 const BURST_BELOW_RETURN: f64 = 3.0;
 /// With one reference a step of the ship and one of the reference must differ by
@@ -53,7 +61,13 @@ impl Search<'_> {
         if self.misled.is_some() && back - burst > MENDED_NATS && back > rival - MENDED_BELOW {
             return self.adopt_mended(k, leads);
         }
-        if self.misled.is_none() && back - burst > RETURN_AT_SEA_NATS && back > nats(Kind::Step) {
+        let earlier = self.calls.bases.last();
+        let enough = if earlier.is_some_and(|base| base.at_port) {
+            LOADED_RETURN_AT_SEA_NATS
+        } else {
+            RETURN_AT_SEA_NATS
+        };
+        if self.misled.is_none() && back - burst > enough && back > nats(Kind::Step) {
             return self.adopt_return(k, leads);
         }
         let (kind, lasting, other) = if nats(Kind::Step) >= nats(Kind::Reference) {
@@ -67,10 +81,20 @@ impl Search<'_> {
         let is_clear = lasting - other.max(0.0) > CLEAR_NATS || self.has_both(k);
         let is_told = is_clear
             && match kind {
-                Kind::Reference => over_burst > REFERENCE_NATS,
-                _ => self.has_lasted(k, &leads) && self.is_step(k, lasting, over_burst, &leads),
+                Kind::Reference => {
+                    self.has_lasted(REFERENCE_ROWS, kind, k, &leads) && over_burst > REFERENCE_NATS
+                }
+                _ => {
+                    self.has_lasted(STEP_ROWS, kind, k, &leads)
+                        && self.is_step(k, lasting, over_burst, &leads)
+                }
             };
         if is_told {
+            if let Some(back) = self.candidate(&leads).filter(|_| kind == Kind::Step)
+                && self.is_at_call(&leads, &back)
+            {
+                return self.adopt_call(k, back, leads);
+            }
             return self.adopt(k, kind, leads);
         }
         if self.burst.is_none() && burst > BURST_NATS && burst - lasting > BURST_OVER_STEP {
@@ -92,9 +116,8 @@ impl Search<'_> {
         }
     }
 
-    pub(super) fn has_lasted(&self, k: usize, leads: &Leads) -> bool {
-        leads[Kind::Step as usize]
-            .is_some_and(|lead| k + 1 >= self.bank.spawns[lead.spawn].at + STEP_ROWS)
+    fn has_lasted(&self, rows: usize, kind: Kind, k: usize, leads: &Leads) -> bool {
+        leads[kind as usize].is_some_and(|lead| k + 1 >= self.bank.spawns[lead.spawn].at + rows)
     }
 
     pub(super) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
@@ -118,6 +141,12 @@ impl Search<'_> {
         let rival = (nats(Kind::Burst) - BURST_BELOW_RETURN).max(0.0);
         let likeliest = self.calls.likeliest(&self.null, rival)?;
         (likeliest.nats > nats(Kind::Step) - RETURN_BELOW_STEP).then_some(likeliest)
+    }
+
+    /// Whether a step that is certain may as well be a return at this call.
+    fn is_at_call(&self, leads: &Leads, back: &Candidate) -> bool {
+        let step = leads[Kind::Step as usize].map(|lead| self.bank.spawns[lead.spawn].at);
+        back.probability > LIKELY && step.is_some_and(|at| at.abs_diff(back.at) <= NEAR_CALL)
     }
 
     /// Whether both references were read lately.

@@ -25,6 +25,10 @@ use learn::{Learnt, next_lesson};
 
 /// Rows between times that are tried: about an hour of sailing.
 const EVERY: usize = 6;
+/// A row that is astray by more than this is a time to be tried, if the last is so
+/// many rows before it.
+const ASTRAY_SD: f64 = 3.0;
+const ASTRAY_ROWS: usize = 2;
 /// After a gap of this the next row is a time to be tried, whatever the count.
 const GAP_S: f64 = 2.0 * 3600.0;
 /// Before so many rows no change is told from learning.
@@ -99,8 +103,13 @@ impl<'a> Search<'a> {
         if k >= self.learn_next {
             self.learn(k);
         }
-        if k >= FIRST && self.is_due(k) {
+        let is_due = k >= FIRST && self.is_due(k);
+        if is_due {
             self.settle_burst(k);
+        }
+        let at = self.point(k);
+        let m = self.measure(k, &at);
+        if is_due || (k >= FIRST && self.is_astray(k, &m)) {
             let earlier = earlier(self.misled.as_ref(), &self.calls);
             self.bank.spawn(k, &self.null, earlier);
             self.spawned = k;
@@ -108,10 +117,10 @@ impl<'a> Search<'a> {
         if self.is_call(k) {
             self.calls.call(k, &self.null, usize::MAX);
         }
-        let at = self.point(k);
-        let m = self.measure(k, &at);
         let surprise = self.null.take(&m, &self.noise, None);
-        self.calls.take(&m, &self.noise, &self.null);
+        let mut calls = std::mem::take(&mut self.calls);
+        calls.take(|at| self.measure(k, at), &self.noise, &self.null);
+        self.calls = calls;
         let earlier = earlier(self.misled.as_ref(), &self.calls);
         let null = (&self.null, surprise);
         self.bank.take(k, m, &self.noise, null, earlier);
@@ -166,6 +175,11 @@ impl<'a> Search<'a> {
             self.reported.iter().any(|t| before < *t && *t <= now)
         };
         k >= self.spawned + EVERY || (k > 0 && self.seconds(k) > GAP_S) || reported()
+    }
+
+    /// Whether something may have happened just before this row.
+    fn is_astray(&self, k: usize, m: &Measurement) -> bool {
+        k >= self.spawned + ASTRAY_ROWS && self.null.z_squared(m) > ASTRAY_SD * ASTRAY_SD
     }
 
     /// The sizes of noise again, from the longer stretch there is now.
