@@ -15,10 +15,12 @@ const BASES: usize = 3;
 const HOPELESS_NATS: f64 = 16.0;
 /// Leads are of models that are only nearly right: they count for this much.
 const TEMPER: f64 = 0.5;
-/// How likely a ship is to become herself again at any one port call: after a
-/// change that began at one, which mostly is cargo, and after another.
-const RETURN_AFTER_PORT: f64 = 0.4;
+/// How likely a ship is to become herself again at a port call after a change at sea.
 const RETURN_AFTER_SEA: f64 = 0.01;
+/// A change that began at a port call is cargo with this probability, and cargo is
+/// discharged at any one call with that.
+const IS_CARGO: f64 = 0.84;
+const DISCHARGED: f64 = 0.6;
 
 /// The ship as she was before a step.
 pub(super) struct Base {
@@ -27,6 +29,20 @@ pub(super) struct Base {
     pub(super) filter: Filter,
     /// Whether the step began at a port call.
     pub(super) at_port: bool,
+    /// Port calls since.
+    pub(super) calls: i32,
+}
+
+impl Base {
+    /// How likely the ship is herself again at the next port call: what has stayed
+    /// through many was no cargo.
+    fn chance(&self) -> f64 {
+        if !self.at_port {
+            return RETURN_AFTER_SEA;
+        }
+        let still = IS_CARGO * (1.0 - DISCHARGED).powi(self.calls);
+        DISCHARGED * still / (still + 1.0 - IS_CARGO)
+    }
 }
 
 /// A port call after a step.
@@ -77,14 +93,11 @@ impl Calls {
     /// The ship lay in port before row `at`; `now` is the filter there, and the
     /// bases are those of steps before `until`, a place in the list of events.
     pub(super) fn call(&mut self, at: usize, now: &Filter, until: usize) {
-        let before = self.bases.iter().filter(|base| base.event < until);
+        let before = self.bases.iter_mut().filter(|base| base.event < until);
         let returns: Vec<Return> = before
             .map(|base| {
-                let chance = if base.at_port {
-                    RETURN_AFTER_PORT
-                } else {
-                    RETURN_AFTER_SEA
-                };
+                let chance = base.chance();
+                base.calls += 1;
                 Return {
                     event: base.event,
                     prior_odds: chance / (1.0 - chance),

@@ -68,6 +68,7 @@ impl Search<'_> {
             event,
             filter: before.clone(),
             at_port: (earliest..=latest).any(|row| self.is_call(row)),
+            calls: 0,
         };
         self.calls.step(base);
         let at = dated.filter.unknowns();

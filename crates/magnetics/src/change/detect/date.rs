@@ -10,11 +10,10 @@ const DATES: usize = 40;
 /// Those less likely than the best by this or more are no date of it, nats.
 const DATE_NATS: f64 = 1.92;
 
-/// A step is dated at one of the last port calls, back to the spawned time so many
-/// rows before its own, if that is less likely than the likeliest row by no more, nats.
+/// A step is dated at one of the port calls within so many rows of its own, if that is less likely than the likeliest row by no more, nats.
 const CALLS: usize = 3;
-const CALL_ROWS: usize = 18;
-const CALL_NATS: f64 = 4.0;
+const CALL_ROWS: usize = 144;
+const CALL_NATS: f64 = 5.0;
 
 /// A change with its date.
 pub(super) struct Dated {
@@ -105,12 +104,15 @@ impl Search<'_> {
     /// time at sea. `filter` is of the likeliest row.
     fn date_at_call(&self, winner: usize, filter: &Filter, row: usize, k: usize) -> Option<Dated> {
         let spawns = &self.bank.spawns;
-        let since = spawns[winner].at.saturating_sub(CALL_ROWS);
+        let since = row.saturating_sub(CALL_ROWS);
         let from = spawns.partition_point(|s| s.at <= since).saturating_sub(1);
         let from = from.min(winner);
         let origin = &spawns[from];
-        let until = spawns.get(winner + 1).map_or(k, |s| s.at);
-        let calls = (origin.at.max(1)..=until.min(k)).rev();
+        let until = spawns
+            .get(winner + 1)
+            .map_or(k, |s| s.at)
+            .max(row + CALL_ROWS);
+        let calls = (origin.at.max(since).max(1)..=until.min(k)).rev();
         let calls = calls.filter(|&row| self.is_call(row)).take(CALLS);
         let at = filter.unknowns();
         let tried = calls.map(|call| {
