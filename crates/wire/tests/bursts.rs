@@ -11,7 +11,9 @@ use binnacle_wire::burst::{
 use binnacle_wire::encode;
 use proptest::prelude::*;
 use std::fmt::Write as _;
+use std::io::Write as _;
 use std::path::Path;
+use std::process::{Command, Stdio};
 use support::{Dice, batch, voyage};
 
 fn day(seed: u64) -> Vec<u8> {
@@ -152,6 +154,56 @@ fn the_vector_is_what_is_written() {
     }
     let vector = std::fs::read_to_string(&path).unwrap();
     assert_eq!(vector.lines().collect::<Vec<_>>(), lines);
+}
+
+#[test]
+fn the_python_joiner_agrees_on_the_vector_and_on_a_mixed_hundred() {
+    let vector = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/bursts/day.txt");
+    let vector = std::fs::read_to_string(vector).unwrap();
+    let mut messages: Vec<String> = vector.lines().map(str::to_owned).collect();
+    let mut dice = Dice(9);
+    let mut mixed = Vec::new();
+    for seed in 0..40 {
+        let samples = 20 + dice.next() as usize % 200;
+        let frame = encode(&batch(seed + 1, voyage(seed, samples))).unwrap();
+        mixed.extend(split(&frame).unwrap());
+    }
+    for index in (1..mixed.len()).rev() {
+        mixed.swap(index, dice.next() as usize % (index + 1));
+        let octets = mixed[index].len();
+        if dice.next().is_multiple_of(8) {
+            mixed[index][dice.next() as usize % octets] ^= 16;
+        }
+    }
+    messages.extend(mixed.iter().map(|message| hex(message)));
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("decoder/bursts.py");
+    let mut python = Command::new("python3")
+        .arg(script)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("python3, which the tests need, can be started");
+    let lines = messages.join("\n") + "\n";
+    let mut stdin = python.stdin.take().unwrap();
+    let feeder = std::thread::spawn(move || stdin.write_all(lines.as_bytes()));
+    let output = python.wait_with_output().unwrap();
+    feeder.join().unwrap().unwrap();
+    let answers = String::from_utf8(output.stdout).unwrap();
+    let mut joiner = Joiner::default();
+    let wanted = messages.iter().map(|message| {
+        let pairs = message.as_bytes().chunks(2);
+        let octet = |pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
+        match joiner.take(&pairs.map(octet).collect::<Vec<u8>>()) {
+            Ok(Some(frame)) => hex(&frame),
+            Ok(None) => "waits".to_owned(),
+            Err(_) => "refused".to_owned(),
+        }
+    });
+    assert_eq!(
+        answers.lines().collect::<Vec<_>>(),
+        wanted.collect::<Vec<_>>()
+    );
+    assert!(answers.lines().filter(|line| line.len() > 100).count() > 20);
 }
 
 proptest! {
