@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-peer bench-changes study study-changes methods clean
+.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-link bench-peer bench-changes study study-changes methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -45,6 +45,11 @@ soak: web ## The long tests: many kills, many voyages
 
 bench: setup ## Run the benchmarks of BENCHMARKS.md
 	$(CARGO) bench --locked -p binnacle-magnetics -p binnacle-nmea -p binnacle-wire --bench '*'
+
+bench-link: setup ## Count the octets of a simulated month over a satellite, by profile
+	$(CARGO) build --locked --workspace
+	BINNACLE_LINK_DAYS=30 $(CARGO) test --locked --workspace --test satellite \
+		packets_and_all -- --nocapture --test-threads=1 | grep 'octets a day'
 
 study: setup ## Measure the estimator on many voyages: coverage, error over the bound
 	$(CARGO) run --locked --release -p binnacle-magnetics --example study

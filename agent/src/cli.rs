@@ -204,7 +204,11 @@ fn execute(command: Command) -> anyhow::Result<()> {
 fn load(path: &Path) -> Result<Config, BadInput> {
     let config = Config::load(path)?;
     // A certificate that cannot be used is found now, not at the first upload.
-    Shore::new(config.uplink.pinned_ca.as_deref()).map_err(|e| BadInput(format!("{e:#}")))?;
+    Shore::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.plan().line(),
+    )
+    .map_err(|e| BadInput(format!("{e:#}")))?;
     Ok(config)
 }
 
@@ -349,7 +353,10 @@ fn local_client() -> reqwest::Result<reqwest::Client> {
 
 async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> {
     let server = server_url(server)?;
-    let shore = Shore::new(config.uplink.pinned_ca.as_deref())?;
+    let shore = Shore::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.plan().line(),
+    )?;
     let spool = Spool::open(&config.data_dir).await?;
     let answer = match shore.enrol(&server, code.trim()).await {
         Ok(answer) => answer,

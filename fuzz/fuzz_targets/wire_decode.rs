@@ -4,15 +4,17 @@
 #![no_main]
 
 use binnacle_wire::burst::{Joiner, read_ack};
-use binnacle_wire::{EncodeError, decode, encode};
+use binnacle_wire::{EncodeError, decode, downlink, encode};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = decode(bytes);
     let _ = Joiner::default().take(bytes);
     let _ = read_ack(bytes);
+    let _ = downlink::decode(bytes);
     let mut sealed = bytes.to_vec();
     sealed.extend(crc32fast::hash(bytes).to_le_bytes());
+    let _ = downlink::decode(&sealed);
     let Ok(batch) = decode(&sealed) else { return };
     let again = match encode(&batch) {
         Ok(again) => again,

@@ -3,7 +3,10 @@
 
 use crate::database::Database;
 use crate::ship::Ship;
-use anyhow::{Context, Result};
+use crate::shore::Shore;
+use anyhow::{Context, Result, ensure};
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::decode;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{Connection, PgConnection, SqliteConnection};
 use std::str::FromStr;
@@ -18,6 +21,8 @@ pub struct Spool {
     pub waiting: i64,
     /// Refused by the shore, or unreadable: there must be none.
     pub in_trouble: i64,
+    /// Samples that are not acknowledged, in batches or not yet.
+    pub samples_aboard: i64,
 }
 
 /// One acknowledged batch.
@@ -58,6 +63,13 @@ impl Spool {
         let quarantined: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM quarantine")
             .fetch_one(&mut db)
             .await?;
+        let samples_aboard: i64 = sqlx::query_scalar(
+            "SELECT (SELECT COUNT(*) FROM pending_samples)
+                  + (SELECT COALESCE(SUM(samples), 0) FROM batches
+                     WHERE standing <> 'acknowledged')",
+        )
+        .fetch_one(&mut db)
+        .await?;
         let acknowledged = rows
             .into_iter()
             .map(|(stream, seq, samples, crc32)| {
@@ -74,6 +86,7 @@ impl Spool {
             acknowledged,
             waiting,
             in_trouble: parked + quarantined,
+            samples_aboard,
         })
     }
 }
@@ -96,4 +109,73 @@ pub async fn batch_log(database: &Database, vessel: Uuid) -> Result<Vec<Logged>>
     }
     let mut db = PgConnection::connect(url).await?;
     Ok(sqlx::query_as(SQL).bind(vessel).fetch_all(&mut db).await?)
+}
+
+/// Compares both ends' records: what the agent holds to be acknowledged and what the
+/// shore holds are the same batches, to the checksum.
+///
+/// # Errors
+/// When they are not, or a batch is in trouble.
+pub async fn ensure_same_at_both_ends(shore: &Shore, vessel: Uuid, spool: &Spool) -> Result<()> {
+    ensure!(spool.in_trouble == 0, "{spool:?}");
+    let logged = logged(shore, vessel).await?;
+    ensure!(
+        logged == spool.acknowledged,
+        "on shore {logged:?}, on board {spool:?}"
+    );
+    Ok(())
+}
+
+/// What the agent holds to be acknowledged is on shore, to the checksum; there may be
+/// more there, as when an answer or the record of it was lost.
+///
+/// # Errors
+/// When something is not.
+pub async fn ensure_acknowledged_is_ashore(
+    shore: &Shore,
+    vessel: Uuid,
+    spool: &Spool,
+) -> Result<()> {
+    let logged = logged(shore, vessel).await?;
+    for batch in &spool.acknowledged {
+        ensure!(logged.contains(batch), "{batch:?} is not in {logged:?}");
+    }
+    Ok(())
+}
+
+async fn logged(shore: &Shore, vessel: Uuid) -> Result<Vec<Acknowledged>> {
+    let log = batch_log(shore.database(), vessel).await?;
+    let read = |(stream, seq, bytes): Logged| {
+        Ok(Acknowledged {
+            stream,
+            seq,
+            samples: i64::try_from(decode(&bytes)?.samples.len())?,
+            crc32: i64::from(checksum(&bytes)),
+        })
+    };
+    log.into_iter().map(read).collect()
+}
+
+/// Of what the frame holds: with its own checksum at its end every frame has the same.
+pub fn checksum(frame: &[u8]) -> u32 {
+    crc32fast::hash(&frame[..frame.len().saturating_sub(4)])
+}
+
+/// The samples in the server's log, each counted once, in order of time.
+///
+/// # Errors
+/// When two are of the same windows and not the same sample.
+pub async fn samples_ashore(shore: &Shore, vessel: Uuid) -> Result<Vec<Sample>> {
+    let mut samples = Vec::new();
+    for (_, _, bytes) in batch_log(shore.database(), vessel).await? {
+        samples.extend(decode(&bytes)?.samples);
+    }
+    samples.sort_by_key(|sample| sample.time);
+    samples.dedup();
+    for pair in samples.windows(2) {
+        let apart = pair[1].time.seconds_since(pair[0].time);
+        let both = 5.0 * f64::from(pair[0].windows) + 5.0 * f64::from(pair[1].windows);
+        ensure!(apart >= both, "these share windows: {pair:?}");
+    }
+    Ok(samples)
 }

@@ -4,9 +4,11 @@
 //! processes, on loopback ports that the system chooses, and kill them. Nothing
 //! is skipped: a missing program or database fails the test with what to do.
 
+pub mod at_sea;
 pub mod database;
 pub mod eventually;
 pub mod feed;
+pub mod gateway;
 pub mod heard;
 pub mod ledger;
 pub mod program;
@@ -15,6 +17,7 @@ pub mod ship;
 pub mod shore;
 pub mod voyage;
 
+pub use at_sea::AtSea;
 pub use database::{Database, Engine};
 pub use eventually::eventually;
 pub use feed::{Feed, Pace, Progress};

@@ -6,7 +6,10 @@
 
 use crate::program;
 use anyhow::{Context, Result, ensure};
-use rcgen::{BasicConstraints, CertificateParams, IsCa, Issuer, KeyPair};
+use rcgen::{
+    BasicConstraints, CertificateParams, DistinguishedName, DnType, IsCa, Issuer, KeyPair,
+    PKCS_ED25519,
+};
 use serde::{Deserialize, Serialize};
 use std::future::Future;
 use std::net::{IpAddr, Ipv4Addr};
@@ -121,11 +124,13 @@ struct Up {
 }
 
 impl Satellite {
-    /// Sets the link up; it is perfect until told otherwise.
+    /// Sets the link up; it is perfect until told otherwise. The shore's host is set up as
+    /// docs/uplink.md asks for.
     ///
     /// # Errors
     /// When Python or the system does not let it.
     pub async fn launch() -> Result<Satellite> {
+        std::fs::write("/proc/sys/net/ipv4/tcp_timestamps", "0").context("tcp_timestamps")?;
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("satellite/link.py");
         let mut link = Command::new("python3")
             .arg(script)
@@ -206,7 +211,8 @@ impl Berth {
     }
 }
 
-/// An authority of one's own, and the shore's certificate by it, as files.
+/// An authority of one's own, and the shore's certificate by it, as files: small ones, as
+/// docs/uplink.md asks for.
 #[derive(Clone, Debug)]
 pub struct Certificates {
     /// Whom to believe.
@@ -215,11 +221,10 @@ pub struct Certificates {
     pub chain: PathBuf,
     /// Its private key.
     pub key: PathBuf,
-    issuer_key: PathBuf,
 }
 
 impl Certificates {
-    /// Makes and writes them: the authority's key and that of the shore are new.
+    /// Makes them anew and writes them.
     ///
     /// # Errors
     /// When the folder cannot be written.
@@ -228,36 +233,30 @@ impl Certificates {
             authority: folder.join("authority.pem"),
             chain: folder.join("chain.pem"),
             key: folder.join("key.pem"),
-            issuer_key: folder.join("authority-key.pem"),
         };
-        let issuer_key = KeyPair::generate()?;
-        std::fs::write(&made.issuer_key, issuer_key.serialize_pem())?;
-        let authority = authority()?.self_signed(&issuer_key)?;
-        std::fs::write(&made.authority, authority.pem())?;
-        made.renew(1)?;
+        let issuer = Issuer::new(authority()?, KeyPair::generate_for(&PKCS_ED25519)?);
+        let of_itself = authority()?.self_signed(issuer.key())?;
+        std::fs::write(&made.authority, of_itself.pem())?;
+        let key = KeyPair::generate_for(&PKCS_ED25519)?;
+        let mut of_shore = CertificateParams::new([SHORE.to_string()])?;
+        of_shore.distinguished_name = short_name();
+        let of_shore = of_shore.signed_by(&key, &issuer)?;
+        std::fs::write(&made.key, key.serialize_pem())?;
+        std::fs::write(&made.chain, of_shore.pem())?;
         Ok(made)
     }
+}
 
-    /// Writes a new certificate for the shore that ends on the first of January so
-    /// many years from 2126.
-    ///
-    /// # Errors
-    /// When the files cannot be read or written.
-    pub fn renew(&self, years: i32) -> Result<()> {
-        let issuer_key = KeyPair::from_pem(&std::fs::read_to_string(&self.issuer_key)?)?;
-        let issuer = Issuer::new(authority()?, issuer_key);
-        let key = KeyPair::generate()?;
-        let mut of_shore = CertificateParams::new([SHORE.to_string()])?;
-        of_shore.not_before = rcgen::date_time_ymd(2020, 1, 1);
-        of_shore.not_after = rcgen::date_time_ymd(2126 + years, 1, 1);
-        std::fs::write(&self.key, key.serialize_pem())?;
-        std::fs::write(&self.chain, of_shore.signed_by(&key, &issuer)?.pem())?;
-        Ok(())
-    }
+/// Names cross the link with every certificate.
+fn short_name() -> DistinguishedName {
+    let mut name = DistinguishedName::new();
+    name.push(DnType::CommonName, "B");
+    name
 }
 
 fn authority() -> Result<CertificateParams> {
     let mut authority = CertificateParams::new(Vec::<String>::new())?;
+    authority.distinguished_name = short_name();
     authority.is_ca = IsCa::Ca(BasicConstraints::Constrained(0));
     Ok(authority)
 }

@@ -157,11 +157,35 @@ impl Shore {
     /// # Errors
     /// When it had ended by itself, or does not start again.
     pub async fn kill_and_restart(&mut self) -> Result<()> {
+        self.stopped_for(|| Ok(())).await
+    }
+
+    /// Stops the server with signal 9, does something, and starts it on the same port.
+    ///
+    /// # Errors
+    /// When it had ended by itself, does not start again, or `meanwhile` fails.
+    pub async fn stopped_for(&mut self, meanwhile: impl FnOnce() -> Result<()>) -> Result<()> {
         let server = self.server.take().context("the server runs")?;
         server.kill().await?;
+        meanwhile()?;
         let (_, listen) = self.url.split_once("://").context("a URL")?;
         let listen = listen.to_owned();
         self.serve(&listen).await
+    }
+
+    /// How many analyses wait or are under way.
+    ///
+    /// # Errors
+    /// When the server does not say.
+    pub async fn jobs(&self) -> Result<u64> {
+        let metrics = self.http.get(format!("{}/metrics", self.url));
+        let metrics = metrics.send().await?.error_for_status()?.text().await?;
+        let waiting = metrics
+            .lines()
+            .filter(|line| line.starts_with("binnacle_jobs{"))
+            .filter(|line| !line.contains("state=\"dead\""))
+            .filter_map(|line| line.rsplit_once(' ')?.1.parse::<u64>().ok());
+        Ok(waiting.sum())
     }
 
     /// Fails unless the server is up and well.

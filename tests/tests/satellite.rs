@@ -3,141 +3,97 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Result, ensure};
-use binnacle_magnetics::time::Timestamp;
-use binnacle_tests::ledger::{Acknowledged, Spool, batch_log};
-use binnacle_tests::satellite::{Certificates, INSTRUMENTS, Weather, ensure_used, in_own_network};
-use binnacle_tests::{Pace, Satellite, Ship, Shore, Voyage, eventually};
-use std::time::Duration;
-use tempfile::TempDir;
-use uuid::Uuid;
+use binnacle_tests::AtSea;
+use binnacle_tests::at_sea::day;
+use binnacle_tests::satellite::{Tally, Weather, ensure_used, in_own_network};
 
-const START: &str = "2026-10-01T00:00:00Z";
-const PATIENCE: Duration = Duration::from_mins(8);
-
-fn day(day: f64) -> Timestamp {
-    Timestamp::parse(START)
-        .unwrap()
-        .plus_seconds(day * 86_400.0)
+/// How often a ship sends, and the most octets that a day of that may cost.
+struct Policy {
+    profile: &'static str,
+    seal_s: u32,
+    octets_a_day: f64,
 }
 
-/// A ship at sea with all that belongs to her.
-struct AtSea {
-    folder: TempDir,
-    satellite: Satellite,
-    shore: Shore,
-    vessel: Uuid,
-    voyage: Voyage,
-    ship: Ship,
+const FOUR_TIMES_A_DAY: Policy = Policy {
+    profile: "standard",
+    seal_s: 6 * 3600,
+    octets_a_day: 8_000.0,
+};
+const DAILY: Policy = Policy {
+    profile: "metered",
+    seal_s: 24 * 3600,
+    octets_a_day: 2_700.0,
+};
+const HOURLY: Policy = Policy {
+    profile: "vsat",
+    seal_s: 3600,
+    octets_a_day: 12_000.0,
+};
+
+/// Days to measure: a few, or a month with `make bench-link`.
+fn days() -> u32 {
+    let asked = std::env::var("BINNACLE_LINK_DAYS").ok();
+    asked.map_or(3, |days| days.parse().expect("a number of days"))
 }
 
-impl AtSea {
-    async fn sail(uplink: &str) -> Result<AtSea> {
-        let folder = tempfile::tempdir()?;
-        let satellite = Satellite::launch().await?;
-        let tls = Certificates::make(folder.path())?;
-        let shore = Shore::start_ashore(folder.path(), &tls).await?;
-        let (vessel, code) = shore.create_vessel("biscay").await?;
-        let pace = Pace::FastUntil(day(0.0));
-        let voyage = Voyage::sail_at(INSTRUMENTS, "biscay.toml", 11, folder.path(), pace).await?;
-        let uplink = format!("pinned_ca = \"{}\"\n{uplink}", tls.authority.display());
-        let feed = voyage.feed.address();
-        let ship = Ship::with_uplink("biscay", folder.path(), feed, &uplink)?;
-        let mut ship = ship.at_sea(satellite.berth());
-        ship.enrol(&shore.url, &code).await?;
-        ship.start()?;
-        ship.ready().await?;
-        Ok(AtSea {
-            folder,
-            satellite,
-            shore,
-            vessel: vessel.parse()?,
-            voyage,
-            ship,
-        })
-    }
+/// Sails for some days as she would, but that time passes faster: she waits wherever
+/// she is when a batch is sealed until it is ashore and analysed, as it would be by the
+/// next one.
+async fn costs(policy: Policy) -> Result<()> {
+    let profile = format!("profile = \"{}\"", policy.profile);
+    let mut at_sea = AtSea::sail("month.toml", &profile).await?;
+    // The first day brings settings and a first model: later ones are like each other.
+    sail_on(&mut at_sea, &policy, 0, 2).await?;
+    let before = at_sea.satellite.tally().await?;
+    sail_on(&mut at_sea, &policy, 2, 2 + days()).await?;
+    let after = at_sea.satellite.tally().await?;
+    ensure_used(&after)?;
+    let a_day = per_day(&before, &after);
+    let spool = at_sea.all_ashore().await?;
+    println!(
+        "{}: {a_day:.0} octets a day over {} days, {} batches in all",
+        policy.profile,
+        days(),
+        spool.acknowledged.len()
+    );
+    at_sea.arrive().await?;
+    ensure!(a_day <= policy.octets_a_day, "{a_day} octets a day");
+    Ok(())
+}
 
-    /// Sails on to an instant; returns when the agent has heard of it.
-    async fn until(&mut self, time: Timestamp) -> Result<()> {
-        self.voyage.feed.set_pace(Pace::FastUntil(time))?;
-        let there = |progress: &binnacle_tests::Progress| progress.time() >= Some(time);
-        self.voyage.feed.reached(PATIENCE, there).await?;
-        eventually("the agent has heard it", PATIENCE, async || {
-            let status = self.ship.status().await?;
-            let heard = status["ship_time"].as_str().map(Timestamp::parse);
-            let heard = heard.transpose()? >= Some(time);
-            Ok(if heard {
-                Ok(())
-            } else {
-                Err(status.to_string())
-            })
-        })
-        .await
+async fn sail_on(at_sea: &mut AtSea, policy: &Policy, from: u32, to: u32) -> Result<()> {
+    // The next batch is sealed when a sample is older: no two in one step.
+    let step = f64::from(policy.seal_s) / 86_400.0;
+    let mut time = f64::from(from);
+    while time < f64::from(to) {
+        time += step;
+        at_sea.until(day(time)).await?;
+        at_sea.all_ashore().await?;
+        at_sea.analysed().await?;
     }
+    Ok(())
+}
 
-    /// Waits until nothing waits on board.
-    async fn all_ashore(&self) -> Result<Spool> {
-        eventually("all is ashore", PATIENCE, async || {
-            let spool = Spool::of(&self.ship).await?;
-            let sent = spool.waiting == 0;
-            Ok(if sent {
-                Ok(spool)
-            } else {
-                Err(format!("{spool:?}"))
-            })
-        })
-        .await
-    }
-
-    /// Both ends' records are the same, to the checksum.
-    async fn assert_same_at_both_ends(&self, spool: &Spool) -> Result<()> {
-        ensure!(spool.in_trouble == 0, "{spool:?}");
-        let logged: Vec<Acknowledged> = batch_log(self.shore.database(), self.vessel)
-            .await?
-            .into_iter()
-            .map(|(stream, seq, bytes)| {
-                Ok(Acknowledged {
-                    stream,
-                    seq,
-                    samples: i64::try_from(binnacle_wire::decode(&bytes)?.samples.len())?,
-                    crc32: i64::from(crc32fast::hash(&bytes)),
-                })
-            })
-            .collect::<Result<_>>()?;
-        ensure!(logged == spool.acknowledged, "{logged:?}, {spool:?}");
-        Ok(())
-    }
-
-    async fn arrive(mut self) -> Result<()> {
-        self.ship.assert_running()?;
-        self.ship.kill().await?;
-        self.shore.assert_well().await?;
-        self.shore.finish().await?;
-        drop(self.folder);
-        Ok(())
-    }
+fn per_day(before: &Tally, after: &Tally) -> f64 {
+    (after.octets() - before.octets()) as f64 / f64::from(days())
 }
 
 #[test]
-fn a_week_costs_few_octets_packets_and_all() {
-    in_own_network("a_week_costs_few_octets_packets_and_all", async {
-        let mut at_sea = AtSea::sail("").await?;
-        let quarters = 7 * 4;
-        let before = at_sea.satellite.tally().await?;
-        for quarter in 1..=quarters {
-            at_sea.until(day(f64::from(quarter) / 4.0)).await?;
-            at_sea.all_ashore().await?;
-        }
-        let spool = at_sea.all_ashore().await?;
-        at_sea.assert_same_at_both_ends(&spool).await?;
-        let after = at_sea.satellite.tally().await?;
-        ensure_used(&after)?;
-        let per_day = (after.octets() - before.octets()) / 7;
-        println!(
-            "{after:?} {per_day} octets a day, {} batches",
-            spool.acknowledged.len()
-        );
-        at_sea.arrive().await
-    });
+fn four_batches_a_day_cost_few_octets_packets_and_all() {
+    let name = "four_batches_a_day_cost_few_octets_packets_and_all";
+    in_own_network(name, costs(FOUR_TIMES_A_DAY));
+}
+
+#[test]
+fn a_batch_a_day_costs_few_octets_packets_and_all() {
+    let name = "a_batch_a_day_costs_few_octets_packets_and_all";
+    in_own_network(name, costs(DAILY));
+}
+
+#[test]
+fn a_batch_an_hour_costs_few_octets_packets_and_all() {
+    let name = "a_batch_an_hour_costs_few_octets_packets_and_all";
+    in_own_network(name, costs(HOURLY));
 }
 
 #[test]
@@ -145,7 +101,8 @@ fn a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_brings_all_ash
     in_own_network(
         "a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_brings_all_ashore",
         async {
-            let mut at_sea = AtSea::sail("retry_min_s = 0.2\nretry_max_s = 1").await?;
+            let uplink = "retry_min_s = 0.2\nretry_max_s = 1";
+            let mut at_sea = AtSea::sail("biscay.toml", uplink).await?;
             at_sea
                 .satellite
                 .set(Weather {
@@ -156,8 +113,7 @@ fn a_link_of_one_and_a_half_seconds_that_loses_every_fifth_packet_brings_all_ash
                 })
                 .await?;
             at_sea.until(day(1.0)).await?;
-            let spool = at_sea.all_ashore().await?;
-            at_sea.assert_same_at_both_ends(&spool).await?;
+            at_sea.all_ashore().await?;
             ensure_used(&at_sea.satellite.tally().await?)?;
             at_sea.arrive().await
         },

@@ -24,7 +24,7 @@ pub(crate) use start::{Told, prepare};
 
 use backoff::Backoff;
 use plan::{Budget, Class, Now};
-use shore::{Have, IDLE_CONNECTION};
+use shore::Have;
 
 use crate::spool::{Identity, SealedBatch, Spool, StoredReport};
 use binnacle_magnetics::time::Timestamp;
@@ -92,6 +92,10 @@ pub(crate) struct Uplink {
     pub(crate) budget: Budget,
     pub(crate) ship_time: watch::Receiver<Option<Timestamp>>,
     pub(crate) tell: Tell,
+    /// Whether the connection stays open when all is said.
+    pub(crate) keeps_line: bool,
+    /// Whether something was sent since all was said.
+    pub(crate) in_touch: bool,
     /// The token that the model and settings in effect came with.
     pub(crate) token: Option<String>,
     /// A shore that knows no reports is not asked again before this.
@@ -176,6 +180,7 @@ impl Uplink {
         if batch.is_none() {
             let idle = answered.map(|at| at.elapsed());
             if let Some(left) = idle.and_then(|idle| self.poll.checked_sub(idle)) {
+                self.end_exchange();
                 return Ok(Next::Idle(left));
             }
         }
@@ -202,6 +207,14 @@ impl Uplink {
         }
     }
 
+    /// All is said for now.
+    fn end_exchange(&mut self) {
+        if self.in_touch && !self.keeps_line {
+            self.shore.hang_up();
+        }
+        self.in_touch = false;
+    }
+
     fn now(&self) -> Now {
         Now {
             monotonic: Instant::now(),
@@ -212,6 +225,7 @@ impl Uplink {
     /// Pays for a request, and keeps that: an agent that dies of it again and again
     /// does not spend more.
     async fn spend(&mut self, octets: usize) -> sqlx::Result<f64> {
+        self.in_touch = true;
         let cost = self.budget.spend(octets, self.now());
         self.spool.keep_account(&self.budget.account()).await?;
         Ok(cost)

@@ -12,6 +12,7 @@
 //!   samples may not, and what has no samples leaves [`RESERVE_DAYS`] to those. What
 //!   cannot be afforded waits, and is never dropped.
 
+use super::shore::Line;
 use crate::burst;
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,10 @@ const OVERDRAFT_DAYS: f64 = 2.0;
 const RESERVE_DAYS: f64 = 0.25;
 /// What waits is thinned when it would take the budget of so many days.
 const BACKLOG_DAYS: f64 = 7.0;
+/// A connection is kept open for batches that come as often as this.
+const KEEPS_LINE_FOR_S: u32 = 3_600;
+/// How long a connection may be idle that is closed when all is said.
+pub(crate) const IDLE_CONNECTION: Duration = Duration::from_secs(5);
 /// TCP and TLS 1.3 until the first request, with a certificate of one's own authority;
 /// and a request with its answer on an open connection, both without their bodies.
 /// Measured as IP octets both ways.
@@ -106,6 +111,28 @@ impl Plan {
     /// A batch is thinned when it is larger.
     pub(crate) fn batch_octets(&self) -> Option<usize> {
         (self.profile == Profile::ShortBurst).then(burst::batch_octets)
+    }
+
+    /// Whether the connection stays open between two batches. An hourly batch costs some
+    /// 400 octets on an open connection and 2,000 on a new one. More seldom it is closed
+    /// at once: behind a satellite or a firewall it would be gone without a word, and to
+    /// keep it alive would cost more than to open another, which resumes the TLS session.
+    pub(crate) fn keeps_line(&self) -> bool {
+        self.seal_s <= KEEPS_LINE_FOR_S
+    }
+
+    /// How connections are used.
+    pub(crate) fn line(&self) -> Line {
+        // A stretch may take its time to end, and a ship may turn.
+        let kept = 2 * Duration::from_secs(u64::from(KEEPS_LINE_FOR_S));
+        Line {
+            idle: if self.keeps_line() {
+                kept
+            } else {
+                IDLE_CONNECTION
+            },
+            resumes: f64::from(self.seal_s) < DAY_S,
+        }
     }
 
     /// What may wait before it is thinned, in octets as they are paid for.

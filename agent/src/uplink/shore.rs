@@ -1,16 +1,24 @@
 //! Requests to the shore and what their answers mean.
 //!
-//! Nothing counts as an answer but the JSON that the shore writes: the login
-//! page of a harbour's network, with whatever status, is a failure of the link.
+//! Nothing counts as an answer but what the shore writes, JSON or the compact form with
+//! its checksum: the login page of a harbour's network, with whatever status, is a
+//! failure of the link.
 
 use crate::spool::{Identity, SealedBatch, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
+use binnacle_wire::downlink::{self, FORM, ONCE, card_tag};
 use binnacle_wire::messages::{
     Downlink, EnrolAnswer, EnrolRequest, LogbookAnswer, NewToken, OpenStreamAnswer,
 };
-use reqwest::header::{CONTENT_TYPE, RETRY_AFTER};
+use reqwest::header::RETRY_AFTER;
 use reqwest::{RequestBuilder, Response, StatusCode, redirect};
+use rustls::RootCertStore;
+use rustls::client::Resumption;
+use rustls::pki_types::CertificateDer;
+use rustls::pki_types::pem::PemObject;
+use rustls::version::TLS13;
+use rustls_platform_verifier::BuilderVerifierExt;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use std::fmt;
@@ -24,11 +32,8 @@ use uuid::Uuid;
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
 /// Between two bytes.
 const READ_TIMEOUT: Duration = Duration::from_secs(90);
-/// Several batches go over one connection. It is trusted for so long after the last of
-/// them, no longer: behind a satellite or a firewall it may be gone without a word, and
-/// keeping it alive would cost more than opening it again. A new one resumes the TLS
-/// session of the one before.
-pub(crate) const IDLE_CONNECTION: Duration = Duration::from_secs(5);
+/// TLS sessions to resume; there is one shore.
+const SESSIONS: usize = 4;
 /// However long somebody on the way asks the agent to stay away.
 const LONGEST_RETRY_AFTER: Duration = Duration::from_hours(6);
 /// No answer is longer.
@@ -38,8 +43,20 @@ const LARGEST_ANSWER: usize = 1 << 20;
 #[derive(Clone, Debug)]
 pub(crate) struct Shore {
     http: reqwest::Client,
+    /// Remembers the session, whatever becomes of the connections.
+    tls: rustls::ClientConfig,
+    idle_connection: Duration,
     /// Of answers, since it was last asked.
     octets: Arc<AtomicU64>,
+}
+
+/// How connections are used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Line {
+    /// A connection serves again when it was idle for less than this.
+    pub(crate) idle: Duration,
+    /// Whether a TLS session is offered again: for a day, no ticket holds longer.
+    pub(crate) resumes: bool,
 }
 
 /// What the agent already has of what the shore decides.
@@ -99,43 +116,39 @@ struct Problem {
 
 impl Shore {
     /// A client that believes the usual authorities, or only the pinned one.
-    pub(crate) fn new(pinned_ca: Option<&Path>) -> anyhow::Result<Shore> {
-        Shore::with_idle_connections(pinned_ca, IDLE_CONNECTION)
-    }
-
-    /// The same, with connections that serve again when they were idle for less than this.
-    pub(super) fn with_idle_connections(
-        pinned_ca: Option<&Path>,
-        longest: Duration,
-    ) -> anyhow::Result<Shore> {
-        let mut builder = reqwest::Client::builder()
-            .http1_only()
-            .redirect(redirect::Policy::none())
-            .connect_timeout(CONNECT_TIMEOUT)
-            .read_timeout(READ_TIMEOUT)
-            .tcp_keepalive(None)
-            .pool_idle_timeout(longest)
-            .pool_max_idle_per_host(1);
-        #[cfg(target_os = "linux")]
-        {
-            builder = builder.tcp_user_timeout(READ_TIMEOUT);
-        }
-        if let Some(path) = pinned_ca {
-            let name = path.display();
-            let pem = std::fs::read(path).with_context(|| format!("{name}: pinned_ca"))?;
-            let certificates = reqwest::Certificate::from_pem_bundle(&pem)
-                .with_context(|| format!("{name}: pinned_ca is not a PEM certificate"))?;
-            anyhow::ensure!(
-                !certificates.is_empty(),
-                "{name}: pinned_ca has no certificate"
-            );
-            builder = builder.tls_certs_only(certificates);
-        }
-        let http = builder.build().context("cannot set up TLS")?;
+    pub(crate) fn new(pinned_ca: Option<&Path>, line: &Line) -> anyhow::Result<Shore> {
+        let mut tls = match pinned_ca {
+            // Who pins an authority has a shore of today: older versions need not be offered.
+            Some(path) => rustls::ClientConfig::builder_with_protocol_versions(&[&TLS13])
+                .with_root_certificates(authorities(path)?)
+                .with_no_client_auth(),
+            None => rustls::ClientConfig::builder()
+                .with_platform_verifier()
+                .context("cannot set up TLS")?
+                .with_no_client_auth(),
+        };
+        tls.resumption = if line.resumes {
+            Resumption::in_memory_sessions(SESSIONS)
+        } else {
+            // A server that is not ours may refuse who offers nothing that it speaks.
+            tls.alpn_protocols = vec![ONCE.to_vec(), b"http/1.1".to_vec()];
+            Resumption::disabled()
+        };
         Ok(Shore {
-            http,
+            http: client(&tls, line.idle)?,
+            tls,
+            idle_connection: line.idle,
             octets: Arc::default(),
         })
+    }
+
+    /// Closes the connection, if there is one: the next request opens another and resumes
+    /// its TLS session.
+    pub(crate) fn hang_up(&mut self) {
+        match client(&self.tls, self.idle_connection) {
+            Ok(http) => self.http = http,
+            Err(error) => tracing::error!("{error:#}"),
+        }
     }
 
     /// The octets of answers since the last call.
@@ -198,9 +211,9 @@ impl Shore {
             .http
             .put(stream_url(identity, &path, have))
             .bearer_auth(&identity.token)
-            .header(CONTENT_TYPE, "application/octet-stream")
+            // No content type: they are octets (RFC 9110, 8.3).
             .body(batch.bytes.clone());
-        self.answer(request).await
+        self.downlink_of(request).await
     }
 
     /// Sends a report for the logbook.
@@ -224,29 +237,85 @@ impl Shore {
             .http
             .get(stream_url(identity, "downlink", have))
             .bearer_auth(&identity.token);
-        self.answer(request).await
+        self.downlink_of(request).await
     }
 }
 
 impl Shore {
     async fn answer<T: DeserializeOwned>(&self, request: RequestBuilder) -> Result<T, Trouble> {
-        answer(&self.octets, request).await
+        answer(&self.octets, request, |body| {
+            serde_json::from_slice(body).ok()
+        })
+        .await
     }
+
+    /// The compact form, or JSON of a shore that does not know it.
+    async fn downlink_of(&self, request: RequestBuilder) -> Result<Downlink, Trouble> {
+        answer(&self.octets, request, |body| {
+            if downlink::is_compact(body) {
+                downlink::decode(body).ok()
+            } else {
+                serde_json::from_slice(body).ok()
+            }
+        })
+        .await
+    }
+}
+
+/// No protocol of HTTP is offered: then a server speaks HTTP/1.1, which is what is wanted.
+fn client(
+    tls: &rustls::ClientConfig,
+    idle_connection: Duration,
+) -> anyhow::Result<reqwest::Client> {
+    let mut builder = reqwest::Client::builder()
+        .tls_backend_preconfigured(tls.clone())
+        .http1_only()
+        .redirect(redirect::Policy::none())
+        .connect_timeout(CONNECT_TIMEOUT)
+        .read_timeout(READ_TIMEOUT)
+        .tcp_keepalive(None)
+        .pool_idle_timeout(idle_connection)
+        .pool_max_idle_per_host(1);
+    #[cfg(target_os = "linux")]
+    {
+        builder = builder.tcp_user_timeout(READ_TIMEOUT);
+    }
+    builder.build().context("cannot set up TLS")
+}
+
+fn authorities(path: &Path) -> anyhow::Result<RootCertStore> {
+    let name = path.display();
+    let certificates: Vec<CertificateDer<'static>> = CertificateDer::pem_file_iter(path)
+        .with_context(|| format!("{name}: pinned_ca"))?
+        .collect::<Result<_, _>>()
+        .with_context(|| format!("{name}: pinned_ca is not a PEM certificate"))?;
+    anyhow::ensure!(
+        !certificates.is_empty(),
+        "{name}: pinned_ca has no certificate"
+    );
+    let mut roots = RootCertStore::empty();
+    for certificate in certificates {
+        let added = roots.add(certificate);
+        added.with_context(|| format!("{name}: pinned_ca is not a PEM certificate"))?;
+    }
+    Ok(roots)
 }
 
 fn stream_url(identity: &Identity, path: &str, have: Have) -> String {
     let (server, stream) = (&identity.server, identity.stream);
-    let model = have
-        .model
-        .map(|id| format!("model={id}&"))
-        .unwrap_or_default();
-    let settings = have.settings;
-    format!("{server}/api/v1/streams/{stream}/{path}?{model}settings={settings}")
+    let card = have.model.map(|id| format!("&card={}", card_tag(id)));
+    let card = card.unwrap_or_default();
+    let settings = match have.settings {
+        0 => String::new(),
+        version => format!("&settings={version}"),
+    };
+    format!("{server}/api/v1/streams/{stream}/{path}?form={FORM}{card}{settings}")
 }
 
-async fn answer<T: DeserializeOwned>(
+async fn answer<T>(
     octets: &AtomicU64,
     request: RequestBuilder,
+    read: impl FnOnce(&[u8]) -> Option<T>,
 ) -> Result<T, Trouble> {
     let response = request.send().await.map_err(|e| link_trouble(&e))?;
     read(octets, response).await
@@ -257,7 +326,7 @@ async fn read<T: DeserializeOwned>(octets: &AtomicU64, response: Response) -> Re
     let retry_after = retry_after(&response);
     let body = body(octets, response).await?;
     if status.is_success() {
-        return serde_json::from_slice(&body).map_err(|_| not_the_shore(status));
+        return read(&body).ok_or_else(|| not_the_shore(status));
     }
     let Ok(problem) = serde_json::from_slice::<Problem>(&body) else {
         if status.is_server_error() || status == StatusCode::TOO_MANY_REQUESTS {

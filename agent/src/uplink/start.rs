@@ -1,6 +1,6 @@
 //! An uplink made ready, and what it and the rest of the agent tell each other.
 
-use super::{Backoff, Budget, IDLE_CONNECTION, LinkStatus, Shore, Tell, Uplink};
+use super::{Backoff, Budget, LinkStatus, Shore, Tell, Uplink};
 use crate::config::UplinkConfig;
 use crate::spool::Spool;
 use binnacle_magnetics::time::Timestamp;
@@ -54,18 +54,22 @@ pub(crate) async fn prepare(
         urgent: Arc::default(),
     };
     let account = spool.account().await?;
+    let plan = config.plan();
+    let line = plan.line();
     let uplink = Uplink {
         spool: spool.clone(),
         token: spool.identity().await?.map(|identity| identity.token),
-        shore: Shore::new(config.pinned_ca.as_deref())?,
+        shore: Shore::new(config.pinned_ca.as_deref(), &line)?,
         backoff: Backoff::new(
             config.retry_min_s.get_ref().duration(),
             config.retry_max_s.get_ref().duration(),
         ),
         poll: config.poll(),
-        budget: Budget::new(&config.plan(), account, IDLE_CONNECTION, Instant::now()),
+        budget: Budget::new(&plan, account, line.idle, Instant::now()),
         ship_time: told.ship_time.subscribe(),
         tell,
+        keeps_line: plan.keeps_line(),
+        in_touch: false,
         no_reports_before: None,
         sealed: told.sealed.clone(),
         urgent: told.urgent.clone(),

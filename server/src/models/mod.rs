@@ -2,13 +2,15 @@
 //! but while a change has ended its epoch and no other model has taken its place.
 
 mod missing;
+mod news;
 mod schema;
 mod store;
 
 pub use missing::NoModel;
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
 pub use store::{
-    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, insert, withdrawn,
+    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, insert, lately,
+    withdrawn,
 };
 
 use crate::access::Reader;

@@ -113,6 +113,12 @@ pub(super) async fn list(
     )
 }
 
+/// A compass's last models, as many as a ship that calls now and then may be behind.
+pub async fn lately(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec<StoredModel>> {
+    const LATELY: i64 = 32;
+    list(db, vessel, compass, None, LATELY).await
+}
+
 /// Since when, and why, the compass's last card holds no more; none while it holds.
 pub async fn card_withdrawn(
     db: &Db,

@@ -4,23 +4,49 @@ use crate::access::Agent;
 use crate::app::App;
 use crate::db::row;
 use crate::error::{Error, Result};
-use crate::models::{self, ModelSchema};
+use crate::models::{self, ModelSchema, StoredModel};
 use crate::settings::{self, AgentSettings};
 use crate::time::Time;
+use axum::Json;
+use axum::body::Body;
+use axum::response::{IntoResponse, Response};
 use binnacle_magnetics::model::Model;
+use binnacle_wire::downlink::{self, FORM, card_tag};
 use binnacle_wire::messages::{Downlink, ModelDownlink};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 use uuid::Uuid;
 
 /// What the agent has.
-#[derive(Clone, Copy, Debug, Deserialize, IntoParams)]
+#[derive(Clone, Debug, Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct Has {
-    /// The model version it uses.
+    /// The model version it uses; what follows it comes at once.
     model: Option<Uuid>,
+    /// The same by the last eight digits of its id; what follows comes when it matters.
+    card: Option<String>,
     /// The settings it uses.
     settings: Option<u32>,
+    /// The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent.
+    form: Option<u8>,
+}
+
+/// An answer in the form that the agent asked for.
+pub(super) struct Answer {
+    downlink: Downlink,
+    form: Option<u8>,
+}
+
+impl IntoResponse for Answer {
+    fn into_response(self) -> Response {
+        let reads_compact = self.form.is_some_and(|form| form >= FORM);
+        let compact = reads_compact.then(|| downlink::encode(&self.downlink));
+        match compact.flatten() {
+            // What has no content type is octets (RFC 9110, 8.3): forty of them saved.
+            Some(octets) => Body::from(octets).into_response(),
+            None => Json(self.downlink).into_response(),
+        }
+    }
 }
 
 /// The acknowledgement, and what the agent does not have.
@@ -83,7 +109,7 @@ pub(super) struct OpenStreamSchema {
     stream: Uuid,
 }
 
-pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> Result<Downlink> {
+pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> Result<Answer> {
     let (contiguous_seq,) = row!(
         &app.db,
         (i64,),
@@ -96,29 +122,49 @@ pub(super) async fn answer(app: &App, agent: Agent, stream: Uuid, has: Has) -> R
     )?
     .ok_or(Error::NotFound("stream"))?;
     let current = models::current(&app.db, agent.vessel_id, agent.compass_id).await?;
-    let card_withdrawn = match has.model {
-        Some(_) => models::card_withdrawn(&app.db, agent.vessel_id, agent.compass_id).await?,
-        None => None,
+    let has_card = has.model.is_some() || has.card.is_some();
+    let card_withdrawn = if has_card {
+        models::card_withdrawn(&app.db, agent.vessel_id, agent.compass_id).await?
+    } else {
+        None
+    };
+    let news = match current {
+        Some(model) if Some(model.id.0) == has.model => None,
+        Some(model) if !is_news(app, &model, has.card.as_deref()).await? => None,
+        current => current,
     };
     let settings = settings::find(&app.db, agent.vessel_id).await?.agent;
-    Ok(Downlink {
+    let downlink = Downlink {
         contiguous_seq: contiguous_seq as u64,
-        model: current
-            .filter(|model| Some(model.id.0) != has.model)
-            .map(|model| ModelDownlink {
-                id: model.id.0,
-                version: model.version as u32,
-                data_until: model.data_until.0,
-                replaces: model.replaces(),
-                // What the model rests on is for the shore; the bridge has its band.
-                model: Model {
-                    quality: None,
-                    ..model.model.0
-                },
-            }),
+        model: news.map(|model| ModelDownlink {
+            id: model.id.0,
+            version: model.version as u32,
+            data_until: model.data_until.0,
+            replaces: model.replaces(),
+            // What the model rests on is for the shore; the bridge has its band.
+            model: Model {
+                quality: None,
+                ..model.model.0
+            },
+        }),
         unread: None,
         card_withdrawn,
         settings: Some(settings).filter(|current| current.version != has.settings.unwrap_or(0)),
         server_time: app.clock.now(),
-    })
+    };
+    let form = has.form;
+    Ok(Answer { downlink, form })
+}
+
+/// Whether a ship should have this model instead of the one that she names.
+async fn is_news(app: &App, model: &StoredModel, card: Option<&str>) -> Result<bool> {
+    let Some(card) = card else {
+        return Ok(true);
+    };
+    if card == card_tag(model.id.0) {
+        return Ok(false);
+    }
+    let known = models::lately(&app.db, model.vessel_id, model.compass_id).await?;
+    let known = known.iter().find(|known| card == card_tag(known.id.0));
+    Ok(known.is_none_or(|known| model.matters_after(known)))
 }

@@ -30,9 +30,9 @@ use axum::extract::{DefaultBodyLimit, State};
 use axum::http::StatusCode;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
-use binnacle_wire::messages::{Downlink, OpenStreamAnswer};
+use binnacle_wire::messages::OpenStreamAnswer;
 pub use downlink::CardWithdrawnSchema;
-use downlink::{DownlinkSchema, Has, OpenStreamSchema};
+use downlink::{Answer, DownlinkSchema, Has, OpenStreamSchema};
 use metrics::counter;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -72,8 +72,10 @@ async fn open_stream(
     params(("stream" = Uuid, Path), ("seq" = u64, Path, minimum = 1), Has),
     request_body(content = Vec<u8>, content_type = "application/octet-stream",
                  description = "The frame, as crates/wire/FORMAT.md has it"),
-    responses((status = 200, body = DownlinkSchema), (status = 400, body = Problem),
-              (status = 401, body = Problem), (status = 404, body = Problem),
+    responses((status = 200, description = "As JSON, or in the compact form asked for",
+               content((DownlinkSchema = "application/json"),
+                       (Vec<u8> = "application/octet-stream"))),
+              (status = 400, body = Problem), (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "Other bytes are stored under this number", body = Problem),
               (status = 413, body = Problem), (status = 422, body = Problem)))]
 async fn put_batch(
@@ -82,7 +84,7 @@ async fn put_batch(
     Id((stream, seq)): Id<(Uuid, u64)>,
     Params(has): Params<Has>,
     body: std::result::Result<Bytes, BytesRejection>,
-) -> Result<Json<Downlink>> {
+) -> Result<Answer> {
     let bytes = body.map_err(|rejection| too_large(&rejection))?;
     let batch = read(&bytes, StreamId(stream), seq)?;
     let now = app.clock.now().into();
@@ -95,7 +97,7 @@ async fn put_batch(
     }
     let result = if taken.is_new { "stored" } else { "repeated" };
     counter!("binnacle_batches_total", "result" => result).increment(1);
-    Ok(Json(downlink::answer(&app, agent, stream, has).await?))
+    downlink::answer(&app, agent, stream, has).await
 }
 
 /// What a batch came to.
@@ -130,15 +132,17 @@ async fn take(
 /// Ask for what the shore has
 #[utoipa::path(get, path = "/streams/{stream}/downlink", tag = "agents", security(("token" = [])),
     params(("stream" = Uuid, Path), Has),
-    responses((status = 200, body = DownlinkSchema), (status = 401, body = Problem),
-              (status = 404, body = Problem)))]
+    responses((status = 200, description = "As JSON, or in the compact form asked for",
+               content((DownlinkSchema = "application/json"),
+                       (Vec<u8> = "application/octet-stream"))),
+              (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn downlink(
     State(app): State<App>,
     agent: Agent,
     Id(stream): Id<Uuid>,
     Params(has): Params<Has>,
-) -> Result<Json<Downlink>> {
-    Ok(Json(downlink::answer(&app, agent, stream, has).await?))
+) -> Result<Answer> {
+    downlink::answer(&app, agent, stream, has).await
 }
 
 /// Other batches may follow soon, and are analysed with it; what the ship raised an

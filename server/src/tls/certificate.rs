@@ -1,11 +1,36 @@
 //! The server's certificate and key, from two PEM files.
 
 use anyhow::{Context, Result, ensure};
+use binnacle_wire::downlink::ONCE;
 use rustls::ServerConfig;
 use rustls::pki_types::pem::PemObject;
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
+use rustls::server::{ClientHello, ServerSessionMemoryCache};
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// TLS sessions that can be resumed; each takes some 300 bytes.
+const SESSIONS: usize = 32_768;
+
+/// How hands are shaken.
+#[derive(Clone, Debug)]
+pub struct Configs {
+    usual: Arc<ServerConfig>,
+    /// Without a ticket, for who will not be back while it holds.
+    once: Arc<ServerConfig>,
+}
+
+impl Configs {
+    /// The one for who says this hello.
+    pub fn for_hello(&self, hello: &ClientHello<'_>) -> Arc<ServerConfig> {
+        let mut protocols = hello.alpn().into_iter().flatten();
+        if protocols.any(|protocol| protocol == ONCE) {
+            self.once.clone()
+        } else {
+            self.usual.clone()
+        }
+    }
+}
 
 /// Where the certificate is kept.
 #[derive(Clone, Debug)]
@@ -22,7 +47,7 @@ impl Certificate {
     /// # Errors
     /// When one cannot be read, holds no certificate or key, or they do not belong
     /// together; the message names the file.
-    pub fn load(&self) -> Result<Arc<ServerConfig>> {
+    pub fn load(&self) -> Result<Configs> {
         let name = self.chain.display();
         let chain: Vec<CertificateDer<'static>> = CertificateDer::pem_file_iter(&self.chain)
             .and_then(Iterator::collect)
@@ -35,9 +60,17 @@ impl Certificate {
             .with_no_client_auth()
             .with_single_cert(chain, key)
             .with_context(|| format!("{name}: not the certificate's key"))?;
+        let mut once = config.clone();
+        once.send_tls13_tickets = 0;
         config.alpn_protocols = vec![b"h2".to_vec(), b"http/1.1".to_vec()];
         // Each ticket is some hundred bytes over a satellite; one is enough to resume.
         config.send_tls13_tickets = 1;
-        Ok(Arc::new(config))
+        // One for each ship of a large fleet, and for the browsers between two uploads of
+        // hers: kept here they are a quarter of what a ticket would be that holds it all.
+        config.session_storage = ServerSessionMemoryCache::new(SESSIONS);
+        Ok(Configs {
+            usual: Arc::new(config),
+            once: Arc::new(once),
+        })
     }
 }

@@ -1,9 +1,10 @@
 //! A listener whose connections have shaken hands already.
 
-use super::Certificate;
+use super::certificate::{Certificate, Configs};
+use super::line::{Line, Tcp};
 use anyhow::Result;
 use axum::serve::Listener;
-use rustls::ServerConfig;
+use rustls::server::Acceptor;
 use std::io;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -13,8 +14,7 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{Semaphore, mpsc, watch};
 use tokio::task::AbortHandle;
 use tokio::time::timeout;
-use tokio_rustls::TlsAcceptor;
-use tokio_rustls::server::TlsStream;
+use tokio_rustls::LazyConfigAcceptor;
 use tracing::{debug, error, info};
 
 /// Over a satellite that loses packets a handshake takes up to half a minute.
@@ -22,7 +22,7 @@ const HANDSHAKE: Duration = Duration::from_mins(1);
 /// So many hands are shaken at once; others wait in the system's queue.
 const HANDSHAKES: usize = 1024;
 
-type Connection = (TlsStream<TcpStream>, SocketAddr);
+type Connection = (Line, SocketAddr);
 
 /// Takes TLS connections on a TCP listener. SIGHUP has the certificate read anew.
 #[derive(Debug)]
@@ -74,7 +74,7 @@ impl Drop for TlsListener {
 }
 
 impl Listener for TlsListener {
-    type Io = TlsStream<TcpStream>;
+    type Io = Line;
     type Addr = SocketAddr;
 
     async fn accept(&mut self) -> Connection {
@@ -92,21 +92,27 @@ impl Listener for TlsListener {
 
 async fn accept(
     mut listener: TcpListener,
-    in_use: watch::Receiver<Arc<ServerConfig>>,
+    in_use: watch::Receiver<Configs>,
     done: mpsc::Sender<Connection>,
 ) {
     let free = Arc::new(Semaphore::new(HANDSHAKES));
     while let Ok(place) = free.clone().acquire_owned().await {
         let (stream, peer) = Listener::accept(&mut listener).await;
-        let acceptor = TlsAcceptor::from(in_use.borrow().clone());
+        let configs = in_use.borrow().clone();
         let done = done.clone();
         tokio::spawn(async move {
-            match timeout(HANDSHAKE, acceptor.accept(stream)).await {
-                Ok(Ok(stream)) => drop(done.send((stream, peer)).await),
+            match timeout(HANDSHAKE, shake_hands(stream, configs)).await {
+                Ok(Ok(line)) => drop(done.send((line, peer)).await),
                 Ok(Err(error)) => debug!(%peer, %error, "no TLS"),
                 Err(_) => debug!(%peer, "the TLS handshake took too long"),
             }
             drop(place);
         });
     }
+}
+
+async fn shake_hands(stream: TcpStream, configs: Configs) -> io::Result<Line> {
+    let hello = LazyConfigAcceptor::new(Acceptor::default(), Tcp::new(stream)).await?;
+    let config = configs.for_hello(&hello.client_hello());
+    Ok(Line::new(hello.into_stream(config).await?))
 }

@@ -5,7 +5,9 @@
 //! one before in use.
 
 mod certificate;
+mod line;
 mod listener;
 
 pub use certificate::Certificate;
+pub use line::Line;
 pub use listener::TlsListener;

@@ -3,7 +3,8 @@
 use crate::commands::{good, run};
 use crate::on_both;
 use crate::support::{Shore, passage};
-use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::ship::EarthField;
 use serde_json::{Value, json};
 
 on_both!(
@@ -60,6 +61,32 @@ async fn a_passage_becomes_a_model_that_foretells_the_deviation(shore: Shore) {
     assert_eq!(downlink["model"]["model"], for_the_bridge);
     let has = format!("?model={}", model["id"].as_str().unwrap());
     assert!(nao.downlink(&has).await.get("model").is_none());
+
+    // In the compact form, to the same card.
+    let (compact, octets) = nao.compact("").await;
+    assert!(octets < 300, "{octets}");
+    let sent = compact.model.unwrap();
+    assert_eq!(sent.id.to_string(), model["id"].as_str().unwrap());
+    let field = |name: &str| table[name].as_f64().unwrap();
+    let earth = EarthField {
+        h_nt: field("h_nt"),
+        z_nt: field("z_nt"),
+    };
+    for row in rows {
+        let of = |name: &str| row[name].as_f64().unwrap();
+        let compass = CompassHeading::new(of("compass_deg")).unwrap();
+        let aboard = sent.model.deviation(compass, earth).unwrap();
+        let apart = aboard.deviation.degrees_east() - of("deviation_deg");
+        assert!(apart.abs() < 0.01, "{row}: {apart}");
+        let apart = aboard.band95_deg.unwrap() - of("band95_deg");
+        assert!(apart.abs() < 0.02, "{row}: {apart}");
+    }
+    let (bare, octets) = nao.compact(&has.replace('?', "&")).await;
+    assert_eq!(
+        (bare.contiguous_seq, bare.model),
+        (compact.contiguous_seq, None)
+    );
+    assert!(octets < 20, "{octets}");
     shore.finish().await;
 }
 

@@ -3900,10 +3900,14 @@ export interface operations {
     put_batch: {
         parameters: {
             query?: {
-                /** @description The model version it uses. */
+                /** @description The model version it uses; what follows it comes at once. */
                 model?: string;
+                /** @description The same by the last eight digits of its id; what follows comes when it matters. */
+                card?: string;
                 /** @description The settings it uses. */
                 settings?: number;
+                /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
+                form?: number;
             };
             header?: never;
             path: {
@@ -3919,13 +3923,14 @@ export interface operations {
             };
         };
         responses: {
-            /** @description OK */
+            /** @description As JSON, or in the compact form asked for */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["Downlink"];
+                    "application/octet-stream": number[];
                 };
             };
             /** @description Bad Request */
@@ -3987,10 +3992,14 @@ export interface operations {
     downlink: {
         parameters: {
             query?: {
-                /** @description The model version it uses. */
+                /** @description The model version it uses; what follows it comes at once. */
                 model?: string;
+                /** @description The same by the last eight digits of its id; what follows comes when it matters. */
+                card?: string;
                 /** @description The settings it uses. */
                 settings?: number;
+                /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
+                form?: number;
             };
             header?: never;
             path: {
@@ -4000,13 +4009,14 @@ export interface operations {
         };
         requestBody?: never;
         responses: {
-            /** @description OK */
+            /** @description As JSON, or in the compact form asked for */
             200: {
                 headers: {
                     [name: string]: unknown;
                 };
                 content: {
                     "application/json": components["schemas"]["Downlink"];
+                    "application/octet-stream": number[];
                 };
             };
             /** @description Bad Request */

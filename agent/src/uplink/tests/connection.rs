@@ -78,47 +78,56 @@ fn identity(port: u16) -> Identity {
 }
 
 /// An agent that believes this certificate only.
-fn believer(pem: &str, idle: Duration) -> Shore {
+fn believer(pem: &str, profile: Profile) -> Shore {
     let directory = TempDir::new().unwrap();
     let pinned = directory.path().join("ca.pem");
     std::fs::write(&pinned, pem).unwrap();
-    Shore::with_idle_connections(Some(&pinned), idle).unwrap()
+    Shore::new(Some(&pinned), &profile.plan(None).line()).unwrap()
 }
 
 /// How hands were shaken when the shore was asked for news so many times in a row.
-async fn asked(times: usize, idle: Duration) -> Vec<Option<HandshakeKind>> {
+async fn asked(times: usize, profile: Profile, hangs_up: bool) -> Vec<Option<HandshakeKind>> {
     let (identity, pem, kinds) = shore().await;
-    let shore = believer(&pem, idle);
+    let mut shore = believer(&pem, profile);
     for _ in 0..times {
         shore.downlink(&identity, Have::default()).await.unwrap();
-        assert!(shore.take_octets() > 20);
+        assert!(shore.take_octets() >= 13);
+        if hangs_up {
+            shore.hang_up();
+        }
     }
     kinds.lock().unwrap().clone()
 }
 
 #[tokio::test]
 async fn what_follows_at_once_goes_over_the_same_connection() {
-    assert_eq!(asked(3, IDLE_CONNECTION).await.len(), 1);
+    assert_eq!(asked(3, Profile::Standard, false).await.len(), 1);
 }
 
 #[tokio::test]
-async fn a_connection_that_was_idle_for_too_long_is_left_and_its_session_resumed() {
-    let kinds = asked(2, Duration::from_nanos(1)).await;
+async fn after_a_connection_that_was_hung_up_its_session_is_resumed() {
+    let kinds = asked(2, Profile::Standard, true).await;
     let wanted = [Some(HandshakeKind::Full), Some(HandshakeKind::Resumed)];
     assert_eq!(kinds, wanted);
+}
+
+#[tokio::test]
+async fn who_calls_once_a_day_has_no_session_to_resume() {
+    let kinds = asked(2, Profile::Metered, true).await;
+    assert_eq!(kinds, [Some(HandshakeKind::Full); 2]);
 }
 
 #[tokio::test]
 async fn hands_that_were_not_shaken_are_paid_for_and_nobody_at_all_is_not() {
     let (identity_there, pem, _) = shore().await;
     let other = generate_simple_self_signed(vec!["localhost".to_owned()]).unwrap();
-    let suspicious = believer(&other.cert.pem(), IDLE_CONNECTION);
+    let suspicious = believer(&other.cert.pem(), Profile::Standard);
     let refused = suspicious.downlink(&identity_there, Have::default()).await;
     assert!(matches!(refused, Err(Trouble::Link(_))), "{refused:?}");
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let believer = believer(&pem, IDLE_CONNECTION);
+    let believer = believer(&pem, Profile::Standard);
     let nobody = believer.downlink(&identity(port), Have::default()).await;
     assert!(
         matches!(nobody, Err(Trouble::NoConnection(_))),

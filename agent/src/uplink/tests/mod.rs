@@ -67,7 +67,7 @@ async fn put_batch(
 ) -> Response {
     let mut fake = fake.lock().unwrap();
     fake.requests += 1;
-    fake.queries.push(query);
+    fake.queries.push(query.clone());
     if let Some(answer) = fake.answers.pop_front() {
         return answer;
     }
@@ -80,7 +80,7 @@ async fn put_batch(
         return problem(StatusCode::CONFLICT, "stream-forked");
     }
     fake.order.push(seq);
-    Json(downlink(&fake, stream)).into_response()
+    answer_in_form(&fake, stream, &query)
 }
 
 async fn put_report(
@@ -98,10 +98,25 @@ async fn put_report(
     Json(json!({ "revision": revision, "withdrawn": false })).into_response()
 }
 
-async fn get_downlink(State(fake): State<Shared>, Path(stream): Path<Uuid>) -> Json<Value> {
+async fn get_downlink(
+    State(fake): State<Shared>,
+    Path(stream): Path<Uuid>,
+    Query(query): Query<HashMap<String, String>>,
+) -> Response {
     let mut fake = fake.lock().unwrap();
     fake.polls += 1;
-    Json(downlink(&fake, stream))
+    answer_in_form(&fake, stream, &query)
+}
+
+/// In the form that was asked for; what no agent knows is JSON, as an old shore's is.
+fn answer_in_form(fake: &Fake, stream: Uuid, query: &HashMap<String, String>) -> Response {
+    let sent = downlink(fake, stream);
+    if fake.unreadable.is_some() || query["form"] != "1" {
+        return Json(sent).into_response();
+    }
+    let sent = serde_json::from_value(sent).unwrap();
+    let octets = binnacle_wire::downlink::encode(&sent).unwrap();
+    octets.into_response()
 }
 
 async fn open_stream(State(fake): State<Shared>) -> Response {
@@ -193,10 +208,10 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
     let uplink = Uplink {
         spool: spool.clone(),
         token: Some(identity.token.clone()),
-        shore: Shore::new(None).unwrap(),
+        shore: Shore::new(None, &plan.line()).unwrap(),
         backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
         poll: Duration::from_hours(1),
-        budget: Budget::new(plan, account, IDLE_CONNECTION, Instant::now()),
+        budget: Budget::new(plan, account, plan.line().idle, Instant::now()),
         ship_time: ship_time.subscribe(),
         tell: Tell {
             model: watch::channel(None).0,
@@ -204,6 +219,8 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
             settings: settings_tx,
             link: link_tx,
         },
+        keeps_line: plan.keeps_line(),
+        in_touch: false,
         no_reports_before: None,
         sealed: sealed.clone(),
         urgent: urgent.clone(),

@@ -7,7 +7,7 @@ use super::error::DecodeError;
 
 /// Collects bits into bytes; the last byte is filled up with zeros.
 #[derive(Debug, Default)]
-pub(super) struct BitWriter {
+pub(crate) struct BitWriter {
     bytes: Vec<u8>,
     /// Bits used of the last byte; 0 when it is full or there is none.
     used: u32,
@@ -15,7 +15,7 @@ pub(super) struct BitWriter {
 
 impl BitWriter {
     /// The lowest `count` bits of `value`; `count` is at most 64.
-    pub(super) fn bits(&mut self, value: u64, count: u32) {
+    pub(crate) fn bits(&mut self, value: u64, count: u32) {
         for shift in (0..count).rev() {
             let bit = (value >> shift & 1) as u8;
             if self.used == 0 {
@@ -29,21 +29,21 @@ impl BitWriter {
     }
 
     /// Whole bytes.
-    pub(super) fn octets(&mut self, octets: &[u8]) {
+    pub(crate) fn octets(&mut self, octets: &[u8]) {
         for octet in octets {
             self.bits(u64::from(*octet), 8);
         }
     }
 
     /// Elias's gamma code of `value`, which is at least 1.
-    pub(super) fn gamma(&mut self, value: u64) {
+    pub(crate) fn gamma(&mut self, value: u64) {
         let below = value.ilog2();
         self.bits(0, below);
         self.bits(value, below + 1);
     }
 
     /// Seven bits at a time, the lowest first, each group led by whether more follow.
-    pub(super) fn varint(&mut self, mut value: u64) {
+    pub(crate) fn varint(&mut self, mut value: u64) {
         while value > 0x7f {
             self.bits(value & 0x7f | 0x80, 8);
             value >>= 7;
@@ -52,31 +52,31 @@ impl BitWriter {
     }
 
     /// What was written.
-    pub(super) fn into_bytes(self) -> Vec<u8> {
+    pub(crate) fn into_bytes(self) -> Vec<u8> {
         self.bytes
     }
 }
 
 /// Reads what [`BitWriter`] wrote.
 #[derive(Debug)]
-pub(super) struct BitReader<'a> {
+pub(crate) struct BitReader<'a> {
     bytes: &'a [u8],
     /// Bits already read.
     at: usize,
 }
 
 impl<'a> BitReader<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> BitReader<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> BitReader<'a> {
         BitReader { bytes, at: 0 }
     }
 
     /// Bits that are left.
-    pub(super) fn left(&self) -> usize {
+    pub(crate) fn left(&self) -> usize {
         self.bytes.len() * 8 - self.at
     }
 
     /// One bit.
-    pub(super) fn bit(&mut self) -> Result<bool, DecodeError> {
+    pub(crate) fn bit(&mut self) -> Result<bool, DecodeError> {
         let byte = self.bytes.get(self.at / 8).ok_or(DecodeError::Truncated)?;
         let bit = byte >> (7 - self.at % 8) & 1;
         self.at += 1;
@@ -84,7 +84,7 @@ impl<'a> BitReader<'a> {
     }
 
     /// An unsigned number of `count` bits, at most 64.
-    pub(super) fn bits(&mut self, count: u32) -> Result<u64, DecodeError> {
+    pub(crate) fn bits(&mut self, count: u32) -> Result<u64, DecodeError> {
         let mut value = 0;
         for _ in 0..count {
             value = value << 1 | u64::from(self.bit()?);
@@ -93,7 +93,7 @@ impl<'a> BitReader<'a> {
     }
 
     /// Elias's gamma code.
-    pub(super) fn gamma(&mut self) -> Result<u64, DecodeError> {
+    pub(crate) fn gamma(&mut self) -> Result<u64, DecodeError> {
         let mut below = 0;
         while !self.bit()? {
             below += 1;
@@ -105,7 +105,7 @@ impl<'a> BitReader<'a> {
     }
 
     /// Seven bits at a time, the lowest first.
-    pub(super) fn varint(&mut self) -> Result<u64, DecodeError> {
+    pub(crate) fn varint(&mut self) -> Result<u64, DecodeError> {
         let mut value = 0;
         for shift in (0..64).step_by(7) {
             let group = self.bits(8)?;
@@ -123,7 +123,7 @@ impl<'a> BitReader<'a> {
     }
 
     /// Whole bytes.
-    pub(super) fn octets(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
+    pub(crate) fn octets(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
         if self.left() / 8 < count {
             return Err(DecodeError::Truncated);
         }
@@ -131,7 +131,7 @@ impl<'a> BitReader<'a> {
     }
 
     /// Refuses anything but the zero bits that fill the last byte.
-    pub(super) fn finish(mut self) -> Result<(), DecodeError> {
+    pub(crate) fn finish(mut self) -> Result<(), DecodeError> {
         let left = self.left();
         if left > 7 || self.bits(left as u32)? != 0 {
             return Err(DecodeError::TrailingBits);
@@ -141,12 +141,12 @@ impl<'a> BitReader<'a> {
 }
 
 /// 0, −1, 1, −2 … as 0, 1, 2, 3 …
-pub(super) fn zigzag(value: i64) -> u64 {
+pub(crate) fn zigzag(value: i64) -> u64 {
     (value << 1 ^ value >> 63).cast_unsigned()
 }
 
 /// 0, 1, 2, 3 … as 0, −1, 1, −2 …
-pub(super) fn unzigzag(code: u64) -> i64 {
+pub(crate) fn unzigzag(code: u64) -> i64 {
     (code >> 1).cast_signed() ^ -(code & 1).cast_signed()
 }
 

@@ -7,7 +7,7 @@
 //! - [`decode`] takes any bytes: it answers or refuses, in time and memory
 //!   bounded by [`MAX_BYTES`] and [`MAX_SAMPLES`], and never panics.
 
-mod bits;
+pub(crate) mod bits;
 mod columns;
 mod error;
 mod frame;

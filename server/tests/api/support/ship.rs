@@ -8,7 +8,7 @@ use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::batch::{Batch, StreamId};
-use binnacle_wire::messages::EnrolAnswer;
+use binnacle_wire::messages::{Downlink, EnrolAnswer};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -58,6 +58,19 @@ impl Ship {
         Answer::of(self.request(reqwest::Method::GET, &path))
             .await
             .good()
+    }
+
+    /// The answer in the compact form, its octets with it.
+    pub(crate) async fn compact(&self, has: &str) -> (Downlink, usize) {
+        let path = format!("/streams/{}/downlink?form=1{has}", self.stream);
+        let answer = self.request(reqwest::Method::GET, &path).send().await;
+        let answer = answer.unwrap();
+        assert_eq!(answer.headers().get("content-type"), None);
+        let octets = answer.bytes().await.unwrap();
+        (
+            binnacle_wire::downlink::decode(&octets).unwrap(),
+            octets.len(),
+        )
     }
 
     pub(crate) fn request(&self, method: reqwest::Method, path: &str) -> reqwest::RequestBuilder {

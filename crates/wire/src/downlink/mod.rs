@@ -1,0 +1,186 @@
+//! The answer to a ship as bytes: `bd1`, an eighth of what it is as JSON.
+//!
+//! `DOWNLINK.md` beside this crate has every byte. What always holds:
+//!
+//! - An answer comes back as it was sent, but for times, which are whole seconds, and
+//!   the model, whose deviation stays within 0.001° and whose band within 0.005°.
+//! - [`decode`] takes any bytes: it answers or refuses, in time and memory bounded by
+//!   their number, and never panics.
+//! - What a later shore adds is passed over.
+
+mod model;
+
+use crate::codec::bits::{BitReader, BitWriter};
+use crate::messages::{CardWithdrawn, Downlink, Settings};
+use binnacle_magnetics::time::Timestamp;
+use uuid::Uuid;
+
+/// What an agent asks for that reads this form: `?form=1`.
+pub const FORM: u8 = 1;
+
+/// What an agent says as its protocol in a TLS hello (RFC 7301) when it will not be back
+/// within a day: a ticket for a next session would be of no use to it.
+pub const ONCE: &[u8] = b"once";
+
+const MAGIC: [u8; 2] = *b"BD";
+/// Magic and version; the checksum.
+const HEAD_BYTES: usize = 3;
+const CHECKSUM_BYTES: usize = 4;
+const MODEL: u64 = 1;
+const CARD_WITHDRAWN: u64 = 2;
+const SETTINGS: u64 = 3;
+/// The longest word for what withdrew a card.
+const MAX_REASON_BYTES: usize = 255;
+
+/// Why bytes are not an answer that can be read here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DecodeError {
+    /// Something else altogether.
+    #[error("these bytes are not a compact answer: they do not begin with 42 44")]
+    NotOne,
+    /// Damaged or cut on the way.
+    #[error("the compact answer is damaged")]
+    Damaged,
+    /// The shore is ahead of this program, and was not asked for that.
+    #[error("the compact answer has form {0}, and this program reads form 1")]
+    Form(u8),
+    /// A part that is there is not what it must be.
+    #[error("the compact answer's {0} cannot be read")]
+    Bad(&'static str),
+}
+
+/// How an agent that asks for this form names the model that it has, `&card=`: the last
+/// eight hexadecimal digits of its id, which are random.
+pub fn card_tag(model: Uuid) -> String {
+    format!("{:08x}", model.as_u128() as u32)
+}
+
+/// Writes an answer; `None` when it has a model that this form cannot carry, which then
+/// goes as JSON.
+pub fn encode(downlink: &Downlink) -> Option<Vec<u8>> {
+    let mut writer = BitWriter::default();
+    writer.octets(&MAGIC);
+    writer.octets(&[FORM]);
+    writer.varint(downlink.contiguous_seq);
+    write_time(&mut writer, downlink.server_time)?;
+    if let Some(model) = &downlink.model {
+        write_part(&mut writer, MODEL, &model::octets(model)?);
+    }
+    if let Some(withdrawn) = &downlink.card_withdrawn {
+        let mut part = BitWriter::default();
+        write_withdrawn(&mut part, withdrawn)?;
+        write_part(&mut writer, CARD_WITHDRAWN, &part.into_bytes());
+    }
+    if let Some(settings) = &downlink.settings {
+        // They change once a year: their JSON needs no second form.
+        let text = serde_json::to_vec(settings).ok()?;
+        write_part(&mut writer, SETTINGS, &text);
+    }
+    let mut bytes = writer.into_bytes();
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    Some(bytes)
+}
+
+/// Whether these bytes say that they are an answer of this form, or a later one.
+pub fn is_compact(bytes: &[u8]) -> bool {
+    bytes.starts_with(&MAGIC)
+}
+
+/// Reads an answer.
+///
+/// # Errors
+/// When it is not one, or not whole, or of a later form.
+pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
+    if !is_compact(bytes) {
+        return Err(DecodeError::NotOne);
+    }
+    let body = bytes.len().checked_sub(CHECKSUM_BYTES);
+    let body = body.filter(|body| *body >= HEAD_BYTES);
+    let (content, checksum) = bytes.split_at(body.ok_or(DecodeError::Damaged)?);
+    if crc32fast::hash(content).to_le_bytes() != checksum {
+        return Err(DecodeError::Damaged);
+    }
+    if content[2] != FORM {
+        return Err(DecodeError::Form(content[2]));
+    }
+    let mut reader = BitReader::new(&content[HEAD_BYTES..]);
+    let contiguous_seq = reader.varint().map_err(|_| DecodeError::Damaged)?;
+    let mut downlink = Downlink {
+        contiguous_seq,
+        model: None,
+        unread: None,
+        card_withdrawn: None,
+        settings: None,
+        server_time: read_time(&mut reader).ok_or(DecodeError::Bad("time"))?,
+    };
+    while reader.left() > 0 {
+        let (kind, octets) = read_part(&mut reader).ok_or(DecodeError::Damaged)?;
+        let mut part = BitReader::new(&octets);
+        match kind {
+            MODEL => {
+                let model = model::read(&mut part).ok_or(DecodeError::Bad("model"))?;
+                downlink.model = Some(model);
+            }
+            CARD_WITHDRAWN => {
+                let withdrawn = read_withdrawn(&mut part);
+                let withdrawn = withdrawn.ok_or(DecodeError::Bad("withdrawal"))?;
+                downlink.card_withdrawn = Some(withdrawn);
+            }
+            SETTINGS => downlink.settings = Some(read_settings(&octets)?),
+            _ => {}
+        }
+    }
+    Ok(downlink)
+}
+
+fn write_part(writer: &mut BitWriter, kind: u64, octets: &[u8]) {
+    writer.varint(kind);
+    writer.varint(octets.len() as u64);
+    writer.octets(octets);
+}
+
+fn read_part(reader: &mut BitReader<'_>) -> Option<(u64, Vec<u8>)> {
+    let kind = reader.varint().ok()?;
+    let length = usize::try_from(reader.varint().ok()?).ok()?;
+    Some((kind, reader.octets(length).ok()?))
+}
+
+fn read_settings(octets: &[u8]) -> Result<Settings, DecodeError> {
+    serde_json::from_slice(octets).map_err(|_| DecodeError::Bad("settings"))
+}
+
+/// Whole seconds since 1970; `None` for before.
+fn write_time(writer: &mut BitWriter, time: Timestamp) -> Option<()> {
+    let seconds = u64::try_from(time.micros().div_euclid(1_000_000)).ok()?;
+    writer.varint(seconds);
+    Some(())
+}
+
+fn read_time(reader: &mut BitReader<'_>) -> Option<Timestamp> {
+    let seconds = i64::try_from(reader.varint().ok()?).ok()?;
+    Timestamp::from_micros(seconds.checked_mul(1_000_000)?).ok()
+}
+
+fn write_withdrawn(writer: &mut BitWriter, withdrawn: &CardWithdrawn) -> Option<()> {
+    write_time(writer, withdrawn.since)?;
+    let reason = withdrawn.reason.as_bytes();
+    if reason.len() > MAX_REASON_BYTES {
+        return None;
+    }
+    writer.varint(reason.len() as u64);
+    writer.octets(reason);
+    Some(())
+}
+
+fn read_withdrawn(reader: &mut BitReader<'_>) -> Option<CardWithdrawn> {
+    let since = read_time(reader)?;
+    let length = usize::try_from(reader.varint().ok()?).ok()?;
+    if length > MAX_REASON_BYTES {
+        return None;
+    }
+    let reason = String::from_utf8(reader.octets(length).ok()?).ok()?;
+    Some(CardWithdrawn { since, reason })
+}
+
+#[cfg(test)]
+mod tests;

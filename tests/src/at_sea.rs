@@ -1,0 +1,181 @@
+//! A ship at the far end of a satellite link, with all that belongs to her.
+
+use crate::feed::{Pace, Progress};
+use crate::ledger::{Spool, ensure_same_at_both_ends};
+use crate::satellite::{Certificates, INSTRUMENTS, Satellite, Weather};
+use crate::{Ship, Shore, Voyage, eventually};
+use anyhow::{Context, Result};
+use binnacle_magnetics::time::Timestamp;
+use serde_json::Value;
+use std::path::Path;
+use std::time::Duration;
+use tempfile::TempDir;
+use uuid::Uuid;
+
+/// When the scenarios of this package begin.
+pub const START: &str = "2026-10-01T00:00:00Z";
+/// Long enough for acknowledgements to wait for what they can travel with, as over a
+/// satellite; twice that time changes nothing but the tests' own.
+const ROUND_TRIP_MS: f64 = 300.0;
+/// What a busy machine may take for a few days' sailing.
+pub const PATIENCE: Duration = Duration::from_mins(8);
+
+/// So many days after the start.
+///
+/// # Panics
+/// Never: the start is a date.
+pub fn day(day: f64) -> Timestamp {
+    let start = Timestamp::parse(START).expect("a date");
+    start.plus_seconds(day * 86_400.0)
+}
+
+/// A ship at sea.
+#[derive(Debug)]
+pub struct AtSea {
+    /// The link, to be changed and read.
+    pub satellite: Satellite,
+    /// The server.
+    pub shore: Shore,
+    /// The shore's certificates.
+    pub tls: Certificates,
+    /// The ship as the server knows her.
+    pub vessel: Uuid,
+    /// Her instruments.
+    pub voyage: Voyage,
+    /// Her agent.
+    pub ship: Ship,
+    folder: TempDir,
+}
+
+impl AtSea {
+    /// Starts everything; time stands still. `uplink` is added to the agent's settings.
+    ///
+    /// # Errors
+    /// When something does not start.
+    pub async fn sail(scenario: &str, uplink: &str) -> Result<AtSea> {
+        let folder = tempfile::tempdir()?;
+        let mut satellite = Satellite::launch().await?;
+        // From the start: what TCP has learned of a better link it does not soon forget.
+        let round_trip_ms = Some(ROUND_TRIP_MS);
+        let weather = Weather {
+            round_trip_ms,
+            ..Weather::default()
+        };
+        satellite.set(weather).await?;
+        let tls = Certificates::make(folder.path())?;
+        let shore = Shore::start_ashore(folder.path(), &tls).await?;
+        let (vessel, code) = shore.create_vessel("ship").await?;
+        let pace = Pace::FastUntil(day(0.0));
+        let voyage = Voyage::sail_at(INSTRUMENTS, scenario, 11, folder.path(), pace).await?;
+        let uplink = format!("pinned_ca = \"{}\"\n{uplink}", tls.authority.display());
+        let feed = voyage.feed.address();
+        let ship = Ship::with_uplink("ship", folder.path(), feed, &uplink)?;
+        let mut ship = ship.at_sea(satellite.berth());
+        ship.enrol(&shore.url, &code).await?;
+        ship.start()?;
+        ship.ready().await?;
+        Ok(AtSea {
+            satellite,
+            shore,
+            tls,
+            vessel: vessel.parse()?,
+            voyage,
+            ship,
+            folder,
+        })
+    }
+
+    /// Where everybody's files are.
+    pub fn folder(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// Sails on to an instant; returns when the agent has heard of it.
+    ///
+    /// # Errors
+    /// When she does not get there.
+    pub async fn until(&mut self, time: Timestamp) -> Result<()> {
+        until(&mut self.voyage, &self.ship, time).await
+    }
+
+    /// Waits until nothing waits on board.
+    ///
+    /// # Errors
+    /// When something goes on waiting.
+    pub async fn all_ashore(&self) -> Result<Spool> {
+        all_ashore(&self.ship).await
+    }
+
+    /// Waits until the shore has analysed what it has.
+    ///
+    /// # Errors
+    /// When it does not.
+    pub async fn analysed(&self) -> Result<()> {
+        eventually("all is analysed", PATIENCE, async || {
+            let waiting = self.shore.jobs().await?;
+            Ok(if waiting == 0 {
+                Ok(())
+            } else {
+                Err(format!("{waiting} jobs"))
+            })
+        })
+        .await
+    }
+
+    /// Both ends' records are the same, to the checksum; stops everything.
+    ///
+    /// # Errors
+    /// When they are not, or a program failed.
+    pub async fn arrive(mut self) -> Result<()> {
+        let spool = self.all_ashore().await?;
+        ensure_same_at_both_ends(&self.shore, self.vessel, &spool).await?;
+        self.ship.assert_running()?;
+        self.ship.kill().await?;
+        self.shore.assert_well().await?;
+        self.shore.finish().await
+    }
+}
+
+/// Sails on to an instant; returns when the agent has heard of it.
+///
+/// # Errors
+/// When she does not get there.
+pub async fn until(voyage: &mut Voyage, ship: &Ship, time: Timestamp) -> Result<()> {
+    voyage.feed.set_pace(Pace::FastUntil(time))?;
+    let there = |progress: &Progress| *progress == Progress::Ended || progress.time() >= Some(time);
+    let reached = voyage.feed.reached(PATIENCE, there).await?;
+    // The last sentences of a voyage may stop short of her end.
+    let time = reached.time().unwrap_or(time.plus_seconds(-60.0));
+    eventually("the agent has heard it", PATIENCE, async || {
+        let status = ship.status().await?;
+        let heard = ship_time(&status)? >= Some(time);
+        Ok(if heard {
+            Ok(())
+        } else {
+            Err(status.to_string())
+        })
+    })
+    .await
+}
+
+fn ship_time(status: &Value) -> Result<Option<Timestamp>> {
+    let time = status["ship_time"].as_str().map(Timestamp::parse);
+    time.transpose().context("ship_time")
+}
+
+/// Waits until nothing waits on board.
+///
+/// # Errors
+/// When something goes on waiting.
+pub async fn all_ashore(ship: &Ship) -> Result<Spool> {
+    eventually("all is ashore", PATIENCE, async || {
+        let spool = Spool::of(ship).await?;
+        let sent = spool.waiting == 0;
+        Ok(if sent {
+            Ok(spool)
+        } else {
+            Err(format!("{spool:?}"))
+        })
+    })
+    .await
+}
