@@ -5,10 +5,11 @@
 
 use crate::config::{Config, ConfigError, RolesConfig, SilenceConfig};
 use crate::hold::Hold;
+use crate::offline::offline_status;
 use crate::page::{GUARD_HEADER, HoldRequest};
 use crate::replay;
 use crate::ring::{self, Span};
-use crate::run::{self, offline_status};
+use crate::run;
 use crate::spool::{Identity, Spool};
 use crate::status::Status;
 use crate::uplink::{Shore, Trouble};

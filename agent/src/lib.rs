@@ -29,6 +29,7 @@ mod corrected;
 mod output;
 mod sentences;
 
+mod offline;
 mod page;
 mod reports;
 mod status;

@@ -13,6 +13,7 @@ use crate::corrected::{self, Corrected, Ingredients};
 use crate::hold::Hold;
 use crate::input::{self, InputStats};
 use crate::observation::Observation;
+use crate::offline::offline_status;
 use crate::output::Outputs;
 use crate::page::{self, Page};
 use crate::ring::{Ring, Second};
@@ -21,7 +22,7 @@ use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
 use crate::spool::{MOST_PENDING, Pending, Seal, Spool, is_want_of_room};
 use crate::status::{InputReport, ModelStatus, Status};
-use crate::uplink::{self, LinkState, LinkStatus, Plan, Told};
+use crate::uplink::{self, Plan, Told};
 use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
@@ -462,40 +463,4 @@ impl Agent {
         status.ring = self.ring.status();
         status
     }
-}
-
-/// What the spool alone can tell.
-pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
-    let identity = spool.identity().await?;
-    let last_contact = spool.last_contact().await?;
-    let state = if identity.is_some() {
-        LinkState::Down
-    } else {
-        LinkState::NotEnrolled
-    };
-    let withdrawn = spool.card_withdrawn().await?;
-    Ok(Status {
-        agent_version: env!("CARGO_PKG_VERSION").to_owned(),
-        vessel_name: identity
-            .as_ref()
-            .map(|identity| identity.vessel_name.clone()),
-        compass_name: identity.map(|identity| identity.compass_name),
-        model: spool.model().await?.map(|model| ModelStatus {
-            version: model.version,
-            data_until: model.data_until,
-            age_days: None,
-            withdrawn,
-            replaces: model.replaces,
-        }),
-        hold: spool.hold().await?,
-        link: LinkStatus {
-            state,
-            problem: None,
-            last_contact,
-        },
-        spool: spool.standing().await?,
-        budget: spool.account().await?,
-        alert: spool.alert().await?.as_ref().map(Aboard::status),
-        ..Status::default()
-    })
 }

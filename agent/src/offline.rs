@@ -1,0 +1,42 @@
+//! How everything is, without a running agent.
+
+use crate::alert::Aboard;
+use crate::spool::Spool;
+use crate::status::{ModelStatus, Status};
+use crate::uplink::{LinkState, LinkStatus};
+
+/// What the spool alone can tell.
+pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
+    let identity = spool.identity().await?;
+    let last_contact = spool.last_contact().await?;
+    let state = if identity.is_some() {
+        LinkState::Down
+    } else {
+        LinkState::NotEnrolled
+    };
+    let withdrawn = spool.card_withdrawn().await?;
+    Ok(Status {
+        agent_version: env!("CARGO_PKG_VERSION").to_owned(),
+        vessel_name: identity
+            .as_ref()
+            .map(|identity| identity.vessel_name.clone()),
+        compass_name: identity.map(|identity| identity.compass_name),
+        model: spool.model().await?.map(|model| ModelStatus {
+            version: model.version,
+            data_until: model.data_until,
+            age_days: None,
+            withdrawn,
+            replaces: model.replaces,
+        }),
+        hold: spool.hold().await?,
+        link: LinkStatus {
+            state,
+            problem: None,
+            last_contact,
+        },
+        spool: spool.standing().await?,
+        budget: spool.account().await?,
+        alert: spool.alert().await?.as_ref().map(Aboard::status),
+        ..Status::default()
+    })
+}
