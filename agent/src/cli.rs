@@ -384,7 +384,10 @@ async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> 
 /// The new token is kept before the shore is asked to know it, so that an answer that is
 /// lost locks nobody out: the agent then tries both.
 async fn rotate_token(config: &Config) -> anyhow::Result<()> {
-    let shore = Shore::new(config.uplink.pinned_ca.as_deref())?;
+    let shore = Shore::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.plan().line(),
+    )?;
     let spool = Spool::open(&config.data_dir).await?;
     let Some(identity) = spool.identity().await? else {
         return Err(BadInput("the agent is not enrolled".to_owned()).into());

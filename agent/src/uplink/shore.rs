@@ -20,7 +20,7 @@ use rustls::pki_types::pem::PemObject;
 use rustls::version::TLS13;
 use rustls_platform_verifier::BuilderVerifierExt;
 use serde::Deserialize;
-use serde::de::{DeserializeOwned, IgnoredAny};
+use serde::de::DeserializeOwned;
 use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
@@ -181,14 +181,7 @@ impl Shore {
     ) -> Result<(), Trouble> {
         let url = format!("{}/api/v1/agents/token", identity.server);
         let request = self.http.put(url).bearer_auth(&identity.token).json(new);
-        let response = request.send().await.map_err(|e| link_trouble(&e))?;
-        if response.status() == StatusCode::NO_CONTENT {
-            return Ok(());
-        }
-        match read::<IgnoredAny>(&self.octets, response).await {
-            Ok(_) => Err(not_the_shore(StatusCode::OK)),
-            Err(trouble) => Err(trouble),
-        }
+        answer(&self.octets, request, |body| body.is_empty().then_some(())).await
     }
 
     /// Opens a new stream for the same compass.
@@ -318,10 +311,6 @@ async fn answer<T>(
     read: impl FnOnce(&[u8]) -> Option<T>,
 ) -> Result<T, Trouble> {
     let response = request.send().await.map_err(|e| link_trouble(&e))?;
-    read(octets, response).await
-}
-
-async fn read<T: DeserializeOwned>(octets: &AtomicU64, response: Response) -> Result<T, Trouble> {
     let status = response.status();
     let retry_after = retry_after(&response);
     let body = body(octets, response).await?;
