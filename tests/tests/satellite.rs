@@ -33,7 +33,7 @@ const HOURLY: Policy = Policy {
 /// Days to measure: a few, or a month with `make bench-link`.
 fn days() -> u32 {
     let asked = std::env::var("BINNACLE_LINK_DAYS").ok();
-    asked.map_or(3, |days| days.parse().expect("a number of days"))
+    asked.map_or(2, |days| days.parse().expect("a number of days"))
 }
 
 /// Sails for some days as she would, but that time passes faster: she waits wherever

@@ -1,0 +1,143 @@
+//! What stands between a ship and her shore: a way through, or something that answers in
+//! the shore's place, badly.
+
+use anyhow::{Context, Result, bail};
+use std::net::SocketAddr;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt, AsyncWriteExt, copy_bidirectional};
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::watch;
+use tokio::task::JoinHandle;
+use tokio::time::timeout;
+
+/// What it does with a connection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Manners {
+    /// Passes it on.
+    Passes,
+    /// Answers with the login page of a harbour's network.
+    ShowsPage,
+    /// Answers that something went wrong.
+    Fails,
+    /// Passes so many octets of each way on, and then cuts it.
+    CutsAfter(u64),
+}
+
+const PAGE: &str = "<html><body>Welcome to Harbour Wi-Fi</body></html>";
+
+/// A gateway before a shore without TLS.
+#[derive(Debug)]
+pub struct Gateway {
+    address: SocketAddr,
+    manners: watch::Sender<Manners>,
+    met: watch::Receiver<u64>,
+    task: JoinHandle<()>,
+}
+
+impl Gateway {
+    /// Opens one before a server's URL; it passes everything.
+    ///
+    /// # Errors
+    /// When there is no port, or the URL has no address.
+    pub async fn open(shore: &str) -> Result<Gateway> {
+        let (_, shore) = shore.split_once("://").context("a URL")?;
+        let shore: SocketAddr = shore.parse().context("an address")?;
+        let listener = TcpListener::bind("127.0.0.1:0").await?;
+        let address = listener.local_addr()?;
+        let (manners, mut current) = watch::channel(Manners::Passes);
+        let (count, met) = watch::channel(0);
+        let task = tokio::spawn(async move {
+            while let Ok((ship, _)) = listener.accept().await {
+                let now = *current.borrow_and_update();
+                let mut changed = current.clone();
+                let count = count.clone();
+                tokio::spawn(async move {
+                    // A connection ends when manners change: nobody goes on over an old one.
+                    tokio::select! {
+                        _ = treat(ship, shore, now) => {}
+                        _ = changed.changed() => {}
+                    }
+                    count.send_modify(|met| *met += 1);
+                });
+            }
+        });
+        Ok(Gateway {
+            address,
+            manners,
+            met,
+            task,
+        })
+    }
+
+    /// The server's URL as the ship knows it.
+    pub fn url(&self) -> String {
+        format!("http://{}", self.address)
+    }
+
+    /// Changes its manners, for connections that are open too.
+    pub fn set(&mut self, manners: Manners) {
+        self.manners.send_replace(manners);
+        self.met.mark_unchanged();
+    }
+
+    /// Waits until so many more connections have ended.
+    ///
+    /// # Errors
+    /// When they do not within the time.
+    pub async fn met(&mut self, more: u64, within: Duration) -> Result<()> {
+        let enough = *self.met.borrow() + more;
+        let waiting = self.met.wait_for(|met| *met >= enough);
+        match timeout(within, waiting).await {
+            Ok(met) => met.map(drop).context("the gateway has ended"),
+            Err(_) => bail!("the ship did not call {more} times"),
+        }
+    }
+}
+
+impl Drop for Gateway {
+    fn drop(&mut self) {
+        self.task.abort();
+    }
+}
+
+async fn treat(mut ship: TcpStream, shore: SocketAddr, manners: Manners) -> Result<()> {
+    match manners {
+        Manners::Passes => {
+            let mut shore = TcpStream::connect(shore).await?;
+            copy_bidirectional(&mut ship, &mut shore).await?;
+        }
+        Manners::ShowsPage => answer(ship, "200 OK", PAGE).await?,
+        Manners::Fails => answer(ship, "500 Internal Server Error", "oh").await?,
+        Manners::CutsAfter(octets) => {
+            let shore = TcpStream::connect(shore).await?;
+            let (from_ship, mut to_ship) = ship.into_split();
+            let (from_shore, mut to_shore) = shore.into_split();
+            let (mut up, mut down) = (from_ship.take(octets), from_shore.take(octets));
+            // Whichever is used up first ends both.
+            tokio::select! {
+                _ = tokio::io::copy(&mut up, &mut to_shore) => {}
+                _ = tokio::io::copy(&mut down, &mut to_ship) => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Reads until there is a request's head, answers, and reads the rest away.
+async fn answer(mut ship: TcpStream, status: &str, body: &str) -> Result<()> {
+    let mut head = Vec::new();
+    while !head.windows(4).any(|end| end == b"\r\n\r\n") {
+        if ship.read_buf(&mut head).await? == 0 {
+            return Ok(());
+        }
+    }
+    let length = body.len();
+    let answer = format!(
+        "HTTP/1.1 {status}\r\ncontent-type: text/html\r\nconnection: close\r\n\
+         content-length: {length}\r\n\r\n{body}"
+    );
+    ship.write_all(answer.as_bytes()).await?;
+    ship.shutdown().await?;
+    tokio::io::copy(&mut ship, &mut tokio::io::sink()).await?;
+    Ok(())
+}
