@@ -43,7 +43,7 @@ const LATELY: usize = 36;
 const MENDED_NATS: f64 = 8.0;
 const MENDED_BELOW: f64 = 3.0;
 /// A burst must be likelier by this than nothing, and by this than a change.
-const BURST_NATS: f64 = 9.0;
+const BURST_NATS: f64 = 10.0;
 const BURST_OVER_STEP: f64 = 3.0;
 
 impl Search<'_> {
