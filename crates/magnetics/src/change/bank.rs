@@ -39,8 +39,8 @@ const SLACK: f64 = 0.06;
 /// Rivals are awake from when a step leads by this, or surprises have added up to
 /// as much, until nothing leads by that, nats; they know of so many measurements at
 /// most.
-const WAKE_NATS: f64 = 8.0;
-const SLEEP_NATS: f64 = 7.0;
+const WAKE_NATS: f64 = 7.0;
+const SLEEP_NATS: f64 = 6.0;
 /// A surprise counts for so much at most, lest one wild reading wakes them, and so
 /// much a row is forgotten.
 const SURPRISE_NATS: f64 = 2.5;
