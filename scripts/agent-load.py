@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What the agent takes of a computer: memory and processor at 50 sentences a second.
 
-    scripts/agent-load [AGENT [SECONDS]]
+    scripts/agent-load.py [AGENT [SECONDS]]
 
 Plays instruments over TCP in real time to the agent (target/release/binnacle-agent, 300
 seconds by default), enrolled at a made-up shore on loopback that takes what it sends
