@@ -314,8 +314,12 @@ async fn connect(path: &Path) -> sqlx::Result<SqlitePool> {
         .journal_mode(SqliteJournalMode::Wal)
         .synchronous(SqliteSynchronous::Full)
         .busy_timeout(Duration::from_secs(20));
+    // Reaping idle connections may spin for ever in this version of sqlx (its issue
+    // 3645), and one connection to a file of our own needs none.
     SqlitePoolOptions::new()
         .max_connections(1)
+        .idle_timeout(None)
+        .max_lifetime(None)
         .connect_with(options)
         .await
 }

@@ -2,9 +2,10 @@
 
 use super::Db;
 use anyhow::{Context, bail};
+use sqlx::Database;
 use sqlx::migrate::Migrator;
-use sqlx::postgres::PgPoolOptions;
-use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqlitePoolOptions, SqliteSynchronous};
+use sqlx::pool::PoolOptions;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -43,6 +44,16 @@ impl Db {
     }
 }
 
+/// Of so many connections at most, which are kept: reaping those that are idle may spin
+/// for ever in this version of sqlx (its issue 3645).
+fn pool<D: Database>(connections: u32) -> PoolOptions<D> {
+    PoolOptions::new()
+        .max_connections(connections)
+        .acquire_timeout(PATIENCE)
+        .idle_timeout(None)
+        .max_lifetime(None)
+}
+
 async fn connect_sqlite(url: &str) -> anyhow::Result<Db> {
     let options = SqliteConnectOptions::from_str(url)
         .with_context(|| format!("{url:?} is not a SQLite URL"))?
@@ -52,15 +63,11 @@ async fn connect_sqlite(url: &str) -> anyhow::Result<Db> {
         // What was acknowledged survives a power cut, not only a crash.
         .synchronous(SqliteSynchronous::Full)
         .busy_timeout(PATIENCE);
-    let writer = SqlitePoolOptions::new()
-        .max_connections(1)
-        .acquire_timeout(PATIENCE)
+    let writer = pool(1)
         .connect_with(options.clone())
         .await
         .with_context(|| format!("cannot open {url}"))?;
-    let readers = SqlitePoolOptions::new()
-        .max_connections(4)
-        .acquire_timeout(PATIENCE)
+    let readers = pool(4)
         .connect_with(options.pragma("query_only", "ON"))
         .await
         .with_context(|| format!("cannot open {url}"))?;
@@ -68,9 +75,7 @@ async fn connect_sqlite(url: &str) -> anyhow::Result<Db> {
 }
 
 async fn connect_postgres(url: &str) -> anyhow::Result<Db> {
-    let pool = PgPoolOptions::new()
-        .max_connections(16)
-        .acquire_timeout(PATIENCE)
+    let pool = pool(16)
         .connect(url)
         .await
         .context("cannot connect to PostgreSQL")?;
