@@ -48,7 +48,7 @@ const FORGOTTEN_NATS: f64 = 0.75;
 const REMEMBERED: usize = 432;
 /// A step that trails by this, after so many rows, is given up.
 const COLD_NATS: f64 = 2.0;
-const COLD_AFTER: usize = 144;
+const COLD_AFTER: usize = 48;
 
 /// What may have happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
