@@ -49,15 +49,8 @@ async fn a_request_is_paid_for_before_it_is_made_and_the_answer_after() {
 
 #[tokio::test]
 async fn an_ordinary_exchange_is_one_request() {
-    let settings = Settings {
-        version: 3,
-        ..Settings::default()
-    };
-    let fake = Fake {
-        settings: Some(settings.clone()),
-        ..Fake::default()
-    };
-    let mut rig = rig(1, fake).await;
+    let settings = other_settings();
+    let mut rig = rig(1, Fake::with_settings(&settings)).await;
     rig.all_sent().await;
     let standing = rig.spool.standing().await.unwrap();
     assert_eq!(

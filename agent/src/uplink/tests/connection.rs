@@ -63,18 +63,11 @@ async fn shore() -> (Identity, String, Kinds) {
         .route("/api/v1/streams/{stream}/downlink", get(get_downlink))
         .with_state(Shared::default());
     tokio::spawn(async move { axum::serve(tls, router).await });
-    (identity(port), cert.pem(), kinds)
+    (at_port(port), cert.pem(), kinds)
 }
 
-fn identity(port: u16) -> Identity {
-    Identity {
-        server: format!("https://localhost:{port}"),
-        token: "t".to_owned(),
-        other_token: None,
-        stream: StreamId(STREAM),
-        vessel_name: "Txori".to_owned(),
-        compass_name: "Standard compass".to_owned(),
-    }
+fn at_port(port: u16) -> Identity {
+    identity(format!("https://localhost:{port}"))
 }
 
 /// An agent that believes this certificate only.
@@ -128,7 +121,7 @@ async fn hands_that_were_not_shaken_are_paid_for_and_nobody_at_all_is_not() {
     let port = listener.local_addr().unwrap().port();
     drop(listener);
     let believer = believer(&pem, Profile::Standard);
-    let nobody = believer.downlink(&identity(port), Have::default()).await;
+    let nobody = believer.downlink(&at_port(port), Have::default()).await;
     assert!(
         matches!(nobody, Err(Trouble::NoConnection(_))),
         "{nobody:?}"

@@ -20,7 +20,7 @@ use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::messages::{CardWithdrawn, LogbookReport};
+use binnacle_wire::messages::{CardWithdrawn, Downlink, LogbookReport, Settings};
 use rand::SeedableRng;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, VecDeque};
@@ -45,6 +45,16 @@ struct Fake {
     report_answers: VecDeque<Response>,
     /// The batches that were kept, in order; 0 for a report.
     order: Vec<u64>,
+}
+
+impl Fake {
+    /// A shore that has settings of its own.
+    fn with_settings(settings: &Settings) -> Fake {
+        Fake {
+            settings: Some(settings.clone()),
+            ..Fake::default()
+        }
+    }
 }
 
 type Shared = Arc<Mutex<Fake>>;
@@ -187,14 +197,7 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
 
     let directory = TempDir::new().unwrap();
     let spool = Spool::open(directory.path()).await.unwrap();
-    let identity = Identity {
-        server,
-        token: "t".to_owned(),
-        other_token: None,
-        stream: StreamId(STREAM),
-        vessel_name: "Txori".to_owned(),
-        compass_name: "Standard compass".to_owned(),
-    };
+    let identity = identity(server);
     spool.enrol(&identity).await.unwrap();
     for number in 0..batches {
         seal(&spool, number).await;
@@ -239,6 +242,26 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
         ship_time,
         shutdown,
         _directory: directory,
+    }
+}
+
+fn identity(server: String) -> Identity {
+    Identity {
+        server,
+        token: "t".to_owned(),
+        other_token: None,
+        stream: StreamId(STREAM),
+        vessel_name: "Txori".to_owned(),
+        compass_name: "Standard compass".to_owned(),
+    }
+}
+
+/// Other settings than the built-in ones.
+fn other_settings() -> Settings {
+    Settings {
+        version: 3,
+        min_sog_kn: 7.0,
+        ..Settings::default()
     }
 }
 

@@ -24,16 +24,8 @@ async fn a_card_is_withdrawn_at_once_and_given_back() {
 
 #[tokio::test]
 async fn settings_are_in_effect_and_kept_and_then_asked_for_by_version() {
-    let settings = Settings {
-        version: 3,
-        min_sog_kn: 7.0,
-        ..Settings::default()
-    };
-    let fake = Fake {
-        settings: Some(settings.clone()),
-        ..Fake::default()
-    };
-    let mut rig = rig(2, fake).await;
+    let settings = other_settings();
+    let mut rig = rig(2, Fake::with_settings(&settings)).await;
     rig.all_sent().await;
     assert_eq!(*rig.settings.borrow(), settings);
     assert_eq!(rig.spool.settings().await.unwrap(), settings);
@@ -48,15 +40,8 @@ async fn settings_are_in_effect_and_kept_and_then_asked_for_by_version() {
 
 #[tokio::test]
 async fn an_agent_enrolled_for_another_compass_drops_what_the_first_was_told() {
-    let settings = Settings {
-        version: 3,
-        ..Settings::default()
-    };
-    let fake = Fake {
-        settings: Some(settings.clone()),
-        ..Fake::default()
-    };
-    let mut rig = rig(1, fake).await;
+    let settings = other_settings();
+    let mut rig = rig(1, Fake::with_settings(&settings)).await;
     rig.all_sent().await;
     assert_eq!(*rig.settings.borrow_and_update(), settings);
     rig.fake.lock().unwrap().settings = None;
