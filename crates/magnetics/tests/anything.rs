@@ -29,6 +29,7 @@ fn observation() -> impl Strategy<Value = Observation> {
         any::<u16>(),
         0.0..3.0_f64,
         proptest::option::of(-180.0..=180.0_f64),
+        proptest::option::of(0.0..=1e300_f64),
     );
     (when, place, 0.0..360.0_f64, deviation, field, rest).prop_map(
         |(when, place, compass, deviation, (h_nt, z_nt), rest)| Observation {
@@ -43,6 +44,7 @@ fn observation() -> impl Strategy<Value = Observation> {
             gyro_less_satellite_deg: rest.4,
             sog_kn: rest.1,
             windows: rest.2,
+            spread_deg: rest.5,
             weight: rest.3,
         },
     )

@@ -134,6 +134,7 @@ fn variations_about_180_degrees_change_nothing() {
                 z_nt: o.z_nt,
                 sog_kn: None,
                 windows: 60,
+                spread_deg: None,
                 weight: 1.0,
             }
         };
@@ -174,6 +175,7 @@ fn a_reference_that_never_moves_is_refused_by_name() {
             z_nt: o.z_nt,
             sog_kn: o.sog_kn,
             windows: o.windows,
+            spread_deg: o.spread_deg,
             weight: 1.0,
         })
         .collect();

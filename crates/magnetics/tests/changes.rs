@@ -12,6 +12,8 @@ use binnacle_magnetics::angle::CompassHeading;
 use binnacle_magnetics::change::{Cause, Change};
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 use voyages::fleet::{Event, Log, Name, Plan, sail_log};
 use voyages::{Faults, Variety};
 
@@ -110,6 +112,36 @@ fn on_a_quiet_voyage_nothing_changes() {
         assert_eq!(analysis.changes, []);
         assert_eq!(analysis.epochs.len(), 1);
     }
+}
+
+/// Five days of gale from day 20 on: the card swings twice as far, and most windows are
+/// lost.
+fn in_a_gale(log: &mut Log, seed: u64) {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let since_days = |time: Timestamp| time.seconds_since(log.start) / 86_400.0;
+    let in_it = |s: &&mut Sample| (20.0..25.0).contains(&since_days(s.time));
+    for sample in log.samples.iter_mut().filter(in_it) {
+        let off = 0.12 * 2.2 * voyages::gauss(&mut rng);
+        sample.compass = CompassHeading::new(sample.compass.degrees() + off).unwrap();
+        sample.windows = 20;
+        sample.spread_deg = Some(0.8);
+    }
+}
+
+#[test]
+fn a_gale_is_no_disturbance_of_the_field() {
+    let mut taken_for_one_without_the_scatter = 0;
+    for seed in 101..105 {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        in_a_gale(&mut log, seed);
+        let analysis = run(&log.samples);
+        assert_eq!(analysis.changes, [], "seed {seed}");
+        for sample in &mut log.samples {
+            (sample.windows, sample.spread_deg) = (60, Some(0.4));
+        }
+        taken_for_one_without_the_scatter += run(&log.samples).changes.len();
+    }
+    assert!(taken_for_one_without_the_scatter > 0);
 }
 
 #[test]

@@ -34,6 +34,7 @@ fn as_printed() -> Vec<Observation> {
                 gyro_less_satellite_deg: None,
                 sog_kn: None,
                 windows: 60,
+                spread_deg: None,
                 weight: 1.0,
             }
         })

@@ -70,7 +70,7 @@ fn sample(row: &CsvRow) -> Result<Sample, (&'static str, String)> {
         satellite: heading(satellite, satellite_deg)?,
         sog_kn: row.sog_kn,
         rate_of_turn_deg_min: None,
-        spread_deg: None,
+        spread_deg: row.spread_deg,
         windows: row.windows.unwrap_or(60.0).clamp(1.0, 65_535.0) as u16,
     })
 }

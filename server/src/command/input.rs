@@ -226,6 +226,7 @@ fn row(header: &StringRecord, record: &StringRecord) -> Result<CsvRow, (String, 
             "satellite_deg" => &mut row.satellite_deg,
             "reference_deg" => &mut row.reference_deg,
             "sog_kn" => &mut row.sog_kn,
+            "spread_deg" => &mut row.spread_deg,
             "windows" => &mut row.windows,
             "weight" => &mut row.weight,
             // Nothing is made of it here, but it must be what it says it is.

@@ -193,6 +193,7 @@ fn observations(samples: &[Sample]) -> Vec<Observation> {
                 z_nt: here.z_nt,
                 sog_kn: sample.sog_kn,
                 windows: sample.windows,
+                spread_deg: sample.spread_deg,
                 weight: 1.0,
             }
         })

@@ -123,6 +123,7 @@ pub(super) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
         z_nt: earth.z_nt,
         sog_kn: sample.sog_kn,
         windows: sample.windows,
+        spread_deg: sample.spread_deg,
         weight: 1.0,
     })
 }

@@ -268,16 +268,26 @@ pub(super) fn measurement(
         Scalar {
             value: residual + known,
             load,
-            variance: variance * station.white_factor,
+            variance,
         }
     };
     Measurement {
         transition: station.transition,
         seconds,
-        deviation: scalar(row.residual, &row.columns, &station.loads(row), noise.white),
+        deviation: scalar(
+            row.residual,
+            &row.columns,
+            &station.loads(row),
+            station.white.variance(noise.white),
+        ),
         difference: row.difference.map(|residual| {
             let (columns, loads) = station.difference(row);
-            scalar(residual, &columns, &loads, noise.difference_white)
+            scalar(
+                residual,
+                &columns,
+                &loads,
+                station.difference_white.variance(noise.difference_white),
+            )
         }),
     }
 }

@@ -250,11 +250,15 @@ impl Found {
     /// A row taken at a heading with so much of the reference in it has a residual
     /// that its slopes know nothing of; with any other, errors in the heading would
     /// lean on the fit.
-    pub(crate) fn compass_share(&self, rows: usize, of_white: f64) -> f64 {
+    pub(crate) fn compass_share(&self, stations: &[Station], of_white: f64) -> f64 {
         let [white, _, _, _, swing, ..] = self.log_variance;
+        let sum = |of: fn(&Station) -> f64| stations.iter().map(of).sum::<f64>();
+        let by_level = self.levels.white_deg.powi(2) * sum(|s| s.white.factor);
+        // What scatters is white as well, and the card's.
+        let scatter = white * sum(|s| s.white.scatter) / by_level.max(f64::MIN_POSITIVE);
         // By the logarithm of the variance, which is twice the level's.
-        let twice = of_white * white + swing;
-        (twice / (2.0 * rows as f64)).clamp(0.0, 1.0)
+        let twice = of_white * white + scatter + swing;
+        (twice / (2.0 * stations.len() as f64)).clamp(0.0, 1.0)
     }
 }
 

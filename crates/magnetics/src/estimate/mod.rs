@@ -29,6 +29,7 @@ mod problem;
 mod products;
 mod quality;
 mod row;
+mod scatter;
 mod slopes;
 mod solve;
 mod start;

@@ -34,7 +34,7 @@ const SETTLED_S: f64 = 900.0;
 /// Standard deviations of the errors, degrees unless the name says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NoiseLevels {
-    /// What is new in every row: a ten-minute mean of 60 windows.
+    /// What is new in every row: a ten-minute mean of 60 windows that scattered by 0.5°.
     pub white_deg: f64,
     /// The gyro's Schuler swing at the equator while she keeps her course; it
     /// grows as 1/cos(latitude).

@@ -128,7 +128,7 @@ impl<'a> Problem<'a> {
         let pull = self.pull(solution);
         let found = fit_levels(&self.stations, &rows, &pull, typical, levels, sought);
         let of_white = compass_part_of_white(self.observations);
-        (found.levels, found.compass_share(rows.len(), of_white))
+        (found.levels, found.compass_share(&self.stations, of_white))
     }
 
     /// Gauss–Newton from a solution until it settles, and the parameters' drift then.

@@ -5,6 +5,7 @@ use super::direction::Direction;
 use super::needle::Needle;
 use super::noise::{STATES, Step, Transition};
 use super::prior::scales;
+use super::scatter::{Scatter, White};
 use crate::angle::wrap_180;
 use crate::deviation::Coefficients;
 use crate::fit::{Observation, northerly_speed_error_deg};
@@ -41,8 +42,6 @@ pub(crate) const USUAL_FUSION: f64 = 0.7;
 const FUSION_LIMIT_DEG: f64 = 3.0;
 /// Knots taken where speed is not known.
 const TYPICAL_SPEED_KN: f64 = 12.0;
-/// Windows of ten seconds in ten minutes.
-const FULL_WINDOWS: f64 = 60.0;
 
 /// An observation's part that does not depend on the parameters.
 #[derive(Clone, Copy, Debug)]
@@ -59,8 +58,9 @@ pub(crate) struct Station {
     variation_load: f64,
     /// The gyro's states' part in a difference of both references.
     gyro_error: f64,
-    /// White variance in units of a full, unit-weight row's.
-    pub(crate) white_factor: f64,
+    /// White noise of the deviation and of the references' difference.
+    pub(crate) white: White,
+    pub(crate) difference_white: White,
     gyro_share: f64,
     /// A gyro's whole speed error here on a northerly heading, degrees.
     northerly_error: f64,
@@ -95,13 +95,15 @@ pub(crate) fn stations(observations: &[Observation]) -> Vec<Station> {
         .any(|o| o.gyro_less_satellite_deg.is_some());
     let mut earlier: Option<&Observation> = None;
     let mut step = Step::over(0.0);
+    let mut scatter = Scatter::new();
     let mut stations = Vec::with_capacity(observations.len());
     for observation in observations {
         let transition = match earlier {
             Some(earlier) => transition(&mut step, earlier, observation),
             None => step.sailing(0.0, false),
         };
-        stations.push(station(observation, transition, both));
+        let white = scatter.white(observation);
+        stations.push(station(observation, transition, both, white));
         earlier = Some(observation);
     }
     stations
@@ -135,7 +137,7 @@ fn has_turned(earlier: &Observation, later: &Observation) -> bool {
     by_compass.abs().min(by_reference.abs()) > TURN_DEG
 }
 
-fn station(o: &Observation, transition: Transition, both: bool) -> Station {
+fn station(o: &Observation, transition: Transition, both: bool, white: White) -> Station {
     // A gyro loses its sense of north towards the poles; 80° is as far as the
     // rule is meant to hold.
     let lat_deg = o.position.map_or(0.0, Position::lat_deg);
@@ -152,7 +154,6 @@ fn station(o: &Observation, transition: Transition, both: bool) -> Station {
         _ => (0.0, 0.0),
     };
     let magnetic = magnetic_by_reference(o);
-    let windows = f64::from(o.windows).clamp(1.0, FULL_WINDOWS);
     // Half of the difference is put to either.
     let offset_share = if both { o.gyro_share - 0.5 } else { 0.0 };
     Station {
@@ -163,7 +164,8 @@ fn station(o: &Observation, transition: Transition, both: bool) -> Station {
         satellite_load: 1.0 - o.gyro_share,
         variation_load,
         gyro_error: per_cos_lat,
-        white_factor: (1.0 + FULL_WINDOWS / windows) / (2.0 * o.weight),
+        white,
+        difference_white: White::of_difference(o),
         gyro_share: o.gyro_share,
         northerly_error,
         nuisance: [

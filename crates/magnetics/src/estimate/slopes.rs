@@ -8,6 +8,7 @@
 use super::noise::{LEVELS, NoiseLevels, STATES, Transition};
 use super::products::Products;
 use super::row::{Row, Station, UNKNOWNS};
+use super::scatter::White;
 use super::whiten::{loss_slope, weight_among_many};
 
 /// By how much a level's logarithm is nudged: far below what matters, far above
@@ -67,10 +68,10 @@ fn side_by_side<const N: usize>(
         if let Some(residual) = row.difference {
             let (columns, load) = station.difference(row);
             let value = residual - dot(&columns, known);
-            sums.add(&filters.update(value, &load, &difference_white, station.white_factor));
+            sums.add(&filters.update(value, &load, &difference_white, station.difference_white));
         }
         let value = row.residual - dot(&row.columns, known);
-        sums.add(&filters.update(value, &station.loads(row), &white, station.white_factor));
+        sums.add(&filters.update(value, &station.loads(row), &white, station.white));
     }
     sums.by_level(moved)
 }
@@ -171,8 +172,8 @@ impl<const N: usize> Filters<N> {
         &mut self,
         measured: f64,
         load: &[f64; STATES],
-        white: &Each<N>,
-        white_factor: f64,
+        levels_squared: &Each<N>,
+        white: White,
     ) -> Innovation<N> {
         let mut value = [measured; N];
         for (state, &load) in self.state.iter().zip(load) {
@@ -188,7 +189,7 @@ impl<const N: usize> Filters<N> {
             }
             *gain = sum;
         }
-        let mut variance = white.map(|white| white * white_factor);
+        let mut variance = levels_squared.map(|level| white.variance(level));
         for (gain, load) in gain.iter().zip(load) {
             times_add(&mut variance, *load, gain);
         }
@@ -300,6 +301,7 @@ mod tests {
                     gyro_less_satellite_deg: (k % 3 != 0).then(|| 0.4 * (5.0 * hour).sin()),
                     sog_kn: Some(12.0),
                     windows: 50,
+                    spread_deg: None,
                     weight: 1.0,
                 }
             })

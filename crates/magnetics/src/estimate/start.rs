@@ -43,7 +43,7 @@ pub(crate) fn start(
         let mut information = Products::new();
         let mut score = prior_information * (SVector::from(*prior_mean) - SVector::from(unknowns));
         for (r, s) in rows.iter().zip(&stations) {
-            let own_sd = sd * s.white_factor.sqrt();
+            let own_sd = s.white.variance(sd * sd).sqrt();
             let weight = huber_weight(r.residual / own_sd) / (own_sd * own_sd);
             information.add(&r.columns, weight);
             score += SVector::from(r.columns) * (r.residual * weight);

@@ -295,14 +295,14 @@ impl Whitening {
             let scalar = Scalar {
                 series: series_of(residual, &columns),
                 load,
-                white: self.difference_white * station.white_factor,
+                white: station.difference_white.variance(self.difference_white),
             };
             self.sums.take(&mut self.filter, &scalar);
         }
         let scalar = Scalar {
             series: series_of(row.residual, &row.columns),
             load: station.loads(row),
-            white: self.white * station.white_factor,
+            white: station.white.variance(self.white),
         };
         self.sums.take(&mut self.filter, &scalar)
     }

@@ -37,6 +37,8 @@ pub struct CsvRow {
     pub sog_kn: Option<f64>,
     /// `windows`: settled ten-second windows in the row.
     pub windows: Option<f64>,
+    /// `spread_deg`: standard deviation of compass less reference among the windows.
+    pub spread_deg: Option<f64>,
     /// `weight` beside the other rows; 1 when absent.
     pub weight: Option<f64>,
 }
@@ -157,6 +159,7 @@ fn in_order(a: &HeadingReading, b: &HeadingReading) -> Ordering {
             r.z_nt,
             or_first(r.sog_kn),
             f64::from(r.windows),
+            or_first(r.spread_deg),
             r.weight,
         ]
     };
@@ -212,6 +215,7 @@ fn reading(
         sog_kn,
         // Without a count a row is taken for a whole ten-minute mean.
         windows: windows.map_or(60.0, |n| n.clamp(1.0, 65_535.0)) as u16,
+        spread_deg: column.at_least_zero("spread_deg", row.spread_deg)?,
         weight: column.at_least_zero("weight", row.weight)?.unwrap_or(1.0),
     })
 }

@@ -36,6 +36,8 @@ pub struct Observation {
     pub sog_kn: Option<f64>,
     /// Ten-second windows behind the row, at least 1.
     pub windows: u16,
+    /// Standard deviation of compass less reference among them, degrees.
+    pub spread_deg: Option<f64>,
     /// How much the row counts beside the others; 1 where nothing is said.
     pub weight: f64,
 }

@@ -269,6 +269,7 @@ pub(crate) fn sail_on(
             gyro_less_satellite_deg: satellite.map(|s| wrap_180(gyro - s)),
             sog_kn: Some(passage.speed_kn),
             windows: 55,
+            spread_deg: None,
             weight: 1.0,
         });
     }

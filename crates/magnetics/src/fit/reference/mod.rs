@@ -51,6 +51,8 @@ pub struct HeadingReading {
     pub sog_kn: Option<f64>,
     /// Ten-second windows behind the reading, at least 1.
     pub windows: u16,
+    /// Standard deviation of compass less reference among them, degrees.
+    pub spread_deg: Option<f64>,
     /// How much it counts beside the others; 1 where nothing is said.
     pub weight: f64,
 }
@@ -174,6 +176,7 @@ fn observe(reading: &HeadingReading, trust: Trust, check: &ReferenceCheck) -> Op
         gyro_less_satellite_deg: reference.gyro_less_satellite_deg,
         sog_kn: reading.sog_kn,
         windows: reading.windows,
+        spread_deg: reading.spread_deg,
         weight: reading.weight,
     })
 }

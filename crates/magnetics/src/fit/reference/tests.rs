@@ -26,6 +26,7 @@ fn readings(count: u32, off: impl Fn(u32) -> (f64, f64)) -> Vec<HeadingReading> 
                 z_nt: 38_000.0,
                 sog_kn: None,
                 windows: 60,
+                spread_deg: None,
                 weight: 1.0,
             }
         })
