@@ -64,7 +64,7 @@ pub(crate) fn storms(ships: u64) {
             let others = elsewhere(&fleet, ship);
             let storms = log.happened.iter();
             for storm in storms.filter(|h| h.what == Name::Storm && at_sea(log, h)) {
-                let told = telling(analysis, storm);
+                let told = telling(analysis, storm).or_else(|| covering(analysis, storm));
                 *alone.entry(name_of(told)).or_default() += 1;
                 let told = told.map(|c| {
                     let until = log.samples.last().unwrap().time;
@@ -76,6 +76,18 @@ pub(crate) fn storms(ships: u64) {
     }
     print("Storm, by one ship alone", &alone);
     print(&format!("Storm, in a fleet of {FLEET}"), &together);
+}
+
+/// What began before the storm and was taken to go on through most of it.
+fn covering<'a>(analysis: &'a Analysis, storm: &Happened) -> Option<&'a Change> {
+    let to = storm.to?;
+    analysis.changes.iter().find(|c| {
+        let shared_s = c
+            .ended
+            .map_or(to, |ended| ended.min(to))
+            .seconds_since(storm.from);
+        c.confirmed && c.from <= storm.from && shared_s > 0.5 * to.seconds_since(storm.from)
+    })
 }
 
 /// What the other ships tell, as the server keeps it.
