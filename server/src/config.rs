@@ -24,7 +24,7 @@ pub enum Command {
     Serve(Serve),
     /// Bring the database's schema up to date
     Migrate(Database),
-    /// Create operators and users
+    /// Create operators and users, revoke agents
     Admin(Admin),
     /// Store batches that came as short-burst messages
     Bursts(Bursts),
@@ -171,6 +171,15 @@ pub enum AdminCommand {
         /// What to create.
         #[command(subcommand)]
         what: Create,
+    },
+    /// Revoke an agent's token: it is known no more until the agent is enrolled again
+    RevokeAgent {
+        /// The vessel's id
+        #[arg(long)]
+        vessel: Uuid,
+        /// The agent's id, as `GET /api/v1/vessels/{id}/agents` lists it
+        #[arg(long)]
+        agent: Uuid,
     },
 }
 

@@ -94,6 +94,7 @@ export const text = {
       unknown_change: 'Magnetism changed: cause unknown',
       reported_aboard: 'Compass and gyro parted, says the ship',
       silent_agent: 'No word from the vessel',
+      cloned_agent: 'Two computers send as one agent',
       no_model: 'No model of the compass yet',
       wide_band: 'The model is too uncertain',
     } satisfies Record<AlertCause, string>,

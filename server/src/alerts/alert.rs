@@ -37,6 +37,8 @@ pub enum Cause {
     ReportedAboard,
     /// Nothing has come from the vessel for too long.
     SilentAgent,
+    /// Two computers send as one agent.
+    ClonedAgent,
     /// There is no model although samples have come for a while.
     NoModel,
     /// The model is less certain than the vessel's limit asks.
@@ -215,7 +217,10 @@ impl Severity {
 impl Cause {
     /// Whether an analysis finds it, and finds when it is over.
     pub fn is_of_an_analysis(self) -> bool {
-        !matches!(self, Cause::SilentAgent | Cause::ReportedAboard)
+        !matches!(
+            self,
+            Cause::SilentAgent | Cause::ReportedAboard | Cause::ClonedAgent
+        )
     }
 
     /// Whether the clock finds it rather than an analysis.
@@ -252,6 +257,7 @@ impl Cause {
             Cause::UnknownChange => "a change of unknown cause",
             Cause::ReportedAboard => "compass and gyro parted, says the ship",
             Cause::SilentAgent => "no word from the vessel",
+            Cause::ClonedAgent => "two computers send as one agent",
             Cause::NoModel => "no model of the compass yet",
             Cause::WideBand => "the model is too uncertain",
         }

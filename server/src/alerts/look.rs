@@ -5,6 +5,7 @@
 //! transaction ends, and every change of an alert is told in that transaction.
 
 use super::alert::{Alert, AlertWanted, Cause, Severity, State};
+use super::cloned;
 use super::findings::Findings;
 use super::limits::AlertLimits;
 use super::store::{self, Known};
@@ -21,7 +22,7 @@ use crate::{mail, webhooks};
 use std::time::Duration;
 use tracing::{error, info};
 
-/// How often to look for silent agents.
+/// How often to look for what time alone brings.
 const LOOK_EVERY: Duration = Duration::from_mins(1);
 
 /// A change of an alert: what became of it, or only other words.
@@ -95,11 +96,20 @@ pub async fn for_silence(app: &App) -> Result<()> {
     Ok(())
 }
 
-/// Looks after silent agents until the server stops.
+/// Looks for what time alone brings.
+///
+/// # Errors
+/// When the database cannot be asked.
+pub async fn by_the_clock(app: &App) -> Result<()> {
+    for_silence(app).await?;
+    cloned::look(app).await
+}
+
+/// Looks after alerts of the clock until the server stops.
 pub async fn watch(app: App) {
     while !app.stopping.is_cancelled() {
-        if let Err(error) = for_silence(&app).await {
-            error!(?error, "silent agents cannot be looked for");
+        if let Err(error) = by_the_clock(&app).await {
+            error!(?error, "alerts of the clock cannot be looked for");
         }
         tokio::select! {
             () = app.stopping.cancelled() => {}

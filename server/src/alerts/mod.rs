@@ -7,13 +7,14 @@
 //! - An alert clears itself when its cause is over. One that a person cleared comes
 //!   back only when its cause does, gets worse, or happens again.
 //! - It comes from an analysis, in the transaction that stores the analysis, from the
-//!   ship herself, in the one that stores her batch, or from the clock, when a vessel
-//!   falls silent.
+//!   ship herself or what her batches show, in the one that stores the batch, or from
+//!   the clock, when a vessel falls silent.
 //! - Every change is stored together with what tells people of it.
 
 mod aboard;
 mod alert;
 mod changed;
+mod cloned;
 mod findings;
 mod limits;
 mod look;
@@ -22,9 +23,10 @@ mod wanted;
 
 pub use aboard::from_ship;
 pub use alert::{Alert, AlertWanted, Cause, Severity, State};
+pub use cloned::{agent_revoked, from_batch};
 pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;
-pub use look::{AlertNews, after_analysis, for_silence, sum, watch};
+pub use look::{AlertNews, after_analysis, by_the_clock, for_silence, sum, watch};
 pub use store::{Standing, standing};
 pub use wanted::{alerts_of, silence};
 

@@ -334,3 +334,20 @@ pub(super) async fn heard(db: &Db) -> DbResult<Vec<Heard>> {
          ORDER BY s.vessel_id, s.compass_id"
     )
 }
+
+/// The compasses whose alert of a cause goes on, though nothing has shown it since.
+pub(super) async fn unshown(
+    db: &Db,
+    cause: Cause,
+    since: Time,
+) -> DbResult<Vec<(VesselId, CompassId)>> {
+    rows!(
+        db,
+        (VesselId, CompassId),
+        "SELECT vessel_id, compass_id FROM alerts
+         WHERE cause = $1 AND holds AND updated_at < $2
+         ORDER BY vessel_id, compass_id",
+        cause,
+        since
+    )
+}

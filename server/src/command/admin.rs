@@ -1,14 +1,15 @@
-//! `admin create …`: what must exist before anyone can sign in.
+//! `admin create …`: what must exist before anyone can sign in; and `admin revoke-agent`.
 
 use super::operate::block_on;
 use super::{BadInput, answer};
 use crate::clock::Clock;
 use crate::config::{Admin, AdminCommand, Create, FleetRole, Person};
 use crate::db::Db;
-use crate::ids::OperatorId;
+use crate::error::Error;
+use crate::ids::{AgentId, OperatorId, VesselId};
 use crate::session::{self, Role};
 use crate::time::Time;
-use crate::{http, operators, secret};
+use crate::{enrolment, http, operators, secret};
 use anyhow::Result;
 use serde_json::json;
 use std::io::Read;
@@ -16,31 +17,19 @@ use std::process::ExitCode;
 
 const LEAST_PASSWORD: usize = 10;
 
-/// Creates something and prints it as JSON.
+/// Creates or revokes something and prints it as JSON.
 ///
 /// # Errors
 /// When the database cannot be reached.
 pub fn admin(arguments: Admin) -> Result<ExitCode> {
-    let AdminCommand::Create { what } = arguments.command;
     block_on(async {
         let db = Db::connect(&arguments.database.database_url).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
-        let made = match what {
-            Create::Operator { name } => create_operator(&db, &name, now).await,
-            Create::User {
-                operator,
-                person,
-                role,
-            } => {
-                let role = match role {
-                    FleetRole::Admin => Role::Admin,
-                    FleetRole::Viewer => Role::Viewer,
-                };
-                create_user(&db, Some(OperatorId(operator)), &person, role, now).await
-            }
-            Create::PlatformAdmin { person } => {
-                create_user(&db, None, &person, Role::PlatformAdmin, now).await
+        let made = match arguments.command {
+            AdminCommand::Create { what } => create(&db, what, now).await,
+            AdminCommand::RevokeAgent { vessel, agent } => {
+                revoke_agent(&db, VesselId(vessel), AgentId(agent), now).await
             }
         };
         db.close().await;
@@ -50,6 +39,34 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
 
 /// What was made, or what was wrong with the request.
 type Made = Result<Result<serde_json::Value, String>>;
+
+async fn create(db: &Db, what: Create, now: Time) -> Made {
+    match what {
+        Create::Operator { name } => create_operator(db, &name, now).await,
+        Create::User {
+            operator,
+            person,
+            role,
+        } => {
+            let role = match role {
+                FleetRole::Admin => Role::Admin,
+                FleetRole::Viewer => Role::Viewer,
+            };
+            create_user(db, Some(OperatorId(operator)), &person, role, now).await
+        }
+        Create::PlatformAdmin { person } => {
+            create_user(db, None, &person, Role::PlatformAdmin, now).await
+        }
+    }
+}
+
+async fn revoke_agent(db: &Db, vessel: VesselId, agent: AgentId, now: Time) -> Made {
+    match enrolment::revoke(db, vessel, agent, now).await {
+        Ok(_) => Ok(Ok(json!({ "vessel_id": vessel, "agent_id": agent }))),
+        Err(Error::NotFound(_)) => Ok(Err(format!("--agent: vessel {vessel} has no {agent}"))),
+        Err(error) => Err(error.into()),
+    }
+}
 
 async fn create_operator(db: &Db, name: &str, now: Time) -> Made {
     let name = match http::text("--name", name) {

@@ -2,18 +2,19 @@
 //! token.
 //!
 //! What always holds: a code works once, before it expires, and opens exactly one
-//! installation; code and token are stored only as hashes.
+//! installation; code and token are stored only as hashes. A token that was revoked is
+//! never known again.
 
 mod store;
 
-pub use store::{find_agent, open_stream};
+pub use store::{find_agent, open_stream, revoke};
 
 use crate::access::{Agent, Reader, Writer};
 use crate::app::App;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Valid, text};
-use crate::ids::{CompassId, VesselId};
+use crate::ids::{AgentId, CompassId, VesselId};
 use crate::time::Time;
 use crate::{secret, vessels};
 use axum::extract::State;
@@ -31,7 +32,9 @@ const LONGEST_VALID_FOR_S: u32 = 90 * 86_400;
 
 /// The routes that people use.
 pub fn router() -> OpenApiRouter<App> {
-    OpenApiRouter::new().routes(routes!(list_agents, create_code))
+    OpenApiRouter::new()
+        .routes(routes!(list_agents, create_code))
+        .routes(routes!(revoke_agent))
 }
 
 /// The routes that agents use.
@@ -46,6 +49,11 @@ pub fn agent_router() -> OpenApiRouter<App> {
 pub struct AgentStream {
     /// The stream's id.
     pub stream: Uuid,
+    /// The installation, which may have opened several streams.
+    pub agent_id: AgentId,
+    /// When its token was revoked.
+    #[schema(required)]
+    pub revoked_at: Option<Time>,
     /// The compass.
     pub compass_id: CompassId,
     /// Its name.
@@ -186,6 +194,26 @@ async fn create_code(
         StatusCode::CREATED,
         Json(EnrolmentCode { code, expires_at }),
     ))
+}
+
+/// Revoke an agent's token
+///
+/// What it has sent stays. It goes on sampling, and goes on sending when it is enrolled
+/// again. Revoking it again changes nothing.
+#[utoipa::path(delete, path = "/vessels/{id}/agents/{agent}", tag = "fleet",
+    params(("id" = VesselId, Path), ("agent" = AgentId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn revoke_agent(
+    State(app): State<App>,
+    writer: Writer,
+    Id((vessel, agent)): Id<(VesselId, AgentId)>,
+) -> Result<StatusCode> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    if let Some(event) = store::revoke(&app.db, vessel, agent, app.clock.now().into()).await? {
+        app.publish(event);
+    }
+    Ok(StatusCode::NO_CONTENT)
 }
 
 /// Exchange a one-time code for a token and a stream

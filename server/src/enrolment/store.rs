@@ -2,9 +2,11 @@
 
 use super::AgentStream;
 use crate::access::Agent;
+use crate::alerts;
 use crate::compasses::Compass;
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::error::{self, Error};
+use crate::events::Event;
 use crate::ids::{AgentId, CompassId, VesselId};
 use crate::secret;
 use crate::time::Time;
@@ -134,7 +136,7 @@ pub async fn find_agent(db: &Db, vessel: VesselId, token_hash: &[u8]) -> Result<
         db,
         Agent,
         "SELECT vessel_id, id AS agent_id, compass_id FROM agents
-         WHERE vessel_id = $1 AND token_hash = $2
+         WHERE vessel_id = $1 AND token_hash = $2 AND revoked_at IS NULL
          ORDER BY id",
         vessel,
         token_hash
@@ -154,9 +156,37 @@ pub(super) async fn replace_token(db: &Db, agent: Agent, token: &str) -> Result<
     tx.commit().await
 }
 
+/// From now on the agent's token is known no more; to be published.
+///
+/// # Errors
+/// [`Error::NotFound`] when the vessel has no such agent.
+pub async fn revoke(
+    db: &Db,
+    vessel: VesselId,
+    agent: AgentId,
+    now: Time,
+) -> error::Result<Option<Event>> {
+    let mut tx = db.begin().await?;
+    let revoked = row!(
+        in &mut tx,
+        Agent,
+        "UPDATE agents SET revoked_at = COALESCE(revoked_at, $3) WHERE vessel_id = $1 AND id = $2
+         RETURNING vessel_id, id AS agent_id, compass_id",
+        vessel,
+        agent,
+        now
+    )?
+    .ok_or(Error::NotFound("agent"))?;
+    let event = alerts::agent_revoked(&mut tx, revoked, now).await?;
+    tx.commit().await?;
+    Ok(event)
+}
+
 #[derive(sqlx::FromRow)]
 pub(super) struct StreamRow {
     pub(super) stream: Uuid,
+    agent_id: AgentId,
+    revoked_at: Option<Time>,
     compass_id: CompassId,
     compass_name: String,
     agent_version: String,
@@ -173,6 +203,8 @@ impl StreamRow {
         Ok(AgentStream {
             tally: serde_json::from_str(&self.tally)?,
             stream: self.stream,
+            agent_id: self.agent_id,
+            revoked_at: self.revoked_at,
             compass_id: self.compass_id,
             compass_name: self.compass_name,
             agent_version: self.agent_version,
@@ -194,7 +226,7 @@ pub(super) async fn list_streams(
     rows!(
         db,
         StreamRow,
-        "SELECT s.id AS stream, s.compass_id, c.name AS compass_name, a.agent_version,
+        "SELECT s.id AS stream, s.agent_id, a.revoked_at, s.compass_id, c.name AS compass_name, a.agent_version,
                 s.opened_at, s.last_upload_at, s.contiguous_seq, s.batches, s.samples, s.tally
          FROM streams s
          JOIN compasses c ON c.vessel_id = s.vessel_id AND c.id = s.compass_id

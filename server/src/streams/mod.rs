@@ -6,7 +6,8 @@
 //!   in one transaction.
 //! - The same batch again changes nothing; other bytes under the same number are
 //!   refused and change nothing.
-//! - An alert of the ship's own is taken in that transaction too.
+//! - An alert of the ship's own is taken in that transaction too, and so is the sign of
+//!   another computer that sends as the same agent.
 //! - `contiguous_seq` covers only batches that are here, all from 1 on.
 //! - An agent reaches its own streams and nothing else.
 
@@ -121,6 +122,7 @@ async fn take(
     if is_new {
         let (vessel, compass) = (agent.vessel_id, agent.compass_id);
         told.extend(alerts::from_ship(tx, vessel, compass, &batch.alerts, now).await?);
+        told.extend(alerts::from_batch(tx, agent, batch.stream.0, batch.seq, now).await?);
         if !batch.samples.is_empty() || !batch.alerts.is_empty() {
             analysis::enqueue(tx, vessel, now, delay_s).await?;
         }

@@ -1,9 +1,11 @@
 //! One-time codes.
 
 use crate::on_both;
-use crate::support::{Answer, Shore, exchange, sample};
+use crate::support::{Answer, Person, Ship, Shore, exchange, sample};
+use binnacle_server::alerts;
+use binnacle_wire::batch::StreamId;
 use reqwest::Method;
-use serde_json::json;
+use serde_json::{Value, json};
 
 on_both!(
     a_code_works_once,
@@ -12,6 +14,9 @@ on_both!(
     a_code_for_another_vessels_compass_is_refused,
     an_agent_reaches_only_its_own_streams,
     a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before,
+    a_revoked_agent_is_known_no_more_and_what_it_sent_stays,
+    a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_revoked,
+    two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_week,
 );
 
 async fn a_code_works_once(shore: Shore) {
@@ -123,5 +128,96 @@ async fn a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before(s
     assert_eq!(late.status, 401, "the old one is not known any more");
     nao.token = new;
     assert_eq!(nao.downlink("").await["contiguous_seq"], 0);
+    shore.finish().await;
+}
+
+async fn revoke(person: &Person, ship: &Ship) -> Answer {
+    let streams = person.get(&ship.path("/agents")).await.good();
+    let agent = streams["items"][0]["agent_id"].as_str().unwrap();
+    let path = ship.path(&format!("/agents/{agent}"));
+    Answer::of(person.request(Method::DELETE, &path)).await
+}
+
+async fn a_revoked_agent_is_known_no_more_and_what_it_sent_stays(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let now = shore.app.clock.now();
+    nao.put(1, &[sample(now, 90.0)]).await.good();
+    for _ in 0..2 {
+        assert_eq!(revoke(&ada, &nao).await.status, 204);
+    }
+    let refused = nao.put(2, &[sample(now, 91.0)]).await;
+    assert_eq!(refused.problem(), "unauthenticated");
+    let streams = ada.get(&nao.path("/agents")).await.good();
+    let stream = &streams["items"][0];
+    assert_eq!(stream["revoked_at"], "2026-11-21T07:00:00Z");
+    assert_eq!(stream["batches"], 1);
+    shore.finish().await;
+}
+
+/// The same agent's other stream.
+async fn another_stream(ship: &Ship) -> StreamId {
+    let opened = Answer::of(ship.request(Method::POST, "/streams")).await;
+    StreamId(opened.json()["stream"].as_str().unwrap().parse().unwrap())
+}
+
+async fn put_in(ship: &Ship, stream: StreamId, seq: u64) {
+    let path = format!("/streams/{stream}/batches/{seq}");
+    let frame = crate::support::frame(stream, seq, &[]);
+    let put = ship.request(Method::PUT, &path).body(frame);
+    Answer::of(put).await.good();
+}
+
+async fn clones(person: &Person) -> Vec<Value> {
+    let listed = person.get("/alerts").await.good();
+    let mut alerts = listed["items"].as_array().unwrap().clone();
+    alerts.retain(|alert| alert["cause"] == "cloned_agent");
+    alerts
+}
+
+async fn a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_revoked(
+    shore: Shore,
+) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    put_in(&nao, nao.stream, 1).await;
+    let second = another_stream(&nao).await;
+    // So far it may be the same computer, which opened it in vain.
+    put_in(&nao, nao.stream, 2).await;
+    put_in(&nao, second, 1).await;
+    // And the same batch again is nothing new.
+    put_in(&nao, nao.stream, 2).await;
+    assert_eq!(clones(&ada).await, Vec::<Value>::new());
+    for seq in 3..6 {
+        put_in(&nao, nao.stream, seq).await;
+        put_in(&nao, second, seq).await;
+        let found = clones(&ada).await;
+        assert_eq!(found.len(), 1);
+        assert_eq!(
+            (&found[0]["state"], &found[0]["severity"]),
+            (&json!("raised"), &json!("warning"))
+        );
+        let last = found[0]["evidence"][1].as_str().unwrap();
+        assert!(last.starts_with(&format!("Batch {seq} came")), "{last}");
+    }
+    shore.work().await;
+    assert_eq!(clones(&ada).await[0]["state"], "raised");
+    revoke(&ada, &nao).await;
+    assert_eq!(clones(&ada).await[0]["state"], "cleared");
+    shore.finish().await;
+}
+
+async fn two_computers_are_no_alert_any_more_when_nothing_has_shown_them_for_a_week(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let second = another_stream(&nao).await;
+    put_in(&nao, second, 1).await;
+    put_in(&nao, nao.stream, 1).await;
+    for (days, state) in [(6.0, "raised"), (1.1, "cleared")] {
+        shore.advance(days * 86_400.0);
+        alerts::by_the_clock(&shore.app).await.unwrap();
+        let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+        assert_eq!(clones(&ada).await[0]["state"], state);
+    }
     shore.finish().await;
 }

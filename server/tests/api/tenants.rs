@@ -56,10 +56,9 @@ fn settings() -> Value {
 async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
     let ada = shore.admin("ada").await;
     let eve = shore.admin("eve").await;
-    let id = ada.create_vessel("Nao").await["id"]
-        .as_str()
-        .unwrap()
-        .to_owned();
+    let id = shore.ship(&ada, "Nao").await.id;
+    let agents = ada.get(&format!("/vessels/{id}/agents")).await.good();
+    let agent = agents["items"][0]["agent_id"].as_str().unwrap();
     let logbook = format!("/vessels/{id}/logbook");
     let entry = ada.post(&logbook, &lightning()).await.good()["id"].clone();
     for (method, path, body) in operations() {
@@ -68,6 +67,7 @@ async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
         }
         let path = path.replace("{id}", &id);
         let path = path.replace("{entry}", entry.as_str().unwrap());
+        let path = path.replace("{agent}", agent);
         let theirs = Answer::of(eve.request(method.clone(), &path).json(&body)).await;
         assert_eq!(theirs.problem(), "not-found", "{method} {path}");
         let ours = Answer::of(ada.request(method.clone(), &path).json(&body)).await;
@@ -91,6 +91,7 @@ async fn every_route_wants_to_know_who_asks(shore: Shore) {
         let path = path
             .replace("{id}", &id)
             .replace("{entry}", &id)
+            .replace("{agent}", &id)
             .replace("{stream}", &id)
             .replace("{seq}", "1");
         let url = format!("{}/api/v1{path}", shore.url);

@@ -450,6 +450,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/vessels/{id}/agents/{agent}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke an agent's token
+         * @description What it has sent stays. It goes on sampling, and goes on sending when it is enrolled
+         *     again. Revoking it again changes nothing.
+         */
+        delete: operations["revoke_agent"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/vessels/{id}/changes": {
         parameters: {
             query?: never;
@@ -863,6 +884,11 @@ export interface components {
              */
             note?: string | null;
         };
+        /**
+         * Format: uuid
+         * @description An installation of the agent.
+         */
+        AgentId: string;
         /** @description How an agent samples and sends. */
         AgentSettings: {
             /**
@@ -903,6 +929,8 @@ export interface components {
         };
         /** @description A stream: one compass as one installation of the agent reports it. */
         AgentStream: {
+            /** @description The installation, which may have opened several streams. */
+            agent_id: components["schemas"]["AgentId"];
             /** @description The agent's version when it was enrolled. */
             agent_version: string;
             /**
@@ -922,6 +950,7 @@ export interface components {
             last_upload_at: components["schemas"]["Time"] | null;
             /** @description When the stream was opened. */
             opened_at: components["schemas"]["Time"];
+            revoked_at: components["schemas"]["Time"] | null;
             /**
              * Format: int64
              * @description Samples in them.
@@ -998,7 +1027,7 @@ export interface components {
          * @description What an alert is about: one compass has at most one open alert of each.
          * @enum {string}
          */
-        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "reported_aboard" | "silent_agent" | "no_model" | "wide_band";
+        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
          * @description Something that people must know of.
@@ -4541,6 +4570,54 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revoke_agent: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                agent: components["schemas"]["AgentId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
