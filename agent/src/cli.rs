@@ -205,11 +205,8 @@ fn execute(command: Command) -> anyhow::Result<()> {
 fn load(path: &Path) -> Result<Config, BadInput> {
     let config = Config::load(path)?;
     // A certificate that cannot be used is found now, not at the first upload.
-    Shore::new(
-        config.uplink.pinned_ca.as_deref(),
-        &config.uplink.plan().line(),
-    )
-    .map_err(|e| BadInput(format!("{e:#}")))?;
+    Shore::new(config.uplink.pinned_ca.as_deref(), &config.uplink.line())
+        .map_err(|e| BadInput(format!("{e:#}")))?;
     Ok(config)
 }
 
@@ -354,14 +351,11 @@ fn local_client() -> reqwest::Result<reqwest::Client> {
 
 async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> {
     let server = server_url(server)?;
-    let shore = Shore::new(
-        config.uplink.pinned_ca.as_deref(),
-        &config.uplink.plan().line(),
-    )?;
+    let shore = Shore::new(config.uplink.pinned_ca.as_deref(), &config.uplink.line())?;
     let spool = Spool::open(&config.data_dir).await?;
     let answer = match shore.enrol(&server, code.trim()).await {
         Ok(answer) => answer,
-        Err(trouble @ (Trouble::Unknown(_) | Trouble::Refused(_))) => {
+        Err(trouble @ (Trouble::Unknown(_) | Trouble::NotFound(_) | Trouble::Refused(_))) => {
             return Err(BadInput(format!("the code was refused: {trouble}")).into());
         }
         Err(trouble) => anyhow::bail!("{server}: {trouble}"),
@@ -384,10 +378,7 @@ async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> 
 /// The new token is kept before the shore is asked to know it, so that an answer that is
 /// lost locks nobody out: the agent then tries both.
 async fn rotate_token(config: &Config) -> anyhow::Result<()> {
-    let shore = Shore::new(
-        config.uplink.pinned_ca.as_deref(),
-        &config.uplink.plan().line(),
-    )?;
+    let shore = Shore::new(config.uplink.pinned_ca.as_deref(), &config.uplink.line())?;
     let spool = Spool::open(&config.data_dir).await?;
     let Some(identity) = spool.identity().await? else {
         return Err(BadInput("the agent is not enrolled".to_owned()).into());

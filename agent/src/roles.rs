@@ -73,6 +73,16 @@ impl Roles {
         self.clock.now()
     }
 
+    /// The ship's clock, to be told of other clocks.
+    pub(crate) fn clock(&mut self) -> &mut ShipClock {
+        &mut self.clock
+    }
+
+    /// What is wrong with the receiver's time.
+    pub(crate) fn clock_problem(&self) -> Option<String> {
+        self.clock.problem()
+    }
+
     /// The time that a recording gives a line: used when no receiver gives any.
     pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
         self.set_clock(self.position.sources.len(), stamp)

@@ -11,7 +11,7 @@ use crate::clock;
 use crate::config::{Config, SilenceConfig};
 use crate::corrected::{self, Corrected, Ingredients};
 use crate::hold::Hold;
-use crate::input::{self, InputStats};
+use crate::input::{self, InputConfig, InputStats};
 use crate::observation::Observation;
 use crate::offline::offline_status;
 use crate::output::Outputs;
@@ -60,6 +60,8 @@ pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::
 
 struct Agent {
     ship: Ship,
+    /// The shore's time when it was last heard of.
+    last_contact: Option<Timestamp>,
     silence: SilenceConfig,
     spool: Spool,
     spool_limit_bytes: u64,
@@ -89,6 +91,8 @@ struct Unstored {
     tally: Tally,
     /// Revisions of alerts.
     alerts: Vec<ShipAlert>,
+    /// Why the spool does not take them.
+    problem: Option<String>,
     /// What the spool has that is not sealed.
     pending: Pending,
     /// The ship's time when the tally was last sealed.
@@ -106,8 +110,13 @@ impl Agent {
         let alert_kept = spool.alert().await?;
         let judged_by = told.model.borrow().as_ref().map(|model| model.id);
         let settings = told.settings.borrow().clone();
+        let last_contact = told.link.borrow().last_contact;
         let stale_s = config.silence.stale_s.0;
-        let ship = Ship::new(&config.roles, stale_s, settings, hold);
+        let mut ship = Ship::new(&config.roles, stale_s, settings, hold);
+        let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
+        if !config.inputs.values().any(is_recorded) {
+            ship.judge_time_by(clock::now(), Instant::now());
+        }
         let unstored = Unstored {
             pending: spool.pending().await?,
             ..Unstored::default()
@@ -145,6 +154,7 @@ impl Agent {
         tracing::info!(page, output, inputs = inputs.len(), "ready");
         Ok(Agent {
             ship,
+            last_contact,
             silence: config.silence,
             spool,
             spool_limit_bytes: config.spool_mb.bytes(),
@@ -183,6 +193,13 @@ impl Agent {
                 Ok(()) = self.told.settings.changed() => {
                     let settings = self.told.settings.borrow_and_update().clone();
                     self.ship.sampler.set_settings(settings);
+                }
+                Ok(()) = self.told.link.changed() => {
+                    let contact = self.told.link.borrow_and_update().last_contact;
+                    if let Some(time) = contact.filter(|_| contact != self.last_contact) {
+                        self.ship.hear_shores_time(time, Instant::now());
+                    }
+                    self.last_contact = contact;
                 }
                 Ok(()) = hold.changed() => {
                     let hold = *hold.borrow_and_update();
@@ -349,6 +366,7 @@ impl Agent {
         };
         match stored {
             Ok((pending, sealed)) => {
+                unstored.problem = None;
                 if has_evidence {
                     self.alert_kept = self.lookout.aboard().copied();
                     unstored.alerts.clear();
@@ -369,6 +387,7 @@ impl Agent {
             }
             Err(error) => {
                 tracing::error!(%error, waiting = unstored.samples.len(), "samples cannot be stored");
+                unstored.problem = Some(error.to_string());
                 if is_want_of_room(&error) {
                     self.ring.give_way(&error.to_string(), Instant::now());
                 }
@@ -461,6 +480,11 @@ impl Agent {
             .collect();
         status.link = self.told.link.borrow().clone();
         status.ring = self.ring.status();
+        status.clock_problem = self.ship.clock_problem();
+        status.storage_problem = self.unstored.problem.as_ref().map(|problem| {
+            let waiting = self.unstored.samples.len();
+            format!("samples cannot be stored: {problem}; {waiting} wait in memory")
+        });
         status
     }
 }

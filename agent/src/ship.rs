@@ -73,8 +73,25 @@ impl Ship {
         self.roles.now()
     }
 
+    /// What is wrong with the ship's time.
+    pub(crate) fn clock_problem(&self) -> Option<String> {
+        self.roles.clock_problem()
+    }
+
+    /// From now on jumps of the receivers' time are held against the computer's: not for
+    /// recordings.
+    pub(crate) fn judge_time_by(&mut self, time: Timestamp, now: Instant) {
+        self.roles.clock().judge_by(time, now);
+    }
+
+    /// The shore's time is better than the computer's.
+    pub(crate) fn hear_shores_time(&mut self, time: Timestamp, now: Instant) {
+        self.roles.clock().correct(time, now);
+    }
+
     /// Takes what a source said, heard at `heard`.
     pub(crate) fn observe(&mut self, seen: &Observation, heard: Instant) {
+        self.roles.clock().hear_at(heard);
         if let Reading::Time(at) = seen.reading
             && is_recorded_time(seen)
         {

@@ -1,19 +1,38 @@
-//! The ship's clock: what her GNSS receivers say, and nothing else.
+//! The ship's clock: what her GNSS receivers say, as far as it can be believed.
 //!
-//! It never runs backwards without saying so, and one wrong time stamp does not
-//! move it: a jump counts when a second stamp bears it out. Recorded and
-//! accelerated data work because no other clock is asked.
+//! What always holds:
+//!
+//! - It never runs backwards without saying so, and one wrong time stamp does not move
+//!   it: a jump counts when a second stamp bears it out.
+//! - Aboard, a jump of more than ten minutes that the computer's clock does not bear out
+//!   is in doubt: time stands still, so that nothing is sampled, until the receiver is
+//!   back where it would have been, the shore's or the computer's time decides, or the
+//!   new time has lasted for a day with nothing that speaks against it.
+//! - Aboard, a date of before this program is one of which the receiver counts the weeks
+//!   from 0 again after 1,024 (IS-GPS-200, 20.3.3.3.1.1), and is put right.
+//! - Recorded and accelerated data work: without [`ShipClock::judge_by`] no other clock
+//!   is asked, and a jump is a jump.
 
 use binnacle_magnetics::time::Timestamp;
+use tokio::time::Instant;
 
 /// Two receivers, or two sentences, may differ by so much.
 const SLACK_S: f64 = 2.0;
-/// A step forward beyond this is not mere silence.
+/// A step beyond this is not mere silence.
 const LONGEST_STEP_S: f64 = 600.0;
 /// A jump is borne out by a stamp that follows within this.
 const CONFIRM_S: f64 = 60.0;
+/// What another clock may be wrong by and still decide.
+const DECIDES_S: f64 = 3_600.0;
+/// A new time is believed when it has lasted so long and nothing speaks against it.
+const LASTED_S: f64 = 86_400.0;
+/// The computer's quartz may err by so much of the time that passed.
+const QUARTZ: f64 = 0.01;
 /// 1980-01-06, when GPS time begins, and 2100-01-01.
 const PLAUSIBLE_MICROS: std::ops::Range<i64> = 315_964_800_000_000..4_102_444_800_000_000;
+/// 2020-01-01: aboard it is later.
+const EARLIEST_ABOARD_MICROS: i64 = 1_577_836_800_000_000;
+const ROLL_OVER_S: f64 = 1_024.0 * 7.0 * 86_400.0;
 
 /// What a time stamp did to the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +54,30 @@ pub(crate) struct ShipClock {
     active: usize,
     /// For each rank: what it first said since the active source was heard.
     waiting: Vec<Option<Timestamp>>,
+    computer: Option<Computer>,
+    doubt: Option<Doubt>,
+    rolled_over: bool,
+}
+
+/// What the computer knows of time.
+#[derive(Clone, Copy, Debug)]
+struct Computer {
+    /// The shore's time, or its own, when it was set.
+    time: Timestamp,
+    set: Instant,
+    /// When the stamp at hand was heard.
+    heard: Instant,
+    /// When the clock was last right.
+    right: Instant,
+}
+
+/// A jump that nothing bears out.
+#[derive(Clone, Copy, Debug)]
+struct Doubt {
+    jump_s: f64,
+    last: Timestamp,
+    /// By the receiver.
+    lasted_s: f64,
 }
 
 impl ShipClock {
@@ -46,6 +89,9 @@ impl ShipClock {
             stale_s,
             active: ranks.saturating_sub(1),
             waiting: vec![None; ranks],
+            computer: None,
+            doubt: None,
+            rolled_over: false,
         }
     }
 
@@ -54,15 +100,75 @@ impl ShipClock {
         self.now
     }
 
+    /// From now on jumps are held against the computer's clock.
+    pub(crate) fn judge_by(&mut self, time: Timestamp, now: Instant) {
+        self.computer = Some(Computer {
+            time,
+            set: now,
+            heard: now,
+            right: now,
+        });
+    }
+
+    /// The shore says what time it is, which the computer may not know.
+    pub(crate) fn correct(&mut self, time: Timestamp, now: Instant) {
+        if let Some(computer) = &mut self.computer {
+            (computer.time, computer.set) = (time, now);
+        }
+    }
+
+    /// What comes next was heard now.
+    pub(crate) fn hear_at(&mut self, heard: Instant) {
+        if let Some(computer) = &mut self.computer {
+            computer.heard = heard;
+        }
+    }
+
+    /// What is wrong with the receiver's time, in words.
+    pub(crate) fn problem(&self) -> Option<String> {
+        if let Some(doubt) = self.doubt {
+            return Some(format!(
+                "the receiver's time jumped by {:+.1} h: nothing is sampled until it is clear \
+                 which is right",
+                doubt.jump_s / 3_600.0
+            ));
+        }
+        self.rolled_over.then(|| {
+            "the receiver's date is 1024 weeks behind, after a roll-over of the GNSS weeks: it \
+             is put right here"
+                .to_owned()
+        })
+    }
+
     /// Takes a time stamp from the source of a rank, 0 being the best.
     pub(crate) fn observe(&mut self, rank: usize, stamp: Timestamp) -> Step {
         if !PLAUSIBLE_MICROS.contains(&stamp.micros()) || rank >= self.waiting.len() {
             return Step::Held;
         }
-        if !self.may_set(rank, stamp) {
+        let unrolled = self.unrolled(stamp);
+        if !self.may_set(rank, unrolled) {
             return Step::Held;
         }
-        self.set(stamp)
+        self.rolled_over = unrolled != stamp;
+        let step = match self.doubt {
+            Some(doubt) => self.settle(doubt, unrolled),
+            None => self.set(unrolled),
+        };
+        if let Some(computer) = &mut self.computer
+            && self.doubt.is_none()
+            && self.suspect.is_none()
+        {
+            computer.right = computer.heard;
+        }
+        step
+    }
+
+    fn unrolled(&self, stamp: Timestamp) -> Timestamp {
+        let mut stamp = stamp;
+        while self.computer.is_some() && stamp.micros() < EARLIEST_ABOARD_MICROS {
+            stamp = stamp.plus_seconds(ROLL_OVER_S);
+        }
+        stamp
     }
 
     /// The active source and better ones may; a worse one when the active one
@@ -104,6 +210,62 @@ impl ShipClock {
             return Step::Held;
         }
         self.suspect = None;
+        if self.bears_out(step_s) {
+            return self.jump(stamp);
+        }
+        let doubt = Doubt {
+            jump_s: step_s,
+            last: stamp,
+            lasted_s: 0.0,
+        };
+        self.doubt = Some(doubt);
+        self.settle(doubt, stamp)
+    }
+
+    /// Whether so much time may have passed since the clock was right.
+    fn bears_out(&self, step_s: f64) -> bool {
+        let Some(computer) = self.computer else {
+            return true;
+        };
+        let passed = computer.heard.saturating_duration_since(computer.right);
+        let passed_s = passed.as_secs_f64();
+        (step_s - passed_s).abs() <= LONGEST_STEP_S + QUARTZ * passed_s
+    }
+
+    /// A stamp after a jump that nothing bore out.
+    fn settle(&mut self, mut doubt: Doubt, stamp: Timestamp) -> Step {
+        let (Some(now), Some(computer)) = (self.now, self.computer) else {
+            return self.jump(stamp);
+        };
+        let went_on_s = stamp.seconds_since(doubt.last);
+        if (0.0..=LONGEST_STEP_S).contains(&went_on_s) {
+            doubt.lasted_s += went_on_s;
+        }
+        doubt.last = stamp;
+        self.doubt = Some(doubt);
+        let expected = now.plus_seconds(doubt.lasted_s);
+        if stamp.seconds_since(expected).abs() <= LONGEST_STEP_S {
+            return self.jump(stamp);
+        }
+        let passed = computer.heard.saturating_duration_since(computer.set);
+        let outside = computer.time.plus_seconds(passed.as_secs_f64());
+        let (new_s, old_s) = (
+            stamp.seconds_since(outside).abs(),
+            expected.seconds_since(outside).abs(),
+        );
+        let believed = if new_s.min(old_s) <= DECIDES_S {
+            new_s < old_s
+        } else {
+            doubt.lasted_s >= LASTED_S
+        };
+        if believed {
+            return self.jump(stamp);
+        }
+        Step::Held
+    }
+
+    fn jump(&mut self, stamp: Timestamp) -> Step {
+        self.doubt = None;
         self.now = Some(stamp);
         Step::Jumped(stamp)
     }
@@ -112,6 +274,8 @@ impl ShipClock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::ops::Range;
+    use std::time::Duration;
 
     fn at(seconds: i64) -> Timestamp {
         Timestamp::from_micros((1_700_000_000 + seconds) * 1_000_000).unwrap()
@@ -135,6 +299,86 @@ mod tests {
             assert_eq!(clock.observe(0, at(jump + 1)), Step::Jumped(at(jump + 1)));
             assert_eq!(clock.observe(0, at(jump + 2)), Step::Advanced(at(jump + 2)));
         }
+    }
+
+    /// A clock aboard: the computer's says the same as the receiver's at 0.
+    fn aboard(computer: i64) -> (ShipClock, Instant) {
+        let mut clock = ShipClock::new(1, 15.0);
+        let start = Instant::now();
+        clock.judge_by(at(computer), start);
+        assert_eq!(clock.observe(0, at(0)), Step::Advanced(at(0)));
+        (clock, start)
+    }
+
+    /// Hears a stamp a second for a while, `off_s` from the time; what that did.
+    fn hear(clock: &mut ShipClock, start: Instant, seconds: Range<i64>, off_s: i64) -> Vec<Step> {
+        let steps = seconds.map(|second| {
+            clock.hear_at(start + Duration::from_secs(second.unsigned_abs()));
+            clock.observe(0, at(second + off_s))
+        });
+        steps.collect()
+    }
+
+    const YEARS_S: i64 = 5 * 365 * 86_400;
+
+    #[test]
+    fn no_time_passes_while_the_receiver_is_a_day_off() {
+        // Whether the computer knows the time or not.
+        for computer in [0, YEARS_S] {
+            for off_s in [86_400, -86_400, 7_200, 1_200] {
+                let (mut clock, start) = aboard(computer);
+                hear(&mut clock, start, 1..60, 0);
+                let steps = hear(&mut clock, start, 60..4_000, off_s);
+                assert!(steps.iter().all(|step| *step == Step::Held), "{off_s}");
+                let problem = clock.problem().unwrap();
+                assert!(problem.contains("nothing is sampled"), "{problem}");
+                assert_eq!(clock.now(), Some(at(59)));
+                let back = hear(&mut clock, start, 4_000..4_002, 0);
+                assert_eq!(back, [Step::Jumped(at(4_000)), Step::Advanced(at(4_001))]);
+                assert_eq!(clock.problem(), None);
+            }
+        }
+    }
+
+    #[test]
+    fn a_receiver_that_comes_to_its_senses_is_believed() {
+        // It was wrong from the start, as the computer says; then it is right.
+        let (mut clock, start) = aboard(86_400);
+        hear(&mut clock, start, 1..60, 0);
+        let steps = hear(&mut clock, start, 60..62, 86_400);
+        assert_eq!(steps[1], Step::Jumped(at(61 + 86_400)));
+    }
+
+    #[test]
+    fn what_lasts_for_a_day_with_nothing_against_it_is_believed() {
+        let (mut clock, start) = aboard(YEARS_S);
+        let steps = hear(&mut clock, start, 1..86_500, -40_000);
+        let jumps: Vec<&Step> = steps.iter().filter(|step| **step != Step::Held).collect();
+        assert!(matches!(jumps[0], Step::Jumped(_)), "{jumps:?}");
+        let (mut clock, start) = aboard(0);
+        let steps = hear(&mut clock, start, 1..86_500, -40_000);
+        assert!(steps.iter().all(|step| *step == Step::Held));
+    }
+
+    #[test]
+    fn silence_is_no_jump_if_as_much_time_has_passed() {
+        for computer in [0, YEARS_S] {
+            let (mut clock, start) = aboard(computer);
+            let steps = hear(&mut clock, start, 90_000..90_002, 0);
+            assert_eq!(steps[1], Step::Jumped(at(90_001)));
+        }
+    }
+
+    #[test]
+    fn a_date_of_1024_weeks_ago_is_put_right() {
+        const WEEKS_S: i64 = -1_024 * 7 * 86_400;
+        let (mut clock, start) = aboard(0);
+        let steps = hear(&mut clock, start, 1..9, WEEKS_S);
+        let wanted: Vec<Step> = (1..9).map(|second| Step::Advanced(at(second))).collect();
+        assert_eq!(steps, wanted);
+        assert!(clock.problem().unwrap().contains("1024 weeks"));
+        hear(&mut clock, start, 9..10, 0);
+        assert_eq!(clock.problem(), None);
     }
 
     #[test]

@@ -26,6 +26,12 @@ pub(crate) struct Status {
     pub(crate) compass_name: Option<String>,
     /// The ship's own time.
     pub(crate) ship_time: Option<Timestamp>,
+    /// What is wrong with the receiver's time.
+    #[serde(default)]
+    pub(crate) clock_problem: Option<String>,
+    /// Why samples cannot be stored.
+    #[serde(default)]
+    pub(crate) storage_problem: Option<String>,
     pub(crate) heading: Corrected,
     /// The agent's last alert of its own: open, or how it ended.
     #[serde(default)]
@@ -147,6 +153,14 @@ impl Status {
         }
         if let Some(time) = self.ship_time {
             writeln!(out, "ship time  {time}")?;
+        }
+        for (what, problem) in [
+            ("CLOCK", &self.clock_problem),
+            ("STORAGE", &self.storage_problem),
+        ] {
+            if let Some(problem) = problem {
+                writeln!(out, "{what:<11}{problem}")?;
+            }
         }
         self.write_alert(out)?;
         self.write_heading(out)?;
@@ -281,6 +295,8 @@ mod tests {
         let status = Status {
             agent_version: "0.1.0".to_owned(),
             hold: Some(Hold::Berthed),
+            clock_problem: Some("the receiver's time jumped".to_owned()),
+            storage_problem: Some("samples cannot be stored".to_owned()),
             heading: Corrected {
                 problem: Some("there is no model yet".to_owned()),
                 ..Corrected::default()
@@ -302,6 +318,8 @@ mod tests {
         for wanted in [
             "0.1.0 not running",
             "berthed: nothing is sampled",
+            "CLOCK      the receiver's time jumped\n",
+            "STORAGE    samples cannot be stored\n",
             "not corrected: there is no model yet",
             "link       not enrolled\n",
             "profile    metered, -120 octets left at 8000 a day\n",

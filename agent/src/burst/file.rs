@@ -40,13 +40,23 @@ impl FileModem {
             .filter_map(|path| number(&path));
         let free = last.max().map_or(1, |last: u64| last.saturating_add(1));
         let number = stated.unwrap_or(1).max(free);
-        fs::write(&counter, format!("{}\n", number.saturating_add(1)))?;
-        let partial = self.out.join("partial");
-        let mut file = File::create(&partial)?;
-        file.write_all(message)?;
-        file.sync_all()?;
-        fs::rename(&partial, self.out.join(format!("{number:08}.{ENDING}")))?;
+        let next = format!("{}\n", number.saturating_add(1));
+        self.put(&counter, next.as_bytes())?;
+        self.put(&self.out.join(format!("{number:08}.{ENDING}")), message)?;
         File::open(&self.out)?.sync_all()
+    }
+
+    /// Never through a link that somebody laid in the agent's way: what has a name is
+    /// replaced, not written to.
+    fn put(&self, path: &Path, content: &[u8]) -> io::Result<()> {
+        let partial = self.out.join("partial");
+        if fs::symlink_metadata(&partial).is_ok() {
+            fs::remove_file(&partial)?;
+        }
+        let mut file = File::create_new(&partial)?;
+        file.write_all(content)?;
+        file.sync_all()?;
+        fs::rename(&partial, path)
     }
 
     fn read(&self) -> io::Result<Option<Vec<u8>>> {

@@ -1,7 +1,7 @@
 //! How the shore is spoken to, and over what.
 
 use super::{PositiveSeconds, Wrong};
-use crate::uplink::{Plan, Profile};
+use crate::uplink::{EXCHANGE, Line, Plan, Profile};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -20,6 +20,8 @@ pub(crate) struct UplinkConfig {
     /// Asks for news when nothing was sent for so many seconds, in place of the
     /// profile's time.
     pub(crate) poll_s: Option<PositiveSeconds>,
+    /// An exchange with the shore that takes longer is given up.
+    pub(crate) exchange_s: PositiveSeconds,
     /// The first pause after a failure, at most.
     pub(crate) retry_min_s: Spanned<PositiveSeconds>,
     /// The longest pause after failures.
@@ -33,6 +35,7 @@ impl Default for UplinkConfig {
             profile: Spanned::new(0..0, Profile::default()),
             day_kb: None,
             poll_s: None,
+            exchange_s: PositiveSeconds(EXCHANGE.as_secs_f64()),
             retry_min_s: Spanned::new(0..0, PositiveSeconds(30.0)),
             retry_max_s: Spanned::new(0..0, PositiveSeconds(3_600.0)),
         }
@@ -45,6 +48,14 @@ impl UplinkConfig {
         self.profile
             .get_ref()
             .plan(self.day_kb.map(DayBudget::octets))
+    }
+
+    /// How connections are used.
+    pub(crate) fn line(&self) -> Line {
+        Line {
+            exchange: self.exchange_s.duration(),
+            ..self.plan().line()
+        }
     }
 
     /// Whether the settings go together.
@@ -157,6 +168,9 @@ mod tests {
         let own = uplink("profile = \"very-metered\"\nday_kb = 12\npoll_s = 60");
         assert_eq!(own.plan().day_octets, Some(12_000.0));
         assert_eq!(own.poll(), Duration::from_mins(1));
+        assert_eq!(own.line().exchange, Duration::from_mins(10));
+        let hasty = uplink("exchange_s = 2");
+        assert_eq!(hasty.line().exchange, Duration::from_secs(2));
         let wrong = WHOLE.replace("poll_s = 21600", "profile = \"modem\"");
         let said = message(&wrong);
         assert!(

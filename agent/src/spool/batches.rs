@@ -1,7 +1,7 @@
 //! Sealed batches: which is next, what became of it, and a new stream.
 
 use super::seal::insert_batch;
-use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, put};
+use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, kept, put};
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::messages::Downlink;
 use serde::{Deserialize, Serialize};
@@ -80,8 +80,8 @@ impl Spool {
         Ok(noted.rows_affected() > 0)
     }
 
-    /// The shore has this batch: notes it, and deletes what is acknowledged at
-    /// or below the highest contiguous number.
+    /// The shore has this batch: notes it, and what follows from how far the shore says
+    /// that it has come ([`super::kept`]).
     pub(crate) async fn acknowledge(
         &self,
         stream: StreamId,
@@ -89,6 +89,8 @@ impl Spool {
         downlink: &Downlink,
     ) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
+        let before = get(&mut tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
+        put(&mut tx, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
         keep_downlink(&mut tx, downlink).await?;
         let samples: Option<i64> = sqlx::query_scalar(
             "UPDATE batches SET standing = 'acknowledged', problem = NULL
@@ -101,10 +103,7 @@ impl Spool {
         if let Some(samples) = samples {
             remember(&mut tx, stream, batch, samples).await?;
         }
-        sqlx::query("DELETE FROM batches WHERE standing = 'acknowledged' AND seq <= $1")
-            .bind(downlink.contiguous_seq.cast_signed())
-            .execute(&mut *tx)
-            .await?;
+        kept::look(&mut tx, batch.seq, before, downlink).await?;
         tx.commit().await
     }
 
@@ -143,12 +142,13 @@ impl Spool {
     /// restored from an old copy: its contiguous number can then never rise.
     pub(crate) async fn has_unfillable_gap(&self, contiguous_seq: u64) -> sqlx::Result<bool> {
         let mut connection = self.pool.acquire().await?;
-        let lowest: Option<i64> = sqlx::query_scalar("SELECT MIN(seq) FROM batches")
-            .fetch_one(&mut *connection)
+        let wanted = contiguous_seq.saturating_add(1);
+        let here: Option<i64> = sqlx::query_scalar("SELECT 1 FROM batches WHERE seq = $1")
+            .bind(i64::try_from(wanted).unwrap_or(i64::MAX))
+            .fetch_optional(&mut *connection)
             .await?;
         let next = get::<u64>(&mut connection, NEXT_SEQ).await?.unwrap_or(1);
-        let lowest = lowest.map_or(next, i64::cast_unsigned);
-        Ok(contiguous_seq + 1 < lowest)
+        Ok(here.is_none() && wanted < next)
     }
 
     /// How far the shore has come.

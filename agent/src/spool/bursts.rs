@@ -58,7 +58,8 @@ impl Spool {
         tx.commit().await
     }
 
-    /// The shore has every batch up to this one: deletes what of them is out; how many.
+    /// The shore has every batch up to this one: what of them is out is acknowledged; how
+    /// many.
     pub(crate) async fn acknowledge_burst(
         &self,
         identity: &Identity,
@@ -69,7 +70,8 @@ impl Spool {
             return Ok(0);
         }
         let rows: Vec<(i64, Vec<u8>, bool, i64)> = sqlx::query_as(
-            "DELETE FROM batches WHERE seq <= $1 AND burst = $2 AND standing <> 'acknowledged'
+            "UPDATE batches SET standing = 'acknowledged', problem = NULL
+             WHERE seq <= $1 AND burst = $2 AND standing <> 'acknowledged'
              RETURNING seq, bytes, urgent, samples",
         )
         .bind(i64::try_from(contiguous_seq).unwrap_or(i64::MAX))

@@ -8,7 +8,8 @@
 //!   for want of room, and says so. Batches of a stream are numbered from 1 without
 //!   gaps, and sent again byte for byte until they are acknowledged.
 //! - A batch is deleted only when the shore acknowledged that very batch and
-//!   everything before it; a record of its number, size and checksum remains.
+//!   everything before it, and a month later or when room is short; a record of its
+//!   number, size and checksum remains. Until then it is sent again if the shore lost it.
 //! - An alert and the batch that carries it ashore are here from the same moment on.
 //! - An officer's report is here until the shore has it.
 //! - Position and data are one thing: there is no ledger beside the rows that
@@ -19,6 +20,7 @@
 
 mod batches;
 mod bursts;
+mod kept;
 mod repair;
 mod reports;
 mod room;
@@ -98,7 +100,7 @@ const THINNED: &str = "thinned";
 const ACCOUNT: &str = "account";
 
 /// Columns of `batches` that earlier agents did not have.
-const LATER_COLUMNS: [(&str, &str); 4] = [
+const LATER_COLUMNS: [(&str, &str); 5] = [
     (
         "urgent",
         "ALTER TABLE batches ADD COLUMN urgent BOOLEAN NOT NULL DEFAULT FALSE",
@@ -115,6 +117,10 @@ const LATER_COLUMNS: [(&str, &str); 4] = [
     (
         "burst",
         "ALTER TABLE batches ADD COLUMN burst BIGINT NOT NULL DEFAULT 0",
+    ),
+    (
+        "acknowledged_micros",
+        "ALTER TABLE batches ADD COLUMN acknowledged_micros BIGINT",
     ),
 ];
 
@@ -299,7 +305,15 @@ impl Spool {
 
     async fn write(&self) -> sqlx::Result<Transaction<'static, Sqlite>> {
         // At once, so that two processes wait for each other instead of failing.
-        self.pool.begin_with("BEGIN IMMEDIATE").await
+        const BEGIN: &str = "BEGIN IMMEDIATE";
+        match self.pool.begin_with(BEGIN).await {
+            // A transaction that SQLite itself has rolled back, as on a full disk, is open
+            // for good to this version of sqlx: only another connection begins another.
+            Err(sqlx::Error::InvalidSavePointStatement) => {}
+            begun => return begun,
+        }
+        self.pool.acquire().await?.close().await?;
+        self.pool.begin_with(BEGIN).await
     }
 
     async fn get<T: DeserializeOwned>(&self, name: &str) -> sqlx::Result<Option<T>> {
@@ -374,8 +388,8 @@ async fn forget(connection: &mut SqliteConnection, name: &str) -> sqlx::Result<(
     Ok(())
 }
 
+/// All but how far the shore has come, which only the answer to a batch is sure to know.
 async fn keep_downlink(connection: &mut SqliteConnection, downlink: &Downlink) -> sqlx::Result<()> {
-    put(connection, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
     put(connection, LAST_CONTACT, &downlink.server_time).await?;
     if let Some(model) = &downlink.model {
         put(connection, MODEL, model).await?;

@@ -8,7 +8,7 @@
 //! - Samples are left out by heading, time and length alone, in each batch by itself,
 //!   and the batch says how many. What each window of the tally became can be told.
 
-use super::{Spool, THINNED, get, put};
+use super::{Spool, THINNED, get, kept, put};
 use crate::uplink::REQUEST_OCTETS;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::sample::Sample;
@@ -67,6 +67,11 @@ impl Spool {
                 .bind(MOST_QUARANTINED)
                 .execute(&mut *tx)
                 .await?;
+            // What the shore has goes before what it has not.
+            if kept::throw_away(&mut tx).await? > 0 {
+                tx.commit().await?;
+                continue;
+            }
             let touched = thin_batches(&mut tx, 0).await? + thin_pending(&mut tx).await?;
             tx.commit().await?;
             if touched == 0 {
@@ -353,6 +358,16 @@ mod tests {
         let many: Vec<Sample> = (0..5_000).map(restless).collect();
         let full = spool.store(&many, &accepted(1), Seal::Full).await;
         assert!(is_want_of_room(&full.unwrap_err()));
+        sqlx::query("PRAGMA max_page_count = 100000")
+            .execute(&spool.pool)
+            .await
+            .unwrap();
+        let stored = spool.store(&many[..9], &accepted(1), Seal::Full).await;
+        assert_eq!(
+            stored.unwrap().0.samples,
+            9,
+            "it goes on when there is room"
+        );
         let wrong = sqlx::query("SELECT nothing").execute(&spool.pool).await;
         assert!(!is_want_of_room(&wrong.unwrap_err()));
     }

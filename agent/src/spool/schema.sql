@@ -20,7 +20,8 @@ CREATE TABLE IF NOT EXISTS batches (
     urgent   BOOLEAN NOT NULL DEFAULT FALSE,
     tried    BOOLEAN NOT NULL DEFAULT FALSE,
     thinned  BIGINT NOT NULL DEFAULT 0,
-    burst    BIGINT NOT NULL DEFAULT 0 -- messages that are out; -1 all, -2 none ever
+    burst    BIGINT NOT NULL DEFAULT 0, -- messages that are out; -1 all, -2 none ever
+    acknowledged_micros BIGINT -- by the shore's clock
 );
 CREATE TABLE IF NOT EXISTS acknowledged (
     id      INTEGER PRIMARY KEY,

@@ -54,7 +54,7 @@ impl Uplink {
         batch: Option<&SealedBatch>,
         trouble: Trouble,
     ) -> sqlx::Result<Next> {
-        let problem = trouble.to_string();
+        let mut problem = trouble.to_string();
         let (state, pause) = match (trouble, batch) {
             (Trouble::Forked, _) => {
                 tracing::warn!("the stream has forked: opening another");
@@ -73,10 +73,25 @@ impl Uplink {
                 tracing::warn!(problem, "trying the agent's other token");
                 (LinkState::Refused, self.backoff.next(&mut self.rng))
             }
-            (Trouble::Unknown(_) | Trouble::Refused(_), _) => {
-                tracing::error!(problem, "the shore refuses the agent: enrol it again");
+            (Trouble::NotFound(_), _) => {
+                tracing::warn!(
+                    problem,
+                    "the shore lost the stream: all that is kept goes again"
+                );
+                self.spool.send_all_again().await?;
+                if let Next::Pause(pause) = self.open_stream(identity).await? {
+                    return Ok(Next::Pause(pause));
+                }
+                (LinkState::Down, self.backoff.next(&mut self.rng))
+            }
+            (Trouble::Unknown(_), _) => {
+                problem = format!(
+                    "the shore does not know this agent any more ({problem}): enrol it again \
+                     with a new code; its samples are kept"
+                );
                 (LinkState::Refused, self.backoff.most())
             }
+            (Trouble::Refused(_), None) => (LinkState::Refused, self.backoff.most()),
             (Trouble::Busy { retry_after, .. }, _) => {
                 let pause = self.backoff.next(&mut self.rng);
                 (

@@ -21,8 +21,8 @@ mod shore;
 mod start;
 mod status;
 
-pub(crate) use plan::{Account, Plan, Profile, REQUEST_OCTETS};
-pub(crate) use shore::{Shore, Trouble};
+pub(crate) use plan::{Account, EXCHANGE, Plan, Profile, REQUEST_OCTETS};
+pub(crate) use shore::{Line, Shore, Trouble};
 pub(crate) use start::{Told, prepare};
 pub(crate) use status::{LinkState, LinkStatus, Tell};
 

@@ -28,6 +28,9 @@ const RESERVE_DAYS: f64 = 0.25;
 const BACKLOG_DAYS: f64 = 7.0;
 /// A connection is kept open for batches that come as often as this.
 const KEEPS_LINE_FOR_S: u32 = 3_600;
+/// The largest batch with its evidence takes a minute at 2,400 bits a second; many of its
+/// packets may have to be sent again.
+pub(crate) const EXCHANGE: Duration = Duration::from_mins(10);
 /// How long a connection may be idle that is closed when all is said.
 pub(crate) const IDLE_CONNECTION: Duration = Duration::from_secs(5);
 /// TCP and TLS 1.3 until the first request, with a certificate of one's own authority;
@@ -132,6 +135,7 @@ impl Plan {
                 IDLE_CONNECTION
             },
             resumes: f64::from(self.seal_s) < DAY_S,
+            exchange: EXCHANGE,
         }
     }
 

@@ -48,7 +48,7 @@ impl Uplink {
                 Ok(Next::GoOn)
             }
             // A token that is not known any more shows itself in what is sent next.
-            Err(Trouble::Unknown(problem)) => {
+            Err(Trouble::Unknown(problem) | Trouble::NotFound(problem)) => {
                 tracing::warn!(problem, "the shore does not take reports for now");
                 self.no_reports_before = Some(Instant::now() + self.poll);
                 Ok(Next::GoOn)

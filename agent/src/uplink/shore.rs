@@ -13,11 +13,11 @@ use binnacle_wire::messages::{
 };
 use reqwest::header::RETRY_AFTER;
 use reqwest::{RequestBuilder, Response, StatusCode, redirect};
-use rustls::RootCertStore;
 use rustls::client::Resumption;
 use rustls::pki_types::CertificateDer;
 use rustls::pki_types::pem::PemObject;
 use rustls::version::TLS13;
+use rustls::{CertificateError, RootCertStore};
 use rustls_platform_verifier::BuilderVerifierExt;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -30,7 +30,7 @@ use uuid::Uuid;
 
 /// A TLS handshake over a satellite takes five seconds and may lose packets.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
-/// Between two bytes.
+/// Between two bytes. A whole exchange has [`Line::exchange`].
 const READ_TIMEOUT: Duration = Duration::from_secs(90);
 /// TLS sessions to resume; there is one shore.
 const SESSIONS: usize = 4;
@@ -46,6 +46,7 @@ pub(crate) struct Shore {
     /// Remembers the session, whatever becomes of the connections.
     tls: rustls::ClientConfig,
     idle_connection: Duration,
+    exchange: Duration,
     /// Of answers, since it was last asked.
     octets: Arc<AtomicU64>,
 }
@@ -57,6 +58,8 @@ pub(crate) struct Line {
     pub(crate) idle: Duration,
     /// Whether a TLS session is offered again: for a day, no ticket holds longer.
     pub(crate) resumes: bool,
+    /// An exchange that takes longer is given up, however busy whoever answers looks.
+    pub(crate) exchange: Duration,
 }
 
 /// What the agent already has of what the shore decides.
@@ -84,8 +87,10 @@ pub(crate) enum Trouble {
     },
     /// This number was used for other bytes: the stream has forked.
     Forked,
-    /// The token or the stream is not known (any more).
+    /// The token is not known (any more).
     Unknown(String),
+    /// There is no such thing: of a stream, that the shore lost it.
+    NotFound(String),
     /// The shore will never take these bytes.
     Refused(String),
 }
@@ -96,6 +101,7 @@ impl fmt::Display for Trouble {
             Trouble::Link(problem)
             | Trouble::NoConnection(problem)
             | Trouble::Unknown(problem)
+            | Trouble::NotFound(problem)
             | Trouble::Refused(problem)
             | Trouble::Busy { problem, .. } => f.write_str(problem),
             Trouble::Forked => f.write_str("the shore has another batch of this number"),
@@ -135,9 +141,10 @@ impl Shore {
             Resumption::disabled()
         };
         Ok(Shore {
-            http: client(&tls, line.idle)?,
+            http: client(&tls, line.idle, line.exchange)?,
             tls,
             idle_connection: line.idle,
+            exchange: line.exchange,
             octets: Arc::default(),
         })
     }
@@ -145,7 +152,7 @@ impl Shore {
     /// Closes the connection, if there is one: the next request opens another and resumes
     /// its TLS session.
     pub(crate) fn hang_up(&mut self) {
-        match client(&self.tls, self.idle_connection) {
+        match client(&self.tls, self.idle_connection, self.exchange) {
             Ok(http) => self.http = http,
             Err(error) => tracing::error!("{error:#}"),
         }
@@ -259,6 +266,7 @@ impl Shore {
 fn client(
     tls: &rustls::ClientConfig,
     idle_connection: Duration,
+    exchange: Duration,
 ) -> anyhow::Result<reqwest::Client> {
     let mut builder = reqwest::Client::builder()
         .tls_backend_preconfigured(tls.clone())
@@ -266,6 +274,7 @@ fn client(
         .redirect(redirect::Policy::none())
         .connect_timeout(CONNECT_TIMEOUT)
         .read_timeout(READ_TIMEOUT)
+        .timeout(exchange)
         .tcp_keepalive(None)
         .pool_idle_timeout(idle_connection)
         .pool_max_idle_per_host(1);
@@ -337,10 +346,10 @@ fn trouble(status: StatusCode, problem: &Problem, retry_after: Option<Duration>)
     };
     match status {
         StatusCode::CONFLICT if problem.kind.ends_with("stream-forked") => Trouble::Forked,
-        StatusCode::UNAUTHORIZED
-        | StatusCode::FORBIDDEN
-        | StatusCode::NOT_FOUND
-        | StatusCode::GONE => Trouble::Unknown(text),
+        StatusCode::UNAUTHORIZED | StatusCode::FORBIDDEN | StatusCode::GONE => {
+            Trouble::Unknown(text)
+        }
+        StatusCode::NOT_FOUND => Trouble::NotFound(text),
         StatusCode::TOO_MANY_REQUESTS | StatusCode::REQUEST_TIMEOUT | StatusCode::TOO_EARLY => {
             Trouble::Busy {
                 problem: text,
@@ -384,14 +393,40 @@ async fn body(octets: &AtomicU64, mut response: Response) -> Result<Vec<u8>, Tro
     Ok(body)
 }
 
-/// Whether hands were being shaken: then there was somebody, and it cost something.
-fn spoke_tls(error: &(dyn std::error::Error + 'static)) -> bool {
+/// What went wrong while hands were shaken: then there was somebody, and it cost
+/// something.
+fn tls_error<'a>(error: &'a (dyn std::error::Error + 'static)) -> Option<&'a rustls::Error> {
     // What an input or output error wraps is not among its causes.
     let wrapped = error.downcast_ref::<std::io::Error>();
     let wrapped = wrapped.and_then(std::io::Error::get_ref);
-    error.is::<rustls::Error>()
-        || wrapped.is_some_and(|inner| spoke_tls(inner))
-        || error.source().is_some_and(spoke_tls)
+    error
+        .downcast_ref::<rustls::Error>()
+        .or_else(|| wrapped.and_then(|inner| tls_error(inner)))
+        .or_else(|| error.source().and_then(tls_error))
+}
+
+/// What is wrong with the certificate of whoever answered, in an officer's words.
+fn certificate_trouble(error: &rustls::Error) -> Option<&'static str> {
+    let rustls::Error::InvalidCertificate(error) = error else {
+        return None;
+    };
+    Some(match error {
+        CertificateError::Expired | CertificateError::ExpiredContext { .. } => {
+            "the shore's certificate has expired (or this computer's clock is wrong): nothing \
+             is sent until it is renewed"
+        }
+        CertificateError::NotValidYet | CertificateError::NotValidYetContext { .. } => {
+            "the shore's certificate is not valid yet (or this computer's clock is wrong)"
+        }
+        CertificateError::UnknownIssuer | CertificateError::BadSignature => {
+            "whoever answers has a certificate of an authority that is not believed here: \
+             another network's, or pinned_ca is wrong"
+        }
+        CertificateError::NotValidForName | CertificateError::NotValidForNameContext { .. } => {
+            "whoever answers has the certificate of another server"
+        }
+        _ => return None,
+    })
 }
 
 /// The innermost cause says most: "connection refused", "certificate expired".
@@ -407,8 +442,12 @@ fn link_trouble(error: &reqwest::Error) -> Trouble {
     } else {
         "the connection broke"
     };
-    let problem = format!("{kind}: {cause}");
-    if error.is_connect() && !spoke_tls(error) {
+    let tls = tls_error(error);
+    let problem = match tls.and_then(certificate_trouble) {
+        Some(trouble) => trouble.to_owned(),
+        None => format!("{kind}: {cause}"),
+    };
+    if error.is_connect() && tls.is_none() {
         Trouble::NoConnection(problem)
     } else {
         Trouble::Link(problem)

@@ -55,7 +55,7 @@ pub(crate) async fn prepare(
     };
     let account = spool.account().await?;
     let plan = config.plan();
-    let line = plan.line();
+    let line = config.line();
     let uplink = Uplink {
         spool: spool.clone(),
         token: spool.identity().await?.map(|identity| identity.token),

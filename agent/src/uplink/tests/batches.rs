@@ -78,9 +78,22 @@ async fn a_forked_stream_is_left_for_a_new_one() {
 }
 
 #[tokio::test]
-async fn a_shore_that_lost_its_batches_gets_a_new_stream() {
+async fn a_shore_that_lost_its_batches_gets_them_again() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
+    rig.fake.lock().unwrap().batches.clear();
+    seal(&rig.spool, 3).await;
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1, 2, 3, 4]);
+}
+
+#[tokio::test]
+async fn a_shore_that_lost_what_is_not_kept_gets_a_new_stream() {
+    let mut rig = rig(3, Fake::default()).await;
+    rig.all_sent().await;
+    rig.spool.make_room(1).await.unwrap();
     rig.fake.lock().unwrap().batches.clear();
     seal(&rig.spool, 3).await;
     seal(&rig.spool, 4).await;
@@ -89,6 +102,19 @@ async fn a_shore_that_lost_its_batches_gets_a_new_stream() {
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [4]);
     assert_eq!(rig.seqs(Uuid::from_u128(1001)), [1]);
+}
+
+#[tokio::test]
+async fn a_shore_that_lost_the_stream_gets_all_of_it_in_a_new_one() {
+    let mut rig = rig(3, Fake::default()).await;
+    rig.all_sent().await;
+    let lost = problem(StatusCode::NOT_FOUND, "not-found");
+    rig.fake.lock().unwrap().answers.push_back(lost);
+    seal(&rig.spool, 3).await;
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(Uuid::from_u128(1001)), [1, 2, 3, 4]);
 }
 
 #[tokio::test]
@@ -113,16 +139,15 @@ async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
     let fake = Fake {
         answers: [
             problem(StatusCode::UNAUTHORIZED, "unauthorized"),
-            problem(StatusCode::NOT_FOUND, "not-found"),
+            problem(StatusCode::FORBIDDEN, "forbidden"),
         ]
         .into(),
         ..Fake::default()
     };
     let mut rig = rig(1, fake).await;
-    rig.link
-        .wait_for(|link| link.state == LinkState::Refused)
-        .await
-        .unwrap();
+    let refused = rig.link.wait_for(|link| link.state == LinkState::Refused);
+    let problem = refused.await.unwrap().problem.clone().unwrap();
+    assert!(problem.contains("enrol it again"), "{problem}");
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);
 }

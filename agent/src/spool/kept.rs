@@ -1,0 +1,206 @@
+//! Batches that the shore acknowledged, kept in case that it loses them: a shore that is
+//! restored from a backup has less than it had.
+//!
+//! What always holds:
+//!
+//! - They go first when room is short, and after a month by the shore's clock.
+//! - How far the shore says that it has come is the only sign that it lost some: then
+//!   all that it does not say it has are sent again, byte for byte. What it has after
+//!   all is not stored twice.
+
+use super::{CONTIGUOUS_SEQ, Spool, get};
+use binnacle_wire::messages::Downlink;
+use sqlx::SqliteConnection;
+
+/// Who loses a shore restores it from a backup that is younger.
+const KEPT_MICROS: i64 = 30 * 86_400 * 1_000_000;
+/// So many are thrown away at once.
+const AT_ONCE: i64 = 64;
+
+impl Spool {
+    /// The shore lost the stream: everything that is here is to be sent.
+    pub(crate) async fn send_all_again(&self) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        wait_again(&mut tx, 0, 0).await?;
+        tx.commit().await
+    }
+}
+
+/// Takes what the answer to a batch says of how far the shore has come: dates what is
+/// acknowledged, throws away what is older than a month, and lets what the shore lost
+/// wait again. `before` is what it said last.
+pub(super) async fn look(
+    tx: &mut SqliteConnection,
+    answered_seq: u64,
+    before: u64,
+    downlink: &Downlink,
+) -> sqlx::Result<()> {
+    let now = downlink.server_time.micros();
+    sqlx::query(
+        "UPDATE batches SET acknowledged_micros = $1
+         WHERE standing = 'acknowledged' AND acknowledged_micros IS NULL",
+    )
+    .bind(now)
+    .execute(&mut *tx)
+    .await?;
+    let contiguous = downlink.contiguous_seq;
+    // One that stands still although the next is acknowledged is a shore's error, not a
+    // loss: sending it all again and again would not help.
+    let has_lost = contiguous < before
+        || (contiguous > before && is_acknowledged(tx, contiguous.saturating_add(1)).await?);
+    if has_lost {
+        let batches = wait_again(tx, contiguous, answered_seq).await?;
+        tracing::warn!(
+            contiguous,
+            before,
+            batches,
+            "the shore has less than it had"
+        );
+    }
+    sqlx::query(
+        "DELETE FROM batches
+         WHERE standing = 'acknowledged' AND seq <= $1 AND acknowledged_micros < $2",
+    )
+    .bind(as_stored(contiguous))
+    .bind(now.saturating_sub(KEPT_MICROS))
+    .execute(tx)
+    .await?;
+    Ok(())
+}
+
+/// Throws away some of the oldest; how many.
+pub(super) async fn throw_away(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
+    let contiguous: u64 = get(tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
+    let thrown = sqlx::query(
+        "DELETE FROM batches WHERE seq IN
+         (SELECT seq FROM batches WHERE standing = 'acknowledged' AND seq <= $1
+          ORDER BY seq LIMIT $2)",
+    )
+    .bind(as_stored(contiguous))
+    .bind(AT_ONCE)
+    .execute(tx)
+    .await?;
+    Ok(thrown.rows_affected())
+}
+
+async fn is_acknowledged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
+    let found: Option<i64> =
+        sqlx::query_scalar("SELECT 1 FROM batches WHERE seq = $1 AND standing = 'acknowledged'")
+            .bind(as_stored(seq))
+            .fetch_optional(tx)
+            .await?;
+    Ok(found.is_some())
+}
+
+/// What is acknowledged beyond a number, but for one batch; how many. What went out as
+/// short messages does so again.
+async fn wait_again(tx: &mut SqliteConnection, beyond: u64, but: u64) -> sqlx::Result<u64> {
+    let waiting = sqlx::query(
+        "UPDATE batches SET standing = 'waiting', acknowledged_micros = NULL,
+                            burst = CASE WHEN burst = -2 THEN -2 ELSE 0 END
+         WHERE standing = 'acknowledged' AND seq > $1 AND seq <> $2",
+    )
+    .bind(as_stored(beyond))
+    .bind(as_stored(but))
+    .execute(tx)
+    .await?;
+    Ok(waiting.rows_affected())
+}
+
+/// A shore may claim any number.
+fn as_stored(seq: u64) -> i64 {
+    i64::try_from(seq).unwrap_or(i64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{accepted, downlink, enrolled, identity, seal};
+    use super::*;
+    use crate::spool::Seal;
+    use binnacle_magnetics::sample::Sample;
+
+    /// Sends what waits to a shore that then says that it has come so far; what it was.
+    async fn send(spool: &Spool, contiguous: u64) -> Vec<u64> {
+        let mut sent = Vec::new();
+        while let Some(batch) = spool.next_batch().await.unwrap() {
+            sent.push(batch.seq);
+            assert!(sent.len() < 20, "{sent:?}");
+            let far = contiguous.max(batch.seq);
+            spool
+                .acknowledge(identity(7).stream, &batch, &downlink(far))
+                .await
+                .unwrap();
+        }
+        sent
+    }
+
+    #[tokio::test]
+    async fn a_shore_that_fell_behind_gets_again_what_it_lacks_and_no_more() {
+        let (_directory, spool) = enrolled().await;
+        seal(&spool, 0..1).await;
+        seal(&spool, 1..2).await;
+        seal(&spool, 2..3).await;
+        let first = spool.next_batch().await.unwrap().unwrap();
+        assert_eq!(send(&spool, 0).await, [1, 2, 3]);
+        seal(&spool, 3..4).await;
+        let fourth = spool.next_batch().await.unwrap().unwrap();
+        let stream = identity(7).stream;
+        spool
+            .acknowledge(stream, &fourth, &downlink(1))
+            .await
+            .unwrap();
+        assert!(!spool.has_unfillable_gap(1).await.unwrap());
+        assert_eq!(send(&spool, 4).await, [2, 3]);
+        let standing = spool.standing().await.unwrap();
+        assert_eq!(
+            (standing.acknowledged_batches, standing.acknowledged_samples),
+            (4, 4)
+        );
+        spool.send_all_again().await.unwrap();
+        assert_eq!(spool.next_batch().await.unwrap().unwrap(), first);
+    }
+
+    #[tokio::test]
+    async fn a_shore_that_never_counts_on_is_not_sent_the_same_for_ever() {
+        let (_directory, spool) = enrolled().await;
+        for minute in 0..4 {
+            seal(&spool, minute..minute + 1).await;
+        }
+        for seq in 1..=4 {
+            let batch = spool.next_batch().await.unwrap().unwrap();
+            assert_eq!(batch.seq, seq);
+            spool
+                .acknowledge(identity(7).stream, &batch, &downlink(0))
+                .await
+                .unwrap();
+        }
+        assert_eq!(spool.next_batch().await.unwrap(), None);
+    }
+
+    #[tokio::test]
+    async fn what_is_acknowledged_goes_after_a_month_and_before_anything_is_thinned() {
+        let (_directory, spool) = enrolled().await;
+        seal(&spool, 0..1).await;
+        send(&spool, 0).await;
+        seal(&spool, 1..2).await;
+        let second = spool.next_batch().await.unwrap().unwrap();
+        let mut later = downlink(2);
+        later.server_time = later.server_time.plus_seconds(31.0 * 86_400.0);
+        let stream = identity(7).stream;
+        spool.acknowledge(stream, &second, &later).await.unwrap();
+        assert_eq!(kept(&spool).await, [2]);
+        let many: Vec<Sample> = (2..400).map(super::super::tests::restless).collect();
+        spool.store(&many, &accepted(1), Seal::All).await.unwrap();
+        spool.make_room(1).await.unwrap();
+        assert_eq!(kept(&spool).await, [0_i64; 0]);
+        assert!(spool.has_unfillable_gap(1).await.unwrap());
+        assert!(!spool.has_unfillable_gap(2).await.unwrap());
+    }
+
+    async fn kept(spool: &Spool) -> Vec<i64> {
+        sqlx::query_scalar("SELECT seq FROM batches WHERE standing = 'acknowledged' ORDER BY seq")
+            .fetch_all(&spool.pool)
+            .await
+            .unwrap()
+    }
+}
