@@ -2,7 +2,7 @@
 
 use crate::feed::{Pace, Progress};
 use crate::ledger::{Spool, ensure_same_at_both_ends};
-use crate::satellite::{Certificates, INSTRUMENTS, Satellite, Weather};
+use crate::satellite::{Certificates, INSTRUMENTS, SHORE, Satellite, Weather};
 use crate::{Ship, Shore, Voyage, eventually};
 use anyhow::{Context, Result};
 use binnacle_magnetics::time::Timestamp;
@@ -62,8 +62,8 @@ impl AtSea {
             ..Weather::default()
         };
         satellite.set(weather).await?;
-        let tls = Certificates::make(folder.path())?;
-        let shore = Shore::start_ashore(folder.path(), &tls).await?;
+        let tls = Certificates::make(folder.path(), SHORE)?;
+        let shore = Shore::start_with_tls(folder.path(), SHORE, &tls).await?;
         let (vessel, code) = shore.create_vessel("ship").await?;
         let pace = Pace::FastUntil(day(0.0));
         let voyage = Voyage::sail_at(INSTRUMENTS, scenario, 11, folder.path(), pace).await?;

@@ -63,6 +63,7 @@ impl Progress {
 pub struct Feed {
     address: SocketAddr,
     pace: watch::Sender<Pace>,
+    clock: watch::Sender<f64>,
     progress: watch::Receiver<Progress>,
     task: JoinHandle<Result<()>>,
 }
@@ -91,6 +92,7 @@ impl Feed {
         let listener = TcpListener::bind((address, 0)).await?;
         let address = listener.local_addr()?;
         let (pace, paces) = watch::channel(pace);
+        let (clock, clock_off_s) = watch::channel(0.0);
         let (news, progress) = watch::channel(Progress::Waiting);
         let bridge = Bridge {
             listener,
@@ -98,12 +100,14 @@ impl Feed {
             source: BufReader::with_capacity(PIECE, source),
             piece: Vec::with_capacity(2 * PIECE),
             paces,
+            clock_off_s,
             news,
         };
         let task = tokio::spawn(bridge.run());
         Ok(Feed {
             address,
             pace,
+            clock,
             progress,
             task,
         })
@@ -120,6 +124,15 @@ impl Feed {
     /// When the feed has failed.
     pub fn set_pace(&self, pace: Pace) -> Result<()> {
         self.pace.send(pace).context("the feed has ended")
+    }
+
+    /// Lets the receiver's clock be wrong by so much; the pace and the progress stay
+    /// right.
+    ///
+    /// # Errors
+    /// When the feed has failed.
+    pub fn set_clock(&self, off_s: f64) -> Result<()> {
+        self.clock.send(off_s).context("the feed has ended")
     }
 
     /// Waits until the bridge has come so far.
@@ -151,6 +164,7 @@ struct Bridge<S> {
     source: BufReader<S>,
     piece: Vec<u8>,
     paces: watch::Receiver<Pace>,
+    clock_off_s: watch::Receiver<f64>,
     news: watch::Sender<Progress>,
 }
 
@@ -164,6 +178,13 @@ impl<S: AsyncRead + Unpin> Bridge<S> {
                 break;
             }
             let fix = time_of_fix(&self.piece[start..]);
+            let off_s = *self.clock_off_s.borrow();
+            if off_s != 0.0
+                && let Some(wrong) = dated_anew(&self.piece[start..], off_s)
+            {
+                self.piece.truncate(start);
+                self.piece.extend(wrong);
+            }
             if let Some(time) = fix {
                 self.news.send_replace(Progress::At(time));
                 let pace = *self.paces.borrow();
@@ -227,9 +248,56 @@ fn time_of_fix(line: &[u8]) -> Option<Timestamp> {
     Timestamp::parse(&format!("20{yy}-{mm}-{dd}T{hour}:{minute}:{second}Z")).ok()
 }
 
+/// An RMC or ZDA sentence of another time.
+fn dated_anew(line: &[u8], off_s: f64) -> Option<Vec<u8>> {
+    let text = std::str::from_utf8(line).ok()?;
+    let (body, _) = text.strip_prefix('$')?.trim_end().split_once('*')?;
+    let mut fields: Vec<String> = body.split(',').map(str::to_owned).collect();
+    let is_zda = fields[0].ends_with("ZDA");
+    let date = if is_zda {
+        format!("{}-{}-{}", fields[4], fields[3], fields[2])
+    } else if fields[0].ends_with("RMC") {
+        let ddmmyy = fields[9].clone();
+        let part = |from: usize| ddmmyy.get(from..from + 2);
+        format!("20{}-{}-{}", part(4)?, part(2)?, part(0)?)
+    } else {
+        return None;
+    };
+    let clock = fields[1].clone();
+    let part = |from: usize| clock.get(from..from + 2);
+    let time = format!("{date}T{}:{}:{}Z", part(0)?, part(2)?, clock.get(4..)?);
+    let wrong = Timestamp::parse(&time)
+        .ok()?
+        .plus_seconds(off_s)
+        .to_string();
+    // YYYY-MM-DDTHH:MM:SS
+    let part = |from: usize, to: usize| wrong.get(from..to);
+    fields[1] = format!("{}{}{}.00", part(11, 13)?, part(14, 16)?, part(17, 19)?);
+    let (year, month, day) = (part(0, 4)?, part(5, 7)?, part(8, 10)?);
+    if is_zda {
+        [fields[4], fields[3], fields[2]] = [year, month, day].map(str::to_owned);
+    } else {
+        fields[9] = format!("{day}{month}{}", part(2, 4)?);
+    }
+    let body = fields.join(",");
+    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
+    Some(format!("${body}*{sum:02X}\r\n").into_bytes())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_sentence_is_dated_anew_with_its_checksum() {
+        let fix = b"$GPRMC,073015.00,A,4321.10,N,00301.50,W,12.4,085.0,211126,,,A*73\r\n";
+        let day_later = dated_anew(fix, 86_400.0).unwrap();
+        let time = Timestamp::parse("2026-11-22T07:30:15Z").unwrap();
+        assert_eq!(time_of_fix(&day_later), Some(time));
+        let zda = dated_anew(b"$GPZDA,073015.00,21,11,2026,,*00\r\n", -86_400.0).unwrap();
+        assert!(zda.starts_with(b"$GPZDA,073015.00,20,11,2026,,*"));
+        assert_eq!(dated_anew(b"$HCHDG,010.0,,,,*00\r\n", 1.0), None);
+    }
 
     #[test]
     fn a_fix_tells_its_time_and_other_sentences_do_not() {

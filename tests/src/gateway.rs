@@ -8,7 +8,7 @@ use tokio::io::{AsyncReadExt, AsyncWriteExt, copy_bidirectional};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::task::JoinHandle;
-use tokio::time::timeout;
+use tokio::time::{interval, timeout};
 
 /// What it does with a connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,13 +21,19 @@ pub enum Manners {
     Fails,
     /// Passes so many octets of each way on, and then cuts it.
     CutsAfter(u64),
+    /// Begins an answer, and then sends an octet of it twice a second, for ever.
+    Drips,
 }
+
+/// Far more often than the silence that the agent puts up with.
+const DRIP: Duration = Duration::from_millis(500);
 
 const PAGE: &str = "<html><body>Welcome to Harbour Wi-Fi</body></html>";
 
-/// A gateway before a shore without TLS.
+/// A gateway before a shore; what it answers itself is without TLS.
 #[derive(Debug)]
 pub struct Gateway {
+    scheme: String,
     address: SocketAddr,
     manners: watch::Sender<Manners>,
     met: watch::Receiver<u64>,
@@ -40,7 +46,7 @@ impl Gateway {
     /// # Errors
     /// When there is no port, or the URL has no address.
     pub async fn open(shore: &str) -> Result<Gateway> {
-        let (_, shore) = shore.split_once("://").context("a URL")?;
+        let (scheme, shore) = shore.split_once("://").context("a URL")?;
         let shore: SocketAddr = shore.parse().context("an address")?;
         let listener = TcpListener::bind("127.0.0.1:0").await?;
         let address = listener.local_addr()?;
@@ -62,6 +68,7 @@ impl Gateway {
             }
         });
         Ok(Gateway {
+            scheme: scheme.to_owned(),
             address,
             manners,
             met,
@@ -71,13 +78,18 @@ impl Gateway {
 
     /// The server's URL as the ship knows it.
     pub fn url(&self) -> String {
-        format!("http://{}", self.address)
+        format!("{}://{}", self.scheme, self.address)
     }
 
     /// Changes its manners, for connections that are open too.
     pub fn set(&mut self, manners: Manners) {
         self.manners.send_replace(manners);
         self.met.mark_unchanged();
+    }
+
+    /// How many connections have ended.
+    pub fn count(&self) -> u64 {
+        *self.met.borrow()
     }
 
     /// Waits until so many more connections have ended.
@@ -107,6 +119,7 @@ async fn treat(mut ship: TcpStream, shore: SocketAddr, manners: Manners) -> Resu
             copy_bidirectional(&mut ship, &mut shore).await?;
         }
         Manners::ShowsPage => answer(ship, "200 OK", PAGE).await?,
+        Manners::Drips => drip(ship).await?,
         Manners::Fails => answer(ship, "500 Internal Server Error", "oh").await?,
         Manners::CutsAfter(octets) => {
             let shore = TcpStream::connect(shore).await?;
@@ -121,6 +134,17 @@ async fn treat(mut ship: TcpStream, shore: SocketAddr, manners: Manners) -> Resu
         }
     }
     Ok(())
+}
+
+/// Never ends: whoever waits for it must give up.
+async fn drip(mut ship: TcpStream) -> Result<()> {
+    let mut ticks = interval(DRIP);
+    ship.write_all(b"HTTP/1.1 200 OK\r\ncontent-length: 1000000\r\n\r\n")
+        .await?;
+    loop {
+        ticks.tick().await;
+        ship.write_all(b" ").await?;
+    }
 }
 
 /// Reads until there is a request's head, answers, and reads the rest away.

@@ -23,6 +23,8 @@ pub struct Spool {
     pub in_trouble: i64,
     /// Samples that are not acknowledged, in batches or not yet.
     pub samples_aboard: i64,
+    /// The windows in those.
+    pub windows_aboard: u64,
 }
 
 /// One acknowledged batch.
@@ -70,6 +72,7 @@ impl Spool {
         )
         .fetch_one(&mut db)
         .await?;
+        let windows_aboard = windows_aboard(&mut db).await?;
         let acknowledged = rows
             .into_iter()
             .map(|(stream, seq, samples, crc32)| {
@@ -87,8 +90,27 @@ impl Spool {
             waiting,
             in_trouble: parked + quarantined,
             samples_aboard,
+            windows_aboard,
         })
     }
+}
+
+async fn windows_aboard(db: &mut SqliteConnection) -> Result<u64> {
+    let pending: i64 = sqlx::query_scalar(
+        "SELECT COALESCE(SUM(json_extract(sample, '$.windows')), 0) FROM pending_samples",
+    )
+    .fetch_one(&mut *db)
+    .await?;
+    let sealed: Vec<Vec<u8>> =
+        sqlx::query_scalar("SELECT bytes FROM batches WHERE standing <> 'acknowledged'")
+            .fetch_all(db)
+            .await?;
+    let mut windows = pending.unsigned_abs();
+    for bytes in sealed {
+        let samples = decode(&bytes)?.samples;
+        windows += samples.iter().map(|s| u64::from(s.windows)).sum::<u64>();
+    }
+    Ok(windows)
 }
 
 /// A batch in the server's log: stream, number, bytes.

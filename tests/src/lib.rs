@@ -5,12 +5,14 @@
 //! is skipped: a missing program or database fails the test with what to do.
 
 pub mod at_sea;
+pub mod coast;
 pub mod database;
 pub mod eventually;
 pub mod feed;
 pub mod gateway;
 pub mod heard;
 pub mod ledger;
+pub mod namespace;
 pub mod program;
 pub mod satellite;
 pub mod ship;
@@ -18,6 +20,7 @@ pub mod shore;
 pub mod voyage;
 
 pub use at_sea::AtSea;
+pub use coast::{Coast, Passage};
 pub use database::{Database, Engine};
 pub use eventually::eventually;
 pub use feed::{Feed, Pace, Progress};

@@ -3,6 +3,7 @@
 use anyhow::{Context, Result, ensure};
 use std::ffi::OsStr;
 use std::fs::File;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 use tokio::io::AsyncWriteExt;
@@ -74,7 +75,11 @@ pub async fn answer_of(mut command: Command, input: &str) -> Result<String> {
         .stderr(Stdio::piped());
     let mut child = command.spawn()?;
     let mut stdin = child.stdin.take().context("standard input was asked for")?;
-    stdin.write_all(input.as_bytes()).await?;
+    match stdin.write_all(input.as_bytes()).await {
+        // What reads nothing may have ended by now.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => {}
+        written => written?,
+    }
     drop(stdin);
     let output = child.wait_with_output().await?;
     let errors = String::from_utf8_lossy(&output.stderr);

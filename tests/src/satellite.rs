@@ -1,17 +1,16 @@
 //! A satellite link between a shore and a ship, each in a network of its own.
 //!
 //! `satellite/link.py` carries the packets, late, seldom and slowly, and counts
-//! them. A test on it calls [`in_own_network`] first: the test's own network is the
+//! them. A test on it calls [`crate::namespace::in_own_network`] first: the test's own network is the
 //! shore's, where nothing else on the machine can be reached.
 
 use crate::program;
 use anyhow::{Context, Result, ensure};
 use rcgen::{
     BasicConstraints, CertificateParams, DistinguishedName, DnType, IsCa, Issuer, KeyPair,
-    PKCS_ED25519,
+    PKCS_ED25519, date_time_ymd,
 };
 use serde::{Deserialize, Serialize};
-use std::future::Future;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -24,47 +23,7 @@ use tokio::time::timeout;
 pub const SHORE: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 77, 0, 1));
 /// Where the ship finds her instruments.
 pub const INSTRUMENTS: IpAddr = IpAddr::V4(Ipv4Addr::new(10, 78, 0, 1));
-/// Set for a test that is in its own network.
-const OWN_NETWORK: &str = "BINNACLE_TEST_OWN_NETWORK";
 const START: Duration = Duration::from_secs(30);
-
-/// Runs `body` in a new network that has nothing but itself: starts this test
-/// again in one. `test` is its name.
-///
-/// # Panics
-/// When the system gives no network (it wants root, or user namespaces that anyone
-/// may make), or `body` fails.
-pub fn in_own_network(test: &str, body: impl Future<Output = Result<()>>) {
-    if std::env::var_os(OWN_NETWORK).is_some() {
-        let runtime = tokio::runtime::Builder::new_multi_thread()
-            .worker_threads(2)
-            .enable_all()
-            .build()
-            .expect("a runtime");
-        runtime.block_on(body).expect("the test holds");
-        return;
-    }
-    let this = std::env::current_exe().expect("the path of this test");
-    let is_root = rustix::process::geteuid().is_root();
-    let as_root: &[&str] = if is_root {
-        &[]
-    } else {
-        &["--user", "--map-root-user"]
-    };
-    let status = std::process::Command::new("unshare")
-        .args(as_root)
-        .arg("--net")
-        .arg(this)
-        .args(["--exact", test, "--nocapture"])
-        .env(OWN_NETWORK, "1")
-        .status()
-        .expect("unshare, of util-linux");
-    assert!(
-        status.success(),
-        "{test} in a network of its own: {status}. If that could not be made: be root, or allow \
-         user namespaces"
-    );
-}
 
 /// How the link is; what is left out stays.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
@@ -215,6 +174,9 @@ impl Berth {
 /// docs/uplink.md asks for.
 #[derive(Clone, Debug)]
 pub struct Certificates {
+    shore: IpAddr,
+    /// PEM.
+    issuer_key: String,
     /// Whom to believe.
     pub authority: PathBuf,
     /// The shore's.
@@ -223,27 +185,52 @@ pub struct Certificates {
     pub key: PathBuf,
 }
 
+/// When a certificate holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Validity {
+    /// Now.
+    Current,
+    /// Until some years ago.
+    Past,
+}
+
 impl Certificates {
-    /// Makes them anew and writes them.
+    /// Makes them anew for a shore at an address, and writes them.
     ///
     /// # Errors
     /// When the folder cannot be written.
-    pub fn make(folder: &Path) -> Result<Certificates> {
+    pub fn make(folder: &Path, shore: IpAddr) -> Result<Certificates> {
+        let issuer_key = KeyPair::generate_for(&PKCS_ED25519)?;
+        let of_itself = authority()?.self_signed(&issuer_key)?;
         let made = Certificates {
+            shore,
+            issuer_key: issuer_key.serialize_pem(),
             authority: folder.join("authority.pem"),
             chain: folder.join("chain.pem"),
             key: folder.join("key.pem"),
         };
-        let issuer = Issuer::new(authority()?, KeyPair::generate_for(&PKCS_ED25519)?);
-        let of_itself = authority()?.self_signed(issuer.key())?;
         std::fs::write(&made.authority, of_itself.pem())?;
-        let key = KeyPair::generate_for(&PKCS_ED25519)?;
-        let mut of_shore = CertificateParams::new([SHORE.to_string()])?;
-        of_shore.distinguished_name = short_name();
-        let of_shore = of_shore.signed_by(&key, &issuer)?;
-        std::fs::write(&made.key, key.serialize_pem())?;
-        std::fs::write(&made.chain, of_shore.pem())?;
+        made.renew(Validity::Current)?;
         Ok(made)
+    }
+
+    /// Gives the shore another certificate of the same authority.
+    ///
+    /// # Errors
+    /// When the files cannot be written.
+    pub fn renew(&self, validity: Validity) -> Result<()> {
+        let issuer = Issuer::new(authority()?, KeyPair::from_pem(&self.issuer_key)?);
+        let key = KeyPair::generate_for(&PKCS_ED25519)?;
+        let mut of_shore = CertificateParams::new([self.shore.to_string()])?;
+        of_shore.distinguished_name = short_name();
+        if validity == Validity::Past {
+            of_shore.not_before = date_time_ymd(2019, 1, 1);
+            of_shore.not_after = date_time_ymd(2020, 1, 1);
+        }
+        let of_shore = of_shore.signed_by(&key, &issuer)?;
+        std::fs::write(&self.key, key.serialize_pem())?;
+        std::fs::write(&self.chain, of_shore.pem())?;
+        Ok(())
     }
 }
 

@@ -1,5 +1,6 @@
 //! A ship: an agent process with its own folder, fed over TCP.
 
+use crate::coast::SWIFT;
 use crate::eventually::eventually;
 use crate::program::{self, Program};
 use crate::satellite::Berth;
@@ -9,12 +10,10 @@ use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tokio::process::Command;
+use tokio::time::timeout;
 
 /// Machines may be busy.
 const START: Duration = Duration::from_secs(30);
-
-/// What waits for nothing, on a link that costs nothing.
-const SWIFT: &str = "poll_s = 2\nretry_min_s = 0.2\nretry_max_s = 1";
 
 /// An agent, running or not.
 #[derive(Debug)]
@@ -90,6 +89,11 @@ stale_s = 15
     /// The path of `agent.toml`.
     pub fn config(&self) -> PathBuf {
         self.folder.join("agent.toml")
+    }
+
+    /// Her folder: what the agent has to itself, and its log.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// Where the agent keeps its spool.
@@ -175,6 +179,18 @@ stale_s = 15
         let line = status.lines().find(|line| line.starts_with("VmHWM:"));
         let kb = line.and_then(|line| line.split_whitespace().nth(1));
         Ok(kb.context("VmHWM in /proc")?.parse()?)
+    }
+
+    /// Waits until the agent has ended by itself; its log.
+    ///
+    /// # Errors
+    /// When it does not, or did not fail.
+    pub async fn fails(&mut self) -> Result<String> {
+        let mut agent = self.agent.take().context("the agent runs")?;
+        let ended = timeout(START, agent.child().wait()).await;
+        let ended = ended.with_context(|| format!("{} goes on", self.name))??;
+        ensure!(!ended.success(), "the agent of {} was content", self.name);
+        Ok(agent.log())
     }
 
     /// Kills the agent with signal 9.

@@ -2,7 +2,7 @@
 
 use crate::database::{Database, Engine};
 use crate::program::{self, Program};
-use crate::satellite::{self, Certificates};
+use crate::satellite::Certificates;
 use anyhow::{Context, Result, bail, ensure};
 use reqwest::{Client, Method, RequestBuilder, Response, StatusCode};
 use serde_json::{Value, json};
@@ -41,12 +41,16 @@ impl Shore {
         Shore::open(engine, folder, Ipv4Addr::LOCALHOST.into(), None).await
     }
 
-    /// Starts a server on SQLite at its end of a satellite link, with https.
+    /// Starts a server on SQLite at an address, with https.
     ///
     /// # Errors
     /// When it does not start.
-    pub async fn start_ashore(folder: &Path, tls: &Certificates) -> Result<Shore> {
-        Shore::open(Engine::Sqlite, folder, satellite::SHORE, Some(tls)).await
+    pub async fn start_with_tls(
+        folder: &Path,
+        address: IpAddr,
+        tls: &Certificates,
+    ) -> Result<Shore> {
+        Shore::open(Engine::Sqlite, folder, address, Some(tls)).await
     }
 
     async fn open(
@@ -111,7 +115,11 @@ impl Shore {
         Ok(())
     }
 
-    async fn admin(&self, arguments: &[&str], input: &str) -> Result<String> {
+    /// Runs the server's program beside the server, on its database.
+    ///
+    /// # Errors
+    /// When it fails.
+    pub async fn admin(&self, arguments: &[&str], input: &str) -> Result<String> {
         let mut command = program::command("binnacle-server")?;
         command
             .args(arguments)

@@ -4,63 +4,11 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Result, ensure};
-use binnacle_tests::at_sea::{PATIENCE, all_ashore, day, until};
+use binnacle_tests::at_sea::{PATIENCE, all_ashore, day};
+use binnacle_tests::coast::copy_folder;
 use binnacle_tests::gateway::{Gateway, Manners};
-use binnacle_tests::ledger::{
-    Spool, ensure_acknowledged_is_ashore, ensure_same_at_both_ends, samples_ashore,
-};
-use binnacle_tests::{Engine, Pace, Ship, Shore, Voyage, eventually};
-use std::path::Path;
-use tempfile::TempDir;
-use uuid::Uuid;
-
-/// A ship and her shore on one machine, with a gateway between.
-struct Coast {
-    shore: Shore,
-    gateway: Gateway,
-    vessel: Uuid,
-    voyage: Voyage,
-    ship: Ship,
-    folder: TempDir,
-}
-
-impl Coast {
-    async fn sail() -> Result<Coast> {
-        let folder = tempfile::tempdir()?;
-        let shore = Shore::start(Engine::Sqlite, folder.path()).await?;
-        let gateway = Gateway::open(&shore.url).await?;
-        let (vessel, code) = shore.create_vessel("ship").await?;
-        let pace = Pace::FastUntil(day(0.0));
-        let voyage = Voyage::sail("biscay.toml", 11, folder.path(), pace).await?;
-        let mut ship = Ship::new("ship", folder.path(), voyage.feed.address())?;
-        ship.enrol(&gateway.url(), &code).await?;
-        ship.start()?;
-        ship.ready().await?;
-        Ok(Coast {
-            shore,
-            gateway,
-            vessel: vessel.parse()?,
-            voyage,
-            ship,
-            folder,
-        })
-    }
-
-    async fn until(&mut self, days: f64) -> Result<()> {
-        until(&mut self.voyage, &self.ship, day(days)).await
-    }
-
-    /// Nothing waits; what is acknowledged is ashore, and no window twice.
-    async fn arrive(mut self) -> Result<()> {
-        let spool = all_ashore(&self.ship).await?;
-        ensure_acknowledged_is_ashore(&self.shore, self.vessel, &spool).await?;
-        samples_ashore(&self.shore, self.vessel).await?;
-        self.ship.assert_running()?;
-        self.ship.kill().await?;
-        self.shore.assert_well().await?;
-        self.shore.finish().await
-    }
-}
+use binnacle_tests::ledger::{Spool, ensure_acknowledged_is_ashore, ensure_same_at_both_ends};
+use binnacle_tests::{Coast, Engine, Pace, Passage, Shore, eventually};
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn no_wrong_answer_passes_for_an_acknowledgement() {
@@ -71,7 +19,6 @@ async fn no_wrong_answer() -> Result<()> {
     let mut coast = Coast::sail().await?;
     coast.until(1.0).await?;
     let mut before = all_ashore(&coast.ship).await?;
-    let memory_kb = coast.ship.peak_memory_kb()?;
     let wrong = [
         Manners::Fails,
         Manners::ShowsPage,
@@ -92,8 +39,6 @@ async fn no_wrong_answer() -> Result<()> {
         before = all_ashore(&coast.ship).await?;
         ensure_same_at_both_ends(&coast.shore, coast.vessel, &before).await?;
     }
-    let grown_kb = coast.ship.peak_memory_kb()?.saturating_sub(memory_kb);
-    ensure!(grown_kb < 16_000, "{grown_kb} kB more");
     coast.arrive().await
 }
 
@@ -142,7 +87,8 @@ async fn many_kills() -> Result<()> {
             coast.ship.kill_and_restart().await?;
         }
     }
-    coast.until(DAYS).await?;
+    // The last one may have come when all was said.
+    coast.until(DAYS + 0.5).await?;
     let spool = all_ashore(&coast.ship).await?;
     // What was on the way to an agent that died is lost: there is less to send.
     ensure!(spool.acknowledged.len() > 5, "{spool:?}");
@@ -212,7 +158,7 @@ async fn old_spool() -> Result<()> {
     coast.until(1.0).await?;
     all_ashore(&coast.ship).await?;
     coast.ship.kill().await?;
-    let copy = coast.folder.path().join("copy");
+    let copy = coast.folder().join("copy");
     copy_folder(&coast.ship.data_dir(), &copy)?;
     coast.ship.start()?;
     coast.until(2.0).await?;
@@ -257,35 +203,29 @@ async fn installed_anew() -> Result<()> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
-async fn ten_days_without_a_link_are_caught_up_with() {
+async fn thirty_days_without_a_link_are_caught_up_with() {
     long_silence().await.unwrap();
 }
 
 async fn long_silence() -> Result<()> {
-    let mut coast = Coast::sail().await?;
+    let passage = Passage {
+        scenario: "month.toml",
+        ..Passage::default()
+    };
+    let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
     coast.until(1.0).await?;
     let before = all_ashore(&coast.ship).await?;
-    let memory_kb = coast.ship.peak_memory_kb()?;
     coast.gateway.set(Manners::Fails);
-    coast.until(11.0).await?;
-    let aboard = Spool::of(&coast.ship).await?;
-    ensure!(aboard.acknowledged == before.acknowledged, "{aboard:?}");
-    ensure!(aboard.waiting > 30, "{aboard:?}");
+    coast.until(31.0).await?;
+    let aboard = coast.ensure_nothing_went(&before).await?;
+    ensure!(aboard.waiting > 60, "{aboard:?}");
     coast.gateway.set(Manners::Passes);
+    let back = std::time::Instant::now();
     let spool = all_ashore(&coast.ship).await?;
+    println!("{} batches in {:?}", aboard.waiting, back.elapsed());
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
-    let grown_kb = coast.ship.peak_memory_kb()?.saturating_sub(memory_kb);
-    ensure!(grown_kb < 16_000, "{grown_kb} kB more");
+    coast.ensure_every_window_is_there().await?;
     coast.arrive().await
-}
-
-fn copy_folder(from: &Path, to: &Path) -> Result<()> {
-    std::fs::create_dir_all(to)?;
-    for entry in std::fs::read_dir(from)? {
-        let entry = entry?;
-        std::fs::copy(entry.path(), to.join(entry.file_name()))?;
-    }
-    Ok(())
 }
 
 /// Only what the others need of it too.

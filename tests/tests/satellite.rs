@@ -5,7 +5,11 @@
 use anyhow::{Result, ensure};
 use binnacle_tests::AtSea;
 use binnacle_tests::at_sea::day;
-use binnacle_tests::satellite::{Tally, Weather, ensure_used, in_own_network};
+use binnacle_tests::ledger::Spool;
+use binnacle_tests::namespace::in_own_network;
+use binnacle_tests::satellite::{Tally, Weather, ensure_used};
+use std::time::Duration;
+use tokio::time::interval;
 
 /// How often a ship sends, and the most octets that a day of that may cost.
 struct Policy {
@@ -94,6 +98,56 @@ fn a_batch_a_day_costs_few_octets_packets_and_all() {
 fn a_batch_an_hour_costs_few_octets_packets_and_all() {
     let name = "a_batch_an_hour_costs_few_octets_packets_and_all";
     in_own_network(name, costs(HOURLY));
+}
+
+/// Of the real thing, everything but TCP's own patience takes this part of the time: a
+/// link that is up for 20 s every ten minutes, with a round trip of 1.5 s, to an agent
+/// that tries again after half a minute and then at most a minute.
+const SCALE: f64 = 1.0 / 20.0;
+
+#[test]
+fn a_link_that_is_up_for_20_s_every_ten_minutes_brings_all_ashore() {
+    in_own_network(
+        "a_link_that_is_up_for_20_s_every_ten_minutes_brings_all_ashore",
+        short_windows(),
+    );
+}
+
+async fn short_windows() -> Result<()> {
+    let uplink = "poll_s = 3600\nretry_min_s = 1.5\nretry_max_s = 3";
+    let mut at_sea = AtSea::sail("biscay.toml", uplink).await?;
+    at_sea.until(day(1.0)).await?;
+    at_sea.all_ashore().await?;
+    let weather = |up| Weather {
+        up: Some(up),
+        round_trip_ms: Some(1_500.0 * SCALE),
+        ..Weather::default()
+    };
+    at_sea.satellite.set(weather(false)).await?;
+    at_sea.until(day(9.0)).await?;
+    let mut aboard = Spool::of(&at_sea.ship).await?;
+    ensure!(aboard.waiting > 20, "{aboard:?}");
+    let mut windows = 0;
+    let (up, down) = (SCALE * 20.0, SCALE * 580.0);
+    while aboard.waiting > 0 {
+        windows += 1;
+        ensure!(windows < 30, "{aboard:?}");
+        for (is_up, seconds) in [(true, up), (false, down)] {
+            at_sea.satellite.set(weather(is_up)).await?;
+            let mut over = interval(Duration::from_secs_f64(seconds));
+            over.tick().await;
+            over.tick().await;
+        }
+        let now = Spool::of(&at_sea.ship).await?;
+        ensure!(
+            now.acknowledged.starts_with(&aboard.acknowledged),
+            "{now:?}"
+        );
+        aboard = now;
+    }
+    println!("all ashore in {windows} windows");
+    at_sea.satellite.set(weather(true)).await?;
+    at_sea.arrive().await
 }
 
 #[test]

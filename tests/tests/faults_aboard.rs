@@ -1,0 +1,259 @@
+//! What may go wrong aboard: a disk that is full or read-only, a receiver whose clock
+//! jumps, words from outside that mean harm.
+
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
+use anyhow::{Context, Result, ensure};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_tests::at_sea::{PATIENCE, all_ashore, day};
+use binnacle_tests::gateway::Manners;
+use binnacle_tests::ledger::{Spool, ensure_same_at_both_ends, samples_ashore};
+use binnacle_tests::namespace::in_own_mounts;
+use binnacle_tests::{Coast, Pace, Passage, Progress};
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Mounts, in a namespace of this test's own.
+fn mount(arguments: &[&str], place: &Path) -> Result<()> {
+    let status = Command::new("mount").args(arguments).arg(place).status()?;
+    ensure!(status.success(), "mount {arguments:?}: {status}");
+    Ok(())
+}
+
+/// A disk of so much for what the agent keeps.
+fn small_disk(place: &Path, size: &str) -> Result<()> {
+    std::fs::create_dir_all(place)?;
+    let size = format!("size={size},mode=700");
+    mount(&["-t", "tmpfs", "-o", &size, "tmpfs"], place)
+}
+
+/// Fills a disk to the last octet; the file to remove.
+fn fill(place: &Path, name: &str) -> Result<PathBuf> {
+    let path = place.join(name);
+    let mut file = File::create(&path)?;
+    for size in [65_536, 4_096, 1] {
+        let octets = vec![0; size];
+        while file.write_all(&octets).is_ok() {}
+    }
+    Ok(path)
+}
+
+#[test]
+fn a_full_disk_stops_nothing_and_costs_nothing() {
+    in_own_mounts("a_full_disk_stops_nothing_and_costs_nothing", full_disk());
+}
+
+async fn full_disk() -> Result<()> {
+    let disk = |ship: &binnacle_tests::Ship| small_disk(&ship.data_dir(), "24m");
+    let mut coast = Coast::sail_on(Passage::default(), disk).await?;
+    coast.until(1.0).await?;
+    let before = all_ashore(&coast.ship).await?;
+    // At first the ring makes way for the spool; then there is nothing left to give.
+    let state = coast.ship.data_dir();
+    let most = fill(&state, "somebody-elses")?;
+    coast.until(2.0).await?;
+    coast.says("/ring/problem", "No space left").await?;
+    coast.says("/storage_problem", "null").await?;
+    for days in [3.0, 5.0] {
+        let rest = fill(&state, "more")?;
+        coast.until(days).await?;
+        let said = coast.says("/storage_problem", "cannot be stored").await?;
+        ensure!(said.contains("wait in memory"), "{said}");
+        std::fs::remove_file(rest)?;
+        coast.until(days + 1.0).await?;
+        coast.says("/storage_problem", "null").await?;
+    }
+    std::fs::remove_file(most)?;
+    let spool = all_ashore(&coast.ship).await?;
+    ensure!(
+        spool.acknowledged.starts_with(&before.acknowledged),
+        "{spool:?}"
+    );
+    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
+    coast.ensure_every_window_is_there().await?;
+    coast.arrive().await
+}
+
+#[test]
+fn a_disk_that_became_read_only_is_said_and_what_is_on_it_stays() {
+    let name = "a_disk_that_became_read_only_is_said_and_what_is_on_it_stays";
+    in_own_mounts(name, read_only_disk());
+}
+
+async fn read_only_disk() -> Result<()> {
+    let disk = |ship: &binnacle_tests::Ship| small_disk(&ship.data_dir(), "24m");
+    let mut coast = Coast::sail_on(Passage::default(), disk).await?;
+    coast.until(1.0).await?;
+    all_ashore(&coast.ship).await?;
+    coast.gateway.set(Manners::Fails);
+    coast.until(2.0).await?;
+    coast.ship.kill().await?;
+    let before = Spool::of(&coast.ship).await?;
+    ensure!(before.waiting > 2, "{before:?}");
+    // What a system does with a disk that fails.
+    let state = coast.ship.data_dir();
+    mount(&["-o", "remount,ro"], &state)?;
+    coast.ship.start()?;
+    let log = coast.ship.fails().await?;
+    ensure!(
+        log.to_lowercase().contains("read-only file system"),
+        "{log}"
+    );
+    ensure!(log.contains("state") && !log.contains("panicked"), "{log}");
+    mount(&["-o", "remount,rw"], &state)?;
+    coast.ship.start()?;
+    coast.ship.ready().await?;
+    coast.ensure_nothing_went(&before).await?;
+    coast.gateway.set(Manners::Passes);
+    coast.until(3.0).await?;
+    let spool = all_ashore(&coast.ship).await?;
+    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
+    coast.arrive().await
+}
+
+const DAY_S: f64 = 86_400.0;
+const ROLL_OVER_S: f64 = 1_024.0 * 7.0 * DAY_S;
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn no_sample_has_a_wrong_time_whatever_the_receivers_clock_says() {
+    wrong_clock().await.unwrap();
+}
+
+async fn wrong_clock() -> Result<()> {
+    let mut coast = Coast::sail().await?;
+    coast.until(1.0).await?;
+    // A quarter of a day each, while she is under way.
+    let wrong = [(1.0, DAY_S), (2.0, -DAY_S), (3.0, DAY_S)];
+    for (from, off_s) in wrong {
+        coast.voyage.feed.set_clock(off_s)?;
+        reach(&mut coast, from + 0.25).await?;
+        let said = coast.says("/clock_problem", "jumped by").await?;
+        ensure!(said.contains("nothing is sampled"), "{said}");
+        coast.voyage.feed.set_clock(0.0)?;
+        coast.until(from + 1.0).await?;
+        coast.says("/clock_problem", "null").await?;
+    }
+    // Here she knows what time it is.
+    coast.voyage.feed.set_clock(-ROLL_OVER_S)?;
+    coast.until(5.0).await?;
+    coast.says("/clock_problem", "1024 weeks").await?;
+    coast.voyage.feed.set_clock(0.0)?;
+    coast.until(6.0).await?;
+    coast.says("/clock_problem", "null").await?;
+    let spool = all_ashore(&coast.ship).await?;
+    ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
+    coast.ensure_every_window_is_there().await?;
+    let samples = samples_ashore(&coast.shore, coast.vessel).await?;
+    for (from, _) in wrong {
+        let at = |s: &&Sample| s.time > day(from).plus_seconds(900.0) && s.time < day(from + 0.25);
+        let stored: Vec<&Sample> = samples.iter().filter(at).collect();
+        ensure!(stored.is_empty(), "while the clock was wrong: {stored:?}");
+    }
+    let at = |s: &&Sample| s.time > day(4.0) && s.time < day(5.0);
+    ensure!(
+        samples.iter().filter(at).count() > 20,
+        "none of the day that rolled over"
+    );
+    ensure_she_sailed(&samples)?;
+    coast.arrive().await
+}
+
+/// Sails on while the agent's clock stands still.
+async fn reach(coast: &mut Coast, days: f64) -> Result<()> {
+    coast.voyage.feed.set_pace(Pace::FastUntil(day(days)))?;
+    let there = |progress: &Progress| progress.time() >= Some(day(days));
+    coast.voyage.feed.reached(PATIENCE, there).await?;
+    Ok(())
+}
+
+/// No sample is from where she cannot have been at its time: a wrong one would be 300 nm
+/// off.
+fn ensure_she_sailed(samples: &[Sample]) -> Result<()> {
+    let (first, last) = (
+        samples.first().context("samples")?,
+        samples.last().context("samples")?,
+    );
+    ensure!(
+        first.time >= day(0.0) && last.time <= day(6.1),
+        "{first:?}, {last:?}"
+    );
+    for pair in samples.windows(2) {
+        let hours = pair[1].time.seconds_since(pair[0].time) / 3_600.0;
+        let sailed_nm = distance_nm(pair[0].position, pair[1].position);
+        ensure!(
+            sailed_nm < 16.0 * hours + 2.0,
+            "{sailed_nm} nm between {pair:?}"
+        );
+    }
+    Ok(())
+}
+
+fn distance_nm(a: Position, b: Position) -> f64 {
+    let north = b.lat_deg() - a.lat_deg();
+    let east = (b.lon_deg() - a.lon_deg()) * a.lat_deg().to_radians().cos();
+    60.0 * north.hypot(east)
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn nothing_from_outside_makes_the_agent_write_outside_its_folder() {
+    words_that_mean_harm().await.unwrap();
+}
+
+async fn words_that_mean_harm() -> Result<()> {
+    let passage = Passage {
+        name: "../../../../outside",
+        ..Passage::default()
+    };
+    let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
+    coast.until(1.0).await?;
+    all_ashore(&coast.ship).await?;
+    let page = coast.ship.page()?;
+    let http = reqwest::Client::builder().no_proxy().build()?;
+    for path in ["../../outside", "..%2f..%2foutside", "%2fetc%2foutside"] {
+        let url = format!("http://{page}/api/reports/{path}");
+        let report = serde_json::json!({ "kind": "lightning", "from": "2026-10-01T00:00:00Z" });
+        let answer = http.put(url).json(&report).send().await?;
+        ensure!(!answer.status().is_success(), "{path}: {}", answer.status());
+    }
+    coast.until(2.0).await?;
+    all_ashore(&coast.ship).await?;
+    let mut found = BTreeSet::new();
+    list(coast.folder(), coast.folder(), &mut found)?;
+    let of_others = [
+        "binnacle.db",
+        "server.log",
+        "biscay.toml",
+        "ship/agent.toml",
+        "ship/agent.log",
+    ];
+    found.retain(|path| !of_others.iter().any(|other| path.starts_with(other)));
+    let state = [
+        "agent.lock",
+        "ring.bin",
+        "spool.db",
+        "spool.db-shm",
+        "spool.db-wal",
+    ];
+    let state: BTreeSet<String> = state
+        .iter()
+        .map(|name| format!("ship/state/{name}"))
+        .collect();
+    ensure!(found == state, "{found:?}");
+    coast.arrive().await
+}
+
+fn list(folder: &Path, top: &Path, found: &mut BTreeSet<String>) -> Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.is_dir() {
+            list(&path, top, found)?;
+        } else {
+            found.insert(path.strip_prefix(top)?.display().to_string());
+        }
+    }
+    Ok(())
+}
