@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build demo test test-rust test-web test-browser lint soak bench bench-link bench-peer bench-changes study study-changes methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-browser lint soak bench bench-link bench-peer bench-changes study study-changes methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -19,6 +19,10 @@ web: web/dist/index.html ## Build the dashboard
 
 build: web ## Build the three programs, optimised
 	$(CARGO) build --release --locked -p binnacle-server -p binnacle-agent -p binnacle-simulator
+
+deb: setup ## Make the agent's Debian package
+	$(CARGO) build --release --locked -p binnacle-agent
+	@scripts/deb
 
 demo: build ## Sail a simulated fleet and open the dashboard (DAYS=60, PORT=8080)
 	@scripts/demo
