@@ -1,0 +1,68 @@
+/** What every page shows, and the way in. */
+
+export const common = {
+  product: 'Binnacle',
+  tagline: 'The magnetic compass, corrected at sea',
+  noMountPoint: 'index.html has no element with the id "app"',
+
+  skip: 'Skip to content',
+  loading: 'Loading…',
+  retry: 'Try again',
+  cancel: 'Cancel',
+  copy: 'Copy',
+  copied: 'Copied',
+  optional: 'optional',
+  utc: 'UTC',
+
+  signOut: 'Sign out',
+
+  signIn: {
+    title: 'Sign in',
+    email: 'E-mail',
+    password: 'Password',
+    submit: 'Sign in',
+    busy: 'Signing in…',
+    wrong: 'E-mail or password is wrong.',
+    missing: 'Enter e-mail and password.',
+  },
+
+  theme: {
+    label: 'Colours',
+    auto: 'Auto',
+    light: 'Day',
+    dark: 'Night',
+  },
+
+  live: {
+    connecting: 'Connecting',
+    live: 'Live',
+    lost: 'Not live',
+    liveLong: 'Shows new data as it arrives',
+    lostLong: 'The live connection is lost; trying again',
+  },
+
+  problem: {
+    offline: 'The server cannot be reached. Check the connection.',
+    offlineStale: (since: string) =>
+      `The server cannot be reached. What you see is from ${since}; it is refreshed as soon as the connection is back.`,
+    stale: (since: string, detail: string) =>
+      `This could not be refreshed (${detail}). What you see is from ${since}.`,
+    unexpected: (status: number) => `The server answered with an error (${status}).`,
+    unreadable: 'The server answered in a form that this page cannot read.',
+    signedOut: 'Your session has ended. Sign in again.',
+    notFoundTitle: 'Nothing here',
+    notFound: 'There is no such page, or it belongs to another fleet.',
+    toVessels: 'To the vessels',
+    title: 'This could not be shown',
+  },
+
+  document: {
+    vessels: 'Vessels · Binnacle',
+    vessel: (name: string) => `${name} · Binnacle`,
+    signIn: 'Sign in · Binnacle',
+    notFound: 'Nothing here · Binnacle',
+    alerts: 'Alerts · Binnacle',
+    mail: 'Mail · Binnacle',
+    webhooks: 'Webhooks · Binnacle',
+  },
+};
