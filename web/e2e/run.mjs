@@ -9,7 +9,12 @@ import { existsSync } from 'node:fs';
 import { mkdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
-import { scenarios } from './scenarios.mjs';
+import { alerts } from './scenarios/alerts.mjs';
+import { session } from './scenarios/session.mjs';
+import { vessel } from './scenarios/vessel.mjs';
+
+/** What a user must be able to do, each in a browser of its own. */
+const scenarios = { ...vessel, ...alerts, ...session };
 
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
 

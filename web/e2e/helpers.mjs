@@ -1,0 +1,66 @@
+/** What several scenarios do. */
+import assert from 'node:assert/strict';
+
+export const phone = { width: 390, height: 844 };
+/** Chromium reports every 4xx answer in the console; these are asked for. */
+export const notSignedIn = /status of 401 .*\/api\/v1\/me\b/;
+
+export async function signIn(page, { email, password }) {
+  await page.goto('/');
+  await page.getByLabel('E-mail').fill(email);
+  await page.getByLabel('Password').fill(password);
+  await page.getByRole('button', { name: 'Sign in' }).click();
+  await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+}
+
+/** Opens the first vessel of the list that has a model; answers her name. */
+export async function openVessel(page) {
+  const row = page
+    .getByRole('row')
+    .filter({ hasText: /\(95 %\)/ })
+    .first();
+  await row.waitFor();
+  const name = await row.getByRole('link').innerText();
+  await row.getByRole('link').click();
+  await page.getByRole('heading', { name, level: 1 }).waitFor();
+  await curve(page).waitFor();
+  return name;
+}
+
+export const chart = (page) => page.getByTestId('deviation-chart');
+export const curve = (page) => chart(page).locator('svg [aria-label="line"] path').last();
+
+/** The first vessel that has a model, by the API. */
+export async function withModel(page) {
+  const listed = await (await page.request.get('/api/v1/vessels')).json();
+  return listed.items.find((vessel) => vessel.model);
+}
+
+/** The vessel that lightning struck, by the API. */
+export async function struck(page) {
+  const listed = await (await page.request.get('/api/v1/vessels')).json();
+  for (const vessel of listed.items) {
+    const answer = await page.request.get(`/api/v1/vessels/${vessel.id}/changes`);
+    const { changes } = await answer.json();
+    if (changes.some((change) => change.cause === 'lightning_or_shock')) return vessel;
+  }
+  throw new Error('no vessel was struck by lightning');
+}
+
+/** Sets the limits of a vessel's alerts. */
+export async function limit(page, id, limits) {
+  const path = `/api/v1/vessels/${id}/settings`;
+  const found = await (await page.request.get(path)).json();
+  const answer = await page.request.put(path, {
+    headers: { 'X-Binnacle-Request': '1' },
+    data: { ...found, alerts: { band95_deg: 45, ...limits } },
+  });
+  assert.ok(answer.ok(), await answer.text());
+}
+
+export async function fitsItsWidth(page) {
+  const excess = await page.evaluate(
+    () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
+  );
+  assert.ok(excess <= 0, `the page is ${excess} px wider than the screen`);
+}

@@ -1,0 +1,201 @@
+/** Alerts, who is told of them, and what changed. */
+import assert from 'node:assert/strict';
+import { phone, notSignedIn, signIn, withModel, struck, limit, fitsItsWidth } from '../helpers.mjs';
+
+export const alerts = {
+  'an alert comes live, is acknowledged and cleared': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await page.getByRole('heading', { name: 'Alerts', level: 1 }).waitFor();
+      const vessel = await withModel(page);
+      // A limit that she surely exceeds; what follows comes through the live events.
+      await limit(page, vessel.id, { deviation_deg: 1 });
+      const card = page
+        .getByRole('article')
+        .filter({ hasText: `${vessel.name}: Deviation over the limit` });
+      await card.getByText('over the limit of 1°').waitFor();
+      await page.getByTestId('alert-badge').waitFor();
+      await shoot('alerts', { fullPage: true });
+
+      await card.getByRole('button', { name: 'Acknowledge' }).click();
+      await card.getByLabel(/^Note/).fill('Azimuth taken');
+      await card.getByRole('button', { name: 'Acknowledge the alert' }).click();
+      await card.getByText('Acknowledged by Test Officer').waitFor();
+      await card.getByText('What shows it').click();
+      await card.getByText('By the model of the samples').waitFor();
+      await page.getByRole('link', { name: 'Binnacle' }).click();
+      await page
+        .getByRole('row')
+        .filter({ hasText: vessel.name })
+        .getByText('acknowledged')
+        .waitFor();
+      await shoot('vessels-alerts');
+      await page.goBack();
+
+      await card.getByRole('button', { name: 'Clear' }).click();
+      await card.getByRole('button', { name: 'Clear the alert' }).click();
+      await card.getByRole('alert').getByText('Say why it is over').waitFor();
+      await card.getByLabel('Why it is over').fill('A test');
+      await card.getByRole('button', { name: 'Clear the alert' }).click();
+      await page.getByText('Cleared lately').click();
+      await page
+        .getByText(/^Cleared by Test Officer.*: A test$/)
+        .first()
+        .waitFor();
+      await limit(page, vessel.id, { deviation_deg: 45 });
+    },
+  },
+
+  'a webhook is made, tested and removed': {
+    allowedErrors: [notSignedIn, /status of 422 .*\/api\/v1\/webhooks\b/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await page.getByRole('link', { name: 'Webhooks' }).click();
+      await page.getByText('No program is told of alerts yet').waitFor();
+      await page.getByRole('button', { name: 'Add a webhook' }).click();
+      const made = page.getByRole('button', { name: 'Make the webhook' });
+      await made.click();
+      await page.getByRole('alert').getByText('Enter an address').waitFor();
+      await page.getByLabel('Address').fill('https://127.0.0.1/hook');
+      await made.click();
+      await page.getByRole('alert').getByText('not an address of the public internet').waitFor();
+      // A name that no resolver knows (RFC 2606).
+      await page.getByLabel('Address').fill('https://hooks.invalid/binnacle');
+      await made.click();
+      await page.getByText(/^bns_/).waitFor();
+      await page.getByRole('button', { name: 'Done' }).click();
+      const card = page.getByRole('article').filter({ hasText: 'hooks.invalid' });
+      await card.getByRole('button', { name: 'Send a test' }).click();
+      await card.getByTestId('deliveries').getByText('waiting').waitFor();
+      await card.getByTestId('deliveries').getByText('1 try').waitFor();
+      await shoot('webhooks', { fullPage: true });
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('webhooks-phone', { fullPage: true });
+      await card.getByRole('button', { name: 'Remove' }).click();
+      await card.getByRole('button', { name: 'Remove the webhook' }).click();
+      await page.getByText('No program is told of alerts yet').waitFor();
+    },
+  },
+
+  'an address gets mail, a test, and no more': {
+    allowedErrors: [notSignedIn, /status of 422 .*\/api\/v1\/mail-recipients\b/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await page.getByRole('link', { name: 'Mail' }).click();
+      await page.getByText('Nobody gets mail yet').waitFor();
+      await page.getByRole('button', { name: 'Add an address' }).click();
+      const add = page.getByRole('button', { name: 'Add the address' });
+      await add.click();
+      await page.getByRole('alert').getByText('Enter an address').waitFor();
+      await page.getByRole('textbox', { name: 'Address' }).fill('bridge at example.com');
+      await add.click();
+      await page.getByRole('alert').getByText('is not an address').waitFor();
+      await page.getByRole('textbox', { name: 'Address' }).fill('bridge@example.com');
+      await page.getByRole('combobox', { name: 'Alerts' }).selectOption('notice');
+      await add.click();
+      const card = page.getByRole('article').filter({ hasText: 'bridge@example.com' });
+      await card.getByText('All alerts').first().waitFor();
+      await card.getByRole('combobox').selectOption('critical');
+      await card.locator('p', { hasText: 'Critical alerts only' }).waitFor();
+      await card.getByRole('button', { name: 'Send a test' }).click();
+      await card.getByTestId('deliveries').getByText('waiting').waitFor();
+      await card.getByTestId('deliveries').getByText('1 try').waitFor();
+      await shoot('mail', { fullPage: true });
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('mail-phone', { fullPage: true });
+      await card.getByRole('button', { name: 'Remove' }).click();
+      await card.getByRole('button', { name: 'Remove the address' }).click();
+      await page.getByText('Nobody gets mail yet').waitFor();
+    },
+  },
+
+  'a struck ship shows what changed, why, and the curve before and after': {
+    viewport: { width: 1280, height: 900 },
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await struck(page);
+      await page.goto(`/vessels/${vessel.id}`);
+      const changes = page.getByRole('region', { name: 'What changed' });
+      const change = changes.getByRole('listitem').filter({ hasText: 'Lightning or a shock' });
+      await change.first().waitFor();
+      const said = await change.first().innerText();
+      assert.match(said, /\d{1,2} [A-Z][a-z]{2} 20\d\d, \d\d:\d\d UTC/);
+      assert.match(said, /Deviation changed by \d+\.\d°/);
+      assert.match(said, /[+−]\d\.\d ± \d\.\d\sµT fore-and-aft/);
+      await shoot('changes-closed', {}, changes);
+
+      await change.getByText('Why this cause').press('Enter');
+      await change
+        .getByText(/\d+ %, (all but certain|likely)/)
+        .first()
+        .waitFor();
+      const show = change.getByRole('button', { name: /^Curve before and after/ });
+      assert.equal(await show.getAttribute('aria-expanded'), 'false');
+      await show.press('Enter');
+      const picture = changes.getByTestId('compared-chart');
+      await picture.locator('svg [aria-label="line"] path').nth(1).waitFor();
+      assert.equal(await picture.locator('svg [aria-label="area"] path').count(), 2);
+      assert.match(
+        await picture.getByRole('img').getAttribute('aria-label'),
+        /part most, by \d+\.\d°, on \d{3}°/,
+      );
+      await changes.getByText('The curves as a table').press('Enter');
+      const rows = changes.getByRole('table').getByRole('row');
+      assert.equal(await rows.count(), 13);
+      assert.match(await rows.nth(4).innerText(), /090°\s+\d+\.\d° [EW]\s+± \d/);
+      await fitsItsWidth(page);
+      await shoot('changes', {}, changes);
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('changes-phone', {}, changes);
+      await page.emulateMedia({ colorScheme: 'dark' });
+      await shoot('changes-phone-dark', {}, changes);
+      await changes.getByRole('button', { name: 'Hide the curve' }).click();
+      await picture.waitFor({ state: 'detached' });
+    },
+  },
+
+  'a ship to whom nothing happened says since when': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const { id: other } = await struck(page);
+      const listed = await (await page.request.get('/api/v1/vessels')).json();
+      const calm = listed.items.find((vessel) => vessel.model && vessel.id !== other);
+      await page.goto(`/vessels/${calm.id}`);
+      const changes = page.getByRole('region', { name: 'What changed' });
+      await changes.getByText(/^No change found since \d{1,2} [A-Z][a-z]{2} 20\d\d/).waitFor();
+      await shoot('changes-none', {}, changes);
+    },
+  },
+
+  'a phone shows the alerts, by night too': {
+    viewport: phone,
+    colorScheme: 'dark',
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await withModel(page);
+      await limit(page, vessel.id, { deviation_deg: 1.5 });
+      await page.getByTestId('alert-badge').waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessels-alerts-phone', { fullPage: true });
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      await page.getByRole('article').first().waitFor();
+      await fitsItsWidth(page);
+      await shoot('alerts-phone', { fullPage: true });
+      // The other ship's deviation is over the limit since lightning struck her.
+      const listed = await (await page.request.get('/api/v1/vessels')).json();
+      for (const { id } of listed.items) await limit(page, id, { deviation_deg: 45 });
+      await page.getByTestId('no-alerts').waitFor();
+      await shoot('no-alerts-phone', { fullPage: true });
+    },
+  },
+};

@@ -1,0 +1,78 @@
+/** Coming in, going out, and what lies between. */
+import assert from 'node:assert/strict';
+import { notSignedIn, signIn, openVessel } from '../helpers.mjs';
+
+export const session = {
+  'a wrong password is refused in words': {
+    allowedErrors: [notSignedIn, /status of 401 .*\/api\/v1\/session\b/],
+    async run({ page, settings, shoot }) {
+      await page.goto('/');
+      await page.getByLabel('E-mail').fill(settings.email);
+      await page.getByLabel('Password').fill(`${settings.password}-not`);
+      await page.getByRole('button', { name: 'Sign in' }).click();
+      await page.getByRole('alert').filter({ hasText: 'E-mail or password is wrong' }).waitFor();
+      assert.equal(await page.getByLabel('Password').inputValue(), '');
+      await shoot('wrong-password');
+    },
+  },
+
+  'the keyboard alone reaches a vessel, and back': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await page.goto('/');
+      await page.getByLabel('E-mail').focus();
+      await page.keyboard.type(settings.email);
+      await page.keyboard.press('Tab');
+      await page.keyboard.type(settings.password);
+      await page.keyboard.press('Enter');
+      await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+      const link = page.getByRole('row').getByRole('link').first();
+      await link.waitFor();
+      for (let presses = 0; presses < 30; presses++) {
+        if (await link.evaluate((element) => element === document.activeElement)) break;
+        await page.keyboard.press('Tab');
+      }
+      await page.keyboard.press('Enter');
+      await page.waitForURL(/\/vessels\//);
+      await page.goBack();
+      await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+    },
+  },
+
+  'an address of nobody shows nothing': {
+    allowedErrors: [notSignedIn, /status of 404 .*\/api\/v1\/vessels\//],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.goto('/vessels/01900000-0000-7000-8000-000000000000');
+      await page.getByRole('heading', { name: 'Nothing here' }).waitFor();
+    },
+  },
+
+  'losing the server is said, and its return is noticed': {
+    allowedErrors: [notSignedIn, /ERR_INTERNET_DISCONNECTED/],
+    async run({ page, context, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      await context.setOffline(true);
+      await page.getByRole('button', { name: 'Choose another place' }).click();
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByText('The server cannot be reached', { exact: false }).waitFor();
+      await context.setOffline(false);
+      await page.getByRole('button', { name: 'Try again' }).click();
+      await page
+        .getByText('The server cannot be reached', { exact: false })
+        .waitFor({ state: 'detached' });
+    },
+  },
+
+  'signing out ends the session': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.getByRole('button', { name: 'Sign out' }).click();
+      await page.getByRole('button', { name: 'Sign in' }).waitFor();
+      await page.goto('/');
+      await page.getByRole('button', { name: 'Sign in' }).waitFor();
+    },
+  },
+};

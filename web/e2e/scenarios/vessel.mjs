@@ -1,0 +1,215 @@
+/** A vessel: her curve, her cargo, her agents. */
+import assert from 'node:assert/strict';
+import { phone, notSignedIn, signIn, openVessel, chart, curve, fitsItsWidth } from '../helpers.mjs';
+
+export const vessel = {
+  'an officer signs in, opens a vessel and sees the curve with its samples': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page
+        .getByRole('banner')
+        .getByText(/^Live$/)
+        .waitFor();
+      await shoot('vessels');
+      await openVessel(page);
+
+      const path = await curve(page).getAttribute('d');
+      assert.ok(path.length > 500, 'the curve has points all round');
+      assert.ok(!/NaN/.test(path), 'the curve has no hole');
+      await chart(page).locator('svg [aria-label="area"] path').first().waitFor();
+      const samples = chart(page).locator('svg [aria-label="dot"] circle');
+      await samples.nth(20).waitFor();
+      assert.match(
+        await chart(page).getByRole('img').getAttribute('aria-label'),
+        /° [EW] on \d{3}°/,
+      );
+      assert.match(await page.getByTestId('worst').innerText(), /^\d+\.\d° [EW]$|^0\.0°$/);
+
+      const rows = page.getByTestId('deviation-table').locator('tbody tr');
+      assert.equal(await rows.count(), 24);
+      for (const [index, start] of [
+        [0, '000°'],
+        [12, '180°'],
+        [23, '345°'],
+      ]) {
+        const row = await rows.nth(index).innerText();
+        assert.ok(row.startsWith(start), `row ${index} is ${row}`);
+        assert.match(row, /\d+\.\d°( [EW])?\s+± \d+\.\d°\s+\d{3}\.\d°/);
+      }
+
+      await page.getByTestId('residual-chart').locator('svg circle').first().waitFor();
+      await page.getByTestId('coverage-table').waitFor();
+      const advice = await page.getByTestId('sail-next').innerText();
+      assert.match(advice, /(would narrow the band|narrows the band by more than) .*\d\.\d/);
+      const trust = page.getByRole('region', { name: 'How far to trust the curve' });
+      const trusted = await trust.innerText();
+      assert.match(trusted, /In these waters\s+±\s\d+\.\d°\s+(at worst, on \d{3}°|on every)/);
+      assert.match(trusted, /In other waters, up to\s+±\s\d+\.\d°/);
+      assert.match(trusted, /samples, worth \d+ with independent errors/);
+      assert.match(trusted, /Gyro and satellite compass\s+\d\.\d° apart|Only one/);
+      assert.equal(
+        await trust
+          .getByRole('row')
+          .filter({ hasText: /\bhere\b/ })
+          .count(),
+        1,
+      );
+      await shoot('trust', {}, trust);
+      const magnetism = page.getByRole('region', { name: 'The ship’s magnetism' });
+      const parameters = magnetism.getByRole('row');
+      assert.equal(await parameters.count(), 9);
+      assert.match(
+        await parameters.nth(1).innerText(),
+        /Permanent fore-and-aft magnetism[^]*± \d+\.\d\d\sµT[^]*(her own|ships at large)/,
+      );
+      await magnetism.getByText('What some are known for only together').press('Enter');
+      await magnetism.getByText('Headings cannot tell the constant from A').waitFor();
+      await shoot('parameters', {}, magnetism);
+      await page.getByRole('heading', { name: 'Coefficients' }).waitFor();
+      await page.getByText('accepted', { exact: true }).first().waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessel', { fullPage: true });
+    },
+  },
+
+  'the deviation is shown for another place': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      const before = await curve(page).getAttribute('d');
+      await page.getByRole('button', { name: 'Choose another place' }).click();
+      await page.getByLabel('Latitude').fill('95 N');
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByRole('alert').filter({ hasText: 'Latitude' }).waitFor();
+      await page.getByLabel('Latitude').fill('62 30.5 N');
+      await page.getByLabel('Longitude').fill('005 12 E');
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByText('At 62° 30.5′ N, 005° 12.0′ E', { exact: false }).first().waitFor();
+      assert.notEqual(await curve(page).getAttribute('d'), before);
+      const trust = page.getByTestId('trust');
+      await trust.getByText('At the place chosen').waitFor();
+      // North of where ships usually sail: no row of the table is hers.
+      assert.equal(
+        await trust
+          .getByRole('row')
+          .filter({ hasText: /\bhere\b/ })
+          .count(),
+        0,
+      );
+    },
+  },
+
+  'cargo is reported, discharged and withdrawn': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      const logbook = page.getByRole('region', { name: 'Logbook' });
+      await logbook.getByText('Nothing has been reported yet').waitFor();
+      await shoot('logbook-empty', {}, logbook);
+
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('combobox', { name: /^What/ }).selectOption({ label: 'Lightning' });
+      assert.equal(await logbook.getByLabel('Hatch').count(), 0);
+      await logbook
+        .getByRole('combobox', { name: /^What/ })
+        .selectOption({ label: 'Magnetic cargo' });
+      await logbook.getByLabel('Loaded').fill('2026-05-09T06:00');
+      await logbook.getByLabel('Discharged').fill('2026-05-08T06:00');
+      await logbook.getByRole('combobox', { name: /^Cargo/ }).selectOption({ label: 'Scrap' });
+      await logbook.getByLabel('Hatch').fill('2');
+      await logbook.getByRole('textbox', { name: /^Port/ }).fill('Bilbao');
+      await logbook.getByLabel('Remarks').fill('Shredded, some 4000 t');
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('alert').filter({ hasText: 'before it begins' }).waitFor();
+      await shoot('logbook-form', {}, logbook);
+      await logbook.getByLabel('Discharged').fill('');
+      await logbook.getByLabel('Remarks').press('Tab');
+      await page.keyboard.press('Enter');
+      await logbook.getByText('since 9 May 2026, 06:00 UTC').first().waitFor();
+      await logbook.getByText('Scrap, hatch 2, Bilbao').waitFor();
+
+      await logbook.getByRole('button', { name: /^Discharged/ }).click();
+      await logbook.getByLabel('Discharged').fill('2026-05-09T09:00');
+      await logbook.getByRole('button', { name: 'Save' }).click();
+      await logbook.getByText('9 May 2026, 06:00 – 09:00 UTC').first().waitFor();
+
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('combobox', { name: /^What/ }).selectOption({ label: 'Lightning' });
+      await logbook.getByLabel(/^When /).fill('2026-05-10T03:12');
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('listitem').nth(1).waitFor();
+      await logbook.getByRole('button', { name: /^Withdraw: Lightning/ }).click();
+      await shoot('logbook-withdraw', {}, logbook);
+      await logbook.getByRole('button', { name: 'Keep it' }).click();
+      await logbook.getByRole('button', { name: /^Withdraw: Lightning/ }).click();
+      await logbook.getByLabel('Why').fill('It was another ship');
+      await logbook.getByRole('button', { name: 'Withdraw the entry' }).click();
+      await logbook.locator('s', { hasText: 'Lightning' }).waitFor();
+      await logbook.getByText(/Withdrawn by Test Officer/).waitFor();
+      await fitsItsWidth(page);
+      await shoot('logbook', {}, logbook);
+    },
+  },
+
+  'an administrator makes an enrolment code': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      await page.getByRole('button', { name: 'Make a code' }).click();
+      const code = await page.getByTestId('enrolment-code').innerText();
+      assert.ok(code.length >= 8, 'the code is shown');
+      await page.getByText(`--code ${code}`).waitFor();
+    },
+  },
+
+  'a new vessel says what is missing before there is a model': {
+    allowedErrors: [
+      notSignedIn,
+      /status of 404 .*\/(model|deviation)\b/,
+      /status of 422 .*\/vessels\b/,
+    ],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('button', { name: 'Add a vessel' }).click();
+      await page.getByLabel('Name').fill('Browser Test');
+      await page.getByLabel('IMO number').fill('1234568');
+      await page.getByRole('button', { name: 'Add vessel' }).click();
+      await page.getByRole('alert').filter({ hasText: '1234568' }).waitFor();
+      await page.getByLabel('IMO number').fill('');
+      await page.getByRole('button', { name: 'Add vessel' }).click();
+      await page.getByRole('link', { name: 'Browser Test' }).first().click();
+      await page.getByTestId('no-model').getByText('No model yet').waitFor();
+      await page.getByTestId('no-model').getByText('No sample has been analysed yet').waitFor();
+      await page.getByText('No samples yet.').waitFor();
+      await page.getByText('No agent has been enrolled').waitFor();
+      await fitsItsWidth(page);
+      await shoot('new-vessel', { fullPage: true });
+    },
+  },
+
+  'a phone shows the same, by night too': {
+    viewport: phone,
+    colorScheme: 'dark',
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await fitsItsWidth(page);
+      await shoot('vessels-phone', { fullPage: true });
+      await openVessel(page);
+      await chart(page).locator('svg [aria-label="dot"] circle').first().waitFor();
+      await page.getByTestId('coverage-table').waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessel-phone', { fullPage: true });
+      await shoot('trust-phone', {}, page.locator('#trust'));
+      await shoot('parameters-phone', {}, page.locator('#parameters'));
+      const logbook = page.getByRole('region', { name: 'Logbook' });
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await fitsItsWidth(page);
+      await shoot('logbook-phone', {}, logbook);
+    },
+  },
+};
