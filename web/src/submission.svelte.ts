@@ -1,0 +1,40 @@
+/** What a form sends: what became of it, and that a repetition is known for one. */
+import { newKey } from './api/client';
+
+export class Submission {
+  /** Why it did not succeed, in words; empty while nothing is wrong. */
+  failure = $state('');
+  /** Whether it is on its way. */
+  busy = $state(false);
+  #key = newKey();
+  #sent = '';
+
+  /** Says what is wrong before anything is sent; true if nothing is. */
+  holds(failure: string | undefined): boolean {
+    this.failure = failure ?? '';
+    return this.failure === '';
+  }
+
+  /**
+   * Sends `content`, with the same key again as long as it is the same content, so
+   * that a server which has it does not take it twice. Nothing if it failed.
+   */
+  async send<C, T>(
+    content: C,
+    by: (content: C, key: string) => Promise<T>,
+  ): Promise<T | undefined> {
+    const written = JSON.stringify(content);
+    if (written !== this.#sent) this.#key = newKey();
+    this.#sent = written;
+    this.busy = true;
+    this.failure = '';
+    try {
+      return await by(content, this.#key);
+    } catch (error) {
+      this.failure = error instanceof Error ? error.message : String(error);
+      return undefined;
+    } finally {
+      this.busy = false;
+    }
+  }
+}
