@@ -177,3 +177,64 @@ impl Spoilt {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_magnetics::analyse::{AnalysisSettings, analyse};
+    use binnacle_magnetics::model::Parameters;
+    use binnacle_magnetics::sample::Sample;
+
+    /// Of a ship on the meridian of Greenwich.
+    fn sample(time: &str, lat: f64) -> Sample {
+        serde_json::from_value(serde_json::json!({
+            "time": time, "lat": lat, "lon": 0.0, "compass_deg": 10.0, "gyro_deg": 12.0,
+            "satellite_deg": null, "sog_kn": 12.0, "rate_of_turn_deg_min": 0.0,
+            "spread_deg": 0.3, "windows": 60,
+        }))
+        .unwrap()
+    }
+
+    fn with_bx(bx_nt: f64) -> Model {
+        Model {
+            parameters_over_lambda: Parameters {
+                bx_nt,
+                ..Parameters::from_array([0.0; 7])
+            },
+            constant_deg: 0.0,
+            covariance: None,
+            identifiable: None,
+            rms_deg: None,
+            samples_used: 0,
+            samples_rejected: 0,
+            quality: None,
+        }
+    }
+
+    #[test]
+    fn the_waters_ahead_are_those_of_sixty_days_a_day_apart() {
+        let samples = [
+            sample("2026-06-01T00:00:00Z", 70.0),
+            sample("2026-09-20T00:00:00Z", 57.0),
+            sample("2026-09-20T05:00:00Z", 56.0),
+            sample("2026-10-20T00:00:00Z", 0.0),
+        ];
+        let analysis = analyse(&samples, &[], &AnalysisSettings::default());
+        let there: Vec<EarthField> = waters_ahead(&analysis).collect();
+        let met = |k: usize| analysis.samples[k].h_nt;
+        let h_nt: Vec<Option<f64>> = there.iter().map(|earth| Some(earth.h_nt)).collect();
+        assert_eq!(h_nt, [met(1), met(3)]);
+    }
+
+    #[test]
+    fn models_part_by_the_step_over_the_horizontal_field() {
+        let parted = |h_nt| {
+            let earth = EarthField { h_nt, z_nt: 0.0 };
+            parted_deg(&with_bx(0.0), &with_bx(2000.0), earth).unwrap()
+        };
+        let expected = |h_nt: f64| (2000.0 / h_nt).asin().to_degrees();
+        for h_nt in [12_000.0, 30_000.0] {
+            assert!((parted(h_nt) - expected(h_nt)).abs() < 0.02, "{h_nt}");
+        }
+    }
+}
