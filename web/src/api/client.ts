@@ -155,6 +155,9 @@ export const withdrawEntry = (id: string, entry: string, reason: string) =>
     }),
   );
 
+export const revokeAgent = (id: string, agent: string) =>
+  answer(client.DELETE('/api/v1/vessels/{id}/agents/{agent}', { params: { path: { id, agent } } }));
+
 export const createEnrolmentCode = (id: string, compass_id: string) =>
   answer(
     client.POST('/api/v1/vessels/{id}/agents', {

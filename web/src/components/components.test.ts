@@ -318,6 +318,8 @@ describe('what to sail next', () => {
 
 describe('the installations', () => {
   const agent: AgentStream = {
+    agent_id: '0190a000-0000-7000-8000-000000000800',
+    revoked_at: null,
     stream: '0190a000-0000-7000-8000-000000000900',
     compass_id: 'c',
     compass_name: 'Standard compass',
@@ -329,6 +331,19 @@ describe('the installations', () => {
     samples: 12_000,
     tally: { turning: 25, accepted: 70, moonlight_too_bright: 5 },
   };
+
+  test('are revoked by whom may, one by one, and say so', () => {
+    const revoked = { ...agent, agent_id: 'r', stream: 'r', revoked_at: '2026-09-02T10:00:00Z' };
+    const earlier = { ...agent, stream: 'earlier' };
+    const props = { agents: [agent, earlier, revoked] };
+    const buttons = (shown: string) => shown.match(/Revoke…/g)?.length ?? 0;
+    expect(buttons(words(render(AgentPanel, { props })))).toBe(0);
+    const shown = words(
+      render(AgentPanel, { props: { ...props, revoke: () => Promise.resolve() } }),
+    );
+    expect(buttons(shown)).toBe(1);
+    expect(shown).toMatch(/Revoked 2 Sep 2026, 10:00 UTC: this agent may not send/);
+  });
 
   test('count windows by reason, accepted first, and name reasons that are new', () => {
     const shown = words(render(AgentPanel, { props: { agents: [agent] } }));

@@ -75,6 +75,12 @@ export const vessels = {
     samples: 'Samples',
     waiting: 'waiting for the first batch',
     gap: 'A batch before the latest is missing; the agent sends it again.',
+    revoked: (when: string) =>
+      `Revoked ${when}: this agent may not send until it is enrolled again.`,
+    revoke: 'Revoke…',
+    revokeQuestion:
+      'It may send nothing more until it is enrolled again with a new code. It goes on sampling, and what it has sent stays.',
+    revokeConfirm: 'Revoke the agent',
     tally: 'What became of the ten-second windows',
     tallyNone: 'No windows reported yet.',
     windows: 'Windows',
