@@ -335,7 +335,7 @@ describe('the installations', () => {
   test('are revoked by whom may, one by one, and say so', () => {
     const revoked = { ...agent, agent_id: 'r', stream: 'r', revoked_at: '2026-09-02T10:00:00Z' };
     const earlier = { ...agent, stream: 'earlier' };
-    const props = { agents: [agent, earlier, revoked] };
+    const props = { agents: [earlier, agent, revoked] };
     const buttons = (shown: string) => shown.match(/Revoke…/g)?.length ?? 0;
     expect(buttons(words(render(AgentPanel, { props })))).toBe(0);
     const shown = words(
