@@ -195,3 +195,20 @@ async fn what_is_too_large_for_any_messages_waits_and_keeps_nothing_back() {
     assert_eq!(seqs(&out(directory.path())), [2]);
     assert_eq!(spool.standing().await.unwrap().waiting_batches, 2);
 }
+
+#[cfg(unix)]
+#[tokio::test]
+async fn no_link_in_the_folder_leads_a_message_out_of_it() {
+    let (directory, spool, mut modem) = rig().await;
+    let elsewhere = directory.path().join("elsewhere");
+    std::fs::write(&elsewhere, "mine").unwrap();
+    let out = directory.path().join("modem").join("out");
+    for name in ["partial", "next", "00000001.sbd"] {
+        std::os::unix::fs::symlink(&elsewhere, out.join(name)).unwrap();
+    }
+    seal(&spool, 0..1).await;
+    modem.send(b"a message").await.unwrap();
+    assert_eq!(std::fs::read(&elsewhere).unwrap(), b"mine");
+    let sent = std::fs::read(out.join("00000002.sbd"));
+    assert_eq!(sent.unwrap(), b"a message");
+}

@@ -1,7 +1,8 @@
 //! Batches: each stored once, none lost, none bent.
 
 use crate::on_both;
-use crate::support::{Shore, frame, passage};
+use crate::support::{Engine, Shore, frame, passage};
+use binnacle_server::db::Db;
 use binnacle_wire::batch::StreamId;
 use serde_json::json;
 use uuid::Uuid;
@@ -177,5 +178,29 @@ async fn batches_of_one_stream_at_once_are_all_stored(shore: Shore) {
     let streams = ada.get(&nao.path("/agents")).await.good();
     assert_eq!(streams["items"][0]["batches"], 20);
     assert_eq!(streams["items"][0]["tally"], json!({ "accepted": 2400 }));
+    shore.finish().await;
+}
+
+/// SQLite rolls a transaction back itself when the disk is full.
+#[tokio::test]
+async fn a_disk_that_was_full_takes_batches_again() {
+    let shore = Shore::start(Engine::Sqlite).await;
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let Db::Sqlite { writer, .. } = &shore.app.db else {
+        unreachable!("it was started on SQLite");
+    };
+    // Not below what it has.
+    let limit = sqlx::query("PRAGMA max_page_count = 1");
+    limit.execute(writer).await.unwrap();
+    let mut seq = 1;
+    while nao.put(seq, &passage(DAY, 500)).await.status == 200 {
+        seq += 1;
+        assert!(seq < 100, "it never gets full");
+    }
+    let limit = sqlx::query("PRAGMA max_page_count = 1000000");
+    limit.execute(writer).await.unwrap();
+    let answer = nao.put(seq, &passage(DAY, 500)).await.good();
+    assert_eq!(answer["contiguous_seq"], seq);
     shore.finish().await;
 }
