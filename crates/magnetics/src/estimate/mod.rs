@@ -43,7 +43,7 @@ pub(crate) use noise::{
 pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
 pub(crate) use row::{
-    CONSTANT, OFFSET_SD_DEG, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,
+    CONSTANT, OFFSET_SD_DEG, Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,
 };
 pub(crate) use solve::{Options, Rough, estimate, rough};
 pub(crate) use whiten::{loss_of, weight};

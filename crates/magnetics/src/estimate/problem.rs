@@ -9,7 +9,7 @@ use super::noise::NoiseLevels;
 use super::prior::{Prior, scales, tail};
 use super::products::Products;
 use super::quality::widely;
-use super::row::{CONSTANT, Row, Station, UNKNOWNS, Unknowns, row, stations};
+use super::row::{CONSTANT, Point, Row, Station, UNKNOWNS, Unknowns, row, stations};
 use super::untimed::{all_timed, cell_of, design_effect};
 use super::whiten::{Drift, Part, Pass, Whitening, whiten};
 use crate::fit::Observation;
@@ -170,6 +170,7 @@ impl<'a> Problem<'a> {
             let mut whitening = Whitening::new(levels);
             let mut independent = Products::new();
             let mut block = None;
+            let point = Point::at(&solution.unknowns, solution.fusion);
             for (o, station) in self.observations.iter().zip(&self.stations) {
                 let number = block_of(o);
                 if block != Some(number) {
@@ -181,7 +182,7 @@ impl<'a> Problem<'a> {
                 if let Some(size) = sizes.last_mut() {
                     *size += 1.0;
                 }
-                let row = row(o, station, &solution.unknowns, solution.fusion);
+                let row = row(o, station, &point);
                 let weight = whitening.take(station, &row);
                 independent.add(&row.columns, weight);
                 weights.push(weight);
@@ -205,10 +206,11 @@ impl<'a> Problem<'a> {
     }
 
     fn rows(&self, solution: &Solution) -> Vec<Row> {
+        let point = Point::at(&solution.unknowns, solution.fusion);
         self.observations
             .iter()
             .zip(&self.stations)
-            .map(|(o, s)| row(o, s, &solution.unknowns, solution.fusion))
+            .map(|(o, s)| row(o, s, &point))
             .collect()
     }
 

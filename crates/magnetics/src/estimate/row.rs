@@ -195,6 +195,30 @@ fn magnetic_by_reference(o: &Observation) -> Direction {
     Direction::of(degrees.to_radians())
 }
 
+/// What rows are taken at, with what all of them have need of.
+pub(crate) struct Point {
+    unknowns: Unknowns,
+    parameters: Parameters,
+    constant_deg: f64,
+    /// From a reference's heading to the needle's.
+    to_needle: Direction,
+    /// The reference's share in a row's heading.
+    fusion: f64,
+}
+
+impl Point {
+    pub(crate) fn at(unknowns: &Unknowns, fusion: f64) -> Point {
+        let (parameters, constant_deg) = in_own_units(unknowns);
+        Point {
+            unknowns: *unknowns,
+            parameters: Parameters::from_array(parameters),
+            constant_deg,
+            to_needle: Direction::of(-constant_deg.to_radians()),
+            fusion,
+        }
+    }
+}
+
 /// What is predicted on the magnetic heading that compass and reference agree on.
 struct Predicted {
     /// That heading from the reference's.
@@ -205,20 +229,20 @@ struct Predicted {
 }
 
 /// `reference` is the magnetic heading that it says.
-fn predict(o: &Observation, reference: Direction, unknowns: &Unknowns, fusion: f64) -> Predicted {
-    let (parameters, constant) = in_own_units(unknowns);
-    let p = Parameters::from_array(parameters);
+fn predict(o: &Observation, reference: Direction, point: &Point) -> Predicted {
+    let p = &point.parameters;
     let earth = EarthField {
         h_nt: o.h_nt,
         z_nt: o.z_nt,
     };
-    let deviation_of = |needle: &Needle| near(needle.deviation_rad().to_degrees() + constant);
-    let needles = reference.turned(Direction::of(-constant.to_radians()));
-    let by_reference = deviation_of(&Needle::at(&p, needles, earth));
+    let deviation_of =
+        |needle: &Needle| near(needle.deviation_rad().to_degrees() + point.constant_deg);
+    let needles = reference.turned(point.to_needle);
+    let by_reference = deviation_of(&Needle::at(p, needles, earth));
     let disagreement =
         near(o.deviation.degrees_east() - by_reference).clamp(-FUSION_LIMIT_DEG, FUSION_LIMIT_DEG);
-    let from_reference = Direction::of_small(-((1.0 - fusion) * disagreement).to_radians());
-    let needle = Needle::at(&p, needles.turned(from_reference), earth);
+    let from_reference = Direction::of_small(-((1.0 - point.fusion) * disagreement).to_radians());
+    let needle = Needle::at(p, needles.turned(from_reference), earth);
     Predicted {
         from_reference,
         deviation_deg: deviation_of(&needle),
@@ -235,13 +259,16 @@ fn near(degrees: f64) -> f64 {
     }
 }
 
-/// The row of `o` at `unknowns`; `fusion` is the reference's share in its heading.
-pub(crate) fn row(o: &Observation, station: &Station, unknowns: &Unknowns, fusion: f64) -> Row {
+/// The row of `o` at a point.
+pub(crate) fn row(o: &Observation, station: &Station, point: &Point) -> Row {
+    let Point {
+        unknowns, fusion, ..
+    } = point;
     let Predicted {
         from_reference,
         deviation_deg,
         needle,
-    } = predict(o, station.magnetic, unknowns, fusion);
+    } = predict(o, station.magnetic, point);
     let gradient = needle.gradient();
     let scale = scales();
     // The heading of the row moves with the parameters too.
@@ -287,7 +314,7 @@ pub(crate) fn plain_residual(o: &Observation, unknowns: &Unknowns) -> f64 {
         .map(|deviation| deviation.to_degrees() + constant);
     let predicted = by_compass.unwrap_or_else(|| {
         let reference = magnetic_by_reference(o);
-        predict(o, reference, unknowns, USUAL_FUSION).deviation_deg
+        predict(o, reference, &Point::at(unknowns, USUAL_FUSION)).deviation_deg
     });
     wrap_180(o.deviation.degrees_east() - predicted)
 }

@@ -276,7 +276,7 @@ impl<const N: usize> Sums<N> {
 mod tests {
     use super::*;
     use crate::angle::{CompassHeading, Deviation, Variation};
-    use crate::estimate::row::{row, stations};
+    use crate::estimate::row::{Point, row, stations};
     use crate::estimate::whiten::whiten;
     use crate::fit::Observation;
     use crate::time::Timestamp;
@@ -312,11 +312,11 @@ mod tests {
     fn the_slopes_are_those_of_the_loss() {
         let observations = observations();
         let stations = stations(&observations);
-        let at = [0.1; UNKNOWNS];
+        let at = Point::at(&[0.1; UNKNOWNS], 0.7);
         let rows: Vec<Row> = observations
             .iter()
             .zip(&stations)
-            .map(|(o, s)| row(o, s, &at, 0.7))
+            .map(|(o, s)| row(o, s, &at))
             .collect();
         let levels = NoiseLevels::TYPICAL;
         let all: Vec<usize> = (0..LEVELS).collect();

@@ -2,7 +2,7 @@
 //! for independent, their spread from the median of the residuals.
 
 use super::products::Products;
-use super::row::{Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row};
+use super::row::{Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row};
 use crate::fit::Observation;
 use nalgebra::{SMatrix, SVector};
 
@@ -33,11 +33,12 @@ pub(crate) fn start(
     let every = observations.len().div_ceil(ENOUGH).max(1);
     let stations: Vec<&Station> = stations.iter().step_by(every).collect();
     for _ in 0..ITERATIONS {
+        let point = Point::at(&unknowns, USUAL_FUSION);
         let rows: Vec<Row> = observations
             .iter()
             .step_by(every)
             .zip(&stations)
-            .map(|(o, s)| row(o, s, &unknowns, USUAL_FUSION))
+            .map(|(o, s)| row(o, s, &point))
             .collect();
         sd = robust_sd(rows.iter().map(|r| r.residual));
         let mut information = Products::new();

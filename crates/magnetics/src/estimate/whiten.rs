@@ -137,11 +137,13 @@ impl Filter {
     /// Takes a scalar in.
     fn update(&mut self, scalar: &Scalar) -> Whitened {
         let mut innovations = scalar.series;
-        let mut gain = [0.0; STATES];
         for (s, load) in loaded(&scalar.load) {
             for (value, state) in innovations.iter_mut().zip(&self.series[s]) {
                 *value -= load * state;
             }
+        }
+        let mut gain = [0.0; STATES];
+        for (s, load) in loaded(&scalar.load) {
             for (sum, covariance) in gain.iter_mut().zip(&self.covariance[s]) {
                 *sum += load * covariance;
             }

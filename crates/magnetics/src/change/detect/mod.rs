@@ -18,7 +18,7 @@ pub(crate) use port::at_port;
 use super::bank::{Bank, Earlier, Kind, Lead};
 use super::calls::Calls;
 use super::filter::{Filter, Measurement, Noise, measurement};
-use crate::estimate::{NoiseLevels, Prior, Station, USUAL_FUSION, Unknowns, row, stations};
+use crate::estimate::{NoiseLevels, Point, Prior, Station, USUAL_FUSION, Unknowns, row, stations};
 use crate::fit::Observation;
 use crate::time::Timestamp;
 use learn::{Learnt, next_lesson};
@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
 
     fn measure(&self, k: usize, at: &Unknowns) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
-        let row = row(o, station, at, USUAL_FUSION);
+        let row = row(o, station, &Point::at(at, USUAL_FUSION));
         measurement(station, &row, at, self.seconds(k), &self.noise)
     }
 
