@@ -80,11 +80,12 @@ const RIVALS: [Kind; 4] = [Kind::Reference, Kind::Burst, Kind::Return, Kind::Ove
 pub(super) struct Spawn {
     /// The first row after it.
     pub(super) at: usize,
-    /// The filter then.
-    pub(super) origin: Filter,
+    /// The filter then; boxed, as spawns move up whenever one is given up.
+    origin: Box<Filter>,
     /// The first row of the burst that may be over.
     pub(super) astray_from: Option<usize>,
-    copies: [Option<Filter>; KINDS.len()],
+    /// Boxed, as most are none.
+    copies: [Option<Box<Filter>>; KINDS.len()],
     age_s: f64,
     /// Whether the reference's copy is to be upset by the next reading.
     is_fresh: bool,
@@ -112,8 +113,8 @@ impl Spawn {
     fn wake(&mut self, earlier: Option<Earlier<'_>>) {
         let now = &self.origin;
         self.copies[Kind::Reference as usize] = Some(now.clone());
-        self.copies[Kind::Burst as usize] = Some(upset(now, Kind::Burst));
-        self.copies[Kind::Return as usize] = earlier.map(|earlier| earlier.again(now));
+        self.copies[Kind::Burst as usize] = Some(Box::new(upset(now, Kind::Burst)));
+        self.copies[Kind::Return as usize] = earlier.map(|earlier| Box::new(earlier.again(now)));
         self.is_fresh = true;
     }
 
@@ -124,7 +125,7 @@ impl Spawn {
             && std::mem::take(&mut self.is_fresh)
             && let Some(copy) = &mut self.copies[Kind::Reference as usize]
         {
-            *copy = misled(copy, m);
+            **copy = misled(copy, m);
         }
         for &kind in kinds {
             let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
@@ -134,8 +135,12 @@ impl Spawn {
         }
     }
 
+    pub(super) fn origin(&self) -> &Filter {
+        &self.origin
+    }
+
     pub(super) fn copy(&self, kind: Kind) -> Option<&Filter> {
-        self.copies[kind as usize].as_ref()
+        self.copies[kind as usize].as_deref()
     }
 }
 
@@ -149,8 +154,8 @@ pub(super) struct Lead {
 
 #[derive(Default)]
 pub(super) struct Bank {
-    /// From the oldest to the latest; boxed, as they move up whenever one is given up.
-    pub(super) spawns: Vec<Box<Spawn>>,
+    /// From the oldest to the latest.
+    pub(super) spawns: Vec<Spawn>,
     /// The last measurements, the latest last, and its row.
     memory: VecDeque<Measurement>,
     latest: usize,
@@ -173,21 +178,21 @@ impl Bank {
         let mut spawn = Spawn {
             at,
             astray_from: None,
-            origin: now.clone(),
+            origin: Box::new(now.clone()),
             copies: [const { None }; KINDS.len()],
             age_s: 0.0,
             is_fresh: false,
         };
-        spawn.copies[Kind::Step as usize] = Some(upset(now, Kind::Step));
+        spawn.copies[Kind::Step as usize] = Some(Box::new(upset(now, Kind::Step)));
         if self.are_rivals_awake {
             spawn.wake(earlier);
             let astray = self.lead(Kind::Burst, now).filter(|lead| lead.nats > WORTH);
             if let Some(astray) = astray.map(|lead| &self.spawns[lead.spawn]) {
                 spawn.astray_from = Some(astray.at);
-                spawn.copies[Kind::Over as usize] = astray.copy(Kind::Burst).cloned();
+                spawn.copies[Kind::Over as usize] = astray.copy(Kind::Burst).cloned().map(Box::new);
             }
         }
-        self.spawns.push(Box::new(spawn));
+        self.spawns.push(spawn);
     }
 
     /// Takes in the measurement of row `at`; `null` has taken it in before, and it
@@ -252,6 +257,10 @@ impl Bank {
 
     /// The likeliest copy of a kind.
     pub(super) fn lead(&self, kind: Kind, null: &Filter) -> Option<Lead> {
+        // Asleep there are none.
+        if kind != Kind::Step && !self.are_rivals_awake {
+            return None;
+        }
         let copies = self.spawns.iter().enumerate();
         copies
             .filter_map(|(spawn, s)| {
@@ -300,13 +309,13 @@ pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
     let p = &mut copy.covariance;
     match kind {
         Kind::Step => {
-            for (j, row) in p.iter_mut().enumerate().take(PARAMETERS) {
+            for j in 0..PARAMETERS {
                 let step = if matches!(j, 0 | 2) {
                     STEP
                 } else {
                     STEP_INDUCED
                 };
-                row[j] += step * step;
+                p.add(j, j, step * step);
             }
         }
         // It sets in as it goes on: within its memory, not at once.
@@ -334,9 +343,9 @@ pub(super) fn misled(now: &Filter, next: &Measurement) -> Filter {
         ),
         (OFFSET, size / OFFSET_SD_DEG),
     ];
-    for (i, a) in steps {
-        for (j, b) in steps {
-            copy.covariance[i][j] += a * b;
+    for (n, (i, a)) in steps.into_iter().enumerate() {
+        for (j, b) in &steps[..=n] {
+            copy.covariance.add(i, *j, a * b);
         }
     }
     copy
@@ -350,12 +359,11 @@ fn mended(now: &Filter, before: &Filter) -> Filter {
         copy.mean[i] = before.mean[i];
         for j in 0..STATES {
             let known = if lasting.contains(&j) {
-                before.covariance[i][j]
+                before.covariance.at(i, j)
             } else {
                 0.0
             };
-            copy.covariance[i][j] = known;
-            copy.covariance[j][i] = known;
+            copy.covariance.set(i, j, known);
         }
     }
     copy
@@ -369,16 +377,15 @@ pub(super) fn set_back(now: &Filter, base: &Filter) -> Filter {
         for j in 0..STATES {
             let of_the_ship = j < PARAMETERS;
             let known = if of_the_ship {
-                base.covariance[i][j]
+                base.covariance.at(i, j)
             } else {
                 0.0
             };
-            copy.covariance[i][j] = known;
-            copy.covariance[j][i] = known;
+            copy.covariance.set(i, j, known);
         }
     }
     for j in [0, 2] {
-        copy.covariance[j][j] += SLACK * SLACK;
+        copy.covariance.add(j, j, SLACK * SLACK);
     }
     copy
 }
@@ -392,19 +399,14 @@ mod tests {
     fn a_ship_set_back_is_known_as_she_was_and_no_worse() {
         let noise = Noise::new(&NoiseLevels::TYPICAL);
         let mut base = Filter::new(&Prior::population(0.5), &noise);
-        for (i, row) in base.covariance.iter_mut().enumerate() {
-            for (j, c) in row.iter_mut().enumerate() {
-                *c += 0.01 / (1.0 + i.abs_diff(j) as f64);
+        for i in 0..STATES {
+            for j in 0..=i {
+                base.covariance
+                    .add(i, j, 0.01 / (1.0 + i.abs_diff(j) as f64));
             }
         }
         let back = set_back(&upset(&base, Kind::Step), &base);
-        for i in 0..STATES {
-            for j in 0..STATES {
-                let (c, mirrored) = (back.covariance[i][j], back.covariance[j][i]);
-                assert!((c - mirrored).abs() < 1e-12, "{i}, {j}: {c} and {mirrored}");
-            }
-        }
-        assert!((back.covariance[1][3] - base.covariance[1][3]).abs() < 1e-12);
-        assert!(back.covariance[1][CONSTANT_STATE].abs() < 1e-12);
+        assert!((back.covariance.at(1, 3) - base.covariance.at(1, 3)).abs() < 1e-12);
+        assert!(back.covariance.at(1, CONSTANT_STATE).abs() < 1e-12);
     }
 }

@@ -1,9 +1,10 @@
 //! One Kalman filter over everything at once: the ship, her instruments' lasting
 //! errors and their passing ones.
 //!
-//! What always holds: the covariance stays symmetric, and two filters that have
-//! taken in the same measurements can be compared by their log likelihoods.
+//! What always holds: two filters that have taken in the same measurements can be
+//! compared by their log likelihoods.
 
+use super::symmetric::{Symmetric, WIDE, dot};
 use crate::estimate::{
     CONSTANT, NoiseLevels, POPULATION_SD, Prior, Station, Transition, UNKNOWNS, Unknowns, loss_of,
     weight,
@@ -86,7 +87,7 @@ pub(super) struct Burst {
 #[derive(Clone, Debug)]
 pub(super) struct Filter {
     pub(super) mean: [f64; STATES],
-    pub(super) covariance: [[f64; STATES]; STATES],
+    pub(super) covariance: Symmetric,
     pub(super) log_likelihood: f64,
 }
 
@@ -96,17 +97,18 @@ impl Filter {
         let mut scale = [1.0; PARAMETERS + 1];
         scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
         let mut mean = [0.0; STATES];
-        let mut covariance = [[0.0; STATES]; STATES];
+        let mut covariance = Symmetric::zeros();
         for i in 0..=PARAMETERS {
             mean[i] = prior.mean[i] / scale[i];
-            for j in 0..=PARAMETERS {
-                covariance[i][j] = prior.covariance[i][j] / (scale[i] * scale[j]);
+            for j in 0..=i {
+                covariance.set(i, j, prior.covariance[i][j] / (scale[i] * scale[j]));
             }
         }
-        covariance[SPEED][SPEED] = 1.0;
-        covariance[OFFSET][OFFSET] = 1.0;
+        for s in [SPEED, OFFSET] {
+            covariance.set(s, s, 1.0);
+        }
         for (s, variance) in noise.stationary.iter().enumerate() {
-            covariance[LASTING + s][LASTING + s] = *variance;
+            covariance.set(LASTING + s, LASTING + s, *variance);
         }
         Filter {
             mean,
@@ -127,7 +129,7 @@ impl Filter {
     pub(super) fn has_constant_of(&self, other: &Filter) -> bool {
         let k = CONSTANT_STATE;
         let apart = (self.mean[k] - other.mean[k]).abs();
-        let variance = self.covariance[k][k] + other.covariance[k][k];
+        let variance = self.covariance.at(k, k) + other.covariance.at(k, k);
         apart < 2.58 * variance.max(0.0).sqrt()
     }
 
@@ -148,12 +150,8 @@ impl Filter {
             load,
             variance,
         } = &m.deviation;
-        let (mut innovation, mut variance) = (*value, *variance);
-        for ((row, l), x) in self.covariance.iter().zip(load).zip(&self.mean) {
-            innovation -= l * x;
-            variance += l * row.iter().zip(load).map(|(c, l)| c * l).sum::<f64>();
-        }
-        innovation * innovation / variance
+        let innovation = value - dot(load, &self.mean);
+        innovation * innovation / (variance + dot(load, &self.covariance.times(load)))
     }
 
     /// Takes in what was measured; `burst` is what the variation does meanwhile, if
@@ -173,80 +171,62 @@ impl Filter {
             stationary[VARIATION - LASTING] = burst.variance;
         }
         let [[a, b], [c, d]] = t.schuler;
-        let turn = |row: &mut [f64; STATES]| {
-            (row[SWING], row[RATE]) = (
-                a * row[SWING] + b * row[RATE],
-                c * row[SWING] + d * row[RATE],
-            );
-            for (value, keep) in row[SLOW..].iter_mut().zip(decay) {
-                *value *= keep;
+        let turned = |swing: f64, rate: f64| (a * swing + b * rate, c * swing + d * rate);
+        (self.mean[SWING], self.mean[RATE]) = turned(self.mean[SWING], self.mean[RATE]);
+        for (value, keep) in self.mean[SLOW..].iter_mut().zip(decay) {
+            *value *= keep;
+        }
+        let p = &mut self.covariance;
+        for (panel, rows) in p.panels_mut().into_iter().enumerate() {
+            let [swings, rates, slow @ ..] = &mut rows[SWING - panel * WIDE..] else {
+                continue;
+            };
+            for (swing, rate) in swings.iter_mut().zip(rates) {
+                (*swing, *rate) = turned(*swing, *rate);
             }
-        };
-        turn(&mut self.mean);
-        for row in &mut self.covariance {
-            turn(row);
+            for (row, keep) in slow.iter_mut().zip(decay) {
+                *row = row.map(|value| value * keep);
+            }
         }
-        let [.., swings, rates, slow0, slow1, slow2, slow3] = &mut self.covariance;
-        for (swing, rate) in swings.iter_mut().zip(rates) {
-            (*swing, *rate) = (a * *swing + b * *rate, c * *swing + d * *rate);
-        }
-        for (row, keep) in [slow0, slow1, slow2, slow3].into_iter().zip(decay) {
-            for value in row {
+        // The same to the columns, which are all in the right panel.
+        let [_, right] = p.panels_mut();
+        for [_, _, swing, rate, slow @ ..] in right {
+            (*swing, *rate) = turned(*swing, *rate);
+            for (value, keep) in slow.iter_mut().zip(decay) {
                 *value *= keep;
             }
         }
         // What the stationary processes lost in the step comes in as new noise.
-        let p = &mut self.covariance;
         let swing = stationary[0];
-        let cross = -swing * (a * c + b * d);
-        p[SWING][SWING] += swing * (1.0 - a * a - b * b);
-        p[RATE][RATE] += swing * (1.0 - c * c - d * d);
-        p[SWING][RATE] += cross;
-        p[RATE][SWING] += cross;
+        p.add(SWING, SWING, swing * (1.0 - a * a - b * b));
+        p.add(RATE, RATE, swing * (1.0 - c * c - d * d));
+        p.add(RATE, SWING, -swing * (a * c + b * d));
         for (s, keep) in (SLOW..=SATELLITE).zip(decay) {
-            p[s][s] += stationary[s - LASTING] * (1.0 - keep * keep);
+            p.add(s, s, stationary[s - LASTING] * (1.0 - keep * keep));
         }
         for s in DRIFTING {
-            p[s][s] += noise.drift * t.drift_share;
+            p.add(s, s, noise.drift * t.drift_share);
         }
-        if let Some(kick) = t.since_turn {
-            for (i, a) in kick.iter().enumerate() {
-                for (j, b) in kick.iter().enumerate() {
-                    p[SWING + i][SWING + j] += noise.turn * a * b;
-                }
-            }
+        if let Some([swing, rate]) = t.since_turn {
+            p.add(SWING, SWING, noise.turn * swing * swing);
+            p.add(RATE, SWING, noise.turn * swing * rate);
+            p.add(RATE, RATE, noise.turn * rate * rate);
         }
     }
 
     fn update(&mut self, scalar: &Scalar) -> f64 {
         let load = &scalar.load;
-        let mut gain = [0.0; STATES];
-        for (row, l) in self.covariance.iter().zip(load) {
-            // A difference between references has no part in the ship.
-            if *l == 0.0 {
-                continue;
-            }
-            for (g, c) in gain.iter_mut().zip(row) {
-                *g += l * c;
-            }
-        }
-        let mut innovation = scalar.value;
-        let mut variance = scalar.variance;
-        for s in 0..STATES {
-            innovation -= load[s] * self.mean[s];
-            variance += load[s] * gain[s];
-        }
+        let gain = self.covariance.times(load);
+        let innovation = scalar.value - dot(load, &self.mean);
+        let variance = scalar.variance + dot(load, &gain);
         let z_squared = innovation * innovation / variance;
         let loss = loss_of(z_squared);
         self.log_likelihood -= 0.5 * (loss + variance.ln());
-        let raised = variance / weight(z_squared);
-        for s in 0..STATES {
-            let step = gain[s] / raised;
-            self.mean[s] += step * innovation;
-            for (c, other) in self.covariance[s].iter_mut().zip(&gain) {
-                *c -= step * other;
-            }
+        let per_raised = weight(z_squared) / variance;
+        for (mean, gain) in self.mean.iter_mut().zip(&gain) {
+            *mean += gain * (per_raised * innovation);
         }
+        self.covariance.take_off(&gain, per_raised);
         0.5 * (loss - 1.0)
     }
 }

@@ -18,6 +18,7 @@ mod detect;
 mod filter;
 mod fleet;
 mod found;
+mod symmetric;
 
 pub(crate) use cause::{Circumstances, causes, odds};
 pub(crate) use detect::{Event, Given, Perhaps, Snapshot, What, at_port, detect};

@@ -29,7 +29,7 @@ impl Search<'_> {
                 return self.come_back(k, lead, back, leads);
             }
         }
-        let before = self.bank.spawns[dated.from].origin.clone();
+        let before = self.bank.spawns[dated.from].origin().clone();
         let before = self.run(
             before,
             dated.at_spawn..dated.first,
@@ -116,7 +116,7 @@ impl Search<'_> {
             return;
         };
         let event = base.event;
-        let before = self.bank.spawns[lead.spawn].origin.clone();
+        let before = self.bank.spawns[lead.spawn].origin().clone();
         self.supersede_burst(dated.first);
         if self.was_brief(&self.events[event], &dated) {
             self.events[event].pass(dated.first);
@@ -151,7 +151,7 @@ impl Search<'_> {
             return;
         };
         let dated = self.date(lead.spawn, Kind::Return, k);
-        let before = self.bank.spawns[lead.spawn].origin.clone();
+        let before = self.bank.spawns[lead.spawn].origin().clone();
         self.supersede_burst(dated.first);
         let Some((event, _)) = self.misled.take() else {
             return;

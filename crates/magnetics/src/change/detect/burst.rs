@@ -54,7 +54,7 @@ impl Search<'_> {
         let Some(spawn) = self.bank.spawns.iter().rfind(|s| s.at <= first) else {
             return first;
         };
-        let mut filter = upset(&spawn.origin, Kind::Burst);
+        let mut filter = upset(spawn.origin(), Kind::Burst);
         let at = self.null.unknowns();
         let mut last = first;
         for row in spawn.at..k {

@@ -41,7 +41,7 @@ impl Search<'_> {
         };
         // Twice, for the rows are to be linearised at where the ship is now.
         let mut at = self.point(k);
-        let mut best = (origin.at, began(&origin.origin, origin.at, &at));
+        let mut best = (origin.at, began(origin.origin(), origin.at, &at));
         let mut likely = Vec::new();
         for round in 0..2 {
             let (low, high) = if round == 0 {
@@ -52,7 +52,7 @@ impl Search<'_> {
                 (low, (best.0 + stride).min(until))
             };
             let stride = (high - low) / DATES + 1;
-            let mut before = self.run(origin.origin.clone(), origin.at..low, &at);
+            let mut before = self.run(origin.origin().clone(), origin.at..low, &at);
             let mut tried: Vec<(usize, Filter)> = Vec::new();
             let mut row = low;
             while row <= high.min(k) {
@@ -116,7 +116,7 @@ impl Search<'_> {
         let calls = calls.filter(|&row| self.is_call(row)).take(CALLS);
         let at = filter.unknowns();
         let tried = calls.map(|call| {
-            let before = self.run(origin.origin.clone(), origin.at..call, &at);
+            let before = self.run(origin.origin().clone(), origin.at..call, &at);
             (call, self.run(upset(&before, Kind::Step), call..k + 1, &at))
         });
         let (call, filter) = tried

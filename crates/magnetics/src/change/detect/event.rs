@@ -93,7 +93,7 @@ pub(super) fn snapshot(filter: &Filter) -> Snapshot {
             parameters[i] = filter.mean[i] * scale[i];
         }
         for j in 0..=PARAMETERS {
-            covariance[i][j] = filter.covariance[i][j] * scale[i] * scale[j];
+            covariance[i][j] = filter.covariance.at(i, j) * scale[i] * scale[j];
         }
     }
     Snapshot {

@@ -248,7 +248,9 @@ impl<'a> Search<'a> {
         };
         let spawn = &self.bank.spawns[lead.spawn];
         let first = spawn.at;
-        let filters = spawn.copy(kind).map(|f| (spawn.origin.clone(), f.clone()));
+        let filters = spawn
+            .copy(kind)
+            .map(|f| (spawn.origin().clone(), f.clone()));
         let change = filters.as_ref().map(|(before, after)| (before, after));
         self.push(k, what, first, (first, first), leads, change);
         if let Some(event) = self.events.last_mut() {
