@@ -1,7 +1,7 @@
 //! A ship and her shore on one machine, with a gateway between, and what must hold
 //! whatever happened to them.
 
-use crate::at_sea::{all_ashore, day, until};
+use crate::at_sea::{PATIENCE, day, until};
 use crate::feed::Pace;
 use crate::gateway::Gateway;
 use crate::ledger::{Spool, ensure_acknowledged_is_ashore, samples_ashore};
@@ -12,6 +12,7 @@ use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
 use std::time::Duration;
 use tempfile::TempDir;
+use tokio::time::Instant;
 use uuid::Uuid;
 
 /// What days under faults may add to the memory that a first day took.
@@ -23,6 +24,8 @@ const OPEN_WINDOWS: f64 = 120.0;
 /// Windows that a sample leaves out as outliers; a quarter of a day's batch is 2,000.
 const OUTLIERS: f64 = 0.01;
 const SETTLES: Duration = Duration::from_mins(1);
+/// The agent looks once a second whether something is to be sealed.
+const CALM: Duration = Duration::from_millis(2_500);
 
 /// How a ship sails.
 #[derive(Clone, Copy, Debug)]
@@ -141,6 +144,14 @@ impl Coast {
         Ok(())
     }
 
+    /// Waits until nothing waits on board, and nothing more comes while the ship does.
+    ///
+    /// # Errors
+    /// When something goes on waiting.
+    pub async fn all_ashore(&self) -> Result<Spool> {
+        calm(&self.ship).await
+    }
+
     /// Waits until a line of `status --json` is as wanted; what it says.
     ///
     /// # Errors
@@ -202,7 +213,7 @@ impl Coast {
     /// # Errors
     /// When it is not so, or a program failed.
     pub async fn arrive(mut self) -> Result<()> {
-        let spool = all_ashore(&self.ship).await?;
+        let spool = self.all_ashore().await?;
         ensure_acknowledged_is_ashore(&self.shore, self.vessel, &spool).await?;
         samples_ashore(&self.shore, self.vessel).await?;
         self.ship.assert_running()?;
@@ -216,6 +227,26 @@ impl Coast {
         self.shore.assert_well().await?;
         self.shore.finish().await
     }
+}
+
+/// Waits until nothing waits on board of a ship, and nothing more comes.
+///
+/// # Errors
+/// When something goes on waiting.
+pub async fn calm(ship: &Ship) -> Result<Spool> {
+    let mut last = (Spool::default(), Instant::now());
+    eventually("all is ashore, and calm", PATIENCE, async || {
+        let spool = Spool::of(ship).await?;
+        if spool.waiting > 0 || spool != last.0 {
+            last = (spool.clone(), Instant::now());
+        }
+        Ok(if last.1.elapsed() >= CALM {
+            Ok(spool)
+        } else {
+            Err(format!("{spool:?}"))
+        })
+    })
+    .await
 }
 
 /// Copies the files of a folder.

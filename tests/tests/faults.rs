@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Result, ensure};
-use binnacle_tests::at_sea::{PATIENCE, all_ashore, day};
+use binnacle_tests::at_sea::{PATIENCE, day};
 use binnacle_tests::coast::copy_folder;
 use binnacle_tests::gateway::{Gateway, Manners};
 use binnacle_tests::ledger::{Spool, ensure_acknowledged_is_ashore, ensure_same_at_both_ends};
@@ -18,7 +18,7 @@ async fn no_wrong_answer_passes_for_an_acknowledgement() {
 async fn no_wrong_answer() -> Result<()> {
     let mut coast = Coast::sail().await?;
     coast.until(1.0).await?;
-    let mut before = all_ashore(&coast.ship).await?;
+    let mut before = coast.all_ashore().await?;
     let wrong = [
         Manners::Fails,
         Manners::ShowsPage,
@@ -36,7 +36,7 @@ async fn no_wrong_answer() -> Result<()> {
             "{manners:?}: {during:?}"
         );
         coast.gateway.set(Manners::Passes);
-        before = all_ashore(&coast.ship).await?;
+        before = coast.all_ashore().await?;
         ensure_same_at_both_ends(&coast.shore, coast.vessel, &before).await?;
     }
     coast.arrive().await
@@ -48,7 +48,7 @@ async fn a_proxy_that_cuts_after_a_kilobyte_only_makes_it_longer() {
         let mut coast = Coast::sail().await?;
         coast.gateway.set(Manners::CutsAfter(1024));
         coast.until(2.0).await?;
-        let spool = all_ashore(&coast.ship).await?;
+        let spool = coast.all_ashore().await?;
         ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
         coast.arrive().await
     };
@@ -89,7 +89,7 @@ async fn many_kills() -> Result<()> {
     }
     // The last one may have come when all was said.
     coast.until(DAYS + 0.5).await?;
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     // What was on the way to an agent that died is lost: there is less to send.
     ensure!(spool.acknowledged.len() > 5, "{spool:?}");
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
@@ -156,19 +156,19 @@ async fn a_spool_restored_from_an_old_copy_opens_another_stream() {
 async fn old_spool() -> Result<()> {
     let mut coast = Coast::sail().await?;
     coast.until(1.0).await?;
-    all_ashore(&coast.ship).await?;
+    coast.all_ashore().await?;
     coast.ship.kill().await?;
     let copy = coast.folder().join("copy");
     copy_folder(&coast.ship.data_dir(), &copy)?;
     coast.ship.start()?;
     coast.until(2.0).await?;
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     coast.ship.kill().await?;
     std::fs::remove_dir_all(coast.ship.data_dir())?;
     copy_folder(&copy, &coast.ship.data_dir())?;
     coast.ship.start()?;
     coast.until(3.0).await?;
-    let after = all_ashore(&coast.ship).await?;
+    let after = coast.all_ashore().await?;
     let streams = |spool: &Spool| {
         let streams = spool.acknowledged.iter().map(|batch| batch.stream);
         streams.collect::<std::collections::BTreeSet<_>>().len()
@@ -186,7 +186,7 @@ async fn an_agent_installed_anew_goes_on_in_a_stream_of_its_own() {
 async fn installed_anew() -> Result<()> {
     let mut coast = Coast::sail().await?;
     coast.until(1.0).await?;
-    let first = all_ashore(&coast.ship).await?;
+    let first = coast.all_ashore().await?;
     coast.ship.kill().await?;
     std::fs::remove_dir_all(coast.ship.data_dir())?;
     let code = coast
@@ -196,7 +196,7 @@ async fn installed_anew() -> Result<()> {
     coast.ship.enrol(&coast.gateway.url(), &code).await?;
     coast.ship.start()?;
     coast.until(2.0).await?;
-    let second = all_ashore(&coast.ship).await?;
+    let second = coast.all_ashore().await?;
     ensure!(first.acknowledged[0].stream != second.acknowledged[0].stream);
     ensure_acknowledged_is_ashore(&coast.shore, coast.vessel, &first).await?;
     coast.arrive().await
@@ -214,14 +214,14 @@ async fn long_silence() -> Result<()> {
     };
     let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
     coast.until(1.0).await?;
-    let before = all_ashore(&coast.ship).await?;
+    let before = coast.all_ashore().await?;
     coast.gateway.set(Manners::Fails);
     coast.until(31.0).await?;
     let aboard = coast.ensure_nothing_went(&before).await?;
     ensure!(aboard.waiting > 60, "{aboard:?}");
     coast.gateway.set(Manners::Passes);
     let back = std::time::Instant::now();
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     println!("{} batches in {:?}", aboard.waiting, back.elapsed());
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
     coast.ensure_every_window_is_there().await?;

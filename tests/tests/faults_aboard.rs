@@ -6,7 +6,7 @@
 use anyhow::{Context, Result, ensure};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
-use binnacle_tests::at_sea::{PATIENCE, all_ashore, day};
+use binnacle_tests::at_sea::{PATIENCE, day};
 use binnacle_tests::gateway::Manners;
 use binnacle_tests::ledger::{Spool, ensure_same_at_both_ends, samples_ashore};
 use binnacle_tests::namespace::in_own_mounts;
@@ -51,7 +51,7 @@ async fn full_disk() -> Result<()> {
     let disk = |ship: &binnacle_tests::Ship| small_disk(&ship.data_dir(), "24m");
     let mut coast = Coast::sail_on(Passage::default(), disk).await?;
     coast.until(1.0).await?;
-    let before = all_ashore(&coast.ship).await?;
+    let before = coast.all_ashore().await?;
     // At first the ring makes way for the spool; then there is nothing left to give.
     let state = coast.ship.data_dir();
     let most = fill(&state, "somebody-elses")?;
@@ -68,7 +68,7 @@ async fn full_disk() -> Result<()> {
         coast.says("/storage_problem", "null").await?;
     }
     std::fs::remove_file(most)?;
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     ensure!(
         spool.acknowledged.starts_with(&before.acknowledged),
         "{spool:?}"
@@ -88,7 +88,7 @@ async fn read_only_disk() -> Result<()> {
     let disk = |ship: &binnacle_tests::Ship| small_disk(&ship.data_dir(), "24m");
     let mut coast = Coast::sail_on(Passage::default(), disk).await?;
     coast.until(1.0).await?;
-    all_ashore(&coast.ship).await?;
+    coast.all_ashore().await?;
     coast.gateway.set(Manners::Fails);
     coast.until(2.0).await?;
     coast.ship.kill().await?;
@@ -110,7 +110,7 @@ async fn read_only_disk() -> Result<()> {
     coast.ensure_nothing_went(&before).await?;
     coast.gateway.set(Manners::Passes);
     coast.until(3.0).await?;
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
     coast.arrive().await
 }
@@ -144,7 +144,7 @@ async fn wrong_clock() -> Result<()> {
     coast.voyage.feed.set_clock(0.0)?;
     coast.until(6.0).await?;
     coast.says("/clock_problem", "null").await?;
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
     coast.ensure_every_window_is_there().await?;
     let samples = samples_ashore(&coast.shore, coast.vessel).await?;
@@ -210,7 +210,7 @@ async fn words_that_mean_harm() -> Result<()> {
     };
     let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
     coast.until(1.0).await?;
-    all_ashore(&coast.ship).await?;
+    coast.all_ashore().await?;
     let page = coast.ship.page()?;
     let http = reqwest::Client::builder().no_proxy().build()?;
     for path in ["../../outside", "..%2f..%2foutside", "%2fetc%2foutside"] {
@@ -220,7 +220,7 @@ async fn words_that_mean_harm() -> Result<()> {
         ensure!(!answer.status().is_success(), "{path}: {}", answer.status());
     }
     coast.until(2.0).await?;
-    all_ashore(&coast.ship).await?;
+    coast.all_ashore().await?;
     let mut found = BTreeSet::new();
     list(coast.folder(), coast.folder(), &mut found)?;
     let of_others = [

@@ -4,8 +4,8 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_tests::at_sea::{PATIENCE, all_ashore, day};
-use binnacle_tests::coast::copy_folder;
+use binnacle_tests::at_sea::{PATIENCE, day};
+use binnacle_tests::coast::{calm, copy_folder};
 use binnacle_tests::gateway::Manners;
 use binnacle_tests::ledger::{
     Spool, batch_log, ensure_acknowledged_is_ashore, ensure_same_at_both_ends,
@@ -32,7 +32,7 @@ async fn dripping_answer() -> Result<()> {
     };
     let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
     coast.until(1.0).await?;
-    let before = all_ashore(&coast.ship).await?;
+    let before = coast.all_ashore().await?;
     coast.gateway.set(Manners::Drips);
     coast.until(2.0).await?;
     let began = Instant::now();
@@ -41,7 +41,7 @@ async fn dripping_answer() -> Result<()> {
     coast.says("/link/problem", "no answer in time").await?;
     coast.ensure_nothing_went(&before).await?;
     coast.gateway.set(Manners::Passes);
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
     coast.ensure_every_window_is_there().await?;
     coast.arrive().await
@@ -59,7 +59,7 @@ async fn expired_certificate() -> Result<()> {
     };
     let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
     coast.until(1.0).await?;
-    let before = all_ashore(&coast.ship).await?;
+    let before = coast.all_ashore().await?;
     let tls = coast.tls.clone().context("the shore speaks TLS")?;
     // Started anew, it resumes no session of before.
     let expires = || tls.renew(Validity::Past);
@@ -72,7 +72,7 @@ async fn expired_certificate() -> Result<()> {
     coast.ensure_nothing_went(&before).await?;
     let renewed = || tls.renew(Validity::Current);
     coast.shore.stopped_for(renewed).await?;
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
     coast.ensure_every_window_is_there().await?;
     coast.arrive().await
@@ -90,7 +90,7 @@ async fn revoked() -> Result<()> {
     };
     let mut coast = Coast::sail_on(passage, |_| Ok(())).await?;
     coast.until(1.0).await?;
-    let before = all_ashore(&coast.ship).await?;
+    let before = coast.all_ashore().await?;
     let vessel = coast.vessel.to_string();
     let agents = coast
         .shore
@@ -120,7 +120,7 @@ async fn revoked() -> Result<()> {
     ensure!(aboard.waiting > 4, "{aboard:?}");
     let code = coast.shore.enrolment_code(&vessel).await?;
     coast.ship.enrol(&coast.gateway.url(), &code).await?;
-    let spool = all_ashore(&coast.ship).await?;
+    let spool = coast.all_ashore().await?;
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &spool).await?;
     coast.ensure_every_window_is_there().await?;
     coast.arrive().await
@@ -134,7 +134,7 @@ async fn a_cloned_agent_is_noticed_and_neither_takes_from_the_other() {
 async fn cloned() -> Result<()> {
     let mut coast = Coast::sail().await?;
     coast.until(1.0).await?;
-    all_ashore(&coast.ship).await?;
+    coast.all_ashore().await?;
     coast.ship.kill().await?;
     let pace = Pace::FastUntil(day(0.0));
     let mut other = Voyage::sail("biscay.toml", 12, coast.folder(), pace).await?;
@@ -145,14 +145,14 @@ async fn cloned() -> Result<()> {
     twin.ready().await?;
     for days in [2.0, 3.0, 4.0] {
         coast.until(days).await?;
-        all_ashore(&coast.ship).await?;
+        coast.all_ashore().await?;
         binnacle_tests::at_sea::until(&mut other, &twin, day(days)).await?;
-        all_ashore(&twin).await?;
+        calm(&twin).await?;
     }
     let alert = clone_alert(&coast).await?;
     ensure!(alert["state"] == "raised", "{alert}");
     for ship in [&coast.ship, &twin] {
-        let spool = all_ashore(ship).await?;
+        let spool = calm(ship).await?;
         ensure_acknowledged_is_ashore(&coast.shore, coast.vessel, &spool).await?;
     }
     twin.kill().await?;
@@ -181,7 +181,7 @@ async fn a_shore_restored_from_a_backup_gets_again_what_it_lost() {
 async fn restored_shore() -> Result<()> {
     let mut coast = Coast::sail().await?;
     coast.until(2.0).await?;
-    all_ashore(&coast.ship).await?;
+    coast.all_ashore().await?;
     let url = coast.shore.database().url();
     let file = PathBuf::from(url.strip_prefix("sqlite://").context("SQLite")?);
     let files = ["", "-wal", "-shm"].map(|suffix| {
@@ -200,7 +200,7 @@ async fn restored_shore() -> Result<()> {
     };
     coast.shore.stopped_for(save).await?;
     coast.until(5.0).await?;
-    let lost = all_ashore(&coast.ship).await?;
+    let lost = coast.all_ashore().await?;
     ensure_same_at_both_ends(&coast.shore, coast.vessel, &lost).await?;
     let restore = || {
         for path in &files {
