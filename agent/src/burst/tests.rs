@@ -132,8 +132,8 @@ impl Modem for Failing {
 #[tokio::test]
 async fn a_modem_that_fails_half_way_goes_on_with_the_next_message() {
     let (directory, spool, modem) = rig().await;
-    let restless: Vec<Sample> = (0..200).map(restless).collect();
-    let counts = accepted(200);
+    let restless: Vec<Sample> = (0..400).map(restless).collect();
+    let counts = accepted(400);
     spool.store(&restless, &counts, Seal::All).await.unwrap();
     let whole = spool.next_burst().await.unwrap().unwrap().0;
     let wanted = split(&whole.bytes).unwrap();

@@ -84,12 +84,14 @@ class Foresight:
     def __init__(self, predictor, value, time):
         self.predictor, self.first = predictor, value
         self.last, self.before = (value, time), None
-        self.mean = value * 256
+        self.mean, self.greatest = value * 256, value
 
     def expect(self, time):
         value, at = self.last
         if self.predictor == 0:
             return self.first
+        if self.predictor == 8:
+            return clamp(min(time - at - value, self.greatest))
         if 3 <= self.predictor <= 6:
             return clamp((self.mean + 128) // 256)
         if self.predictor == 2 and self.before:
@@ -101,6 +103,7 @@ class Foresight:
 
     def learn(self, value, time):
         self.before, self.last = self.last, (value, time)
+        self.greatest = max(self.greatest, value)
         if 3 <= self.predictor <= 6:
             self.mean += (value * 256 - self.mean) >> (self.predictor - 2)
 
@@ -161,6 +164,98 @@ def read_column(bits, count, times):
     foresight = Foresight(predictor, values[rows[0]], time(rows[0]))
     for row, residual in zip(rows[1:], read_residuals(bits, len(rows) - 1)):
         values[row] = foresight.expect(time(row)) + residual
+        if abs(values[row]) > LIMIT:
+            raise Refused("OutOfRange")
+        foresight.learn(values[row], time(row))
+    return values
+
+
+class Range:
+    """Answers from a dense frame's octets: the digits of a number from 0 up to 1."""
+
+    def __init__(self, data):
+        self.data, self.taken, self.number, self.range = data, 0, 0, 1 << 32
+        for _ in range(4):
+            self.take_octet()
+
+    def take_octet(self):
+        if self.taken >= len(self.data) + 4:
+            raise Refused("Truncated")
+        octet = self.data[self.taken] if self.taken < len(self.data) else 0
+        self.taken += 1
+        self.number = self.number << 8 | octet
+
+    def narrow(self, no):
+        yes = self.number >= no
+        if yes:
+            self.number -= no
+        self.range = self.range - no if yes else no
+        while self.range < 1 << 24:
+            self.take_octet()
+            self.range <<= 8
+        return int(yes)
+
+    def take(self, count):
+        value = 0
+        for _ in range(count):
+            value = value << 1 | self.narrow(self.range // 2)
+        return value
+
+    def answer(self, odds):
+        yes = self.narrow(self.range // (odds[0] + odds[1]) * odds[0])
+        odds[yes] += 5
+        if odds[0] + odds[1] > 320:
+            odds[0], odds[1] = (odds[0] + 1) // 2, (odds[1] + 1) // 2
+        return yes
+
+    def finish(self):
+        if self.taken + 1 < len(self.data) + 4:
+            raise Refused("TrailingBits")
+
+
+class Habits:
+    """What a column's residuals are like, so far."""
+
+    def __init__(self):
+        self.longer = [[2, 2] for _ in range(55)]
+        self.negative = [2, 2]
+        self.second = [[2, 2] for _ in range(56)]
+
+    def residual(self, bits):
+        length = 0
+        while length < 55 and bits.answer(self.longer[length]):
+            length += 1
+        if length == 0:
+            return 0
+        sign = -1 if bits.answer(self.negative) else 1
+        size = 1
+        if length > 1:
+            size = 2 + bits.answer(self.second[length])
+            size = size << (length - 2) | bits.take(length - 2)
+        return sign * size
+
+
+def read_dense_column(bits, count, times):
+    presence = [True] * count
+    if bits.take(1):
+        odds, before = [[2, 2], [2, 2]], 1
+        for row in range(count):
+            before = presence[row] = bits.answer(odds[before])
+    rows = [row for row, there in enumerate(presence) if there]
+    values = [None] * count
+    if not rows:
+        return values
+    predictor = bits.take(4)
+    if predictor > 8 or predictor >= 7 and times is None:
+        raise Refused("BadPredictor")
+    time = (lambda row: times[row]) if times else (lambda row: 0)
+    length = bits.take(6)
+    values[rows[0]] = unzigzag(1 << (length - 1) | bits.take(length - 1) if length else 0)
+    if abs(values[rows[0]]) > LIMIT:
+        raise Refused("OutOfRange")
+    foresight, habits = Foresight(predictor, values[rows[0]], time(rows[0])), Habits()
+    for row in rows[1:]:
+        values[row] = foresight.expect(time(row)) + habits.residual(bits)
         if abs(values[row]) > LIMIT:
             raise Refused("OutOfRange")
         foresight.learn(values[row], time(row))
@@ -319,7 +414,7 @@ def content(data):
         raise Refused("Checksum")
     if data[2] != 1:
         raise Refused("UnsupportedVersion")
-    if data[3] & ~1:
+    if data[3] & ~3:
         raise Refused("UnsupportedFlags")
     return data[4:-4]
 
@@ -338,6 +433,18 @@ def read_profile(bits):
     return profile
 
 
+def read_columns(profile, read):
+    columns, times = {}, None
+    for column, step in profile:
+        values = read(times)
+        if column == TIME:
+            if None in values:
+                raise Refused("MissingColumn")
+            times = values
+        columns[column] = (step, values)
+    return columns
+
+
 def decode(data):
     bits = Bits(content(data))
     stream = uuid.UUID(int=bits.take(128))
@@ -350,19 +457,17 @@ def decode(data):
     if count > MAX_SAMPLES:
         raise Refused("TooManySamples")
     profile = read_profile(bits)
-    least = 12 + 4 * ((count + 126) // 128)
-    if count > 0 and len(REQUIRED) * least > bits.left():
-        raise Refused("TooManySamples")
-    columns, times = {}, None
-    for column, step in profile:
-        values = read_column(bits, count, times)
-        if column == TIME:
-            if None in values:
-                raise Refused("MissingColumn")
-            times = values
-        columns[column] = (step, values)
-    if bits.left() > 7 or bits.take(bits.left()) != 0:
-        raise Refused("TrailingBits")
+    if data[3] & 2:
+        bits = Range(bits.data[bits.at // 8 :])
+        columns = read_columns(profile, lambda times: read_dense_column(bits, count, times))
+        bits.finish()
+    else:
+        least = 12 + 4 * ((count + 126) // 128)
+        if count > 0 and len(REQUIRED) * least > bits.left():
+            raise Refused("TooManySamples")
+        columns = read_columns(profile, lambda times: read_column(bits, count, times))
+        if bits.left() > 7 or bits.take(bits.left()) != 0:
+            raise Refused("TrailingBits")
     for column, ((mantissa, exponent), _) in columns.items():
         if column in DIRECTIONS and 360 * 10**exponent % mantissa != 0:
             raise Refused("BadStep")

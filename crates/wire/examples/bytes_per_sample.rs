@@ -9,7 +9,7 @@ use binnacle_wire::encode;
 
 fn main() {
     println!("samples a batch   bytes a batch   bytes a sample");
-    for samples in [1, 10, 29, 60, 114, 360, 3000] {
+    for samples in [1, 10, 29, 60, 114, 144, 360, 3000] {
         let total: usize = (0..20)
             .map(|seed| support::batch(7, support::voyage(seed, samples)))
             .map(|batch| encode(&batch).expect("a sane voyage").len())

@@ -145,7 +145,7 @@ proptest! {
     #[test]
     fn any_bytes_are_answered_or_refused(
         body in prop::collection::vec(any::<u8>(), 0..400),
-        head in prop_oneof![Just(&b""[..]), Just(&b"BN"[..]), Just(&b"BN\x01\0"[..]), Just(&b"BN\x01\x01"[..])],
+        head in prop_oneof![Just(&b""[..]), Just(&b"BN"[..]), Just(&b"BN\x01\0"[..]), Just(&b"BN\x01\x01"[..]), Just(&b"BN\x01\x02"[..])],
     ) {
         answer(&with_checksum([head, &body].concat()));
         answer(&body);
@@ -168,11 +168,31 @@ fn answer(bytes: &[u8]) -> bool {
     true
 }
 
+/// Frames of earlier agents.
+const PLAIN: [&str; 3] = [
+    include_str!("../vectors/quarter_day.hex"),
+    include_str!("../vectors/two_references.hex"),
+    include_str!("../vectors/gaps_over_blocks.hex"),
+];
+
+fn unhex(text: &str) -> Vec<u8> {
+    let digits: Vec<u8> = text
+        .chars()
+        .filter_map(|c| c.to_digit(16))
+        .map(|d| d as u8)
+        .collect();
+    digits
+        .chunks(2)
+        .map(|pair| pair[0] << 4 | pair[1])
+        .collect()
+}
+
 #[test]
 fn twenty_thousand_mutations_never_panic() {
     let frames: Vec<Vec<u8>> = (0..8)
         .map(|seed| encode(&support::batch(seed + 1, support::voyage(seed, 40))).unwrap())
         .chain([encode(&support::empty()).unwrap()])
+        .chain(PLAIN.map(unhex))
         .collect();
     let mut dice = Dice(20_000);
     let (mut stale, mut refused, mut answered) = (0, 0, 0);
@@ -228,6 +248,36 @@ fn a_small_frame_cannot_claim_many_samples() {
         decode(&with_checksum(body)),
         Err(DecodeError::TooManySamples(65_535))
     );
+}
+
+#[test]
+fn a_small_dense_frame_cannot_claim_many_samples() {
+    // Few octets may hold many samples that are all alike, and no more than that.
+    let alike = support::batch(1, vec![support::voyage(1, 1)[0]; MAX_SAMPLES]);
+    let frame = encode(&alike).unwrap();
+    assert!(frame.len() < 600, "{}", frame.len());
+    assert_eq!(decode(&frame).unwrap().samples.len(), MAX_SAMPLES);
+    let mut body = frame[..frame.len() - 100].to_vec();
+    assert_eq!(
+        decode(&with_checksum(body.clone())),
+        Err(DecodeError::Truncated)
+    );
+    body[3] = 0;
+    assert_eq!(
+        decode(&with_checksum(body)),
+        Err(DecodeError::TooManySamples(65_535))
+    );
+}
+
+#[test]
+fn a_frame_of_all_columns_and_samples_ends_with_its_octets() {
+    let mut body = b"BN\x01\x02".to_vec();
+    body.extend([0x11; 16]);
+    body.extend([1, 0, 0xff, 0xff, 3, 64]);
+    body.extend((1..=64).flat_map(|id| [id, 0x10]));
+    body.resize(MAX_BYTES - 4, 0);
+    // Zeros are values like the one before: few of these octets are needed for all.
+    assert_eq!(decode(&with_checksum(body)), Err(DecodeError::TrailingBits));
 }
 
 #[test]

@@ -13,14 +13,16 @@ use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::{Batch, Thinned};
 use binnacle_wire::{DecodeError, decode, encode};
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use support::{Dice, batch, voyage};
 
-/// The batches behind the vectors that `encode` writes.
-fn written() -> Vec<(&'static str, Batch)> {
+/// Batches, the vectors that `encode` makes of them, and the plain frames that earlier
+/// agents made: of those without samples there is one kind only.
+fn written() -> Vec<(&'static str, &'static str, Batch)> {
     let mut references = voyage(3, 40);
     for (row, sample) in references.iter_mut().enumerate() {
         let heading = sample.gyro.map(TrueHeading::degrees);
@@ -43,15 +45,35 @@ fn written() -> Vec<(&'static str, Batch)> {
         sample.spread_deg = sample.spread_deg.filter(|_| row == 149);
     }
     vec![
-        ("tally_only", support::empty()),
-        ("one_sample", batch(1, voyage(1, 1))),
-        ("quarter_day", batch(7, voyage(2, 29))),
-        ("two_references", batch(8, references)),
-        ("antimeridian_and_north", batch(9, crossing)),
-        ("gaps_over_blocks", batch(10, gaps)),
-        ("one_alert", noted(11, voyage(6, 3), &[1], None)),
-        ("alerts_alone", noted(12, Vec::new(), &[2, 3], None)),
-        ("thinned", noted(13, voyage(7, 12), &[], Some(17))),
+        ("tally_only", "tally_only", support::empty()),
+        ("dense_one_sample", "one_sample", batch(1, voyage(1, 1))),
+        ("dense_quarter_day", "quarter_day", batch(7, voyage(2, 29))),
+        (
+            "dense_two_references",
+            "two_references",
+            batch(8, references),
+        ),
+        (
+            "dense_antimeridian_and_north",
+            "antimeridian_and_north",
+            batch(9, crossing),
+        ),
+        ("dense_gaps", "gaps_over_blocks", batch(10, gaps)),
+        (
+            "dense_alert",
+            "one_alert",
+            noted(11, voyage(6, 3), &[1], None),
+        ),
+        (
+            "alerts_alone",
+            "alerts_alone",
+            noted(12, Vec::new(), &[2, 3], None),
+        ),
+        (
+            "dense_thinned",
+            "thinned",
+            noted(13, voyage(7, 12), &[], Some(17)),
+        ),
     ]
 }
 
@@ -68,7 +90,8 @@ fn noted(seq: u64, samples: Vec<Sample>, revisions: &[u32], thinned: Option<u64>
 
 /// Frames that only a later or a wrong encoder writes.
 fn edited() -> Vec<(&'static str, Vec<u8>)> {
-    let good = encode(&batch(7, voyage(2, 29))).unwrap();
+    let good = unhex(&read("quarter_day.hex"));
+    let dense = encode(&batch(7, voyage(2, 29))).unwrap();
     let with = |at: usize, byte: u8| {
         let mut body = good[..good.len() - 4].to_vec();
         body[at] = byte;
@@ -94,7 +117,46 @@ fn edited() -> Vec<(&'static str, Vec<u8>)> {
             "note_beyond_the_end",
             sealed(with_note(77, &[0; 12])[..30].to_vec()),
         ),
+        (
+            "dense_cut_short",
+            sealed(dense[..dense.len() - 12].to_vec()),
+        ),
+        (
+            "dense_too_long",
+            sealed([&dense[..dense.len() - 4], &[0, 0]].concat()),
+        ),
+        ("dense_unknown_column", dense_unknown_column()),
+        ("dense_unknown_predictor", dense_unknown_predictor()),
     ]
+}
+
+/// One sample, and a column 77 with some value.
+fn dense_unknown_column() -> Vec<u8> {
+    let mut body = encode(&Batch {
+        tally: BTreeMap::new(),
+        ..batch(1, voyage(1, 1))
+    })
+    .unwrap();
+    body.truncate(body.len() - 4);
+    // Magic, version, flags, stream, seq, no tally, one sample; nine columns with steps.
+    assert_eq!((body[22], body[23], body[40]), (1, 9, 10));
+    body[23] = 10;
+    body.splice(42..42, [77, 0x10]);
+    let ends = (0..=0xffff_u16).map(|end| [&body[..], &end.to_be_bytes()].concat());
+    let mut frames = ends.map(sealed);
+    frames
+        .find(|frame| decode(frame).is_ok())
+        .expect("some end is a column")
+}
+
+/// Nothing but ones where the columns are: the first has gaps, and predictor 15.
+fn dense_unknown_predictor() -> Vec<u8> {
+    let mut body = b"BN\x01\x02".to_vec();
+    body.extend([0x11; 16]);
+    body.extend([1, 0, 1, 5]);
+    body.extend([1, 0x50, 2, 0x13, 3, 0x13, 6, 0x22, 10, 0x10]);
+    body.extend([0xff; 40]);
+    sealed(body)
 }
 
 /// No sample, and one note.
@@ -212,20 +274,25 @@ fn stored(name: &str, bytes: &[u8]) -> (Vec<u8>, Value) {
         let text = serde_json::to_string_pretty(&as_json(&decode(bytes))).unwrap();
         std::fs::write(&meaning, text + "\n").unwrap();
     }
-    let read = |path: PathBuf| {
-        std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
-    };
-    let meaning = serde_json::from_str(&read(meaning)).unwrap();
-    (unhex(&read(frame)), meaning)
+    let meaning = serde_json::from_str(&read(&format!("{name}.json"))).unwrap();
+    (unhex(&read(&format!("{name}.hex"))), meaning)
+}
+
+fn read(name: &str) -> String {
+    let path = folder("vectors").join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
 #[test]
 fn frames_are_written_and_read_as_they_always_were() {
-    for (name, batch) in written() {
+    for (name, plain, batch) in written() {
         let bytes = encode(&batch).unwrap();
         let (frame, meaning) = stored(name, &bytes);
         assert_eq!(hex(&bytes), hex(&frame), "{name}");
         assert_eq!(as_json(&decode(&frame)), meaning, "{name}");
+        let (plain, of_plain) = stored(plain, &bytes);
+        assert_eq!(as_json(&decode(&plain)), of_plain, "{name}");
+        assert_eq!(meaning, of_plain, "{name}");
     }
     for (name, bytes) in edited() {
         let (frame, meaning) = stored(name, &bytes);
@@ -252,13 +319,20 @@ fn a_column_of_a_later_version_is_passed_over() {
 #[test]
 fn the_python_decoder_agrees_on_every_vector_and_a_thousand_more() {
     let mut frames: Vec<Vec<u8>> = Vec::new();
-    frames.extend(
-        written()
-            .iter()
-            .map(|(name, b)| stored(name, &encode(b).unwrap()).0),
-    );
+    for (name, plain, batch) in written() {
+        let bytes = encode(&batch).unwrap();
+        frames.extend([name, plain].map(|name| stored(name, &bytes).0));
+    }
     frames.extend(edited().iter().map(|(name, bytes)| stored(name, bytes).0));
     let mut dice = Dice(1);
+    for frame in frames.clone().iter().filter(|frame| frame.len() > 60) {
+        for _ in 0..20 {
+            let mut spoilt = frame[..frame.len() - 4].to_vec();
+            let at = 4 + dice.next() as usize % (spoilt.len() - 4);
+            spoilt[at] ^= 1 << (dice.next() % 8);
+            frames.push(sealed(spoilt));
+        }
+    }
     for seed in 0..500 {
         let samples = voyage(seed, 1 + dice.next() as usize % 60);
         let plain = batch(seed + 1, samples);

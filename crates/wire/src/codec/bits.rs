@@ -35,7 +35,9 @@ impl BitWriter {
         }
     }
 
-    /// Elias's gamma code of `value`, which is at least 1.
+    /// Elias's gamma code of `value`, which is at least 1. Frames are not written with it
+    /// any more.
+    #[cfg(test)]
     pub(crate) fn gamma(&mut self, value: u64) {
         let below = value.ilog2();
         self.bits(0, below);
@@ -128,6 +130,11 @@ impl<'a> BitReader<'a> {
             return Err(DecodeError::Truncated);
         }
         (0..count).map(|_| Ok(self.bits(8)? as u8)).collect()
+    }
+
+    /// The octets that are left, from a whole one on.
+    pub(crate) fn rest(&self) -> &'a [u8] {
+        self.bytes.get(self.at.div_ceil(8)..).unwrap_or_default()
     }
 
     /// Refuses anything but the zero bits that fill the last byte.

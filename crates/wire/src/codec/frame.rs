@@ -2,8 +2,10 @@
 
 use super::bits::{BitReader, BitWriter};
 use super::columns::{self, Column};
+use super::dense;
 use super::error::{DecodeError, EncodeError};
 use super::notes::{self, Notes};
+use super::range::{RangeReader, RangeWriter};
 use super::stack;
 use super::step::Step;
 use super::tally;
@@ -19,6 +21,8 @@ const MAGIC: [u8; 2] = *b"BN";
 const VERSION: u8 = 1;
 /// Notes follow the tally.
 const HAS_NOTES: u8 = 1;
+/// The columns are range-coded.
+const IS_DENSE: u8 = 2;
 /// Magic, version and flags; the checksum.
 const HEAD_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
@@ -47,7 +51,9 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
     let mut writer = BitWriter::default();
     writer.octets(&MAGIC);
     let has_notes = !batch.alerts.is_empty() || batch.thinned.is_some();
-    writer.octets(&[VERSION, if has_notes { HAS_NOTES } else { 0 }]);
+    let notes = if has_notes { HAS_NOTES } else { 0 };
+    let dense = if samples.is_empty() { 0 } else { IS_DENSE };
+    writer.octets(&[VERSION, notes | dense]);
     writer.octets(batch.stream.0.as_bytes());
     writer.varint(batch.seq);
     tally::write(&mut writer, &batch.tally)?;
@@ -60,22 +66,25 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
         writer.varint(column.id);
         writer.bits(u64::from(column.step.byte()), 8);
     }
-    let times: Vec<i64> = columns
-        .iter()
-        .take_while(|column| column.id == columns::TIME)
-        .flat_map(|column| column.values.iter().flatten().copied())
-        .collect();
-    for column in &columns {
-        let times = (column.id != columns::TIME).then_some(&times[..]);
-        stack::write(&mut writer, &column.values, times);
-    }
-
     let mut bytes = writer.into_bytes();
+    bytes.extend(write_columns(&columns));
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     if bytes.len() > MAX_BYTES {
         return Err(EncodeError::TooLarge(bytes.len()));
     }
     Ok(bytes)
+}
+
+/// The columns, range-coded: nothing for none.
+fn write_columns(columns: &[Column]) -> Vec<u8> {
+    let mut writer = RangeWriter::new();
+    let mut times: Option<Vec<i64>> = None;
+    for column in columns {
+        dense::write(&mut writer, &column.values, times.as_deref());
+        // The column of times is the first, and whole.
+        times.get_or_insert_with(|| column.values.iter().flatten().copied().collect());
+    }
+    writer.into_octets()
 }
 
 /// Reads a frame.
@@ -106,8 +115,24 @@ pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
         .filter(|count| *count <= MAX_SAMPLES)
         .ok_or(DecodeError::TooManySamples(stated))?;
     let profile = read_profile(&mut reader)?;
-    let columns = read_columns(&mut reader, &profile, count)?;
-    reader.finish()?;
+    let columns = if flags & IS_DENSE == 0 {
+        // Before anything of the size of `count` is allocated.
+        if count > 0 && columns::REQUIRED * stack::min_bits(count) > reader.left() {
+            return Err(DecodeError::TooManySamples(stated));
+        }
+        let columns = read_columns(&profile, |id, times| {
+            stack::read(&mut reader, id, count, times)
+        })?;
+        reader.finish()?;
+        columns
+    } else {
+        let mut reader = RangeReader::new(reader.rest())?;
+        let columns = read_columns(&profile, |id, times| {
+            dense::read(&mut reader, id, count, times)
+        })?;
+        reader.finish()?;
+        columns
+    };
     Ok(Batch {
         stream,
         seq,
@@ -139,7 +164,7 @@ fn content(bytes: &[u8]) -> Result<(u8, &[u8]), DecodeError> {
     if body[2] != VERSION {
         return Err(DecodeError::UnsupportedVersion(body[2]));
     }
-    if body[3] & !HAS_NOTES != 0 {
+    if body[3] & !(HAS_NOTES | IS_DENSE) != 0 {
         return Err(DecodeError::UnsupportedFlags(body[3]));
     }
     Ok((body[3], &body[HEAD_BYTES..]))
@@ -162,21 +187,16 @@ fn read_profile(reader: &mut BitReader<'_>) -> Result<Vec<(u64, Step)>, DecodeEr
     Ok(profile)
 }
 
-/// Every column in turn; those that this version does not know are read and
-/// forgotten.
+/// Every column in turn, by `read` from its id and the times; those that this version does
+/// not know are read and forgotten.
 fn read_columns(
-    reader: &mut BitReader<'_>,
     profile: &[(u64, Step)],
-    count: usize,
+    mut read: impl FnMut(u64, Option<&[i64]>) -> Result<Vec<Option<i64>>, DecodeError>,
 ) -> Result<Vec<Column>, DecodeError> {
-    // Before anything of the size of `count` is allocated.
-    if count > 0 && columns::REQUIRED * stack::min_bits(count) > reader.left() {
-        return Err(DecodeError::TooManySamples(count as u64));
-    }
     let mut columns: Vec<Column> = Vec::new();
     let mut times = None;
     for (id, step) in profile {
-        let values = stack::read(reader, *id, count, times.as_deref())?;
+        let values = read(*id, times.as_deref())?;
         if *id == columns::TIME {
             let all: Option<Vec<i64>> = values.iter().copied().collect();
             times = Some(all.ok_or(DecodeError::MissingColumn(*id))?);

@@ -1,4 +1,4 @@
-//! Batches as bytes: `sr1`, columns of integers with predictors and Rice codes.
+//! Batches as bytes: `sr1`, columns of integers with predictors, what they miss range-coded.
 //!
 //! `FORMAT.md` beside this crate has every byte. What always holds:
 //!
@@ -9,10 +9,12 @@
 
 pub(crate) mod bits;
 mod columns;
+mod dense;
 mod error;
 mod frame;
 mod notes;
 mod predict;
+mod range;
 mod rice;
 mod stack;
 mod step;

@@ -21,13 +21,17 @@ pub(super) enum Predictor {
     Linear,
     /// a running mean that takes in 1/2, 1/4, 1/8 or 1/16 of each value's news;
     Mean(u32),
-    /// the line through the two before, by their times.
+    /// the line through the two before, by their times;
     LinearInTime,
+    /// what the time since the one before leaves beside that, if nothing lay between: when
+    /// values are lengths, and times, in halves of their units, the middles. Never more
+    /// than the greatest so far.
+    BackToBack,
 }
 
 impl Predictor {
-    /// All, by their number in the frame.
-    pub(super) const ALL: [Predictor; 8] = [
+    /// All, by their number in the frame. A plain frame has the first eight.
+    pub(super) const ALL: [Predictor; 9] = [
         Predictor::First,
         Predictor::Previous,
         Predictor::Linear,
@@ -36,7 +40,13 @@ impl Predictor {
         Predictor::Mean(3),
         Predictor::Mean(4),
         Predictor::LinearInTime,
+        Predictor::BackToBack,
     ];
+
+    /// Whether it foretells from the samples' times, which then must be known.
+    pub(super) fn needs_times(self) -> bool {
+        matches!(self, Predictor::LinearInTime | Predictor::BackToBack)
+    }
 }
 
 /// A predictor at work on one column.
@@ -47,6 +57,7 @@ pub(super) struct Foresight {
     /// The last value and its time, and the one before.
     last: (i64, i64),
     before: Option<(i64, i64)>,
+    greatest: i64,
     /// The running mean, with [`MEAN_BITS`] fractional bits.
     mean: i64,
 }
@@ -59,6 +70,7 @@ impl Foresight {
             first: value,
             last: (value, time),
             before: None,
+            greatest: value,
             mean: value << MEAN_BITS,
         }
     }
@@ -76,6 +88,7 @@ impl Foresight {
                 let limit = i128::from(VALUE_LIMIT);
                 line.clamp(-limit, limit) as i64
             }
+            (Predictor::BackToBack, _) => (time - last_time - last).min(self.greatest),
             _ => last,
         };
         foretold.clamp(-VALUE_LIMIT, VALUE_LIMIT)
@@ -85,6 +98,7 @@ impl Foresight {
     pub(super) fn learn(&mut self, value: i64, time: i64) {
         self.before = Some(self.last);
         self.last = (value, time);
+        self.greatest = self.greatest.max(value);
         if let Predictor::Mean(shift) = self.predictor {
             self.mean += ((value << MEAN_BITS) - self.mean) >> shift;
         }
@@ -115,6 +129,9 @@ mod tests {
         assert_eq!(expectations(Predictor::Linear, &values), [10, 14, 16]);
         assert_eq!(expectations(Predictor::Mean(1), &values), [10, 11, 13]);
         assert_eq!(expectations(Predictor::LinearInTime, &values), [10, 16, 17]);
+        // The third began where the second ended; between the last two something lay.
+        let lengths = [(60, 300), (60, 420), (20, 500), (60, 600)];
+        assert_eq!(expectations(Predictor::BackToBack, &lengths), [60, 20, 60]);
     }
 
     #[test]

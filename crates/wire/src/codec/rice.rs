@@ -3,35 +3,16 @@
 //! A block begins with four bits: 0 to 13 is the parameter of a Rice code with
 //! an escape for outliers, 14 codes runs of zeros, 15 says that all are zero.
 
-use super::bits::{BitReader, BitWriter, unzigzag, zigzag};
+use super::bits::{BitReader, unzigzag};
 use super::error::DecodeError;
 
 /// Residuals of one block.
 const BLOCK: usize = 128;
 
-const RICE_MAX: u32 = 13;
 const ZERO_RUNS: u32 = 14;
 const ALL_ZERO: u32 = 15;
 /// A quotient of so many ones is an escape.
 const ESCAPE: u64 = 24;
-
-/// Writes the residuals block by block.
-pub(super) fn write(writer: &mut BitWriter, residuals: &[i64]) {
-    for block in residuals.chunks(BLOCK) {
-        let (code, _) = best(block);
-        writer.bits(u64::from(code), 4);
-        match code {
-            ALL_ZERO => {}
-            ZERO_RUNS => write_runs(writer, block),
-            k => block.iter().for_each(|r| write_rice(writer, zigzag(*r), k)),
-        }
-    }
-}
-
-/// How many bits [`write()`] would take.
-pub(super) fn cost(residuals: &[i64]) -> u64 {
-    residuals.chunks(BLOCK).map(|b| 4 + best(b).1).sum()
-}
 
 /// Bits that `count` residuals take at the very least: the blocks' code numbers.
 pub(super) fn min_bits(count: usize) -> usize {
@@ -62,43 +43,6 @@ pub(super) fn read(
     Ok(())
 }
 
-/// The code that takes the fewest bits, and those; the lowest of equals.
-fn best(block: &[i64]) -> (u32, u64) {
-    if block.iter().all(|r| *r == 0) {
-        return (ALL_ZERO, 0);
-    }
-    let rice = (0..=RICE_MAX).map(|k| {
-        let bits = block.iter().map(|r| rice_bits(zigzag(*r), k)).sum();
-        (k, bits)
-    });
-    rice.chain([(ZERO_RUNS, runs_bits(block))])
-        .min_by_key(|(_, bits)| *bits)
-        .expect("there are fifteen codes to choose from")
-}
-
-fn rice_bits(code: u64, k: u32) -> u64 {
-    let quotient = code >> k;
-    if quotient < ESCAPE {
-        quotient + 1 + u64::from(k)
-    } else {
-        ESCAPE + 6 + u64::from(bit_length(code))
-    }
-}
-
-fn write_rice(writer: &mut BitWriter, code: u64, k: u32) {
-    let quotient = code >> k;
-    if quotient < ESCAPE {
-        writer.bits(u64::MAX, quotient as u32);
-        writer.bits(0, 1);
-        writer.bits(code, k);
-        return;
-    }
-    let length = bit_length(code);
-    writer.bits(u64::MAX, ESCAPE as u32);
-    writer.bits(u64::from(length - 1), 6);
-    writer.bits(code, length);
-}
-
 fn read_rice(reader: &mut BitReader<'_>, k: u32) -> Result<u64, DecodeError> {
     let mut quotient = 0;
     while quotient < ESCAPE && reader.bit()? {
@@ -109,41 +53,6 @@ fn read_rice(reader: &mut BitReader<'_>, k: u32) -> Result<u64, DecodeError> {
     }
     let length = reader.bits(6)? as u32 + 1;
     reader.bits(length)
-}
-
-/// Zeros before each other value, and the value, both in gamma code; a last run
-/// that fills the block stands alone.
-fn runs(block: &[i64]) -> Vec<(u64, Option<u64>)> {
-    let mut found = Vec::new();
-    let mut zeros = 0;
-    for residual in block {
-        if *residual == 0 {
-            zeros += 1;
-            continue;
-        }
-        found.push((zeros, Some(zigzag(*residual))));
-        zeros = 0;
-    }
-    if zeros > 0 {
-        found.push((zeros, None));
-    }
-    found
-}
-
-fn runs_bits(block: &[i64]) -> u64 {
-    runs(block)
-        .into_iter()
-        .map(|(zeros, value)| gamma_bits(zeros + 1) + value.map_or(0, gamma_bits))
-        .sum()
-}
-
-fn write_runs(writer: &mut BitWriter, block: &[i64]) {
-    for (zeros, value) in runs(block) {
-        writer.gamma(zeros + 1);
-        if let Some(code) = value {
-            writer.gamma(code);
-        }
-    }
 }
 
 fn read_runs(
@@ -168,57 +77,65 @@ fn read_runs(
     Ok(())
 }
 
-/// Bits of the number itself; 1 for zero.
-fn bit_length(value: u64) -> u32 {
-    value.max(1).ilog2() + 1
-}
-
-fn gamma_bits(value: u64) -> u64 {
-    u64::from(2 * bit_length(value) - 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::codec::bits::BitWriter;
 
-    fn assert_comes_back(residuals: &[i64]) -> u64 {
+    fn block(count: usize, write: impl Fn(&mut BitWriter)) -> Result<Vec<i64>, DecodeError> {
         let mut writer = BitWriter::default();
-        write(&mut writer, residuals);
+        write(&mut writer);
         let bytes = writer.into_bytes();
-        assert_eq!((cost(residuals)).div_ceil(8), bytes.len() as u64);
-        let mut found = Vec::new();
-        let mut reader = BitReader::new(&bytes);
-        read(&mut reader, residuals.len(), 1, |r| {
-            found.push(r);
+        let (mut reader, mut found) = (BitReader::new(&bytes), Vec::new());
+        read(&mut reader, count, 9, |residual| {
+            found.push(residual);
             Ok(())
-        })
-        .unwrap();
-        assert_eq!(found, residuals);
-        reader.finish().unwrap();
-        cost(residuals)
+        })?;
+        reader.finish()?;
+        Ok(found)
     }
 
     #[test]
-    fn every_kind_of_block_comes_back_at_the_stated_cost() {
-        assert_eq!(assert_comes_back(&[0; 300]), 3 * 4);
-        assert_eq!(assert_comes_back(&[1, -1, 0, 0]), 4 + 3 + 2 + 1 + 1);
-        let mut sparse = [0; 128];
-        sparse[100] = -70;
-        // Seven zeros and seven bits of 101; the value's own code; the last 27.
-        assert_eq!(assert_comes_back(&sparse), 4 + 13 + 15 + 9);
-        let wide: Vec<i64> = (0..200).map(|i| (i * 7919) % 4001 - 2000).collect();
-        assert_comes_back(&wide);
-        assert_comes_back(&[3, -2, i64::MAX - 1, i64::MIN + 1, 1, i64::MIN, i64::MAX]);
-        assert_eq!(assert_comes_back(&[]), 0);
+    fn every_kind_of_block_is_read() {
+        let zeros = block(130, |w| w.bits(0xff, 8));
+        assert_eq!(zeros.unwrap(), [0; 130]);
+        // k is 1: a quotient in ones and a zero, then one bit.
+        let rice = block(3, |w| {
+            w.bits(1, 4);
+            w.bits(0b1101, 4);
+            w.bits(0b00, 2);
+            w.bits(0b01, 2);
+        });
+        assert_eq!(rice.unwrap(), [-3, 0, -1]);
+        // Two zeros, 2; one zero, and the block is full.
+        let runs = block(4, |w| {
+            w.bits(14, 4);
+            w.gamma(3);
+            w.gamma(4);
+            w.gamma(2);
+        });
+        assert_eq!(runs.unwrap(), [0, 0, 2, 0]);
+    }
+
+    #[test]
+    fn an_outlier_escapes_at_its_full_length() {
+        for code in [1 << 30, u64::MAX - 1, u64::MAX] {
+            let read = block(1, |w| {
+                w.bits(0, 4);
+                w.bits(u64::MAX, 24);
+                w.bits(u64::from(code.ilog2()), 6);
+                w.bits(code, code.ilog2() + 1);
+            });
+            assert_eq!(read.unwrap(), [unzigzag(code)]);
+        }
     }
 
     #[test]
     fn a_run_beyond_the_block_is_refused() {
-        let mut writer = BitWriter::default();
-        writer.bits(14, 4);
-        writer.gamma(6);
-        let bytes = writer.into_bytes();
-        let read = read(&mut BitReader::new(&bytes), 4, 9, |_| Ok(()));
+        let read = block(4, |w| {
+            w.bits(14, 4);
+            w.gamma(6);
+        });
         assert_eq!(read, Err(DecodeError::BadRun(9)));
     }
 }

@@ -1,49 +1,10 @@
-//! One column in a frame: which samples have it, the predictor, the first
-//! value and the residuals.
+//! One column in a plain frame, as agents wrote them before there were dense ones: which
+//! samples have it, the predictor, the first value and the residuals.
 
-use super::bits::{BitReader, BitWriter, unzigzag, zigzag};
+use super::bits::{BitReader, unzigzag};
 use super::error::DecodeError;
 use super::predict::{Foresight, Predictor, VALUE_LIMIT};
 use super::rice;
-
-/// Writes a column's values. `times` has the times of the same samples, and is
-/// `None` for the column of times itself.
-pub(super) fn write(writer: &mut BitWriter, values: &[Option<i64>], times: Option<&[i64]>) {
-    write_presence(writer, values);
-    let present: Vec<(i64, i64)> = values
-        .iter()
-        .enumerate()
-        .filter_map(|(row, value)| value.map(|v| (v, times.map_or(0, |times| times[row]))))
-        .collect();
-    let Some((first, _)) = present.first() else {
-        return;
-    };
-    let (number, residuals) = (0..Predictor::ALL.len())
-        .filter(|number| may_use(Predictor::ALL[*number], times))
-        .map(|number| (number, residuals(Predictor::ALL[number], &present)))
-        .min_by_key(|(_, residuals)| rice::cost(residuals))
-        .expect("there are eight predictors to choose from");
-    writer.bits(number as u64, 3);
-    writer.varint(zigzag(*first));
-    rice::write(writer, &residuals);
-}
-
-/// Times cannot be foretold from themselves.
-fn may_use(predictor: Predictor, times: Option<&[i64]>) -> bool {
-    times.is_some() || predictor != Predictor::LinearInTime
-}
-
-fn residuals(predictor: Predictor, present: &[(i64, i64)]) -> Vec<i64> {
-    let mut foresight = Foresight::new(predictor, present[0].0, present[0].1);
-    present[1..]
-        .iter()
-        .map(|(value, time)| {
-            let residual = value - foresight.expect(*time);
-            foresight.learn(*value, *time);
-            residual
-        })
-        .collect()
-}
 
 /// Bits that a column without gaps takes at the very least.
 pub(super) fn min_bits(count: usize) -> usize {
@@ -66,7 +27,7 @@ pub(super) fn read(
         return Ok(values);
     };
     let predictor = Predictor::ALL[reader.bits(3)? as usize];
-    if !may_use(predictor, times) {
+    if predictor.needs_times() && times.is_none() {
         return Err(DecodeError::BadPredictor(id));
     }
     let time = |row: usize| times.map_or(0, |times| times[row]);
@@ -87,28 +48,11 @@ pub(super) fn read(
     Ok(values)
 }
 
-fn bounded(value: i64, column: u64, row: usize) -> Result<i64, DecodeError> {
+pub(super) fn bounded(value: i64, column: u64, row: usize) -> Result<i64, DecodeError> {
     if (-VALUE_LIMIT..=VALUE_LIMIT).contains(&value) {
         return Ok(value);
     }
     Err(DecodeError::OutOfRange { row, column })
-}
-
-/// One bit when all are there; otherwise runs in turn, the first of those there.
-fn write_presence(writer: &mut BitWriter, values: &[Option<i64>]) {
-    if values.iter().all(Option::is_some) {
-        writer.bits(0, 1);
-        return;
-    }
-    writer.bits(1, 1);
-    let mut rest = values;
-    let mut there = true;
-    while !rest.is_empty() {
-        let run = rest.iter().take_while(|v| v.is_some() == there).count();
-        writer.gamma(run as u64 + 1);
-        rest = &rest[run..];
-        there = !there;
-    }
 }
 
 /// `None` when every sample has the value.

@@ -1,0 +1,187 @@
+//! A column in a dense frame: which samples have it, the predictor, the first value and
+//! the residuals, in range-coded answers whose odds each column learns anew.
+
+use super::bits::{unzigzag, zigzag};
+use super::error::DecodeError;
+use super::predict::{Foresight, Predictor};
+use super::range::{Odds, RangeReader, RangeWriter};
+use super::stack::bounded;
+
+const PREDICTOR_BITS: u32 = 4;
+/// Bits of the first value's length.
+const FIRST_LENGTH_BITS: u32 = 6;
+/// Residuals lie within ±2⁵⁴: their lengths are 0 to 55.
+const LONGEST: usize = 55;
+
+/// What a column has learned of its residuals.
+#[derive(Clone, Debug)]
+struct Habits {
+    /// Whether the length is greater than this.
+    longer: [Odds; LONGEST],
+    negative: Odds,
+    /// The bit after the highest, by length.
+    second: [Odds; LONGEST + 1],
+}
+
+impl Habits {
+    const NONE: Habits = Habits {
+        longer: [Odds::EVEN; LONGEST],
+        negative: Odds::EVEN,
+        second: [Odds::EVEN; LONGEST + 1],
+    };
+
+    fn write(&mut self, writer: &mut RangeWriter, residual: i64) {
+        let size = residual.unsigned_abs();
+        let length = (u64::BITS - size.leading_zeros()) as usize;
+        for (at, odds) in self.longer.iter_mut().enumerate().take(length + 1) {
+            writer.answer(odds, length > at);
+        }
+        if length == 0 {
+            return;
+        }
+        writer.answer(&mut self.negative, residual < 0);
+        if length > 1 {
+            let second = size >> (length - 2) & 1;
+            writer.answer(&mut self.second[length], second == 1);
+            writer.bits(size, length as u32 - 2);
+        }
+    }
+
+    fn read(&mut self, reader: &mut RangeReader<'_>) -> Result<i64, DecodeError> {
+        let mut length = 0;
+        while length < LONGEST && reader.answer(&mut self.longer[length])? {
+            length += 1;
+        }
+        if length == 0 {
+            return Ok(0);
+        }
+        let is_negative = reader.answer(&mut self.negative)?;
+        let mut size = 1;
+        if length > 1 {
+            size = size << 1 | u64::from(reader.answer(&mut self.second[length])?);
+            size = size << (length - 2) | reader.bits(length as u32 - 2)?;
+        }
+        let size = size.cast_signed();
+        Ok(if is_negative { -size } else { size })
+    }
+}
+
+/// Writes a column's values. `times` has the times of the same samples, and is
+/// `None` for the column of times itself.
+pub(super) fn write(writer: &mut RangeWriter, values: &[Option<i64>], times: Option<&[i64]>) {
+    write_presence(writer, values);
+    let present: Vec<(i64, i64)> = values
+        .iter()
+        .enumerate()
+        .filter_map(|(row, value)| value.map(|v| (v, times.map_or(0, |times| times[row]))))
+        .collect();
+    let Some((first, _)) = present.first() else {
+        return;
+    };
+    let (number, residuals) = (0..Predictor::ALL.len())
+        .filter(|number| times.is_some() || !Predictor::ALL[*number].needs_times())
+        .map(|number| (number, residuals(Predictor::ALL[number], &present)))
+        .min_by_key(|(_, residuals)| cost(residuals))
+        .expect("there are predictors to choose from");
+    writer.bits(number as u64, PREDICTOR_BITS);
+    let first = zigzag(*first);
+    let length = u64::BITS - first.leading_zeros();
+    writer.bits(u64::from(length), FIRST_LENGTH_BITS);
+    writer.bits(first, length.saturating_sub(1));
+    let mut habits = Habits::NONE;
+    for residual in residuals {
+        habits.write(writer, residual);
+    }
+}
+
+fn residuals(predictor: Predictor, present: &[(i64, i64)]) -> Vec<i64> {
+    let mut foresight = Foresight::new(predictor, present[0].0, present[0].1);
+    present[1..]
+        .iter()
+        .map(|(value, time)| {
+            let residual = value - foresight.expect(*time);
+            foresight.learn(*value, *time);
+            residual
+        })
+        .collect()
+}
+
+/// Bits that residuals take, near enough to choose by.
+fn cost(residuals: &[i64]) -> u64 {
+    let (mut writer, mut habits) = (RangeWriter::new(), Habits::NONE);
+    for residual in residuals {
+        habits.write(&mut writer, *residual);
+    }
+    writer.bits_written()
+}
+
+/// Reads a column of `count` samples. `times` is `None` for the column of
+/// times itself, which cannot be foretold from them.
+pub(super) fn read(
+    reader: &mut RangeReader<'_>,
+    id: u64,
+    count: usize,
+    times: Option<&[i64]>,
+) -> Result<Vec<Option<i64>>, DecodeError> {
+    let presence = read_presence(reader, count)?;
+    let mut rows = (0..count).filter(|row| presence.as_ref().is_none_or(|p| p[*row]));
+    let mut values = vec![None; count];
+    let Some(first_row) = rows.next() else {
+        return Ok(values);
+    };
+    let predictor = Predictor::ALL.get(reader.bits(PREDICTOR_BITS)? as usize);
+    let predictor = predictor
+        .copied()
+        .filter(|predictor| times.is_some() || !predictor.needs_times())
+        .ok_or(DecodeError::BadPredictor(id))?;
+    let time = |row: usize| times.map_or(0, |times| times[row]);
+    let first = bounded(unzigzag(read_first(reader)?), id, first_row)?;
+    values[first_row] = Some(first);
+    let mut foresight = Foresight::new(predictor, first, time(first_row));
+    let mut habits = Habits::NONE;
+    for row in rows {
+        let value = foresight.expect(time(row)) + habits.read(reader)?;
+        values[row] = Some(bounded(value, id, row)?);
+        foresight.learn(value, time(row));
+    }
+    Ok(values)
+}
+
+fn read_first(reader: &mut RangeReader<'_>) -> Result<u64, DecodeError> {
+    let length = reader.bits(FIRST_LENGTH_BITS)? as u32;
+    if length == 0 {
+        return Ok(0);
+    }
+    Ok(1 << (length - 1) | reader.bits(length - 1)?)
+}
+
+/// Whether all are there; if not, whether each is, by whether the one before was.
+fn write_presence(writer: &mut RangeWriter, values: &[Option<i64>]) {
+    let is_whole = values.iter().all(Option::is_some);
+    writer.bits(u64::from(!is_whole), 1);
+    if is_whole {
+        return;
+    }
+    let (mut odds, mut before) = ([Odds::EVEN; 2], true);
+    for value in values {
+        writer.answer(&mut odds[usize::from(before)], value.is_some());
+        before = value.is_some();
+    }
+}
+
+/// `None` when every sample has the value.
+fn read_presence(
+    reader: &mut RangeReader<'_>,
+    count: usize,
+) -> Result<Option<Vec<bool>>, DecodeError> {
+    if reader.bits(1)? == 0 {
+        return Ok(None);
+    }
+    let (mut odds, mut before) = ([Odds::EVEN; 2], true);
+    let mut presence = Vec::with_capacity(count);
+    for _ in 0..count {
+        before = reader.answer(&mut odds[usize::from(before)])?;
+        presence.push(before);
+    }
+    Ok(Some(presence))
+}
