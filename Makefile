@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build deb demo test test-rust test-web test-browser lint soak bench bench-link bench-peer bench-changes study study-changes methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-browser lint soak bench bench-link bench-formats bench-peer bench-changes study study-changes study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -55,11 +55,17 @@ bench-link: setup ## Count the octets of a simulated month over a satellite, by 
 	BINNACLE_LINK_DAYS=30 $(CARGO) test --locked --workspace --test satellite \
 		packets_and_all -- --nocapture --test-threads=1 | grep 'octets a day'
 
+bench-formats: setup ## Compare frames with other formats, over stock HTTPS, and with their entropy
+	scripts/bench-formats
+
 study: setup ## Measure the estimator on many voyages: coverage, error over the bound
 	$(CARGO) run --locked --release -p binnacle-magnetics --example study
 
 study-changes: setup ## Measure how changes are found on simulated fleets: delay, false alarms
 	$(CARGO) run --locked --release -p binnacle-magnetics --example changes_study
+
+study-losses: setup ## Measure what rounding and thinning cost the estimator
+	$(CARGO) run --locked --release -p binnacle-wire --example losses
 
 methods: setup ## Compare the published fit, least squares, Huber and Binnacle on voyages
 	$(CARGO) run --locked --release -p binnacle-magnetics --example methods

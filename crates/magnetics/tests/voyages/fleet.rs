@@ -95,6 +95,8 @@ pub(crate) enum Name {
 
 pub(crate) struct Log {
     pub(crate) samples: Vec<Sample>,
+    /// What those are the means of, minute by minute.
+    pub(crate) minutes: Vec<Sample>,
     pub(crate) happened: Vec<Happened>,
     /// The ship at the end.
     pub(crate) truth: Truth,
@@ -355,6 +357,55 @@ fn storms(sun: u64, days: f64, a_month: f64) -> Vec<(i64, f64)> {
     storms
 }
 
+/// Minutes' readings, and the means of ten.
+#[derive(Default)]
+struct Kept {
+    minutes: Vec<Sample>,
+    samples: Vec<Sample>,
+    mean: Mean,
+}
+
+impl Kept {
+    /// Takes a minute's reading, but for the gyro's fault; ten of them may be wild.
+    fn take(
+        &mut self,
+        at: Sample,
+        course: f64,
+        read: [f64; 3],
+        gyro_off: f64,
+        (faults, rng): (&Faults, &mut ChaCha8Rng),
+    ) {
+        let sample = |[compass, gyro, satellite]: [f64; 3], windows| Sample {
+            compass: CompassHeading::new(compass).unwrap(),
+            gyro: TrueHeading::new(gyro),
+            satellite: TrueHeading::new(satellite).filter(|_| faults.satellite),
+            windows,
+            ..at
+        };
+        self.minutes
+            .push(sample([read[0], read[1] + gyro_off, read[2]], at.windows));
+        let Some([compass, gyro, satellite]) = self.mean.add(course, read) else {
+            return;
+        };
+        let mut wild = [0.0; 2];
+        for wild in &mut wild {
+            if rng.random::<f64>() < faults.outliers {
+                *wild = 10.0 * gauss(rng);
+            }
+        }
+        let [gyro_wild, compass_wild] = wild;
+        for minute in self.minutes.iter_mut().rev().take(10) {
+            let compass = minute.compass.degrees() + compass_wild;
+            minute.compass = CompassHeading::new(compass).unwrap();
+            let gyro = minute.gyro.map(|gyro| gyro.degrees() + gyro_wild);
+            minute.gyro = gyro.and_then(TrueHeading::new);
+        }
+        let gyro = gyro + gyro_off + gyro_wild;
+        self.samples
+            .push(sample([compass + compass_wild, gyro, satellite], 55));
+    }
+}
+
 /// Sails a ship and keeps what her agent would.
 pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -387,8 +438,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         state: Stage::ToCome,
     };
     let mut field = FieldAt::time(FieldModel::Igrf14, start).unwrap();
-    let mut mean = Mean::default();
-    let mut samples = Vec::new();
+    let mut kept = Kept::default();
     let mut turns = Vec::new();
     let mut at_sea_for = 0;
     for minute in 0..(plan.days * 1440.0) as i64 {
@@ -414,7 +464,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         world.plan(plan, minute, (arrived, at_sea_for), &mut truth, &mut rng);
         let (astray, gyro_off) = world.chance(plan, minute, &passage, &errors, &mut rng);
         if alongside || passage.turning_minutes > 0.0 {
-            mean = Mean::default();
+            kept.mean = Mean::default();
             continue;
         }
         let position = Position::new(passage.lat, passage.lon).unwrap();
@@ -422,34 +472,26 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         let (variation, h, z) = (here.declination().degrees_east(), here.h_nt(), here.z_nt);
         let met = (variation + astray, h, z);
         let read = errors.read(&truth, &passage, minute, met, &mut rng);
-        let Some([mut compass, mut gyro, satellite]) = mean.add(passage.course, read) else {
-            continue;
-        };
-        gyro += gyro_off;
-        if rng.random::<f64>() < faults.outliers {
-            gyro += 10.0 * gauss(&mut rng);
-        }
-        if rng.random::<f64>() < faults.outliers {
-            compass += 10.0 * gauss(&mut rng);
-        }
-        samples.push(Sample {
+        let at = Sample {
             time: world.time(minute),
             position,
-            compass: CompassHeading::new(compass).unwrap(),
-            gyro: TrueHeading::new(gyro),
-            satellite: TrueHeading::new(satellite).filter(|_| faults.satellite),
+            compass: CompassHeading::new(0.0).unwrap(),
+            gyro: None,
+            satellite: None,
             sog_kn: Some(passage.speed_kn),
             rate_of_turn_deg_min: Some(0.0),
             spread_deg: Some(0.4),
-            windows: 55,
-        });
+            windows: 6,
+        };
+        kept.take(at, passage.course, read, gyro_off, (faults, &mut rng));
     }
-    let last = samples.last().unwrap();
+    let last = kept.samples.last().unwrap();
     let here = field.at(last.position, 0.0).unwrap();
     truth.h_nt = here.h_nt();
     truth.z_nt = here.z_nt;
     Log {
-        samples,
+        samples: kept.samples,
+        minutes: kept.minutes,
         happened: world.happened,
         truth,
         changed: world.changed,

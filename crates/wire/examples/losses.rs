@@ -1,0 +1,331 @@
+//! What the estimator loses by what a frame rounds, and by samples that are left out:
+//! the tables of BENCHMARKS.md.
+//!
+//! `cargo run --release -p binnacle-wire --example losses [SHIPS]`, with the number of
+//! ships of each kind. Ships and their errors are those of the estimator's own studies,
+//! which share no code with it.
+
+#![allow(clippy::unwrap_used)] // a study, run by hand
+
+#[allow(dead_code)]
+#[path = "../../magnetics/tests/voyages/mod.rs"]
+mod voyages;
+
+use binnacle_magnetics::analyse::{AnalysisSettings, analyse};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_magnetics::fit::REFERENCE_CONSTANT_SD_DEG;
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::batch::{Batch, StreamId};
+use binnacle_wire::{decode, encode};
+use std::collections::BTreeMap;
+use uuid::Uuid;
+use voyages::fleet::{Event, Log, Plan, sail_log};
+use voyages::{Faults, Variety, predicted, true_deviation};
+
+const HEADINGS: usize = 36;
+const DAYS: f64 = 30.0;
+/// So much of its standard error moves a curve that was tipped to another fit.
+const TIPPED: f64 = 0.25;
+const VARIETIES: [Variety; 3] = [Variety::Rich, Variety::Medium, Variety::Poor];
+
+/// What the analysis says of a ship's deviation where she is at the end, by heading.
+#[derive(Clone, Copy)]
+struct Curve {
+    deviations_deg: [f64; HEADINGS],
+    /// Mean variance, without what no heading can tell from the reference's constant.
+    variance: f64,
+}
+
+/// The rows that are analysed of a voyage.
+type Rows = dyn Fn(&Log) -> Vec<Sample> + Sync;
+
+/// A way to them.
+struct Way {
+    name: String,
+    rows: Box<Rows>,
+}
+
+fn way(name: impl Into<String>, rows: impl Fn(&Log) -> Vec<Sample> + Sync + 'static) -> Way {
+    Way {
+        name: name.into(),
+        rows: Box::new(rows),
+    }
+}
+
+fn main() {
+    let ships = std::env::args().nth(1);
+    let ships: u64 = ships.map_or(24, |n| n.parse().expect("the number of ships"));
+    compare(
+        "every minute's reading",
+        ships,
+        |log| log.minutes.clone(),
+        &thinned(),
+    );
+    compare(
+        "every sample as it was",
+        ships,
+        |log| log.samples.clone(),
+        &rounded(),
+    );
+}
+
+/// Samples as each profile sends them: the same in batches of other sizes; and what thinning
+/// leaves of those when the link does not keep up.
+fn thinned() -> Vec<Way> {
+    let mut ways = vec![way("ten minutes' means, unrounded", |log| {
+        log.samples.clone()
+    })];
+    for (profile, seal_h) in [("vsat", 1), ("standard", 6), ("metered", 24)] {
+        ways.push(way(profile, move |log| framed(&log.samples, seal_h)));
+    }
+    for (name, seconds, most) in [
+        ("thinned to two an hour", 3_600, 2),
+        ("to one an hour", 3_600, 1),
+        ("to one in six hours", 6 * 3_600, 1),
+        ("to one a day", 24 * 3_600, 1),
+    ] {
+        ways.push(way(name, move |log| {
+            framed(&thin(&log.samples, seconds, most), 24)
+        }));
+    }
+    ways
+}
+
+/// Of each 10° of heading the first few in so many seconds, as the agent thins samples that
+/// have equally many windows.
+fn thin(samples: &[Sample], seconds: i64, most: usize) -> Vec<Sample> {
+    let mut kept: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    let samples = samples.iter().filter(|s| {
+        let time = s.time.micros().div_euclid(seconds * 1_000_000);
+        let bin = (s.gyro.unwrap().degrees() / 10.0) as i64;
+        let count = kept.entry((time, bin)).or_default();
+        *count += 1;
+        *count <= most
+    });
+    samples.copied().collect()
+}
+
+/// Each column rounded alone, in the frame's step and in greater ones; and all, through
+/// frames.
+fn rounded() -> Vec<Way> {
+    let mut ways = Vec::new();
+    for step in [0.02, 0.05, 0.1, 0.2, 0.5] {
+        ways.push(way(
+            format!("compass less reference {step}°"),
+            each(move |s| s.compass = less(s, |apart| round(apart, step))),
+        ));
+    }
+    for step in [0.05, 0.2, 0.5, 1.0] {
+        ways.push(way(
+            format!("gyro {step}°"),
+            each(move |s| {
+                let apart = less(s, |apart| apart);
+                let gyro = s.gyro.unwrap().degrees();
+                s.gyro = TrueHeading::new(round(gyro, step));
+                let shift = s.gyro.unwrap().degrees() - gyro;
+                s.compass = CompassHeading::new(apart.degrees() + shift).unwrap();
+            }),
+        ));
+    }
+    for step in [0.001, 0.01, 0.1] {
+        ways.push(way(
+            format!("latitude, longitude {step}°"),
+            each(move |s| {
+                let (lat, lon) = (s.position.lat_deg(), s.position.lon_deg());
+                s.position = Position::new(round(lat, step), wrap_180(round(lon, step))).unwrap();
+            }),
+        ));
+    }
+    for step in [0.2, 1.0] {
+        ways.push(way(
+            format!("speed {step} kn"),
+            each(move |s| s.sog_kn = s.sog_kn.map(|sog| round(sog, step))),
+        ));
+    }
+    ways.push(way("all, as frames do", |log| framed(&log.samples, 24)));
+    ways
+}
+
+fn each(change: impl Fn(&mut Sample) + Sync) -> impl Fn(&Log) -> Vec<Sample> + Sync {
+    move |log| {
+        let mut samples = log.samples.clone();
+        samples.iter_mut().for_each(&change);
+        samples
+    }
+}
+
+fn round(value: f64, step: f64) -> f64 {
+    (value / step).round() * step
+}
+
+/// The compass's heading, its difference from the gyro's changed.
+fn less(s: &Sample, change: impl Fn(f64) -> f64) -> CompassHeading {
+    let gyro = s.gyro.unwrap().degrees();
+    CompassHeading::new(gyro + change(wrap_180(s.compass.degrees() - gyro))).unwrap()
+}
+
+/// Through frames of so many hours each, as they go ashore.
+fn framed(samples: &[Sample], hours: i64) -> Vec<Sample> {
+    let batches = samples.chunk_by(|a, b| {
+        let batch = |s: &Sample| s.time.micros().div_euclid(hours * 3_600_000_000);
+        batch(a) == batch(b)
+    });
+    let through = |samples: &[Sample]| {
+        let batch = Batch {
+            stream: StreamId(Uuid::from_u128(7)),
+            seq: 1,
+            samples: samples.to_vec(),
+            tally: BTreeMap::new(),
+            alerts: Vec::new(),
+            thinned: None,
+        };
+        decode(&encode(&batch).unwrap()).unwrap().samples
+    };
+    batches.flat_map(through).collect()
+}
+
+/// One voyage by the usual rows and by others.
+struct Pair {
+    /// Mean squares over headings, of both against the truth and of one against the other.
+    usual_error: f64,
+    error: f64,
+    change: f64,
+    /// Mean variances that the analysis states.
+    usual_variance: f64,
+    variance: f64,
+}
+
+/// Analyses each ship by `usual` rows and by each way, and prints how those differ.
+fn compare(usual_name: &str, ships: u64, usual: fn(&Log) -> Vec<Sample>, ways: &[Way]) {
+    let found = each_ship(ships, |seed| {
+        let log = sail(seed);
+        let usual = curve(&log, &usual(&log));
+        let truth = truth(&log);
+        let pair = |other: Curve| {
+            usual.map(|usual| Pair {
+                usual_error: apart(&usual.deviations_deg, &truth),
+                error: apart(&other.deviations_deg, &truth),
+                change: apart(&other.deviations_deg, &usual.deviations_deg),
+                usual_variance: usual.variance,
+                variance: other.variance,
+            })
+        };
+        let curves = ways.iter().map(|way| curve(&log, &(way.rows)(&log)));
+        curves.map(|curve| curve.and_then(pair)).collect::<Vec<_>>()
+    });
+    println!("\nagainst {usual_name}, {DAYS} days:");
+    for (number, way) in ways.iter().enumerate() {
+        let pairs: Vec<&Pair> = found
+            .iter()
+            .filter_map(|voyage| voyage[number].as_ref())
+            .collect();
+        print(&way.name, &pairs);
+    }
+}
+
+fn print(name: &str, pairs: &[&Pair]) {
+    let ratio = |pairs: &[&Pair]| {
+        let sum = |of: fn(&Pair) -> f64| pairs.iter().map(|p| of(p)).sum::<f64>();
+        (sum(|p| p.error) / sum(|p| p.usual_error)).sqrt()
+    };
+    // How much the ratio owes to which ships were drawn: each left out in turn.
+    let n = pairs.len() as f64;
+    let all = ratio(pairs);
+    let spread: f64 = (0..pairs.len())
+        .map(|left_out| {
+            let mut others = pairs.to_vec();
+            others.remove(left_out);
+            (ratio(&others) - all).powi(2)
+        })
+        .sum();
+    let error = pairs.iter().map(|p| p.error).sum::<f64>() / n;
+    // A search for levels of noise, or for changes, may be in the balance: then a hair
+    // decides between two fits.
+    let (kept, tipped): (Vec<&Pair>, Vec<&Pair>) = pairs
+        .iter()
+        .partition(|p| p.change < TIPPED.powi(2) * p.usual_variance);
+    let mean =
+        |of: fn(&Pair) -> f64| 100.0 * kept.iter().map(|p| of(p)).sum::<f64>() / kept.len() as f64;
+    println!(
+        "{name:30} voyages {} error {:.4} over the usual's {all:.4} +- {:.4} | tipped {} | others: \
+         change^2 over the variance {:.3} % | variance over the usual's {:.2} % | change rms {:.4}",
+        pairs.len(),
+        error.sqrt(),
+        (spread * (n - 1.0) / n).sqrt(),
+        tipped.len(),
+        mean(|p| p.change / p.usual_variance),
+        mean(|p| p.variance / p.usual_variance),
+        (mean(|p| p.change) / 100.0).sqrt(),
+    );
+}
+
+/// Mean square difference.
+fn apart(a: &[f64; HEADINGS], b: &[f64; HEADINGS]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| wrap_180(a - b).powi(2))
+        .sum::<f64>()
+        / HEADINGS as f64
+}
+
+fn sail(seed: u64) -> Log {
+    let plan = Plan {
+        days: DAYS,
+        anomalies: 0.0,
+        gyro_faults: 0.0,
+        faults: Faults {
+            storms_per_month: 0.0,
+            ..Faults::USUAL
+        },
+        ..Plan::of(Event::Nothing, VARIETIES[(seed % 3) as usize])
+    };
+    sail_log(9_000 + seed, &plan)
+}
+
+/// The true deviation, the gyro's constant counted to it: no heading tells them apart.
+fn truth(log: &Log) -> [f64; HEADINGS] {
+    std::array::from_fn(|k| {
+        let compass = 10.0 * k as f64;
+        true_deviation(&log.truth, compass, log.truth.h_nt, log.truth.z_nt)
+            + log.truth.gyro_constant_deg
+    })
+}
+
+/// None where the analysis gives no model, or takes the voyage for more than one epoch.
+fn curve(log: &Log, samples: &[Sample]) -> Option<Curve> {
+    let analysis = analyse(samples, &[], &AnalysisSettings::default());
+    let [epoch] = &analysis.epochs[..] else {
+        return None;
+    };
+    let mut model = epoch.model.clone()?;
+    model.covariance.as_mut()?[7][7] -= REFERENCE_CONSTANT_SD_DEG.powi(2);
+    let (h, z) = (log.truth.h_nt, log.truth.z_nt);
+    let at: [(f64, f64); HEADINGS] =
+        std::array::from_fn(|k| predicted(&model, 10.0 * k as f64, h, z));
+    Some(Curve {
+        deviations_deg: at.map(|(deviation, _)| deviation),
+        variance: at.iter().map(|(_, se)| se * se).sum::<f64>() / HEADINGS as f64,
+    })
+}
+
+/// Does a piece of work for ships of each kind, on all cores, results in order.
+fn each_ship<T: Send>(ships: u64, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
+    let seeds = 3 * ships;
+    let mut results: Vec<(u64, T)> = std::thread::scope(|scope| {
+        let work = &work;
+        let started: Vec<_> = (0..threads)
+            .map(|first| {
+                let own = (first..seeds).step_by(threads as usize);
+                scope.spawn(move || own.map(|seed| (seed, work(seed))).collect::<Vec<_>>())
+            })
+            .collect();
+        started
+            .into_iter()
+            .flat_map(|thread| thread.join().unwrap())
+            .collect()
+    });
+    results.sort_by_key(|(seed, _)| *seed);
+    results.into_iter().map(|(_, result)| result).collect()
+}
