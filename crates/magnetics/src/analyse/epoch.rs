@@ -74,8 +74,6 @@ pub(super) struct Reference {
     /// For each reading of the epoch, in order; none where there was no reference
     /// or none to be believed.
     pub(super) observations: Vec<Option<Observation>>,
-    /// For those that were held against a reference, what they said.
-    pub(super) readings: Vec<Option<HeadingReading>>,
     pub(super) check: ReferenceCheck,
 }
 
@@ -84,22 +82,21 @@ pub(super) fn reference(
     readings: &[Reading],
     one_constant_sd_deg: f64,
 ) -> Result<Reference, FitError> {
-    let read: Vec<Option<HeadingReading>> = readings.iter().map(heading_reading).collect();
     let has_reference = |r: &Reading| r.sample.gyro.or(r.sample.satellite).is_some();
     if !readings.is_empty() && !readings.iter().any(has_reference) {
         return Err(FitError::NoReference {
             readings: readings.len() as u64,
         });
     }
-    let known: Vec<HeadingReading> = read.iter().copied().flatten().collect();
+    let mut known: Vec<HeadingReading> = Vec::with_capacity(readings.len());
+    known.extend(readings.iter().filter_map(heading_reading));
     let referred = refer(&known, one_constant_sd_deg)?;
     let mut observed = referred.observations.into_iter();
-    let observations = read
+    let observations = readings
         .iter()
-        .map(|read| read.and_then(|_| observed.next().flatten()));
+        .map(|reading| heading_reading(reading).and_then(|_| observed.next().flatten()));
     Ok(Reference {
         observations: observations.collect(),
-        readings: read,
         check: referred.check,
     })
 }
@@ -136,12 +133,13 @@ pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], stretch: &S
     epoch.data_from = readings[own.clone()].first().map(|r| r.sample.time);
     epoch.data_until = readings[own.clone()].last().map(|r| r.sample.time);
     for index in own.clone() {
+        let is_referred = heading_reading(&readings[index]).is_some();
         let diagnostic = &mut readings[index].diagnostic;
         match &reference.observations[index] {
             Some(observation) => {
                 diagnostic.deviation_deg = Some(observation.deviation.degrees_east());
             }
-            None if reference.readings[index].is_some() => {
+            None if is_referred => {
                 diagnostic.reason = diagnostic.reason.or(Some(SampleReason::ReferenceFailed));
             }
             None => {}

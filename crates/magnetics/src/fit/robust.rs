@@ -8,6 +8,7 @@ use crate::deviation::Coefficients;
 use crate::estimate::{NoiseLevels, Options, Prior, Rough, estimate, rough};
 use crate::model::{Model, Parameters};
 use crate::ship::EarthField;
+use std::borrow::Cow;
 
 /// What is known beforehand of a reference's constant error: its standard
 /// deviation in degrees.
@@ -75,7 +76,7 @@ pub fn fit_robust(
     options: &RobustOptions,
 ) -> Result<RobustFit, FitError> {
     let usable = usable(observations);
-    let rows: Vec<Observation> = usable.iter().map(|&i| observations[i]).collect();
+    let rows = chosen(observations, &usable);
     check_field(observations)?;
     check_number(&rows, NEEDED_SAMPLES)?;
     check_headings(&rows)?;
@@ -92,7 +93,7 @@ pub fn fit_known_ship(
     options: &RobustOptions,
 ) -> Result<RobustFit, FitError> {
     let usable = usable(observations);
-    let rows: Vec<Observation> = usable.iter().map(|&i| observations[i]).collect();
+    let rows = chosen(observations, &usable);
     check_field(observations)?;
     check_number(&rows, NEEDED_OF_A_KNOWN_SHIP)?;
     fit_usable(observations, &usable, &rows, options)
@@ -121,6 +122,14 @@ fn usable(observations: &[Observation]) -> Vec<usize> {
         .collect();
     stray::leave_out_early(observations, &mut usable);
     usable
+}
+
+/// Those in these places, which are in order.
+fn chosen<'a>(observations: &'a [Observation], places: &[usize]) -> Cow<'a, [Observation]> {
+    if places.len() == observations.len() {
+        return Cow::Borrowed(observations);
+    }
+    places.iter().map(|&i| observations[i]).collect()
 }
 
 /// In a field that a compass can work in, and not left out by its weight.

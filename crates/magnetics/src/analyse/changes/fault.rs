@@ -1,8 +1,9 @@
 //! Faults of a reference that the other one showed.
 
 use super::Found;
+use crate::analyse::reading::{Reading, heading_reading};
 use crate::change::{Cause, CauseProbability, Change};
-use crate::fit::{HeadingReading, Observation};
+use crate::fit::Observation;
 use crate::time::Timestamp;
 
 /// So many readings with a dropped reference in a row are a fault, and gaps
@@ -11,30 +12,44 @@ const FAULT_ROWS: usize = 3;
 const FAULT_GAP_S: f64 = 1.5 * 3600.0;
 const DAY_S: f64 = 86_400.0;
 
+/// What a reading tells of its references.
+pub(super) struct Seen {
+    time: Timestamp,
+    /// Whether both were read.
+    both: bool,
+    /// The gyro's share in what was believed; none where nothing was.
+    gyro_share: Option<f64>,
+}
+
+impl Seen {
+    /// None without a reference.
+    pub(super) fn of(reading: &Reading, observation: Option<&Observation>) -> Option<Seen> {
+        let read = heading_reading(reading)?;
+        Some(Seen {
+            time: reading.sample.time,
+            both: read.gyro.is_some() && read.satellite.is_some(),
+            gyro_share: observation.map(|o| o.gyro_share),
+        })
+    }
+}
+
 /// Stretches over which a reference was dropped.
-pub(super) fn faults(
-    readings: &[(HeadingReading, Option<Observation>)],
-    changes: &mut Vec<Change>,
-) {
+pub(super) fn faults(all: &[Seen], changes: &mut Vec<Change>) {
     let mut dropped: Vec<(usize, Timestamp, &'static str)> = Vec::new();
-    for (index, (reading, observation)) in readings.iter().enumerate() {
-        let both = reading.gyro.is_some() && reading.satellite.is_some();
-        let share = observation.as_ref().map(|o| o.gyro_share);
-        let which = match share {
+    for (index, seen) in all.iter().enumerate() {
+        let which = match seen.gyro_share {
             None => "neither could be shown to be right",
-            Some(share) if both && share < 0.01 => "the gyro had failed",
-            Some(share) if both && share > 0.99 => "the satellite compass had failed",
+            Some(share) if seen.both && share < 0.01 => "the gyro had failed",
+            Some(share) if seen.both && share > 0.99 => "the satellite compass had failed",
             Some(_) => continue,
         };
-        if let Some(time) = reading.time {
-            dropped.push((index, time, which));
-        }
+        dropped.push((index, seen.time, which));
     }
     let spells = dropped.chunk_by(|a, b| b.1.seconds_since(a.1) < FAULT_GAP_S);
     for spell in spells.filter(|spell| spell.len() >= FAULT_ROWS) {
         let (first, last) = (&spell[0], &spell[spell.len() - 1]);
-        let before = first.0.checked_sub(1).and_then(|i| readings[i].0.time);
-        let goes_on = last.0 + 1 == readings.len();
+        let before = first.0.checked_sub(1).map(|i| all[i].time);
+        let goes_on = last.0 + 1 == all.len();
         changes.push(Change {
             from: first.1,
             from_earliest: before.unwrap_or(first.1),

@@ -15,7 +15,7 @@ use crate::change::{Cause, Change, Given, What, detect};
 use crate::estimate::Prior;
 use crate::fit::Observation;
 use crate::time::Timestamp;
-use fault::{faults, merge_faults};
+use fault::{Seen, faults, merge_faults};
 use teller::Teller;
 
 /// What was found in one epoch of the logbook.
@@ -45,12 +45,6 @@ pub(super) struct Boundary {
     pub(super) resumes: bool,
 }
 
-/// An observation with the reading it is of.
-struct Row {
-    reading: usize,
-    observation: Observation,
-}
-
 /// Searches the readings of one epoch of the logbook and marks those that a
 /// passing disturbance or a failed reference spoilt.
 pub(super) fn find(
@@ -73,20 +67,15 @@ pub(super) fn find(
     let usable: Vec<usize> = (0..readings.len())
         .filter(|&index| usable(&readings[index]))
         .collect();
-    let read = usable
+    let seen = usable
         .iter()
-        .filter_map(|&index| Some((reference.readings[index]?, reference.observations[index])));
-    faults(&read.collect::<Vec<_>>(), &mut found.changes);
-    let rows: Vec<Row> = usable
+        .filter_map(|&index| Seen::of(&readings[index], reference.observations[index].as_ref()));
+    faults(&seen.collect::<Vec<_>>(), &mut found.changes);
+    // The observations, and the places of the readings that they are of.
+    let (places, observations): (Vec<usize>, Vec<Observation>) = usable
         .into_iter()
-        .filter_map(|reading| {
-            Some(Row {
-                reading,
-                observation: reference.observations[reading]?,
-            })
-        })
-        .collect();
-    let observations: Vec<Observation> = rows.iter().map(|row| row.observation).collect();
+        .filter_map(|index| Some((index, reference.observations[index]?)))
+        .unzip();
     let reported: Vec<Timestamp> = logbook
         .iter()
         .filter(|entry| cause_of(entry.kind).is_some())
@@ -141,8 +130,8 @@ pub(super) fn find(
         };
         if let Some(reason) = spoilt {
             let last = teller.last_spoilt(index);
-            for row in &rows[event.first..=last] {
-                let of = &mut readings[row.reading].diagnostic.reason;
+            for &place in &places[event.first..=last] {
+                let of = &mut readings[place].diagnostic.reason;
                 *of = of.or(Some(reason));
             }
         }
