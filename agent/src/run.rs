@@ -115,7 +115,9 @@ impl Agent {
         let mut ship = Ship::new(&config.roles, stale_s, settings, hold);
         let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
         if !config.inputs.values().any(is_recorded) {
-            ship.judge_time_by(clock::now(), Instant::now());
+            // The computer may have lost its time with its power.
+            let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
+            ship.judge_time_by(known, Instant::now());
         }
         let unstored = Unstored {
             pending: spool.pending().await?,

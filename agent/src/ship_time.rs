@@ -8,8 +8,8 @@
 //!   is in doubt: time stands still, so that nothing is sampled, until the receiver is
 //!   back where it would have been, the shore's or the computer's time decides, or the
 //!   new time has lasted for a day with nothing that speaks against it.
-//! - Aboard, a date of before this program is one of which the receiver counts the weeks
-//!   from 0 again after 1,024 (IS-GPS-200, 20.3.3.3.1.1), and is put right.
+//! - Aboard, a date that is right but for some times 1,024 weeks, after which GPS counts
+//!   them from 0 again (IS-GPS-200, 20.3.3.3.1.1), is put right.
 //! - Recorded and accelerated data work: without [`ShipClock::judge_by`] no other clock
 //!   is asked, and a jump is a jump.
 
@@ -30,9 +30,10 @@ const LASTED_S: f64 = 86_400.0;
 const QUARTZ: f64 = 0.01;
 /// 1980-01-06, when GPS time begins, and 2100-01-01.
 const PLAUSIBLE_MICROS: std::ops::Range<i64> = 315_964_800_000_000..4_102_444_800_000_000;
-/// 2020-01-01: aboard it is later.
-const EARLIEST_ABOARD_MICROS: i64 = 1_577_836_800_000_000;
 const ROLL_OVER_S: f64 = 1_024.0 * 7.0 * 86_400.0;
+/// So far from what is known of the time a date that was put right may be: the computer's
+/// battery may be empty for as long.
+const YEAR_S: f64 = 366.0 * 86_400.0;
 
 /// What a time stamp did to the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +70,14 @@ struct Computer {
     heard: Instant,
     /// When the clock was last right.
     right: Instant,
+}
+
+impl Computer {
+    /// As far as it knows.
+    fn now(&self) -> Timestamp {
+        let passed = self.heard.saturating_duration_since(self.set);
+        self.time.plus_seconds(passed.as_secs_f64())
+    }
 }
 
 /// A jump that nothing bears out.
@@ -164,11 +173,16 @@ impl ShipClock {
     }
 
     fn unrolled(&self, stamp: Timestamp) -> Timestamp {
-        let mut stamp = stamp;
-        while self.computer.is_some() && stamp.micros() < EARLIEST_ABOARD_MICROS {
-            stamp = stamp.plus_seconds(ROLL_OVER_S);
+        let Some(computer) = self.computer else {
+            return stamp;
+        };
+        let known = self.now.unwrap_or_else(|| computer.now());
+        let behind_s = known.seconds_since(stamp);
+        let cycles = (behind_s / ROLL_OVER_S).round();
+        if cycles < 1.0 || (behind_s - cycles * ROLL_OVER_S).abs() > YEAR_S {
+            return stamp;
         }
-        stamp
+        stamp.plus_seconds(cycles * ROLL_OVER_S)
     }
 
     /// The active source and better ones may; a worse one when the active one
@@ -247,8 +261,7 @@ impl ShipClock {
         if stamp.seconds_since(expected).abs() <= LONGEST_STEP_S {
             return self.jump(stamp);
         }
-        let passed = computer.heard.saturating_duration_since(computer.set);
-        let outside = computer.time.plus_seconds(passed.as_secs_f64());
+        let outside = computer.now();
         let (new_s, old_s) = (
             stamp.seconds_since(outside).abs(),
             expected.seconds_since(outside).abs(),
@@ -379,6 +392,18 @@ mod tests {
         assert!(clock.problem().unwrap().contains("1024 weeks"));
         hear(&mut clock, start, 9..10, 0);
         assert_eq!(clock.problem(), None);
+    }
+
+    #[test]
+    fn a_receiver_that_rolled_over_before_is_put_right_and_an_old_log_stays_old() {
+        let mut clock = ShipClock::new(1, 15.0);
+        clock.judge_by(at(90 * 86_400), Instant::now());
+        let rolled = clock.observe(0, at(0).plus_seconds(-2.0 * ROLL_OVER_S));
+        assert_eq!(rolled, Step::Advanced(at(0)));
+        let mut clock = ShipClock::new(1, 15.0);
+        clock.judge_by(at(0), Instant::now());
+        let old = at(-2 * YEARS_S);
+        assert_eq!(clock.observe(0, old), Step::Advanced(old));
     }
 
     #[test]

@@ -219,6 +219,7 @@ impl Coast {
         self.ship.assert_running()?;
         let most_kb = self.ship.peak_memory_kb()?;
         let grown_kb = most_kb.saturating_sub(self.memory_kb.unwrap_or(most_kb));
+        println!("the agent took {most_kb} kB, {grown_kb} kB more than after a day");
         ensure!(
             grown_kb < MEMORY_GROWS_KB && most_kb < MEMORY_MOST_KB,
             "{most_kb} kB, {grown_kb} kB more than after a day"
