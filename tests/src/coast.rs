@@ -16,9 +16,9 @@ use tokio::time::Instant;
 use uuid::Uuid;
 
 /// What days under faults may add to the memory that a first day took.
-const MEMORY_GROWS_KB: u64 = 16_000;
+const MEMORY_GROWS_KB: u64 = 8_000;
 /// An agent of some megabytes, built without optimisation.
-const MEMORY_MOST_KB: u64 = 60_000;
+const MEMORY_MOST_KB: u64 = 45_000;
 /// Windows of the stretch that is not finished yet, and of the commit under way.
 const OPEN_WINDOWS: f64 = 120.0;
 /// Windows that a sample leaves out as outliers; a quarter of a day's batch is 2,000.
