@@ -19,6 +19,15 @@ impl From<Timestamp> for Time {
     }
 }
 
+impl Time {
+    /// For people, to the minute: `2026-11-21 07:00 UTC`.
+    pub fn to_the_minute(self) -> String {
+        let text = self.0.to_string();
+        let minute: String = text.chars().take(16).collect();
+        format!("{} UTC", minute.replace('T', " "))
+    }
+}
+
 impl<DB: Database> Type<DB> for Time
 where
     i64: Type<DB>,

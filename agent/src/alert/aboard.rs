@@ -35,6 +35,12 @@ impl Aboard {
         self.alert.state == ShipAlertState::Open
     }
 
+    /// Whether the corrected heading is not to be steered by while it goes on: unless
+    /// the compass and one reference speak against the other.
+    pub(crate) fn is_of_the_compass(&self) -> bool {
+        self.is_open() && matches!(self.alert.suspect(), Suspect::Compass | Suspect::Unknown)
+    }
+
     /// For the page and `status`.
     pub(crate) fn status(&self) -> AlertStatus {
         AlertStatus {
@@ -47,11 +53,7 @@ impl Aboard {
 }
 
 fn says(alert: &ShipAlert) -> String {
-    let reference = if alert.gyro_departure_deg.is_some() {
-        "gyro"
-    } else {
-        "satellite compass"
-    };
+    let reference = alert.reference();
     let minute = |time: Timestamp| time.to_string().get(..16).map(|t| t.replace('T', " "));
     let (since, at) = (
         minute(alert.since).unwrap_or_default(),
@@ -61,7 +63,7 @@ fn says(alert: &ShipAlert) -> String {
         ShipAlertState::Open => format!(
             "compass and {reference} are {:.0}° apart since {since} UTC; {:.1}° is the most \
              that their usual errors explain",
-            main_departure_deg(alert).abs(),
+            alert.departure_deg().abs(),
             alert.limit_deg
         ),
         ShipAlertState::Agree => format!("compass and {reference} agree again since {at} UTC"),
@@ -89,12 +91,6 @@ fn advice(alert: &ShipAlert) -> &'static str {
              gyro and its repeaters. Report lightning, a shock or magnetic cargo."
         }
     }
-}
-
-/// What raised it.
-fn main_departure_deg(alert: &ShipAlert) -> f64 {
-    let departure = alert.gyro_departure_deg.or(alert.satellite_departure_deg);
-    departure.unwrap_or_default()
 }
 
 #[cfg(test)]

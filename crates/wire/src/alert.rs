@@ -60,17 +60,20 @@ pub enum Suspect {
 }
 
 impl ShipAlert {
-    /// The larger of the departures, with its sign.
+    /// The departure that raised it, which both ends speak of: from the gyro, or from
+    /// the satellite compass where the gyro gave nothing.
     pub fn departure_deg(&self) -> f64 {
-        let (gyro, satellite) = (self.gyro_departure_deg, self.satellite_departure_deg);
-        let departures = gyro.into_iter().chain(satellite);
-        departures.fold(0.0, |worst: f64, next| {
-            if next.abs() > worst.abs() {
-                next
-            } else {
-                worst
-            }
-        })
+        let departure = self.gyro_departure_deg.or(self.satellite_departure_deg);
+        departure.unwrap_or_default()
+    }
+
+    /// What the compass departed from by that.
+    pub fn reference(&self) -> &'static str {
+        if self.gyro_departure_deg.is_some() {
+            "gyro"
+        } else {
+            "satellite compass"
+        }
     }
 
     /// What the references say of each other.
@@ -124,7 +127,15 @@ mod tests {
             let alert = alert(gyro, satellite);
             assert_eq!(alert.suspect(), suspect, "{gyro:?} {satellite:?}");
         }
-        let worst = alert(Some(-8.0), Some(7.0)).departure_deg();
-        assert!((worst + 8.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_departure_is_from_the_gyro_where_there_is_one() {
+        let said = |gyro, satellite| {
+            let alert = alert(gyro, satellite);
+            (alert.departure_deg(), alert.reference())
+        };
+        assert_eq!(said(Some(-6.2), Some(-7.2)), (-6.2, "gyro"));
+        assert_eq!(said(None, Some(-7.2)), (-7.2, "satellite compass"));
     }
 }

@@ -4,7 +4,7 @@
 //! each alert counts, and the alert that the ship spoke of last is the one that is
 //! open or over. An analysis neither raises nor clears it.
 
-use super::alert::{AlertWanted, Cause, Evidence, Severity};
+use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::look::{bring_in_line, tell};
 use super::store;
 use crate::db::{Result as DbResult, Tx, execute, row};
@@ -100,21 +100,28 @@ fn wanted(alert: &ShipAlert) -> AlertWanted {
         "Model {} and the gyro's usual error allow {:.1}°.",
         alert.model_version, alert.limit_deg
     ));
-    let (summary, advice) = words(alert.suspect());
+    let (who, advice) = words(alert);
     AlertWanted {
         cause: Cause::ReportedAboard,
         severity,
         since: alert.since.into(),
-        summary: format!("{summary} parted by {size_deg:.0}°, reported by the ship's agent."),
+        // The ship keeps to the date of each of her alerts.
+        dated: Dated::exactly(alert.since.into()),
+        summary: format!("{who} parted by {size_deg:.0}°, reported by the ship's agent."),
         advice,
         evidence: Evidence(evidence),
     }
 }
 
-fn words(suspect: Suspect) -> (&'static str, &'static str) {
-    match suspect {
+fn words(alert: &ShipAlert) -> (&'static str, &'static str) {
+    let both = if alert.gyro_departure_deg.is_some() {
+        "Compass and gyro"
+    } else {
+        "Compass and satellite compass"
+    };
+    match alert.suspect() {
         Suspect::Compass => (
-            "Compass and gyro",
+            both,
             "Steer by gyro: the satellite compass bears it out. Do not use the card. Take an \
              azimuth, and ask on board about lightning, a shock or magnetic cargo.",
         ),
@@ -124,7 +131,7 @@ fn words(suspect: Suspect) -> (&'static str, &'static str) {
              and latitude settings checked, and an azimuth taken before it is steered by.",
         ),
         Suspect::Satellite | Suspect::Unknown => (
-            "Compass and gyro",
+            both,
             "Steer by gyro, but trust neither until an azimuth proves one: check the gyro, and \
              ask on board about lightning, a shock or magnetic cargo.",
         ),
@@ -164,6 +171,15 @@ mod tests {
         assert_eq!(
             compass.evidence.0[0],
             "The corrected compass less the gyro is -28.4°."
+        );
+        // The page on board says 6° too.
+        let smaller = said(Some(-6.2), Some(-7.2));
+        assert!(smaller.summary.starts_with("Compass and gyro parted by 6°"));
+        let alone = said(None, Some(-7.2));
+        assert!(
+            alone
+                .summary
+                .starts_with("Compass and satellite compass parted by 7°")
         );
         let gyro = said(Some(6.0), Some(0.3));
         assert_eq!(gyro.severity, Severity::Warning);

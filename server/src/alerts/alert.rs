@@ -83,12 +83,40 @@ pub struct AlertWanted {
     pub severity: Severity,
     /// When its cause began, as far as that is known.
     pub since: Time,
+    /// What an alert of this cause was dated if it was about the same event.
+    pub dated: Dated,
     /// What is so, in a sentence.
     pub summary: String,
     /// What to do.
     pub advice: &'static str,
     /// What shows it.
     pub evidence: Evidence,
+}
+
+/// The dates that an event may have been given before, when less was known of it.
+///
+/// The default is any date: of what goes on, rather than happened at a time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dated {
+    /// Not before this.
+    pub from: Option<Time>,
+    /// Not after this.
+    pub to: Option<Time>,
+}
+
+impl Dated {
+    /// This date and no other.
+    pub fn exactly(at: Time) -> Dated {
+        Dated {
+            from: Some(at),
+            to: Some(at),
+        }
+    }
+
+    /// Whether an alert of that date was about this event.
+    pub fn includes(&self, date: Time) -> bool {
+        self.from.is_none_or(|from| from <= date) && self.to.is_none_or(|to| date <= to)
+    }
 }
 
 /// What shows something, a sentence each.

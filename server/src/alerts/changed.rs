@@ -6,10 +6,12 @@
 //! each cause speaks for all. Work on correctors, compass or ship that the logbook
 //! tells of is expected and calls for none.
 
-use super::alert::{AlertWanted, Cause, Evidence, Severity};
+use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::findings::{Findings, FoundChange};
 use super::limits::AlertLimits;
+use crate::time::Time;
 use binnacle_magnetics::change;
+use binnacle_magnetics::time::Timestamp;
 use std::fmt::Write as _;
 
 /// A change of deviation of this size is to be acted on, degrees.
@@ -46,7 +48,8 @@ pub(super) fn changed(findings: &Findings, limits: &AlertLimits) -> Vec<AlertWan
         let known = wanted.iter().any(|alert| alert.cause == cause);
         let stage = stage(found, findings, limits);
         if !known && !found.expected && holds(found, stage, findings) {
-            wanted.push(alert(found, cause, stage, limits));
+            let dated = dated(found, findings);
+            wanted.push(alert(found, cause, stage, dated, limits));
         }
     }
     wanted
@@ -102,7 +105,36 @@ fn holds(found: &FoundChange, stage: Stage, findings: &Findings) -> bool {
     is_news || (is_of_now && stage != Stage::Learnt)
 }
 
-fn alert(found: &FoundChange, cause: Cause, stage: Stage, limits: &AlertLimits) -> AlertWanted {
+/// Later samples date a change better, by days if they fill a gap, and may name
+/// another cause: an alert was about the change that is nearest to its date, among
+/// those of the ship or among the others.
+fn dated(found: &FoundChange, findings: &Findings) -> Dated {
+    // It is also said of what goes on throughout, which has no date.
+    if found.change.cause == change::Cause::ReferenceFault {
+        return Dated::default();
+    }
+    let at = found.change.from;
+    let of_the_ship = found.change.cause.is_the_ships();
+    let others = findings.changes.iter().map(|other| &other.change);
+    let others = others.filter(|other| other.cause.is_the_ships() == of_the_ship);
+    let (before, after): (Vec<Timestamp>, Vec<Timestamp>) = others
+        .map(|other| other.from)
+        .filter(|other| *other != at)
+        .partition(|other| *other < at);
+    let midway = |other: Timestamp| at.plus_seconds(other.seconds_since(at) / 2.0).into();
+    Dated {
+        from: before.into_iter().max().map(midway),
+        to: after.into_iter().min().map(midway),
+    }
+}
+
+fn alert(
+    found: &FoundChange,
+    cause: Cause,
+    stage: Stage,
+    dated: Dated,
+    limits: &AlertLimits,
+) -> AlertWanted {
     let change = &found.change;
     let mut evidence = change.evidence.clone();
     let likely = change.causes.iter().filter(|c| c.probability >= UNLIKELY);
@@ -116,6 +148,7 @@ fn alert(found: &FoundChange, cause: Cause, stage: Stage, limits: &AlertLimits) 
         cause,
         severity: severity(found, stage, limits),
         since: change.from.into(),
+        dated,
         summary: summary(found, stage),
         advice: advice(change.cause, stage),
         evidence: Evidence(evidence),
@@ -162,7 +195,8 @@ fn ahead_deg(found: &FoundChange) -> Option<f64> {
 
 fn summary(found: &FoundChange, stage: Stage) -> String {
     let change = &found.change;
-    let (since, cause) = (change.from, words(change.cause));
+    let since = Time(change.from).to_the_minute();
+    let cause = words(change.cause);
     if change.cause == change::Cause::CompassFault {
         return format!("Since about {since} the compass stands still while the ship turns.");
     }

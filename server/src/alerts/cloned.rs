@@ -5,7 +5,7 @@
 //! the first one's files. It is raised in the transaction that stores the batch; it is
 //! over when the agent's token is revoked, or when nothing has shown it for a week.
 
-use super::alert::{AlertWanted, Cause, Evidence, Severity};
+use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::look::{bring_in_line, tell};
 use super::store;
 use crate::access::Agent;
@@ -91,6 +91,7 @@ fn wanted(stream: Uuid, seq: u64, newer: &Newer) -> AlertWanted {
         cause: Cause::ClonedAgent,
         severity: Severity::Warning,
         since: newer.opened_at,
+        dated: Dated::default(),
         summary: "Two computers send as this compass's agent: one has a copy of the other's \
                   files."
             .to_owned(),

@@ -2,7 +2,9 @@
 //! is new.
 //!
 //! What always holds: whoever changes a compass's alerts holds its lock until the
-//! transaction ends, and every change of an alert is told in that transaction.
+//! transaction ends, and every change of an alert is told in that transaction. An alert
+//! is about one event: another of its cause is another alert, whatever people said of
+//! the first.
 
 use super::alert::{Alert, AlertWanted, Cause, Severity, State};
 use super::cloned;
@@ -24,6 +26,9 @@ use tracing::{error, info};
 
 /// How often to look for what time alone brings.
 const LOOK_EVERY: Duration = Duration::from_mins(1);
+/// Why an alert cleared itself.
+const OVER: &str = "it is over";
+const FOLLOWED: &str = "another of its cause followed";
 
 /// A change of an alert: what became of it, or only other words.
 #[derive(Clone, Copy, Debug)]
@@ -131,7 +136,7 @@ pub(super) async fn bring_in_line(
         if wanted.iter().any(|wanted| wanted.cause == alert.cause) {
             continue;
         }
-        store::end(tx, vessel, alert.id, now).await?;
+        store::end(tx, vessel, alert.id, OVER, now).await?;
         if alert.state != State::Cleared {
             news.push(News::of(alert.id, Kind::AlertCleared));
         }
@@ -150,26 +155,23 @@ async fn open_or_update(
     known: Option<&Known>,
     wanted: &AlertWanted,
     now: Time,
-) -> Result<Option<News>> {
-    let raised = |alert| Some(News::of(alert, Kind::AlertRaised));
+) -> Result<Vec<News>> {
+    let raised = |alert| News::of(alert, Kind::AlertRaised);
     let Some(known) = known else {
         let id = store::insert(tx, vessel, compass, wanted, now).await?;
-        return Ok(raised(id));
+        return Ok(vec![raised(id)]);
     };
     let worse = wanted.severity > known.severity;
-    if known.state == State::Cleared {
-        // A person cleared it, and its cause goes on: only if it gets worse, or happened
-        // again since.
-        let again = wanted.cause.is_dated_anew() && Some(wanted.since) > known.cleared_at;
-        if !worse && !again {
-            return Ok(None);
-        }
-        store::end(tx, vessel, known.id, now).await?;
+    let is_another = !wanted.dated.includes(known.since);
+    let is_cleared = known.state == State::Cleared;
+    if is_another || (is_cleared && worse) {
+        store::end(tx, vessel, known.id, FOLLOWED, now).await?;
+        let cleared = (!is_cleared).then(|| News::of(known.id, Kind::AlertCleared));
         let id = store::insert(tx, vessel, compass, wanted, now).await?;
-        return Ok(raised(id));
+        return Ok(cleared.into_iter().chain([raised(id)]).collect());
     }
-    if known.says(wanted) {
-        return Ok(None);
+    if is_cleared || known.says(wanted) {
+        return Ok(Vec::new());
     }
     store::update(tx, vessel, known, wanted, now).await?;
     let became = match known.state {
@@ -177,10 +179,10 @@ async fn open_or_update(
         State::Acknowledged if worse => Some(Kind::AlertRaised),
         _ => Some(Kind::AlertUpdated),
     };
-    Ok(Some(News {
+    Ok(vec![News {
         alert: known.id,
         became,
-    }))
+    }])
 }
 
 /// Tells dashboards, within the transaction, and whoever else wants to know.

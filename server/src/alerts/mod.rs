@@ -6,6 +6,8 @@
 //!   one open alert of each cause: what goes on is updated, not repeated.
 //! - An alert clears itself when its cause is over. One that a person cleared comes
 //!   back only when its cause does, gets worse, or happens again.
+//! - It is about one event. Another one of its cause clears it, with what people said
+//!   of it, and raises the next.
 //! - It comes from an analysis, in the transaction that stores the analysis, from the
 //!   ship herself or what her batches show, in the one that stores the batch, or from
 //!   the clock, when a vessel falls silent.
@@ -33,7 +35,7 @@ pub use wanted::{alerts_of, silence};
 use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Page, Params, Valid, text};
+use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
 use crate::ids::AlertId;
 use crate::outbox::Kind;
 use crate::session;
@@ -95,7 +97,7 @@ async fn acknowledge_alert(
     Shared(app): Shared<App>,
     writer: Writer,
     Id(id): Id<AlertId>,
-    Valid(acknowledgement): Valid<Acknowledgement>,
+    ValidOrNone(acknowledgement): ValidOrNone<Acknowledgement>,
 ) -> Result<Json<Alert>> {
     let note = acknowledgement.note.filter(|note| !note.trim().is_empty());
     let note = note.map(|note| text("note", &note)).transpose()?;

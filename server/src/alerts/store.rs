@@ -18,7 +18,7 @@ pub(super) struct Known {
     pub(super) advice: String,
     #[sqlx(try_from = "String")]
     pub(super) evidence: Evidence,
-    pub(super) cleared_at: Option<Time>,
+    pub(super) since: Time,
 }
 
 /// What a person says of an alert.
@@ -121,7 +121,7 @@ pub(super) async fn known(
     rows!(
         in tx,
         Known,
-        "SELECT id, cause, severity, state, summary, advice, evidence, cleared_at FROM alerts
+        "SELECT id, cause, severity, state, summary, advice, evidence, since FROM alerts
          WHERE vessel_id = $1 AND compass_id = $2 AND holds
          ORDER BY id",
         vessel,
@@ -193,19 +193,27 @@ pub(super) async fn update(
     Ok(())
 }
 
-/// Notes that an alert's cause is over; one that is open is cleared by that.
-pub(super) async fn end(tx: &mut Tx, vessel: VesselId, id: AlertId, now: Time) -> DbResult<()> {
+/// Notes that an alert's cause is over; one that is open is cleared by that, for the
+/// reason given.
+pub(super) async fn end(
+    tx: &mut Tx,
+    vessel: VesselId,
+    id: AlertId,
+    reason: &str,
+    now: Time,
+) -> DbResult<()> {
     execute!(
         tx,
         "UPDATE alerts
          SET holds = $3, state = 'cleared', updated_at = $4,
              cleared_at = COALESCE(cleared_at, $4),
-             clearing_reason = COALESCE(clearing_reason, 'it is over')
+             clearing_reason = COALESCE(clearing_reason, $5)
          WHERE vessel_id = $1 AND id = $2",
         vessel,
         id,
         false,
-        now
+        now,
+        reason
     )?;
     Ok(())
 }

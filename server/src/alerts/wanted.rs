@@ -5,7 +5,7 @@
 //! was passed is left only [`SLACK_DEG`] below it, so that an alert does not come
 //! and go with every batch.
 
-use super::alert::{AlertWanted, Cause, Evidence, Severity};
+use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::changed::changed;
 use super::findings::{FailedLately, Findings};
 use super::limits::AlertLimits;
@@ -73,13 +73,17 @@ pub fn silence(last: Time, limits: &AlertLimits, now: Time) -> Option<AlertWante
         cause: Cause::SilentAgent,
         severity: Severity::Notice,
         since: last,
+        dated: Dated::default(),
         summary: format!(
             "Nothing has come from the vessel's agent for more than {} days.",
             limits.silent_days
         ),
         advice: "Ask the ship whether the agent's computer is on and what its page says of the \
                  link. What it sampled meanwhile is kept aboard and comes by itself.",
-        evidence: Evidence(vec![format!("The last batch came at {}.", last.0)]),
+        evidence: Evidence(vec![format!(
+            "The last batch came at {}.",
+            last.to_the_minute()
+        )]),
     })
 }
 
@@ -94,8 +98,11 @@ fn over_limit(worst: Worst, limits: &AlertLimits, data_until: Timestamp) -> Aler
         Severity::Notice
     };
     let side = if worst.deviation_deg < 0.0 { "W" } else { "E" };
+    let heading = format!("{:03.0}°", worst.compass_deg);
+    let stands = stands(size_deg, limits.deviation_deg);
     let mut evidence = vec![format!(
-        "By the model of the samples up to {data_until}, at the place of the last one."
+        "By the model of the samples up to {}, at the place of the last one.",
+        Time(data_until).to_the_minute()
     )];
     evidence.extend(
         worst
@@ -106,9 +113,9 @@ fn over_limit(worst: Worst, limits: &AlertLimits, data_until: Timestamp) -> Aler
         cause: Cause::DeviationOverLimit,
         severity,
         since: data_until.into(),
+        dated: Dated::default(),
         summary: format!(
-            "Deviation is {size_deg:.1}° {side} on compass heading {:03.0}°, over the limit of {}°.",
-            worst.compass_deg, limits.deviation_deg
+            "Deviation is {size_deg:.1}° {side} on compass heading {heading}{stands}."
         ),
         advice: "Steer by the corrected heading or the gyro, check the compass error by azimuth \
                  once a watch, and have the compass adjusted.",
@@ -116,11 +123,21 @@ fn over_limit(worst: Worst, limits: &AlertLimits, data_until: Timestamp) -> Aler
     }
 }
 
+/// How a figure stands to its limit, while the alert lasts.
+fn stands(figure_deg: f64, limit_deg: f64) -> String {
+    if figure_deg > limit_deg {
+        return format!(", over the limit of {limit_deg}°");
+    }
+    let ends_deg = limit_deg - SLACK_DEG;
+    format!(": it was over the limit of {limit_deg}° and has not yet fallen to {ends_deg}°")
+}
+
 fn no_model(refusal: &str, from: Timestamp) -> AlertWanted {
     AlertWanted {
         cause: Cause::NoModel,
         severity: Severity::Notice,
         since: from.into(),
+        dated: Dated::default(),
         summary: "Samples have come for more than a week, but no model could be made of them."
             .to_owned(),
         advice: "Use no deviation card of earlier date. Take azimuths, and let the ship lie on \
@@ -134,13 +151,17 @@ fn wide_band(band_deg: f64, limits: &AlertLimits, from: Timestamp) -> AlertWante
         cause: Cause::WideBand,
         severity: Severity::Notice,
         since: from.into(),
+        dated: Dated::default(),
         summary: format!(
-            "On some heading the deviation is known only to ±{band_deg:.1}°; the limit is ±{}°.",
-            limits.band95_deg
+            "On some heading the deviation is known only to ±{band_deg:.1}°{}.",
+            stands(band_deg, limits.band95_deg)
         ),
         advice: "Take an azimuth before relying on the card on a heading that she seldom lies \
                  on. The vessel's page says which headings would tell most.",
-        evidence: Evidence(vec![format!("Samples have come since {from}.")]),
+        evidence: Evidence(vec![format!(
+            "Samples have come since {}.",
+            Time(from).to_the_minute()
+        )]),
     }
 }
 
@@ -153,6 +174,7 @@ fn disagree(offset_deg: f64, findings: &Findings, data_until: Timestamp) -> Aler
         cause: Cause::ReferenceFault,
         severity: Severity::Warning,
         since: findings.epoch_data_from.unwrap_or(data_until).into(),
+        dated: Dated::default(),
         summary: format!(
             "Gyro and satellite compass differ by {:.1}° throughout, more than any alignment \
              explains: one of them is wrong.",
@@ -174,6 +196,7 @@ fn one_failed(failed: &FailedLately) -> AlertWanted {
         cause: Cause::ReferenceFault,
         severity: Severity::Warning,
         since: failed.from.into(),
+        dated: Dated::default(),
         summary: format!(
             "Gyro and satellite compass parted: lately they departed by {:.1}° from their usual \
              difference.",
@@ -264,7 +287,12 @@ mod tests {
     #[test]
     fn an_open_alert_stays_until_the_figure_is_well_below_its_limit() {
         let open = [Cause::DeviationOverLimit];
-        assert_eq!(causes(&with_worst(4.8, 1.0), &open).len(), 1);
+        let wanted = alerts_of(&with_worst(-4.9, 1.0), &AlertLimits::default(), &open);
+        assert_eq!(
+            wanted[0].summary,
+            "Deviation is 4.9° W on compass heading 095°: it was over the limit of 5° and has not \
+             yet fallen to 4.5°."
+        );
         assert_eq!(causes(&with_worst(4.4, 1.0), &open), []);
     }
 

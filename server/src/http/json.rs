@@ -1,7 +1,9 @@
 //! Reading a request so that whatever is wrong with it becomes one of our errors.
 
 use crate::error::{Error, Result};
-use axum::extract::{FromRequest, FromRequestParts};
+use axum::body::{Body, Bytes};
+use axum::extract::rejection::JsonRejection;
+use axum::extract::{FromRequest, FromRequestParts, Request};
 use axum::http::request::Parts;
 use binnacle_magnetics::time::Timestamp;
 use serde::de::DeserializeOwned;
@@ -15,6 +17,27 @@ const MAX_TEXT: usize = 200;
 #[derive(FromRequest)]
 #[from_request(via(axum::Json), rejection(Error))]
 pub struct Valid<T>(pub T);
+
+/// A JSON body that may be left out, for the default.
+pub struct ValidOrNone<T>(pub T);
+
+impl<S: Send + Sync, T: DeserializeOwned + Default> FromRequest<S> for ValidOrNone<T> {
+    type Rejection = Error;
+
+    async fn from_request(request: Request, state: &S) -> Result<ValidOrNone<T>> {
+        let (parts, body) = request.into_parts();
+        let whole = Request::from_parts(parts.clone(), body);
+        let bytes = Bytes::from_request(whole, state)
+            .await
+            .map_err(JsonRejection::from)?;
+        if bytes.is_empty() {
+            return Ok(ValidOrNone(T::default()));
+        }
+        let again = Request::from_parts(parts, Body::from(bytes));
+        let Valid(value) = Valid::from_request(again, state).await?;
+        Ok(ValidOrNone(value))
+    }
+}
 
 /// The query string.
 pub struct Params<T>(pub T);

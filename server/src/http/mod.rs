@@ -8,6 +8,6 @@ mod json;
 mod page;
 mod routes;
 
-pub use json::{Id, Json, Params, Valid, degrees, text, time};
+pub use json::{Id, Json, Params, Valid, ValidOrNone, degrees, text, time};
 pub use page::{Listed, Page};
 pub use routes::{MAX_JSON_BYTES, openapi, router};

@@ -2,8 +2,7 @@
 
 use super::letter::Letter;
 use super::store;
-use crate::alerts::AlertNews;
-use crate::alerts::Severity;
+use crate::alerts::{Alert, AlertNews, Severity};
 use crate::db::Tx;
 use crate::error::Result;
 use crate::ids::{OperatorId, RecipientId};
@@ -14,12 +13,13 @@ use crate::time::Time;
 pub async fn announce(
     tx: &mut Tx,
     operator: OperatorId,
-    news: &[AlertNews],
+    all: &[AlertNews],
     now: Time,
 ) -> Result<()> {
     for (recipient, least) in store::wishes(tx, operator).await? {
-        for news in news {
-            if note(tx, recipient, least, news).await? {
+        for news in all {
+            let is_news = note(tx, recipient, least, news).await?;
+            if is_news && !is_replaced(news, all) {
                 let message = Message {
                     id: news.id,
                     kind: news.kind,
@@ -30,6 +30,16 @@ pub async fn announce(
         }
     }
     Ok(())
+}
+
+/// Whether the letter of the next alert of the cause says more than that this one is
+/// over.
+fn is_replaced(news: &AlertNews, all: &[AlertNews]) -> bool {
+    let of = |alert: &Alert| (alert.compass_id, alert.cause);
+    news.kind == Kind::AlertCleared
+        && all
+            .iter()
+            .any(|other| other.kind == Kind::AlertRaised && of(&other.alert) == of(&news.alert))
 }
 
 /// Whether a recipient is told this, which is then noted.

@@ -3,7 +3,6 @@
 use crate::alerts::{Alert, AlertNews, Severity};
 use crate::ids::AlertId;
 use crate::outbox::Kind;
-use crate::time::Time;
 use serde::{Deserialize, Serialize};
 
 /// Columns that text is wrapped to.
@@ -71,10 +70,10 @@ fn text(alert: &Alert, kind: Kind) -> String {
         format!("Vessel:   {}", one_line(&alert.vessel_name)),
         format!("Compass:  {}", one_line(&alert.compass_name)),
         format!("Severity: {}", name(alert.severity)),
-        format!("Since:    {}", when(alert.since)),
+        format!("Since:    {}", alert.since.to_the_minute()),
     ];
     if let (Kind::AlertCleared, Some(cleared_at)) = (kind, alert.cleared_at) {
-        lines.push(format!("Over:     {}", when(cleared_at)));
+        lines.push(format!("Over:     {}", cleared_at.to_the_minute()));
         let by = alert.cleared_by.as_deref().unwrap_or("Binnacle");
         let reason = alert.clearing_reason.as_deref().unwrap_or("it is over");
         let why = format!("Cleared by {by}: {reason}");
@@ -98,13 +97,6 @@ fn name(severity: Severity) -> &'static str {
         Severity::Warning => "warning",
         Severity::Critical => "critical",
     }
-}
-
-/// To the minute, UTC.
-fn when(time: Time) -> String {
-    let text = time.0.to_string();
-    let minute: String = text.chars().take(16).collect();
-    format!("{} UTC", minute.replace('T', " "))
 }
 
 /// Without anything that could end a line.

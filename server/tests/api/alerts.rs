@@ -150,9 +150,10 @@ async fn an_alert_that_got_worse_wants_to_be_acknowledged_again(shore: Shore) {
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     let alert = list(&ada, "").await.remove(0);
     assert_eq!(alert["severity"], "warning");
-    ada.post(&path(&alert, "/acknowledge"), &json!({}))
-        .await
-        .good();
+    // Without a body: a note is not asked for.
+    let request = ada.request(Method::POST, &path(&alert, "/acknowledge"));
+    let known = Answer::of(request).await.good();
+    assert_eq!(known["acknowledgement_note"], Value::Null);
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let worse = ada.get(&path(&alert, "")).await.good();
     assert_eq!(

@@ -1,8 +1,9 @@
 //! What changed a ship's magnetism: from her samples to the timeline, the alert and
 //! the bridge.
 
+use crate::mail;
 use crate::on_both;
-use crate::support::{Person, Ship, Shore, days_at_sea, days_in, struck, truth};
+use crate::support::{Person, Relay, Ship, Shore, days_at_sea, days_in, struck, truth};
 use binnacle_magnetics::angle::CompassHeading;
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::sample::Sample;
@@ -13,6 +14,8 @@ on_both!(
     a_struck_ships_timeline_has_both_epochs_with_their_curves,
     before_the_first_analysis_the_timeline_is_empty,
     a_struck_ship_raises_one_alert_that_follows_what_is_known,
+    a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first,
+    a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_arrives,
     a_struck_ships_bridge_gets_an_interim_model_with_a_wider_band,
     after_discharge_the_base_model_is_back_on_the_bridge,
     work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert,
@@ -157,6 +160,103 @@ async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(shore: Shore)
     assert_eq!(later[0]["id"], raised[0]["id"], "updated, not repeated");
     assert_eq!(later[0]["severity"], "warning", "{later:?}");
     assert!(told(&later[0], "advice").contains("Put up a new card"));
+    shore.finish().await;
+}
+
+async fn of_lightning(person: &Person, query: &str) -> Vec<Value> {
+    let listed = person.get(&format!("/alerts{query}")).await.good();
+    let mut alerts = listed["items"].as_array().unwrap().clone();
+    alerts.retain(|alert| alert["cause"] == "lightning_or_shock");
+    alerts
+}
+
+/// When that ship is struck again, and how it leaves her.
+const HIT_AGAIN: &str = "2026-11-14T00:00:00Z";
+
+fn struck_again(days: f64) -> Vec<Sample> {
+    days_at_sea(&struck(1200.0, 3200.0), HIT_AGAIN, days)
+}
+
+async fn a_second_strike_raises_the_alert_again_whatever_was_said_of_the_first(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let relay = Relay::start().await;
+    mail::add(&ada, "bridge@example.com", "notice").await;
+    let kinds = json!(["alert.raised", "alert.updated", "alert.cleared"]);
+    let hook = json!({ "url": "https://example.com/hook", "kinds": kinds });
+    let hook = ada.post("/webhooks", &hook).await.good();
+    let nao = well_known(&shore, &ada).await;
+    let first = days_at_sea(&struck(3000.0, 2000.0), HIT, 5.0);
+    send(&shore, &nao, 2, &first[..36]).await;
+    let alert = of_lightning(&ada, "?open=true").await.remove(0);
+    let path = format!("/alerts/{}", alert["id"].as_str().unwrap());
+    let note = json!({ "note": "Master informed" });
+    ada.post(&format!("{path}/acknowledge"), &note).await.good();
+    send(&shore, &nao, 3, &first[36..]).await;
+    // The same strike, perhaps dated better, is still acknowledged.
+    let known = ada.get(&path).await.good();
+    assert_eq!(known["state"], "acknowledged", "{known}");
+    mail::deliver(&shore, &relay).await;
+    let told = mail::subjects(&relay).len();
+
+    send(&shore, &nao, 4, &struck_again(2.0)).await;
+    let open = of_lightning(&ada, "?open=true").await;
+    assert_eq!(open.len(), 1, "{open:?}");
+    assert_eq!(
+        (&open[0]["state"], &open[0]["acknowledged_by"]),
+        (&json!("raised"), &Value::Null)
+    );
+    assert!(
+        open[0]["since"].as_str().unwrap() > "2026-11-13T20",
+        "{open:?}"
+    );
+    // What was said of the first stands with the first.
+    let first = ada.get(&path).await.good();
+    assert_eq!(
+        (&first["state"], &first["acknowledgement_note"]),
+        (&json!("cleared"), &json!("Master informed"))
+    );
+    assert_eq!(first["clearing_reason"], "another of its cause followed");
+    mail::deliver(&shore, &relay).await;
+    let subjects = mail::subjects(&relay).split_off(told);
+    let lightning: Vec<&String> = subjects
+        .iter()
+        .filter(|s| s.contains("lightning"))
+        .collect();
+    assert_eq!(lightning.len(), 1, "{subjects:?}");
+    assert!(!lightning[0].contains("over"), "{subjects:?}");
+    let sent = format!("/webhooks/{}/deliveries", hook["id"].as_str().unwrap());
+    let sent = ada.get(&sent).await.good();
+    let sent: Vec<&Value> = sent["items"].as_array().unwrap().iter().collect();
+    let raised = sent.iter().filter(|sent| sent["kind"] == "alert.raised");
+    assert!(raised.count() >= 2, "{sent:?}");
+    shore.finish().await;
+}
+
+async fn a_strike_before_a_person_cleared_the_last_ones_alert_is_told_when_it_arrives(
+    shore: Shore,
+) {
+    let ada = shore.admin("ada").await;
+    let nao = well_known(&shore, &ada).await;
+    let first = days_at_sea(&struck(3000.0, 2000.0), HIT, 5.0);
+    send(&shore, &nao, 2, &first[..36]).await;
+    let alert = of_lightning(&ada, "?open=true").await.remove(0);
+    let clear = format!("/alerts/{}/clear", alert["id"].as_str().unwrap());
+    let reason = json!({ "reason": "Azimuths taken" });
+    ada.post(&clear, &reason).await.good();
+    send(&shore, &nao, 3, &first[36..]).await;
+    let open = of_lightning(&ada, "?open=true").await;
+    assert_eq!(open, Vec::<Value>::new(), "the same strike stays cleared");
+
+    // Of a week before the person cleared the alert.
+    send(&shore, &nao, 4, &struck_again(2.0)).await;
+    let open = of_lightning(&ada, "?open=true").await;
+    assert_eq!(open.len(), 1, "{open:?}");
+    assert!(
+        open[0]["since"].as_str().unwrap() > "2026-11-13T20",
+        "{open:?}"
+    );
+    let cleared = of_lightning(&ada, "?state=cleared").await;
+    assert_eq!(cleared[0]["clearing_reason"], "Azimuths taken");
     shore.finish().await;
 }
 

@@ -139,3 +139,27 @@ fn what_is_over_or_expected_is_no_alert_and_the_latest_speaks_for_all() {
     assert_eq!(wanted.len(), 1);
     assert_eq!(wanted[0].since, since);
 }
+
+#[test]
+fn an_alert_was_about_the_change_nearest_to_its_date() {
+    let first = found(Found::LightningOrShock, 3.0);
+    let mut second = first.clone();
+    second.change.from = first.change.from.plus_seconds(86_400.0);
+    let mut storm = found(Found::MagneticStorm, 3.0);
+    storm.change.from = second.change.from.plus_seconds(-600.0);
+    let after_first =
+        |seconds: f64| -> crate::time::Time { first.change.from.plus_seconds(seconds).into() };
+    let alone = sailed(vec![first.clone()], 0.0, None);
+    assert!(alone[0].dated.includes(after_first(5.0 * 86_400.0)));
+
+    // The first is taken for something else by now.
+    let mut renamed = first.clone();
+    renamed.change.cause = Found::Unknown;
+    for earlier in [first.clone(), renamed] {
+        let wanted = sailed(vec![earlier, storm.clone(), second.clone()], 0.0, None);
+        let struck = &wanted[0];
+        assert_eq!(struck.since, second.change.from.into());
+        assert!(!struck.dated.includes(after_first(3600.0)));
+        assert!(struck.dated.includes(after_first(80_000.0)));
+    }
+}
