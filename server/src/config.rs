@@ -364,7 +364,7 @@ pub struct Bursts {
 pub struct Analyse {
     /// Samples, as `fit` reads them, with time and place
     pub file: PathBuf,
-    /// A JSON array of logbook entries
+    /// Logbook entries: a JSON array, or a page of them as the API answers it
     #[arg(long)]
     pub logbook: Option<PathBuf>,
     /// Whether the gyro takes the error of the ship's own speed out of its headings

@@ -1,6 +1,6 @@
 //! `analyse`: from a file, what the server does with a vessel's uploads.
 
-use super::{BadInput, answer, input, json};
+use super::{BadInput, answer, input, json, logbook};
 use crate::config::Analyse;
 use binnacle_magnetics::advice::{SailNext, sail_next};
 use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookEntry, analyse as run};
@@ -35,7 +35,7 @@ fn find(arguments: &Analyse) -> Result<String, BadInput> {
         samples.push(sample(row).map_err(|(column, what)| table.invalid(index, column, what))?);
     }
     let logbook: Vec<LogbookEntry> = match &arguments.logbook {
-        Some(path) => input::json_list(path)?,
+        Some(path) => logbook::read(path)?,
         None => Vec::new(),
     };
     let settings = AnalysisSettings {

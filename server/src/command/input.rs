@@ -6,7 +6,6 @@ use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 use csv::{ReaderBuilder, StringRecord};
 use serde::de::DeserializeOwned;
-use serde_json::value::RawValue;
 use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
@@ -47,33 +46,21 @@ pub(super) fn position(lat: f64, lon: f64) -> Result<Position, BadInput> {
 
 /// A JSON file.
 pub(super) fn json_file<T: DeserializeOwned>(path: &Path) -> Result<T, BadInput> {
-    serde_json::from_str(&text_file(path)?).map_err(|error| json_complaint(path, 0, &error))
+    serde_json::from_str(&text_file(path)?).map_err(|error| json_complaint(path, 0, "", &error))
 }
 
-/// A JSON file that holds a list. What an item cannot be for a reason of its own is
-/// said with the line on which the item begins.
-pub(super) fn json_list<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, BadInput> {
-    let text = text_file(path)?;
-    let items: Vec<&RawValue> =
-        serde_json::from_str(&text).map_err(|error| json_complaint(path, 0, &error))?;
-    let read = |item: &RawValue| {
-        let item = item.get();
-        serde_json::from_str(item).map_err(|error| {
-            // An item is a part of the text.
-            let begin = item.as_ptr() as usize - text.as_ptr() as usize;
-            let lines_before = text[..begin].matches('\n').count();
-            json_complaint(path, lines_before, &error)
-        })
-    };
-    items.into_iter().map(read).collect()
-}
-
-fn json_complaint(path: &Path, lines_before: usize, error: &serde_json::Error) -> BadInput {
+/// What is wrong with JSON that begins so many lines down a file, in which field.
+pub(super) fn json_complaint(
+    path: &Path,
+    lines_before: usize,
+    field: &str,
+    error: &serde_json::Error,
+) -> BadInput {
     // serde_json's message ends in the place, which stands in front here.
     let message = error.to_string();
     let what = message.split(" at line ").next().unwrap_or(&message);
     let line = lines_before + error.line().max(1);
-    BadInput(format!("{}:{line}: {what}", path.display()))
+    BadInput(format!("{}:{line}: {field}{what}", path.display()))
 }
 
 /// A text file.

@@ -11,6 +11,7 @@ mod deviation;
 mod field;
 mod fit;
 mod input;
+mod logbook;
 mod operate;
 mod table;
 

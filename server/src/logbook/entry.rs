@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::http::time;
 use crate::ids::{CompassId, EntryId};
 use crate::time::Time;
-use binnacle_magnetics::analyse::LogbookKind;
+use binnacle_magnetics::analyse::{Cargo, LogbookKind};
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::logbook::{Report, ReportError};
 use serde::{Deserialize, Serialize};
@@ -13,6 +13,7 @@ use utoipa::{IntoParams, ToSchema};
 
 /// An entry to be written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[serde(from = "Written")]
 pub(super) struct NewEntry {
     /// What happened.
     #[serde(flatten)]
@@ -21,6 +22,40 @@ pub(super) struct NewEntry {
     /// The compass that it concerns; the whole ship if none is named. Only work on a
     /// compass, and a note, may name one.
     pub(super) compass_id: Option<CompassId>,
+}
+
+/// An entry to be written, field by field. One that is not known may be a known one
+/// misspelt, and is refused; reports from on board, which newer agents write, are not
+/// read by this.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a logbook entry")]
+struct Written {
+    kind: LogbookKind,
+    from: Timestamp,
+    to: Option<Timestamp>,
+    cargo: Option<Cargo>,
+    hatch: Option<String>,
+    port: Option<String>,
+    #[serde(default)]
+    note: String,
+    compass_id: Option<CompassId>,
+}
+
+impl From<Written> for NewEntry {
+    fn from(written: Written) -> NewEntry {
+        NewEntry {
+            report: Report {
+                kind: written.kind,
+                from: written.from,
+                to: written.to,
+                cargo: written.cargo,
+                hatch: written.hatch,
+                port: written.port,
+                note: written.note,
+            },
+            compass_id: written.compass_id,
+        }
+    }
 }
 
 /// An entry of a vessel's logbook.
@@ -110,7 +145,7 @@ pub(super) struct Revision {
 }
 
 /// Why an entry is withdrawn.
-#[derive(Deserialize, ToSchema)]
+#[derive(Default, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Withdrawal {
     /// In a few words.

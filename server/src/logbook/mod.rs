@@ -22,7 +22,7 @@ pub use store::of_compass;
 use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Page, Params, Valid, text};
+use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
 use crate::idempotency::{self, Key};
 use crate::ids::{EntryId, VesselId};
 use crate::vessels;
@@ -161,7 +161,7 @@ async fn withdraw_entry(
     State(app): State<App>,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, EntryId)>,
-    Valid(withdrawal): Valid<Withdrawal>,
+    ValidOrNone(withdrawal): ValidOrNone<Withdrawal>,
 ) -> Result<Json<LogbookEntry>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let given = withdrawal.reason.filter(|reason| !reason.trim().is_empty());

@@ -132,27 +132,75 @@ fn a_logbook_that_cannot_be_is_refused_by_file_line_and_field() {
     let good = r#"{"from": "2026-11-16T00:00:00Z", "kind": "adjustment"}"#;
     let turned = "{\"from\": \"2026-11-16T00:00:00Z\", \"kind\": \"berth\",\n  \
                   \"to\": \"2026-11-15T00:00:00Z\"}";
-    let cases: [(String, &[&str]); 5] = [
+    let cases: [(String, &[&str]); 10] = [
         (
             format!("[{good},\n{turned}\n]"),
             &["book.json:2", "to:", "before"],
         ),
         (
             format!("[{good},\n{}]", good.replace("adjustment", "ufo")),
-            &["book.json:2", "ufo"],
+            &["book.json:2", "kind: ", "ufo"],
+        ),
+        (
+            format!("[{good},\n{}]", good.replace("2026-11-16T", "16 Nov ")),
+            &["book.json:2", "from: "],
+        ),
+        (
+            format!("[{good},\n{{\"kind\": \"note\",\n\"from\": 7}}]"),
+            &["book.json:3", "from: "],
+        ),
+        (
+            format!("[{good},\n{{\"kind\": \"note\"}}]"),
+            &["book.json:2", "from: is missing"],
+        ),
+        (
+            format!("[{good},\n{}]", good.replace('}', ", \"until\": null}")),
+            &["book.json:2", "`until`"],
+        ),
+        (
+            "[7]".to_owned(),
+            &["book.json:1", "expected a logbook entry"],
         ),
         (
             format!("[{good},\n\n{}]", good.replace("from", "form")),
             &["book.json:3", "from"],
         ),
         (format!("[{good}\n{good}]"), &["book.json:2"]),
-        (good.to_owned(), &["book.json:1", "sequence"]),
+        (good.to_owned(), &["book.json:1", "`items`"]),
     ];
     for (book, words) in cases {
         std::fs::write(folder.path().join("book.json"), book).unwrap();
         let arguments = ["analyse", "samples.csv", "--logbook", "book.json"];
         assert_refused(&run(folder.path(), &arguments), words);
     }
+}
+
+#[test]
+fn a_logbook_as_the_api_answers_it_is_read_without_what_was_withdrawn() {
+    let folder = tempfile::tempdir().unwrap();
+    samples_csv(folder.path());
+    let item = |from: &str, withdrawn_at: Value| {
+        json!({
+            "id": "0192", "kind": "adjustment", "from": from, "to": null, "cargo": null,
+            "hatch": null, "port": "Bilbao", "note": "", "compass_id": null,
+            "created_at": from, "created_by": "Ada", "author": "user", "revision": 1,
+            "revised_at": null, "revised_by": null, "withdrawn_at": withdrawn_at,
+            "withdrawn_by": null, "withdrawal_reason": null,
+        })
+    };
+    let counts = item("2026-11-16T00:00:00Z", Value::Null);
+    let withdrawn = item("2026-11-16T12:00:00Z", json!("2026-11-17T00:00:00Z"));
+    let page = |next: Value| json!({ "items": [counts, withdrawn], "next": next }).to_string();
+    let arguments = ["analyse", "samples.csv", "--logbook", "book.json"];
+    let book = folder.path().join("book.json");
+    std::fs::write(&book, page(Value::Null)).unwrap();
+    let analysis: Value = serde_json::from_str(&good(&run(folder.path(), &arguments))).unwrap();
+    assert_eq!(analysis["epochs"].as_array().unwrap().len(), 2);
+    std::fs::write(&book, page(json!("more"))).unwrap();
+    assert_refused(
+        &run(folder.path(), &arguments),
+        &["book.json:1", "more pages"],
+    );
 }
 
 #[test]

@@ -201,6 +201,10 @@ async fn what_is_no_entry_is_refused_by_its_field_and_leaves_nothing(shore: Shor
         ),
         ("noon", json!({ "kind": "note", "from": "noon" })),
         ("kind", json!({ "from": DAY })),
+        (
+            "until",
+            json!({ "kind": "magnetic_cargo", "from": DAY, "until": "2026-11-16T00:00:00Z" }),
+        ),
         ("ufo", json!({ "kind": "ufo", "from": DAY })),
         (
             "to",
