@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { delay, lines, mostParted, pairs, sentence, sureness, when } from './changes';
+import { delay, lines, mostParted, pairs, sampledSince, sentence, sureness, when } from './changes';
 import type { Change, DeviationRow, Epoch, LogbookEntry, Timeline } from './api/types';
 
 const curve = (deviation_deg: number): DeviationRow[] =>
@@ -70,6 +70,21 @@ describe('the timeline', () => {
       'entry 2026-11-08T23:50:00Z',
       'epoch 2026-10-20T00:00:00Z',
     ]);
+  });
+
+  test('begins with the first sample, though a report from before it began an epoch', () => {
+    const adjusted = '2026-10-01T00:00:00Z';
+    const [first = epoch({}), second = epoch({})] = timeline.epochs;
+    const before = epoch({ to: adjusted, data_from: null, data_until: null, curve: null });
+    const epochs = [before, { ...first, from: adjusted, begun_by: 'adjustment' as const }, second];
+    const shifted = {
+      ...timeline,
+      epochs,
+      changes: [{ ...struck, epoch_before: 1, epoch_after: 2 }],
+    };
+    expect(sampledSince(shifted)).toBe('2026-10-20T00:00:00Z');
+    const kinds = lines(shifted, [entry('2026-11-08T23:50:00Z')]).map((line) => line.kind);
+    expect(kinds).toEqual(['change', 'entry', 'epoch']);
   });
 
   test('is empty before the first analysis', () => {

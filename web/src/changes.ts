@@ -24,6 +24,10 @@ const passing: readonly ChangeCause[] = [
 
 export const isTheShips = (change: Change): boolean => !passing.includes(change.cause);
 
+/** The first sample. A report from before it leaves the epochs before it empty. */
+export const sampledSince = ({ epochs }: Timeline): string | null =>
+  epochs.find((epoch) => epoch.data_from !== null)?.data_from ?? null;
+
 /**
  * Everything that happened, the latest first. An epoch that a change began, or that
  * began when one was over, stands with that change; a report that was withdrawn, and
@@ -32,7 +36,7 @@ export const isTheShips = (change: Change): boolean => !passing.includes(change.
 export function lines(timeline: Timeline, entries: readonly LogbookEntry[]): Line[] {
   const { changes, epochs } = timeline;
   const told = new Set(changes.map((change) => change.epoch_after));
-  const began = epochs[0]?.data_from ?? null;
+  const began = sampledSince(timeline);
   const all: Line[] = [
     ...changes.map((change, index) => ({
       kind: 'change' as const,

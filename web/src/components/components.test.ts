@@ -440,6 +440,16 @@ describe('the timeline', () => {
     const calmly = shown(calm);
     expect(calmly).toContain('No change found since 20 Oct 2026');
     expect(calmly).toContain('Model of 412 samples, residuals 0.3° rms.');
+    const [only] = calm.epochs;
+    const adjusted = '2026-10-01T00:00:00Z';
+    const begun =
+      only === undefined
+        ? []
+        : [
+            { ...only, to: adjusted, data_from: null, data_until: null, curve: null },
+            { ...only, from: adjusted, begun_by: 'adjustment' as const },
+          ];
+    expect(shown({ ...calm, epochs: begun })).toContain('No change found since 20 Oct 2026');
     const nothing = { ...calm, analysed_at: null, epochs: [] };
     expect(shown(nothing)).toContain('Nothing has been analysed yet');
   });
