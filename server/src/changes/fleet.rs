@@ -108,7 +108,8 @@ fn passing(findings: &Findings) -> impl Iterator<Item = (Time, Time, Position)> 
     passing.filter_map(move |found| {
         let change = &found.change;
         let ended = change.ended.or(until)?.max(change.from);
-        let position = found.position.filter(|_| change.cause.passes_by())?;
+        let is_known = change.cause.passes_by() && !change.is_faint();
+        let position = found.position.filter(|_| is_known)?;
         Some((change.from.into(), ended.into(), position))
     })
 }

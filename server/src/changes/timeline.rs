@@ -178,7 +178,12 @@ pub(super) fn timeline(
         compass_id,
         analysed_at: Some(at),
         place: place.map(Place::from),
-        changes: findings.changes.into_iter().map(told).collect(),
+        changes: findings
+            .changes
+            .into_iter()
+            .filter(is_told)
+            .map(told)
+            .collect(),
         epochs: epochs
             .into_iter()
             .map(|epoch| in_line(epoch, place, versions))
@@ -230,6 +235,11 @@ fn version(epoch: &StoredEpoch, versions: &[Version]) -> Option<i64> {
     let within = |found: &&Version| (from..=until).contains(&found.data_until.0);
     let last = versions.iter().rev().find(within)?;
     Some(last.version)
+}
+
+/// What is too faint for the ship alone is told when others speak for it.
+fn is_told(found: &FoundChange) -> bool {
+    !found.change.is_faint()
 }
 
 fn told(found: FoundChange) -> ChangeFound {

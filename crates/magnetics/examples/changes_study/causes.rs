@@ -62,15 +62,19 @@ pub(crate) fn storms(ships: u64) {
         });
         for (ship, (log, analysis)) in fleet.iter().enumerate() {
             let others = elsewhere(&fleet, ship);
+            let until = log.samples.last().unwrap().time;
+            let seen = analysis.changes.iter();
+            let seen = seen.map(|c| in_fleet(c, position(log, c.from), until, &others));
+            let by_fleet = Analysis {
+                changes: seen.collect(),
+                ..analysis.clone()
+            };
             let storms = log.happened.iter();
             for storm in storms.filter(|h| h.what == Name::Storm && at_sea(log, h)) {
-                let told = telling(analysis, storm).or_else(|| covering(analysis, storm));
-                *alone.entry(name_of(told)).or_default() += 1;
-                let told = told.map(|c| {
-                    let until = log.samples.last().unwrap().time;
-                    in_fleet(c, position(log, c.from), until, &others)
-                });
-                *together.entry(name_of(told.as_ref())).or_default() += 1;
+                for (analysis, counts) in [(analysis, &mut alone), (&by_fleet, &mut together)] {
+                    let told = telling(analysis, storm).or_else(|| covering(analysis, storm));
+                    *counts.entry(name_of(told)).or_default() += 1;
+                }
             }
         }
     }
@@ -94,7 +98,8 @@ fn covering<'a>(analysis: &'a Analysis, storm: &Happened) -> Option<&'a Change> 
 fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<Elsewhere> {
     let others = fleet.iter().enumerate().filter(|(ship, _)| *ship != but);
     let told = others.flat_map(|(ship, (log, analysis))| {
-        let passing = analysis.changes.iter().filter(|c| c.cause.passes_by());
+        let passing = analysis.changes.iter();
+        let passing = passing.filter(|c| c.confirmed && c.cause.passes_by());
         passing.filter_map(move |c| {
             let last = log.samples.last().unwrap().time;
             Some(Elsewhere {

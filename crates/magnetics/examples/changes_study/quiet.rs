@@ -40,10 +40,11 @@ pub(crate) fn quiet(ships: u64) {
                     .any(|h| h.what == Name::GyroFault && near(h, c))
         });
         let passing = |c: &&Change| {
-            matches!(
-                c.cause,
-                Cause::MagneticStorm | Cause::LocalAnomaly | Cause::BerthSteel
-            )
+            c.confirmed
+                && matches!(
+                    c.cause,
+                    Cause::MagneticStorm | Cause::LocalAnomaly | Cause::BerthSteel
+                )
         };
         let truly = |c: &&Change| {
             let passed = |h: &&Happened| matches!(h.what, Name::Storm | Name::Anomaly);

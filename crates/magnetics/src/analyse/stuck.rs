@@ -21,8 +21,9 @@ pub(super) fn mark_stuck(readings: &mut [Reading]) -> Vec<Change> {
     let mut from = 0;
     while from < readings.len() {
         let to = from + same(&readings[from..]);
-        if turns(&readings[from..to]) >= TURNS {
-            changes.push(told(readings, from..to));
+        let showed = turns(&readings[from..to]).nth(TURNS - 1);
+        if let Some(showed) = showed {
+            changes.push(told(readings, from..to, from + showed));
             for reading in &mut readings[from..to] {
                 let reason = &mut reading.diagnostic.reason;
                 *reason = reason.or(Some(SampleReason::CompassStuck));
@@ -43,31 +44,31 @@ fn same(readings: &[Reading]) -> usize {
         .unwrap_or(readings.len())
 }
 
-fn turns(readings: &[Reading]) -> usize {
+/// The later reading of each pair between which the ship turned.
+fn turns(readings: &[Reading]) -> impl Iterator<Item = usize> {
     let turned = |a: Option<TrueHeading>, b: Option<TrueHeading>| {
         let turn = a.zip(b).map(|(a, b)| wrap_180(b.degrees() - a.degrees()));
         turn.is_some_and(|turn| turn.abs() > TURN_DEG)
     };
-    let pairs = readings.windows(2);
-    pairs
-        .filter(|pair| {
-            let (a, b) = (&pair[0].sample, &pair[1].sample);
-            turned(a.gyro, b.gyro) || turned(a.satellite, b.satellite)
-        })
-        .count()
+    let pairs = readings.windows(2).enumerate();
+    pairs.filter_map(move |(k, pair)| {
+        let (a, b) = (&pair[0].sample, &pair[1].sample);
+        let any = turned(a.gyro, b.gyro) || turned(a.satellite, b.satellite);
+        any.then_some(k + 1)
+    })
 }
 
-fn told(readings: &[Reading], stuck: Range<usize>) -> Change {
+fn told(readings: &[Reading], stuck: Range<usize>, showed: usize) -> Change {
     let from = readings[stuck.start].sample.time;
     let last = readings[stuck.end - 1].sample.time;
     let before = stuck.start.checked_sub(1).map(|i| readings[i].sample.time);
     let heading = readings[stuck.start].sample.compass.degrees();
-    let turns = turns(&readings[stuck.clone()]);
+    let turns = turns(&readings[stuck.clone()]).count();
     Change {
         from,
         from_earliest: before.unwrap_or(from),
         from_latest: from,
-        detected_at: last,
+        detected_at: readings[showed].sample.time,
         confirmed: true,
         cause: Cause::CompassFault,
         causes: vec![CauseProbability {

@@ -55,7 +55,7 @@ const COLD_AFTER: usize = 48;
 pub(super) enum Kind {
     /// The ship's magnetism changed.
     Step,
-    /// A reference's error changed.
+    /// A reference's error changed: the gyro's, if there are two.
     Reference,
     /// The earth's field went astray for hours.
     Burst,
@@ -63,17 +63,28 @@ pub(super) enum Kind {
     Return,
     /// The field that had gone astray is itself again.
     Over,
+    /// The satellite compass's error changed.
+    Satellite,
 }
 
-pub(super) const KINDS: [Kind; 5] = [
+pub(super) const KINDS: [Kind; 6] = [
     Kind::Step,
     Kind::Reference,
     Kind::Burst,
     Kind::Return,
     Kind::Over,
+    Kind::Satellite,
 ];
 
-const RIVALS: [Kind; 4] = [Kind::Reference, Kind::Burst, Kind::Return, Kind::Over];
+const RIVALS: [Kind; 5] = [
+    Kind::Reference,
+    Kind::Burst,
+    Kind::Return,
+    Kind::Over,
+    Kind::Satellite,
+];
+/// Those that are upset by as much as the next reading is astray.
+const REFERENCES: [Kind; 2] = [Kind::Reference, Kind::Satellite];
 
 /// A time at which something may have happened.
 #[derive(Clone, Debug)]
@@ -112,7 +123,9 @@ impl Spawn {
     /// Makes the copies that rival a step.
     fn wake(&mut self, earlier: Option<Earlier<'_>>) {
         let now = &self.origin;
-        self.copies[Kind::Reference as usize] = Some(now.clone());
+        for kind in REFERENCES {
+            self.copies[kind as usize] = Some(now.clone());
+        }
         self.copies[Kind::Burst as usize] = Some(Box::new(upset(now, Kind::Burst)));
         self.copies[Kind::Return as usize] = earlier.map(|earlier| Box::new(earlier.again(now)));
         self.is_fresh = true;
@@ -121,11 +134,12 @@ impl Spawn {
     fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
         let bursting = (self.age_s < BURST_S).then_some(BURST);
         self.age_s += m.seconds;
-        if kinds.contains(&Kind::Reference)
-            && std::mem::take(&mut self.is_fresh)
-            && let Some(copy) = &mut self.copies[Kind::Reference as usize]
-        {
-            **copy = misled(copy, m);
+        if kinds.contains(&Kind::Reference) && std::mem::take(&mut self.is_fresh) {
+            for kind in REFERENCES {
+                if let Some(copy) = &mut self.copies[kind as usize] {
+                    **copy = misled(copy, m, kind);
+                }
+            }
         }
         for &kind in kinds {
             let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
@@ -148,6 +162,7 @@ impl Spawn {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lead {
     pub(super) nats: f64,
+    pub(super) kind: Kind,
     /// The copy's place in the bank.
     pub(super) spawn: usize,
 }
@@ -265,15 +280,24 @@ impl Bank {
         copies
             .filter_map(|(spawn, s)| {
                 let nats = s.copy(kind)?.log_likelihood - null.log_likelihood;
-                Some(Lead { nats, spawn })
+                Some(Lead { nats, kind, spawn })
             })
             .max_by(|a, b| a.nats.total_cmp(&b.nats))
     }
 
     /// The likeliest copy of those in which the field goes or went astray.
     pub(super) fn passing(&self, null: &Filter) -> Option<Lead> {
-        let kinds = [Kind::Burst, Kind::Over].into_iter();
+        self.likeliest([Kind::Burst, Kind::Over], null)
+    }
+
+    /// The likeliest copy of those in which a reference changed.
+    pub(super) fn reference(&self, null: &Filter) -> Option<Lead> {
+        self.likeliest(REFERENCES, null)
+    }
+
+    fn likeliest(&self, kinds: [Kind; 2], null: &Filter) -> Option<Lead> {
         kinds
+            .into_iter()
             .filter_map(|kind| self.lead(kind, null))
             .max_by(|a, b| a.nats.total_cmp(&b.nats))
     }
@@ -319,7 +343,7 @@ pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
             }
         }
         // It sets in as it goes on: within its memory, not at once.
-        Kind::Burst | Kind::Reference | Kind::Return | Kind::Over => {}
+        Kind::Burst | Kind::Reference | Kind::Return | Kind::Over | Kind::Satellite => {}
     }
     copy
 }
@@ -327,21 +351,21 @@ pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
 /// The filter with a reference's step having happened just before `next` was read.
 ///
 /// A gyro's step moves both its difference from the satellite compass and, by half,
-/// their mean; alone, it is the constant's. The step may be as large as the reading
-/// is astray: what is believed to be impossible is never learnt.
-pub(super) fn misled(now: &Filter, next: &Measurement) -> Filter {
+/// their mean; the satellite compass's moves them in opposite senses; alone, either is
+/// the constant's. The step may be as large as the reading is astray: what is believed
+/// to be impossible is never learnt.
+pub(super) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
     let mut copy = now.clone();
     let size = now.astray_deg(next).max(REFERENCE_DEG);
+    let constant = if next.difference.is_some() {
+        size / 2.0
+    } else {
+        size
+    };
+    let sense = if which == Kind::Satellite { -1.0 } else { 1.0 };
     let steps = [
-        (
-            CONSTANT_STATE,
-            if next.difference.is_some() {
-                size / 2.0
-            } else {
-                size
-            },
-        ),
-        (OFFSET, size / OFFSET_SD_DEG),
+        (CONSTANT_STATE, constant),
+        (OFFSET, sense * size / OFFSET_SD_DEG),
     ];
     for (n, (i, a)) in steps.into_iter().enumerate() {
         for (j, b) in &steps[..=n] {

@@ -34,6 +34,8 @@ const DRIFTING: [usize; 2] = [0, 2];
 pub(super) struct Measurement {
     pub(super) transition: Transition,
     pub(super) seconds: f64,
+    /// What bx and by each drifted by since the last, variance in population units.
+    pub(super) drift: f64,
     pub(super) deviation: Scalar,
     pub(super) difference: Option<Scalar>,
 }
@@ -205,7 +207,7 @@ impl Filter {
             p.add(s, s, stationary[s - LASTING] * (1.0 - keep * keep));
         }
         for s in DRIFTING {
-            p.add(s, s, noise.drift * t.drift_share);
+            p.add(s, s, m.drift);
         }
         if let Some([swing, rate]) = t.since_turn {
             p.add(SWING, SWING, noise.turn * swing * swing);
@@ -231,13 +233,15 @@ impl Filter {
     }
 }
 
-/// What `station` and `row` measure, as a filter takes it in.
+/// What `station` and `row` measure, as a filter takes it in; `unsettled` is what bx and
+/// by drift beyond their usual, variance in thirty days.
 pub(super) fn measurement(
     station: &Station,
     row: &crate::estimate::Row,
     at: &Unknowns,
     seconds: f64,
     noise: &Noise,
+    unsettled: f64,
 ) -> Measurement {
     let scalar = |residual: f64, columns: &[f64; UNKNOWNS], loads: &[f64], variance: f64| {
         let mut load = [0.0; STATES];
@@ -254,6 +258,7 @@ pub(super) fn measurement(
     Measurement {
         transition: station.transition,
         seconds,
+        drift: (noise.drift + unsettled) * station.transition.drift_share,
         deviation: scalar(
             row.residual,
             &row.columns,

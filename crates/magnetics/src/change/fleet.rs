@@ -69,6 +69,7 @@ pub fn in_fleet(
     });
     change.cause = change.causes.first().map_or(change.cause, |c| c.cause);
     if change.cause.passes_by() {
+        change.confirmed |= change.is_faint();
         change.step = None;
         change.deviation_change_deg = None;
     }
@@ -202,6 +203,24 @@ mod tests {
         assert_eq!(twice.causes, stormy.causes);
         let three = [0, 1, 2].map(|ship| other(ship, 10.5, far));
         assert!(seen(&alone, &three).causes[0].probability > 0.99);
+    }
+
+    #[test]
+    fn what_is_faint_is_certain_once_others_speak_for_it() {
+        let faint = Change {
+            confirmed: false,
+            ..astray()
+        };
+        assert!(faint.is_faint());
+        assert!(seen(&faint, &[]).is_faint());
+        let stormy = seen(&faint, &[other(0, 9.0, place(55.0, 10.0))]);
+        assert!(stormy.confirmed);
+        assert_eq!(stormy.cause, Cause::MagneticStorm);
+        let still_astray = Change {
+            ended: None,
+            ..faint
+        };
+        assert!(!seen(&still_astray, &[other(0, 9.0, place(55.0, 10.0))]).confirmed);
     }
 
     #[test]

@@ -93,6 +93,14 @@ impl Cause {
     }
 }
 
+impl Change {
+    /// Whether it passed by and is too faint to be certain by this ship alone: other ships
+    /// may speak for it.
+    pub fn is_faint(&self) -> bool {
+        !self.confirmed && self.ended.is_some() && self.cause.passes_by()
+    }
+}
+
 /// A cause and how likely it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CauseProbability {

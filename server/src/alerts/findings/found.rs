@@ -157,7 +157,8 @@ impl Spoilt {
         let spoilt: Vec<_> = analysis
             .samples
             .iter()
-            .filter(|s| within(s.sample.time) && s.reason == Some(SampleReason::Disturbance))
+            .filter(|s| within(s.sample.time))
+            .filter(|s| s.reason == Some(SampleReason::Disturbance) || change.is_faint())
             .collect();
         let departed = spoilt.iter().filter_map(|s| {
             let earth = EarthField {

@@ -122,7 +122,9 @@ pub(super) fn find(
             });
         }
         let spoilt = match event.what {
-            What::Burst => Some(SampleReason::Disturbance),
+            What::Burst if event.confirmed || event.last.is_none() => {
+                Some(SampleReason::Disturbance)
+            }
             What::Reference if event.confirmed => teller
                 .one_reference()
                 .then_some(SampleReason::ReferenceFailed),

@@ -7,10 +7,15 @@ use crate::fit::Observation;
 use crate::ship::EarthField;
 use crate::time::Timestamp;
 
-/// People write down when they noticed, not when it happened.
+/// People write down when they noticed, not when it happened; cargo is not on board
+/// before it is loaded, but for the clerk's haste.
 const REPORT_S: f64 = 2.0 * 86_400.0;
+const LOADED_BEFORE_S: f64 = 6.0 * 3600.0;
 /// What is less likely than this makes no band wider.
 const SELDOM: f64 = 0.02;
+
+/// Said of a disturbance that other ships may speak for.
+const FAINT: &str = "too faint to be certain by this ship alone";
 
 /// Puts events into words and dates.
 pub(super) struct Teller<'a> {
@@ -33,13 +38,15 @@ impl Teller<'_> {
         }
     }
 
-    /// Between the row and the one before.
+    /// Between the row and the one before: when people say, or half way.
     pub(super) fn date(&self, row: usize) -> Timestamp {
         let Some(before) = row.checked_sub(1) else {
             return self.time(row);
         };
-        let gap_s = self.time(row).seconds_since(self.time(before));
-        self.time(before).plus_seconds(gap_s / 2.0)
+        let (before, after) = (self.time(before), self.time(row));
+        let half_way = || before.plus_seconds(after.seconds_since(before) / 2.0);
+        self.reported_between(before, after)
+            .unwrap_or_else(half_way)
     }
 
     /// Whether any of the rows from which the event may date followed a port call.
@@ -145,11 +152,29 @@ impl Teller<'_> {
 
     /// What people reported around the interval.
     fn reported(&self, earliest: Timestamp, latest: Timestamp) -> Vec<Cause> {
-        let near = |time: Timestamp| {
-            time.seconds_since(earliest) > -REPORT_S && latest.seconds_since(time) > -REPORT_S
+        // What happens from one time to another may change the ship all the while, but
+        // cargo does so when it comes on board and when it goes.
+        let near = |from: Timestamp, to: Timestamp, before_s: f64| {
+            earliest.seconds_since(to) < REPORT_S && latest.seconds_since(from) > -before_s
         };
-        let entries = self.logbook.iter().filter(|entry| near(entry.from));
+        let is_near = |entry: &&LogbookEntry| {
+            let to = entry.to.unwrap_or(entry.from);
+            if cause_of(entry.kind) == Some(Cause::MagneticCargo) {
+                near(entry.from, entry.from, LOADED_BEFORE_S) || near(to, to, LOADED_BEFORE_S)
+            } else {
+                near(entry.from, to, REPORT_S)
+            }
+        };
+        let entries = self.logbook.iter().filter(is_near);
         entries.filter_map(|entry| cause_of(entry.kind)).collect()
+    }
+
+    /// When people say that something happened between two rows.
+    fn reported_between(&self, before: Timestamp, after: Timestamp) -> Option<Timestamp> {
+        let said = self.logbook.iter();
+        let said = said.filter(|entry| cause_of(entry.kind).is_some());
+        let times = said.map(|entry| entry.from);
+        times.filter(|time| before < *time && *time < after).min()
     }
 }
 
@@ -198,8 +223,10 @@ fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String>
     if !known.reported.is_empty() {
         told.push("the logbook has a report of that time".to_owned());
     }
-    if !event.confirmed {
-        told.push("not yet certain: more samples will tell".to_owned());
+    match (event.confirmed, event.last) {
+        (true, _) => {}
+        (false, None) => told.push("not yet certain: more samples will tell".to_owned()),
+        (false, Some(_)) => told.push(FAINT.to_owned()),
     }
     told
 }

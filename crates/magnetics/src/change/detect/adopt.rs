@@ -3,6 +3,7 @@
 use super::date::Dated;
 use super::event::snapshot;
 use super::learn::first_lesson;
+use super::unsettled::Unsettled;
 use super::{EVERY, Event, Leads, Search, What};
 use crate::change::bank::{Kind, Lead, upset};
 use crate::change::calls::{Base, Candidate};
@@ -17,7 +18,7 @@ impl Search<'_> {
         let Some(lead) = leads[kind as usize] else {
             return;
         };
-        let dated = self.date(lead.spawn, kind, k);
+        let dated = self.date(lead.spawn, lead.kind, k);
         let earlier = self.calls.bases.last();
         let at_sea = earlier.is_some_and(|base| !base.at_port);
         if kind == Kind::Step && self.misled.is_none() && at_sea {
@@ -52,6 +53,9 @@ impl Search<'_> {
             Some((&before, &dated.filter)),
         );
         if kind == Kind::Step {
+            if !self.began_at_call(&dated) {
+                self.unsettled = Unsettled::after(dated.first, &before, &dated.filter);
+            }
             self.retrace(k, &dated, &before);
         } else if what == What::Reference && self.misled.is_none() {
             self.misled = Some((self.events.len() - 1, before));
@@ -59,15 +63,19 @@ impl Search<'_> {
         self.take_over(k, dated.filter, dated.first);
     }
 
+    fn began_at_call(&self, dated: &Dated) -> bool {
+        let (earliest, latest) = dated.between;
+        (earliest..=latest).any(|row| self.is_call(row))
+    }
+
     /// The port calls since a step, and the one at which it happened, as the filter
     /// that knows of the step would have met them.
     pub(super) fn retrace(&mut self, k: usize, dated: &Dated, before: &Filter) {
         let event = self.events.len() - 1;
-        let (earliest, latest) = dated.between;
         let base = Base {
             event,
             filter: before.clone(),
-            at_port: (earliest..=latest).any(|row| self.is_call(row)),
+            at_port: self.began_at_call(dated),
             calls: 0,
         };
         self.calls.step(base);
@@ -131,6 +139,7 @@ impl Search<'_> {
             );
         }
         self.calls.returned(event);
+        self.unsettled = Unsettled::default();
         self.take_over(k, dated.filter, dated.first);
     }
 
@@ -187,12 +196,14 @@ impl Search<'_> {
             Some((&before, &back.filter)),
         );
         self.calls.returned(back.event);
+        self.unsettled = Unsettled::default();
         self.take_over(k, back.filter, back.at);
     }
 
     pub(super) fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
         self.null = filter;
         self.bank.clear();
+        self.faint = None;
         self.spawned = k;
         self.learn_from = first;
         self.learn_next = first_lesson(self.observations, first);

@@ -36,7 +36,7 @@ impl Search<'_> {
         let earlier = earlier(self.misled.as_ref(), &self.calls);
         let began = |filter: &Filter, row: usize, at: &Unknowns| match (kind, earlier) {
             (Kind::Return, Some(earlier)) => earlier.again(filter),
-            (Kind::Reference, _) => misled(filter, &self.measure(row, at)),
+            (Kind::Reference | Kind::Satellite, _) => misled(filter, &self.measure(row, at), kind),
             _ => upset(filter, kind),
         };
         // Twice, for the rows are to be linearised at where the ship is now.

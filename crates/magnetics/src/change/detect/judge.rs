@@ -43,8 +43,8 @@ const LATELY: usize = 36;
 const MENDED_NATS: f64 = 8.0;
 const MENDED_BELOW: f64 = 3.0;
 /// A burst must be likelier by this than nothing, and by this than a change.
-const BURST_NATS: f64 = 10.0;
-const BURST_OVER_STEP: f64 = 3.0;
+const BURST_NATS: f64 = 11.0;
+pub(super) const BURST_OVER_STEP: f64 = 3.0;
 
 impl Search<'_> {
     pub(super) fn judge(&mut self, k: usize) {
@@ -101,19 +101,32 @@ impl Search<'_> {
             let Some(lead) = leads[Kind::Burst as usize] else {
                 return;
             };
-            let spawn = &self.bank.spawns[lead.spawn];
-            let first = spawn
-                .astray_from
-                .filter(|_| self.is_over(lead))
-                .unwrap_or(spawn.at);
-            // One that has had its time keeps its lead, but is told once.
-            let same = |event: &Event| event.what == What::Burst && event.first + EVERY >= first;
-            if self.events.last().is_some_and(same) {
-                return;
+            let first = self.began(lead);
+            match self.same_burst(first) {
+                // One that has had its time keeps its lead, but is told once.
+                Some(event) if event.confirmed => return,
+                Some(_) => _ = self.events.pop(),
+                None => {}
             }
             self.burst = Some(self.events.len());
+            self.faint = None;
             self.push(k, What::Burst, first, (first, first), leads, None);
+        } else {
+            self.note_faint(k, leads, burst - lasting);
         }
+    }
+
+    /// The last event, if it is this passing disturbance.
+    pub(super) fn same_burst(&self, first: usize) -> Option<&Event> {
+        let last = self.events.last();
+        last.filter(|event| event.what == What::Burst && event.first + EVERY >= first)
+    }
+
+    /// The first row of a passing disturbance.
+    pub(super) fn began(&self, lead: Lead) -> usize {
+        let spawn = &self.bank.spawns[lead.spawn];
+        let over = spawn.astray_from.filter(|_| self.is_over(lead));
+        over.unwrap_or(spawn.at)
     }
 
     fn has_lasted(&self, rows: usize, kind: Kind, k: usize, leads: &Leads) -> bool {

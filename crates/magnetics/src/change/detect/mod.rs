@@ -8,9 +8,11 @@ mod adopt;
 mod burst;
 mod date;
 mod event;
+mod faint;
 mod judge;
 mod learn;
 mod port;
+mod unsettled;
 
 pub(crate) use event::{Event, Given, Perhaps, Snapshot, Told, What};
 pub(crate) use port::at_port;
@@ -21,7 +23,9 @@ use super::filter::{Filter, Measurement, Noise, measurement};
 use crate::estimate::{NoiseLevels, Point, Prior, Station, USUAL_FUSION, Unknowns, row, stations};
 use crate::fit::Observation;
 use crate::time::Timestamp;
+use faint::Faint;
 use learn::{Learnt, next_lesson};
+use unsettled::Unsettled;
 
 /// Rows between times that are tried: about an hour of sailing.
 const EVERY: usize = 6;
@@ -71,8 +75,11 @@ struct Search<'a> {
     /// A reference's fault that goes on, if one does: its place in the list of
     /// events, and the filter before.
     misled: Option<(usize, Filter)>,
+    unsettled: Unsettled,
     /// The burst that goes on, if one does.
     burst: Option<usize>,
+    /// A disturbance that leads by too little to be told.
+    faint: Option<Faint>,
     events: Vec<Event>,
 }
 
@@ -94,7 +101,9 @@ impl<'a> Search<'a> {
             spawned: 0,
             calls: Calls::default(),
             misled: None,
+            unsettled: Unsettled::default(),
             burst: None,
+            faint: None,
             events: Vec::new(),
         }
     }
@@ -126,6 +135,7 @@ impl<'a> Search<'a> {
         self.bank.take(k, m, &self.noise, null, earlier);
         if k >= YOUNG {
             self.judge(k);
+            self.settle_faint(k, false);
         }
     }
 
@@ -133,7 +143,7 @@ impl<'a> Search<'a> {
     fn leads(&self) -> Leads {
         [
             self.bank.lead(Kind::Step, &self.null),
-            self.bank.lead(Kind::Reference, &self.null),
+            self.bank.reference(&self.null),
             self.bank.passing(&self.null),
             self.bank.lead(Kind::Return, &self.null),
         ]
@@ -151,7 +161,8 @@ impl<'a> Search<'a> {
     fn measure(&self, k: usize, at: &Unknowns) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
         let row = row(o, station, &Point::at(at, USUAL_FUSION));
-        measurement(station, &row, at, self.seconds(k), &self.noise)
+        let unsettled = self.unsettled.variance(self.observations, k);
+        measurement(station, &row, at, self.seconds(k), &self.noise, unsettled)
     }
 
     /// Since the row before.
@@ -213,6 +224,7 @@ impl<'a> Search<'a> {
             probability: candidate.any,
         });
         self.suspect();
+        self.settle_faint(self.observations.len().saturating_sub(1), true);
         Told {
             events: self.events,
             perhaps,
@@ -234,22 +246,24 @@ impl<'a> Search<'a> {
             .into_iter()
             .max_by(|a, b| nats(*a).total_cmp(&nats(*b)))
             .filter(|kind| nats(*kind) > SUSPECTED_NATS);
+        // A burst that has had its time keeps its lead.
+        let is_news = |lead: Lead| self.has_time_left(self.bank.spawns[lead.spawn].at, k);
         let Some((kind, lead)) = likeliest.and_then(|kind| Some((kind, leads[kind as usize]?)))
         else {
             return;
         };
-        if k < YOUNG {
+        if k < YOUNG || (kind == Kind::Burst && !is_news(lead)) {
             return;
         }
         let what = match kind {
             Kind::Reference => What::Reference,
             Kind::Burst => What::Burst,
-            Kind::Step | Kind::Return | Kind::Over => What::Step,
+            _ => What::Step,
         };
         let spawn = &self.bank.spawns[lead.spawn];
         let first = spawn.at;
         let filters = spawn
-            .copy(kind)
+            .copy(lead.kind)
             .map(|f| (spawn.origin().clone(), f.clone()));
         let change = filters.as_ref().map(|(before, after)| (before, after));
         self.push(k, what, first, (first, first), leads, change);

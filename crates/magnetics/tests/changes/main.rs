@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
+mod named;
 #[allow(dead_code, unused_imports)]
+#[path = "../voyages/mod.rs"]
 mod voyages;
 
 use binnacle_magnetics::analyse::{
@@ -109,7 +111,7 @@ fn a_step_of_two_microtesla_is_found_within_hours_and_dated() {
 fn on_a_quiet_voyage_nothing_changes() {
     for seed in 10..13 {
         let analysis = run(&sail_log(seed, &calm(Event::Nothing)).samples);
-        assert_eq!(analysis.changes, []);
+        assert!(analysis.changes.iter().all(Change::is_faint));
         assert_eq!(analysis.epochs.len(), 1);
     }
 }
@@ -128,6 +130,10 @@ fn in_a_gale(log: &mut Log, seed: u64) {
     }
 }
 
+fn certain(analysis: &Analysis) -> usize {
+    analysis.changes.iter().filter(|c| c.confirmed).count()
+}
+
 #[test]
 fn a_gale_is_no_disturbance_of_the_field() {
     let mut taken_for_one_without_the_scatter = 0;
@@ -135,11 +141,11 @@ fn a_gale_is_no_disturbance_of_the_field() {
         let mut log = sail_log(seed, &calm(Event::Nothing));
         in_a_gale(&mut log, seed);
         let analysis = run(&log.samples);
-        assert_eq!(analysis.changes, [], "seed {seed}");
+        assert_eq!(certain(&analysis), 0, "seed {seed}");
         for sample in &mut log.samples {
             (sample.windows, sample.spread_deg) = (60, Some(0.4));
         }
-        taken_for_one_without_the_scatter += run(&log.samples).changes.len();
+        taken_for_one_without_the_scatter += certain(&run(&log.samples));
     }
     assert!(taken_for_one_without_the_scatter > 0);
 }
@@ -235,21 +241,6 @@ fn evidence_is_in_words_that_an_officer_knows() {
 }
 
 #[test]
-fn a_gyro_fault_with_a_satellite_compass_on_board_is_named_at_once() {
-    let log = sail_log(31, &calm(Event::GyroFault(4.0)));
-    let broke = began(&log, Name::GyroFault);
-    let analysis = run(&log.samples);
-    is_sound(&analysis);
-    assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
-    let fault = analysis.changes.iter().find(|c| c.detected_at >= broke);
-    let fault = fault.unwrap();
-    assert_eq!(fault.cause, Cause::ReferenceFault);
-    let delay_h = fault.detected_at.seconds_since(broke) / HOUR_S;
-    assert!(delay_h < 2.0, "{delay_h} h");
-    assert_eq!(analysis.epochs.len(), 1);
-}
-
-#[test]
 fn after_discharge_the_base_model_is_resumed() {
     let mut plan = calm(Event::Cargo);
     plan.days = 90.0;
@@ -333,45 +324,6 @@ fn entries_that_overlap_or_precede_the_first_sample_are_taken_as_they_come() {
     assert_eq!(found[0].cause, Cause::LightningOrShock);
     assert!(found[0].causes[0].probability > 0.9);
     assert!(found[0].evidence.iter().any(|e| e.contains("logbook")));
-}
-
-#[test]
-fn an_adjustment_is_told_as_expected() {
-    let log = sail_log(10, &calm(Event::Nothing));
-    let at = log.samples[log.samples.len() / 2].time;
-    let logbook = [entry(LogbookKind::Adjustment, at, None)];
-    let analysis = analyse(&log.samples, &logbook, &AnalysisSettings::default());
-    is_sound(&analysis);
-    assert_eq!(analysis.changes.len(), 1, "{:?}", analysis.changes);
-    assert_eq!(analysis.changes[0].cause, Cause::AdjustmentOrRepair);
-    assert!(analysis.changes[0].step.is_some());
-}
-
-#[test]
-fn a_compass_that_sticks_is_named_and_its_samples_are_left_out() {
-    let mut samples = sail_log(60, &calm(Event::Nothing)).samples;
-    let from = samples.len() / 2;
-    let stuck = samples[from].compass;
-    for sample in &mut samples[from..] {
-        sample.compass = stuck;
-    }
-    let analysis = run(&samples);
-    is_sound(&analysis);
-    let told: Vec<_> = analysis.changes.iter().map(|c| c.cause).collect();
-    assert_eq!(told, [Cause::CompassFault], "{:?}", analysis.changes);
-    assert!(analysis.changes[0].evidence[0].contains("while the ship turned"));
-    assert!(analysis.changes[0].ended.is_none());
-    let reasons = analysis.samples[from..].iter().map(|s| s.reason);
-    assert!(
-        reasons
-            .into_iter()
-            .all(|r| r == Some(SampleReason::CompassStuck))
-    );
-    assert!(
-        analysis.samples[..from]
-            .iter()
-            .all(|s| s.reason != Some(SampleReason::CompassStuck))
-    );
 }
 
 #[test]

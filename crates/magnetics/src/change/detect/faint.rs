@@ -1,0 +1,61 @@
+//! Disturbances that the ship alone cannot be sure of: other ships may speak for them.
+
+use super::{Leads, Search, What};
+use crate::change::bank::{BURST_S, Kind};
+
+/// A disturbance that leads by this is noted, nats.
+const FAINT_NATS: f64 = 7.0;
+/// What has not led by more for so many rows is over.
+const OVER_ROWS: usize = 36;
+
+/// One that has not been told.
+pub(super) struct Faint {
+    first: usize,
+    /// The row at which it led most.
+    last: usize,
+    leads: Leads,
+}
+
+impl Search<'_> {
+    /// Keeps in mind what leads by too little to be told.
+    pub(super) fn note_faint(&mut self, k: usize, leads: Leads, over_lasting: f64) {
+        let Some(lead) = leads[Kind::Burst as usize].filter(|_| self.burst.is_none()) else {
+            return;
+        };
+        let most = self
+            .faint
+            .as_ref()
+            .and_then(|f| f.leads[Kind::Burst as usize]);
+        let is_more = most.is_none_or(|most| lead.nats > most.nats);
+        if lead.nats > FAINT_NATS && over_lasting > super::judge::BURST_OVER_STEP && is_more {
+            let first = self.began(lead);
+            if self.same_burst(first).is_none() && self.has_time_left(first, k) {
+                let last = k;
+                self.faint = Some(Faint { first, last, leads });
+            }
+        }
+    }
+
+    /// Whether a burst of row `first` may go on still.
+    pub(super) fn has_time_left(&self, first: usize, k: usize) -> bool {
+        let time = |row: usize| self.observations[row].time;
+        let age_s = time(k)
+            .zip(time(first))
+            .map(|(now, then)| now.seconds_since(then));
+        age_s.is_some_and(|age_s| age_s < BURST_S)
+    }
+
+    /// Puts it among the events, unconfirmed, once it is over or the rows are.
+    pub(super) fn settle_faint(&mut self, k: usize, is_last: bool) {
+        let is_over = |faint: &mut Faint| is_last || k > faint.last + OVER_ROWS;
+        let Some(faint) = self.faint.take_if(is_over) else {
+            return;
+        };
+        let Faint { first, last, leads } = faint;
+        self.push(k, What::Burst, first, (first, first), leads, None);
+        if let Some(event) = self.events.last_mut() {
+            event.last = Some(last.max(first));
+            event.confirmed = false;
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! What lightning leaves in a ship fades for weeks.
+
+use crate::change::filter::Filter;
+use crate::fit::Observation;
+
+/// How far bx and by wander in thirty days after a step at sea, as a part of it.
+const FADES: f64 = 0.35;
+/// For how long, seconds.
+const FADES_S: f64 = 60.0 * 86_400.0;
+
+/// A step that fades.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Unsettled {
+    /// The first row after it.
+    since: usize,
+    /// Variance of bx's and by's drift in thirty days, population units.
+    variance: f64,
+}
+
+impl Unsettled {
+    pub(super) fn after(since: usize, before: &Filter, after: &Filter) -> Unsettled {
+        let moved = |state: usize| after.mean[state] - before.mean[state];
+        let size = moved(0).hypot(moved(2));
+        Unsettled {
+            since,
+            variance: (FADES * size).powi(2),
+        }
+    }
+
+    /// Beside the usual drift, when row `k` is read.
+    pub(super) fn variance(&self, observations: &[Observation], k: usize) -> f64 {
+        if self.variance == 0.0 || k < self.since {
+            return 0.0;
+        }
+        let since = observations[self.since].time;
+        let age_s = observations[k].time.zip(since);
+        let fades = age_s.is_some_and(|(now, then)| now.seconds_since(then) < FADES_S);
+        if fades { self.variance } else { 0.0 }
+    }
+}
