@@ -9,6 +9,7 @@ use binnacle_tests::coast::copy_folder;
 use binnacle_tests::gateway::{Gateway, Manners};
 use binnacle_tests::ledger::{Spool, ensure_acknowledged_is_ashore, ensure_same_at_both_ends};
 use binnacle_tests::{Coast, Engine, Pace, Passage, Shore, eventually};
+use serde_json::Value;
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn no_wrong_answer_passes_for_an_acknowledgement() {
@@ -175,6 +176,10 @@ async fn old_spool() -> Result<()> {
     };
     ensure!((streams(&spool), streams(&after)) == (1, 2), "{after:?}");
     ensure_acknowledged_is_ashore(&coast.shore, coast.vessel, &spool).await?;
+    // One computer that went back is not two.
+    let alerts = coast.shore.list("/alerts").await?;
+    let is_clone = |alert: &Value| alert["cause"] == "cloned_agent";
+    ensure!(!alerts.iter().any(is_clone), "{alerts:?}");
     coast.arrive().await
 }
 

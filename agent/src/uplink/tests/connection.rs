@@ -116,7 +116,10 @@ async fn hands_that_were_not_shaken_are_paid_for_and_nobody_at_all_is_not() {
     let other = generate_simple_self_signed(vec!["localhost".to_owned()]).unwrap();
     let suspicious = believer(&other.cert.pem(), Profile::Standard);
     let refused = suspicious.downlink(&identity_there, Have::default()).await;
-    assert!(matches!(refused, Err(Trouble::Link(_))), "{refused:?}");
+    let Err(Trouble::Link(said)) = refused else {
+        panic!("{refused:?}");
+    };
+    assert!(said.contains("not believed here"), "{said}");
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
