@@ -3,6 +3,7 @@
 //!
 //! Nothing is made up: what cannot be told is absent, with the reason in words.
 
+use crate::alert::Aboard;
 use crate::weak_field::LEAST_H_NT;
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
@@ -27,6 +28,8 @@ pub(crate) struct Ingredients<'a> {
     pub(crate) model: Option<&'a ModelDownlink>,
     /// Why that model holds no more; the shore has no other one yet.
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
+    /// The ship's own alert, once there was one.
+    pub(crate) alert: Option<&'a Aboard>,
 }
 
 /// One heading in three ways, as far as they can be told.
@@ -86,6 +89,9 @@ fn fill(corrected: &mut Corrected, from: Ingredients<'_>) -> Result<(), String> 
     if let Some(withdrawn) = from.withdrawn {
         return Err(withdrawn.in_words());
     }
+    if from.alert.is_some_and(Aboard::is_of_the_compass) {
+        return Err("the alert says not to steer by it".to_owned());
+    }
     let foretold = model
         .model
         .deviation(compass, earth)
@@ -130,6 +136,7 @@ fn earth_at(from: Ingredients<'_>) -> Result<(EarthField, Variation), String> {
 mod tests {
     use super::*;
     use binnacle_magnetics::model::{Model, Parameters};
+    use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
     fn model(bx_nt: f64, constant_variance: Option<f64>) -> ModelDownlink {
         let covariance = constant_variance.map(|variance| {
@@ -170,6 +177,7 @@ mod tests {
             time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
             model,
             withdrawn: None,
+            alert: None,
         }
     }
 
@@ -222,6 +230,44 @@ mod tests {
             Some("the card has not held since 2026-11-21T06:00:00Z (corrector change)")
         );
         assert!(card(from).is_empty());
+    }
+
+    #[test]
+    fn an_alert_of_the_compass_withholds_its_heading_and_one_of_the_gyro_does_not() {
+        let model = model(2_400.0, None);
+        let at = Timestamp::parse("2026-11-21T06:00:00Z").unwrap();
+        let of = |state, gyro, satellite| {
+            let alert = Aboard {
+                alert: ShipAlert {
+                    id: uuid::Uuid::from_u128(1),
+                    revision: 1,
+                    state,
+                    since: at,
+                    at,
+                    gyro_departure_deg: gyro,
+                    satellite_departure_deg: satellite,
+                    limit_deg: 4.0,
+                    model_version: 1,
+                },
+                acknowledged: true,
+                followed: false,
+                sectors: 1,
+            };
+            correct(Ingredients {
+                alert: Some(&alert),
+                ..ingredients(Some(&model))
+            })
+        };
+        let open = ShipAlertState::Open;
+        for suspected in [of(open, Some(9.0), Some(9.2)), of(open, Some(9.0), None)] {
+            assert!(suspected.compass_deg.is_some());
+            assert_eq!((suspected.deviation_deg, suspected.true_deg), (None, None));
+            let problem = suspected.problem.unwrap();
+            assert!(problem.contains("not to steer by it"), "{problem}");
+        }
+        let of_the_gyro = of(open, Some(9.0), Some(0.2));
+        let over = of(ShipAlertState::Agree, Some(9.0), Some(9.2));
+        assert!(of_the_gyro.true_deg.is_some() && over.true_deg.is_some());
     }
 
     #[test]

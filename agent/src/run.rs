@@ -426,6 +426,7 @@ impl Agent {
             time: self.ship.time(),
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
+            alert: self.lookout.aboard(),
         };
         (corrected::correct(from), corrected::card(from))
     }

@@ -160,6 +160,8 @@ impl Lookout {
             time: Some(now),
             model: Some(model),
             withdrawn: None,
+            // The compass is judged on, whatever was said of it.
+            alert: None,
         });
         let true_deg = corrected.true_deg?.degrees();
         let departure = |reference_deg: f64| wrap_180(true_deg - reference_deg);

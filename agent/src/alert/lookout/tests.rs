@@ -84,6 +84,7 @@ impl Ship {
                 time: end_of(START),
                 model: Some(&self.card),
                 withdrawn: None,
+                alert: None,
             });
             let gyro_deg = right.true_deg.unwrap().degrees();
             let window = Window {
