@@ -2,7 +2,7 @@
 //!
 //! What always holds: what went wrong inside is logged here, once, and never sent.
 
-use crate::analysis::RefusalSchema;
+use crate::analysis::{LeftOut, RefusalSchema};
 use crate::models::NoModel;
 use crate::streams::CardWithdrawnSchema;
 use axum::Json;
@@ -98,6 +98,11 @@ pub struct Problem {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = Option<RefusalSchema>)]
     pub refusal: Option<FitError>,
+    /// The samples that the logbook leaves out of the current epoch; only in
+    /// `no-model-yet`, and only if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false)]
+    pub left_out: Option<LeftOut>,
     /// That the last model holds no more; only in `no-model-yet`.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
@@ -167,17 +172,18 @@ impl IntoResponse for Error {
         if let Error::Internal(cause) = &self {
             error!(error = format!("{cause:#}"), "a request failed");
         }
-        let (refusal, card_withdrawn) = match &self {
-            Error::NoModelYet(none) => (none.refusal.clone(), none.card_withdrawn.clone()),
-            _ => (None, None),
+        let none = match &self {
+            Error::NoModelYet(none) => Some(none),
+            _ => None,
         };
         let problem = Problem {
             kind: format!("/problems/{kind}"),
             title: title.to_owned(),
             status: status.as_u16(),
             detail: self.to_string(),
-            refusal,
-            card_withdrawn,
+            refusal: none.and_then(|none| none.refusal.clone()),
+            left_out: none.map(|none| none.left_out).filter(LeftOut::any),
+            card_withdrawn: none.and_then(|none| none.card_withdrawn.clone()),
         };
         let mut response = (status, Json(problem)).into_response();
         let headers = response.headers_mut();

@@ -5,6 +5,7 @@ mod found;
 
 pub use found::FoundChange;
 
+use crate::analysis::LeftOut;
 use crate::deviation::{self, Worst};
 use binnacle_magnetics::analyse::{Analysis, Epoch, LastPlace, LogbookEntry, SampleDiagnostic};
 use binnacle_magnetics::angle::wrap_180;
@@ -30,6 +31,9 @@ pub struct Findings {
     pub widest_band95_deg: Option<f64>,
     /// Why the current epoch has no model.
     pub refusal: Option<String>,
+    /// Its samples that the logbook leaves out.
+    #[serde(default)]
+    pub left_out: LeftOut,
     /// Gyro and satellite compass throughout, when they differ by more than any
     /// alignment explains: gyro less satellite compass, degrees.
     pub references_disagree_deg: Option<f64>,
@@ -87,6 +91,7 @@ pub fn findings_of(analysis: &Analysis, logbook: &[LogbookEntry]) -> Findings {
             .filter_map(|row| row.band95_deg)
             .reduce(f64::max),
         refusal: epoch.refusal.as_ref().map(ToString::to_string),
+        left_out: LeftOut::of(analysis),
         references_disagree_deg: match epoch.refusal {
             Some(FitError::ReferencesDisagree { offset_deg, .. }) => Some(offset_deg),
             _ => None,

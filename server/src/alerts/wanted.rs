@@ -9,6 +9,7 @@ use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::changed::changed;
 use super::findings::{FailedLately, Findings};
 use super::limits::AlertLimits;
+use crate::analysis::LeftOut;
 use crate::deviation::Worst;
 use crate::time::Time;
 use binnacle_magnetics::time::Timestamp;
@@ -45,7 +46,7 @@ pub fn alerts_of(findings: &Findings, limits: &AlertLimits, open: &[Cause]) -> V
         .epoch_data_from
         .filter(|from| data_until.seconds_since(*from) >= PATIENCE_S);
     let uncertain = waited_since.and_then(|from| match &findings.refusal {
-        Some(refusal) => Some(no_model(refusal, from)),
+        Some(refusal) => Some(no_model(refusal, findings.left_out, from)),
         None => findings
             .widest_band95_deg
             .filter(|band_deg| *band_deg > band_allowed_deg)
@@ -132,7 +133,7 @@ fn stands(figure_deg: f64, limit_deg: f64) -> String {
     format!(": it was over the limit of {limit_deg}° and has not yet fallen to {ends_deg}°")
 }
 
-fn no_model(refusal: &str, from: Timestamp) -> AlertWanted {
+fn no_model(refusal: &str, left_out: LeftOut, from: Timestamp) -> AlertWanted {
     AlertWanted {
         cause: Cause::NoModel,
         severity: Severity::Notice,
@@ -142,7 +143,7 @@ fn no_model(refusal: &str, from: Timestamp) -> AlertWanted {
             .to_owned(),
         advice: "Use no deviation card of earlier date. Take azimuths, and let the ship lie on \
                  the headings that are missing where the passage allows.",
-        evidence: Evidence(vec![format!("What is missing: {refusal}.")]),
+        evidence: Evidence(vec![format!("What is missing: {refusal}{left_out}.")]),
     }
 }
 

@@ -12,12 +12,14 @@
 //!   while one runs makes the next.
 
 mod input;
+mod left_out;
 mod queue;
 mod refusal;
 mod store;
 mod worker;
 
 pub use input::{Input, input_hash};
+pub use left_out::LeftOut;
 pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};
 pub use refusal::RefusalSchema;
 pub use store::{Covered, chunks, coverage, refusal};

@@ -1,5 +1,6 @@
 //! What an analysis leaves in the database.
 
+use super::LeftOut;
 use crate::alerts::Findings;
 use crate::changes;
 use crate::db::{Db, Tx, execute, row, rows};
@@ -62,25 +63,37 @@ pub(super) async fn last_hash(
     Ok(found.map(|(hash,)| hash))
 }
 
-/// Why the compass's current epoch has no model; none before the first analysis.
-pub async fn refusal(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Option<FitError>> {
+/// Why the compass's current epoch has no model, none before the first analysis, and
+/// what the logbook leaves out of it.
+pub async fn refusal(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<(Option<FitError>, LeftOut)> {
     #[derive(Deserialize)]
     struct Refused {
         refusal: Option<FitError>,
     }
+    #[derive(Default, Deserialize)]
+    struct Beside {
+        #[serde(default)]
+        left_out: LeftOut,
+    }
     let found = row!(
         db,
-        (String,),
-        "SELECT epochs FROM analyses WHERE vessel_id = $1 AND compass_id = $2
+        (String, Option<String>),
+        "SELECT epochs, findings FROM analyses WHERE vessel_id = $1 AND compass_id = $2
          ORDER BY compass_id",
         vessel,
         compass
     )?;
-    let Some((text,)) = found else {
-        return Ok(None);
+    let Some((epochs, findings)) = found else {
+        return Ok((None, LeftOut::default()));
     };
-    let mut epochs: Vec<Refused> = serde_json::from_str(&text)?;
-    Ok(epochs.pop().and_then(|epoch| epoch.refusal))
+    let mut epochs: Vec<Refused> = serde_json::from_str(&epochs)?;
+    let beside = findings.map(|text| serde_json::from_str::<Beside>(&text));
+    let left_out = beside.transpose()?.unwrap_or_default().left_out;
+    Ok((epochs.pop().and_then(|epoch| epoch.refusal), left_out))
 }
 
 /// Where a compass's samples lie; empty before the first analysis.

@@ -1,5 +1,6 @@
 //! Why a compass has no model, and since when its last one holds no more.
 
+use crate::analysis::LeftOut;
 use binnacle_magnetics::fit::FitError;
 use binnacle_wire::messages::CardWithdrawn;
 use std::fmt;
@@ -9,6 +10,8 @@ use std::fmt;
 pub struct NoModel {
     /// Why the samples make none; without a reason, none has been analysed.
     pub refusal: Option<FitError>,
+    /// The samples that the logbook leaves out.
+    pub left_out: LeftOut,
     /// That there was one, and it must not be used.
     pub card_withdrawn: Option<CardWithdrawn>,
 }
@@ -19,7 +22,7 @@ impl fmt::Display for NoModel {
             write!(f, "{}: ", withdrawn.in_words())?;
         }
         match &self.refusal {
-            Some(refusal) => write!(f, "{refusal}"),
+            Some(refusal) => write!(f, "{refusal}{}", self.left_out),
             None => f.write_str("no samples have been analysed yet"),
         }
     }

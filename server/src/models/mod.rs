@@ -157,8 +157,10 @@ pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Resul
     if let Some(model) = current(&app.db, vessel, compass).await? {
         return Ok(model);
     }
+    let (refusal, left_out) = analysis::refusal(&app.db, vessel, compass).await?;
     Err(Error::NoModelYet(NoModel {
-        refusal: analysis::refusal(&app.db, vessel, compass).await?,
+        refusal,
+        left_out,
         card_withdrawn: card_withdrawn(&app.db, vessel, compass).await?,
     }))
 }

@@ -10,6 +10,7 @@ on_both!(
     samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn,
     an_adjustment_opens_an_epoch_of_its_own_compass,
     words_alone_make_no_new_model,
+    without_a_model_it_is_said_what_the_logbook_leaves_out,
     entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline,
     a_thousand_entries_are_one_analysis,
 );
@@ -117,6 +118,31 @@ async fn words_alone_make_no_new_model(shore: Shore) {
         .await;
     assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 0)]));
     assert_eq!(ada.get(&nao.path("/model")).await.good()["version"], 1);
+    shore.finish().await;
+}
+
+async fn without_a_model_it_is_said_what_the_logbook_leaves_out(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    // Loaded, and nobody wrote down that she was discharged.
+    let cargo = json!({ "kind": "magnetic_cargo", "from": "2026-11-14T00:00:00Z" });
+    nao.report(&ada, &cargo).await;
+    nao.put(1, &passage(DAY, 60)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let answer = ada.get(&nao.path("/model")).await;
+    assert_eq!(answer.problem(), "no-model-yet");
+    let problem = answer.json();
+    assert_eq!(problem["refusal"]["found"], 0, "{problem}");
+    assert_eq!(
+        problem["left_out"],
+        json!({ "magnetic_cargo": 60, "berth": 0 })
+    );
+    let detail = problem["detail"].as_str().unwrap();
+    assert!(
+        detail.ends_with("samples are left out: 60 for magnetic cargo"),
+        "{detail}"
+    );
     shore.finish().await;
 }
 

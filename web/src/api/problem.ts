@@ -1,7 +1,7 @@
 /** What went wrong with a call, as RFC 9457 problem documents say it. */
 
 import { text } from '../text';
-import type { CardWithdrawn, Refusal } from './types';
+import type { CardWithdrawn, LeftOut, Refusal } from './types';
 
 /** What the server refused, or `offline` when it could not be reached. */
 export class Problem extends Error {
@@ -14,6 +14,8 @@ export class Problem extends Error {
     readonly refusal?: Refusal,
     /** Since when and why the last model holds no more, in `no-model-yet`. */
     readonly cardWithdrawn?: CardWithdrawn,
+    /** How many samples the logbook leaves out, in `no-model-yet` if there are any. */
+    readonly leftOut?: LeftOut,
   ) {
     super(detail);
   }
@@ -34,12 +36,15 @@ export function readProblem(status: number, body: unknown): Problem {
   return new Problem(status, type.split('/').at(-1) ?? '', detail, ...reasonsIn(about));
 }
 
-function reasonsIn(about: object): [Refusal | undefined, CardWithdrawn | undefined] {
-  const { refusal, card_withdrawn } = about as {
+function reasonsIn(
+  about: object,
+): [Refusal | undefined, CardWithdrawn | undefined, LeftOut | undefined] {
+  const { refusal, card_withdrawn, left_out } = about as {
     refusal?: Refusal | null;
     card_withdrawn?: CardWithdrawn | null;
+    left_out?: LeftOut | null;
   };
-  return [refusal ?? undefined, card_withdrawn ?? undefined];
+  return [refusal ?? undefined, card_withdrawn ?? undefined, left_out ?? undefined];
 }
 
 /** Any error as a problem: what is not one is a fault of ours, and is logged. */

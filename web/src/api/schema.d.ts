@@ -1656,6 +1656,21 @@ export interface components {
             /** Format: int32 */
             magnetic_latitude_to_deg: number;
         };
+        /** @description How many samples of the current epoch logbook entries leave out. */
+        LeftOut: {
+            /**
+             * Format: int64
+             * @description By entries of a berth.
+             * @example 12
+             */
+            berth: number;
+            /**
+             * Format: int64
+             * @description By entries of magnetic cargo.
+             * @example 288
+             */
+            magnetic_cargo: number;
+        };
         /**
          * @description What is to be changed in an entry; what is left out stays, null takes a value
          *     away.
@@ -2050,6 +2065,7 @@ export interface components {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
             /** @description What is wrong this time. */
             detail: string;
+            left_out?: components["schemas"]["LeftOut"] | null;
             refusal?: components["schemas"]["Refusal"] | null;
             /**
              * Format: int32

@@ -36,6 +36,7 @@ export type NewVessel = Schemas['NewVessel'];
 export type NewWebhook = Schemas['NewWebhook'];
 export type ParameterName = keyof Schemas['Identifiable'];
 export type References = Schemas['References'];
+export type LeftOut = Schemas['LeftOut'];
 export type Refusal = Schemas['Refusal'];
 export type SailNext = Schemas['SailNext'];
 export type Sample = Schemas['Sample'];

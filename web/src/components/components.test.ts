@@ -188,6 +188,11 @@ test('without a model it is said what is missing, and what to do', () => {
   expect(shown(adjusted)).toContain(
     'The last card has not held since 18 Nov 2026, 06:00 UTC (dry-docking): do not steer by it.',
   );
+  const loaded = { magnetic_cargo: 288, berth: 0 };
+  const excluded = new Problem(404, 'no-model-yet', 'x', few, undefined, loaded);
+  expect(shown(excluded)).toContain(
+    'Entries of the logbook leave out further samples: 288 for “magnetic cargo”. If one',
+  );
   const later = { reason: 'moonlight' } as unknown as typeof few;
   expect(shown(new Problem(404, 'no-model-yet', 'too much moonlight', later))).toContain(
     'too much moonlight',

@@ -1,6 +1,6 @@
 /** Why there is no model, in an officer's words: what is missing, and what to do. */
 
-import type { Refusal } from '../api/types';
+import type { LeftOut, Refusal } from '../api/types';
 import { count, degrees, heading, microtesla } from '../format';
 import { text } from '../text';
 
@@ -10,6 +10,15 @@ export interface RefusalWords {
 }
 
 const t = text.refusal;
+
+/** What the logbook leaves out, by kind of entry; nothing where it leaves out nothing. */
+export function leftOutWords(leftOut: LeftOut | undefined): string | null {
+  if (!leftOut) return null;
+  const kinds = (['magnetic_cargo', 'berth'] as const)
+    .filter((kind) => leftOut[kind] > 0)
+    .map((kind) => t.leftOutFor(count(leftOut[kind]), text.logbook.kinds[kind].toLowerCase()));
+  return kinds.length === 0 ? null : t.leftOut(kinds.join(', '));
+}
 
 /** None for a reason that a newer server knows and this page does not. */
 export function refusalWords(refusal: Refusal): RefusalWords | null {

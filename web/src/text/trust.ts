@@ -71,6 +71,9 @@ export const trust = {
     todo: 'What to do',
     tooFewSamples: (found: string, needed: string) =>
       `${found} samples can be used so far; at least ${needed} are needed.`,
+    leftOutFor: (samples: string, kind: string) => `${samples} for “${kind}”`,
+    leftOut: (kinds: string) =>
+      `Entries of the logbook leave out further samples: ${kinds}. If one of them is over, write its end into the logbook.`,
     tooFewSamplesTodo:
       'Keep sailing: the agent takes a sample from every ten minutes or so on a steady heading at speed, away from the berth. If few come in, what became of the ten-second windows stands under “On board”, with the reasons.',
     noReference: (readings: string) =>

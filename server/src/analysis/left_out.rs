@@ -1,0 +1,62 @@
+//! Samples that the logbook keeps out of the current epoch's model: an entry that nobody
+//! ended may keep out all.
+
+use binnacle_magnetics::analyse::{Analysis, SampleReason};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use utoipa::ToSchema;
+
+/// How many samples of the current epoch logbook entries leave out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+pub struct LeftOut {
+    /// By entries of magnetic cargo.
+    #[schema(example = 288)]
+    pub magnetic_cargo: u64,
+    /// By entries of a berth.
+    #[schema(example = 12)]
+    pub berth: u64,
+}
+
+impl LeftOut {
+    /// Those of an analysis.
+    pub fn of(analysis: &Analysis) -> LeftOut {
+        let from = analysis.current_epoch().and_then(|epoch| epoch.from);
+        let samples = analysis.samples.iter();
+        let current = samples.filter(|s| from.is_none_or(|from| s.sample.time >= from));
+        let mut left_out = LeftOut::default();
+        for sample in current {
+            match sample.reason {
+                Some(SampleReason::MagneticCargo) => left_out.magnetic_cargo += 1,
+                Some(SampleReason::Berth) => left_out.berth += 1,
+                _ => {}
+            }
+        }
+        left_out
+    }
+
+    /// Whether there are any.
+    pub fn any(&self) -> bool {
+        *self != LeftOut::default()
+    }
+}
+
+/// What follows a refusal: nothing where nothing is left out.
+impl fmt::Display for LeftOut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut kinds = Vec::new();
+        if self.magnetic_cargo > 0 {
+            kinds.push(format!("{} for magnetic cargo", self.magnetic_cargo));
+        }
+        if self.berth > 0 {
+            kinds.push(format!("{} for a berth", self.berth));
+        }
+        if kinds.is_empty() {
+            return Ok(());
+        }
+        let kinds = kinds.join(" and ");
+        write!(
+            f,
+            "; by entries of the logbook samples are left out: {kinds}"
+        )
+    }
+}
