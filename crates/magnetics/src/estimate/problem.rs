@@ -167,7 +167,7 @@ impl<'a> Problem<'a> {
             blocks.clear();
             sizes.clear();
             weights.clear();
-            let mut whitening = Whitening::new(levels);
+            let mut whitening: Whitening = Whitening::new(levels);
             let mut independent = Products::new();
             let mut block = None;
             let point = Point::at(&solution.unknowns, solution.fusion);

@@ -11,6 +11,9 @@ use nalgebra::{SMatrix, SVector};
 
 /// The residual (first), the columns, and a zero that makes their number even.
 const SERIES: usize = (1 + UNKNOWNS).next_multiple_of(2);
+/// The same but for the last column, that of what is left of the references' usual
+/// difference: without pairs of references it is zero.
+const OF_ONE_REFERENCE: usize = UNKNOWNS;
 
 /// Innovations beyond so many standard deviations have their variance raised:
 /// large enough that Gaussian noise loses nothing worth naming.
@@ -61,27 +64,27 @@ impl Drift {
 }
 
 /// The state of the filter between rows.
-struct Filter {
+struct Filter<const N: usize> {
     covariance: [[f64; STATES]; STATES],
     /// For each state its estimate in the residual and in every column.
-    series: [[f64; SERIES]; STATES],
+    series: [[f64; N]; STATES],
     stationary: [f64; STATES],
     drift_variance: f64,
     turn_variance: f64,
 }
 
 /// One scalar that the filter takes in.
-struct Scalar {
+struct Scalar<const N: usize> {
     /// The residual and its columns.
-    series: [f64; SERIES],
+    series: [f64; N],
     load: [f64; STATES],
     white: f64,
 }
 
 /// What a scalar came to.
-struct Whitened {
+struct Whitened<const N: usize> {
     /// Innovations, the residual's first.
-    innovations: [f64; SERIES],
+    innovations: [f64; N],
     variance: f64,
     /// The residual's innovation over its standard deviation, squared.
     z_squared: f64,
@@ -91,8 +94,8 @@ struct Whitened {
     weight_per_variance: f64,
 }
 
-impl Filter {
-    fn new(levels: &NoiseLevels) -> Filter {
+impl<const N: usize> Filter<N> {
+    fn new(levels: &NoiseLevels) -> Filter<N> {
         let stationary = levels.initial_variances();
         let mut covariance = [[0.0; STATES]; STATES];
         for s in 0..STATES {
@@ -100,7 +103,7 @@ impl Filter {
         }
         Filter {
             covariance,
-            series: [[0.0; SERIES]; STATES],
+            series: [[0.0; N]; STATES],
             stationary,
             drift_variance: levels.drift_nt.powi(2),
             turn_variance: levels.turn_deg.powi(2),
@@ -135,7 +138,7 @@ impl Filter {
     }
 
     /// Takes a scalar in.
-    fn update(&mut self, scalar: &Scalar) -> Whitened {
+    fn update(&mut self, scalar: &Scalar<N>) -> Whitened<N> {
         let mut innovations = scalar.series;
         for (s, load) in loaded(&scalar.load) {
             for (value, state) in innovations.iter_mut().zip(&self.series[s]) {
@@ -254,7 +257,15 @@ pub(super) fn loss_slope(z_squared: f64) -> f64 {
 
 /// Runs the filter over all rows.
 pub(crate) fn whiten(stations: &[Station], rows: &[Row], levels: &NoiseLevels) -> Pass {
-    let mut whitening = Whitening::new(levels);
+    if stations.iter().any(Station::reads_both) {
+        whiten_series::<SERIES>(stations, rows, levels)
+    } else {
+        whiten_series::<OF_ONE_REFERENCE>(stations, rows, levels)
+    }
+}
+
+fn whiten_series<const N: usize>(stations: &[Station], rows: &[Row], levels: &NoiseLevels) -> Pass {
+    let mut whitening = Whitening::<N>::new(levels);
     for (station, row) in stations.iter().zip(rows) {
         whitening.take(station, row);
     }
@@ -262,13 +273,13 @@ pub(crate) fn whiten(stations: &[Station], rows: &[Row], levels: &NoiseLevels) -
 }
 
 /// A pass that goes on, row by row.
-pub(crate) struct Whitening {
-    filter: Filter,
+pub(crate) struct Whitening<const N: usize = SERIES> {
+    filter: Filter<N>,
     white: f64,
     difference_white: f64,
     /// What has been added up since the last cut, and before it.
-    sums: Sums,
-    before: Products<SERIES>,
+    sums: Sums<N>,
+    before: Products<N>,
 }
 
 /// What some of the rows tell: their part of the normal equations.
@@ -277,9 +288,9 @@ pub(crate) struct Part {
     pub(crate) score: SVector<f64, UNKNOWNS>,
 }
 
-impl Whitening {
+impl<const N: usize> Whitening<N> {
     /// Before the first row.
-    pub(crate) fn new(levels: &NoiseLevels) -> Whitening {
+    pub(crate) fn new(levels: &NoiseLevels) -> Whitening<N> {
         Whitening {
             filter: Filter::new(levels),
             white: levels.white_deg.powi(2),
@@ -329,30 +340,37 @@ impl Whitening {
     }
 }
 
-fn part_of(normal: &Products<SERIES>) -> Part {
+fn part_of<const N: usize>(normal: &Products<N>) -> Part {
+    let at = |i: usize, j: usize| {
+        if i.max(j) < N { normal.at(i, j) } else { 0.0 }
+    };
     Part {
-        information: SMatrix::from_fn(|i, j| normal.at(i + 1, j + 1)),
-        score: SVector::from_fn(|i, _| normal.at(i + 1, 0)),
+        information: SMatrix::from_fn(|i, j| at(i + 1, j + 1)),
+        score: SVector::from_fn(|i, _| at(i + 1, 0)),
     }
 }
 
-fn series_of(residual: f64, columns: &[f64; UNKNOWNS]) -> [f64; SERIES] {
-    let mut series = [0.0; SERIES];
+fn series_of<const N: usize>(residual: f64, columns: &[f64; UNKNOWNS]) -> [f64; N] {
+    let mut series = [0.0; N];
     series[0] = residual;
-    series[1..=UNKNOWNS].copy_from_slice(columns);
+    for (value, column) in series[1..].iter_mut().zip(columns) {
+        *value = *column;
+    }
     series
 }
 
-fn columns_of(series: &[f64; SERIES]) -> [f64; UNKNOWNS] {
+fn columns_of<const N: usize>(series: &[f64; N]) -> [f64; UNKNOWNS] {
     let mut columns = [0.0; UNKNOWNS];
-    columns.copy_from_slice(&series[1..=UNKNOWNS]);
+    for (column, value) in columns.iter_mut().zip(&series[1..]) {
+        *column = *value;
+    }
     columns
 }
 
 /// What has been added up so far.
-struct Sums {
+struct Sums<const N: usize> {
     /// Products of the whitened series.
-    normal: Products<SERIES>,
+    normal: Products<N>,
     loss: f64,
     /// Sum of log variance, but for what is in `variances`.
     log_variance: f64,
@@ -360,8 +378,8 @@ struct Sums {
     variances: f64,
 }
 
-impl Sums {
-    fn new() -> Sums {
+impl<const N: usize> Sums<N> {
+    fn new() -> Sums<N> {
         Sums {
             normal: Products::new(),
             loss: 0.0,
@@ -370,7 +388,7 @@ impl Sums {
         }
     }
 
-    fn take(&mut self, filter: &mut Filter, scalar: &Scalar) -> f64 {
+    fn take(&mut self, filter: &mut Filter<N>, scalar: &Scalar<N>) -> f64 {
         let whitened = filter.update(scalar);
         self.loss += loss_of(whitened.z_squared);
         self.variances *= whitened.variance;
