@@ -2,8 +2,7 @@
 
 use super::{Search, earlier};
 use crate::change::bank::{Kind, misled, upset};
-use crate::change::filter::Filter;
-use crate::estimate::Unknowns;
+use crate::change::filter::{Filter, Measurement};
 
 /// Times tried for the date of a change, in each of two rounds.
 const DATES: usize = 40;
@@ -34,14 +33,15 @@ impl Search<'_> {
         let origin = &spawns[from];
         let until = spawns.get(winner + 1).map_or(k, |s| s.at);
         let earlier = earlier(self.misled.as_ref(), &self.calls);
-        let began = |filter: &Filter, row: usize, at: &Unknowns| match (kind, earlier) {
+        let began = |filter: &Filter, next: &Measurement| match (kind, earlier) {
             (Kind::Return, Some(earlier)) => earlier.again(filter),
-            (Kind::Reference | Kind::Satellite, _) => misled(filter, &self.measure(row, at), kind),
+            (Kind::Reference | Kind::Satellite, _) => misled(filter, next, kind),
             _ => upset(filter, kind),
         };
         // Twice, for the rows are to be linearised at where the ship is now.
         let mut at = self.point(k);
-        let mut best = (origin.at, began(origin.origin(), origin.at, &at));
+        let next = self.measure(origin.at, &at);
+        let mut best = (origin.at, began(origin.origin(), &next));
         let mut likely = Vec::new();
         for round in 0..2 {
             let (low, high) = if round == 0 {
@@ -52,14 +52,17 @@ impl Search<'_> {
                 (low, (best.0 + stride).min(until))
             };
             let stride = (high - low) / DATES + 1;
-            let mut before = self.run(origin.origin().clone(), origin.at..low, &at);
+            let rows = origin.at..k + 1;
+            let measured: Vec<Measurement> = rows.map(|row| self.measure(row, &at)).collect();
+            let since = |row: usize| &measured[row - origin.at..];
+            let mut before = self.take(origin.origin().clone(), &measured[..low - origin.at]);
             let mut tried: Vec<(usize, Filter)> = Vec::new();
             let mut row = low;
             while row <= high.min(k) {
-                let filter = self.run(began(&before, row, &at), row..k + 1, &at);
+                let filter = self.take(began(&before, &since(row)[0]), since(row));
                 tried.push((row, filter));
                 let next = row + stride;
-                before = self.run(before, row..next.min(k + 1), &at);
+                before = self.take(before, &since(row)[..stride.min(k + 1 - row)]);
                 row = next;
             }
             likely.extend(tried.iter().map(|(row, f)| (round, *row, f.log_likelihood)));
@@ -98,6 +101,14 @@ impl Search<'_> {
             from,
             at_spawn: origin.at,
         }
+    }
+
+    /// The filter after some measurements.
+    fn take(&self, mut filter: Filter, measured: &[Measurement]) -> Filter {
+        for m in measured {
+            filter.take(m, &self.noise, None);
+        }
+        filter
     }
 
     /// Whether it rather happened at a port call: many more steps do than at any one
