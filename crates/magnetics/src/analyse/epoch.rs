@@ -82,7 +82,7 @@ pub(super) fn reference(
     readings: &[Reading],
     one_constant_sd_deg: f64,
 ) -> Result<Reference, FitError> {
-    let has_reference = |r: &Reading| r.sample.gyro.or(r.sample.satellite).is_some();
+    let has_reference = |r: &Reading| r.sample().gyro.or(r.sample().satellite).is_some();
     if !readings.is_empty() && !readings.iter().any(has_reference) {
         return Err(FitError::NoReference {
             readings: readings.len() as u64,
@@ -103,8 +103,8 @@ pub(super) fn reference(
 
 /// Says of every reading with a reference that no model can be had of it.
 pub(super) fn refuse(epoch: &mut Epoch, readings: &mut [Reading], refusal: FitError) {
-    epoch.data_from = readings.first().map(|r| r.sample.time);
-    epoch.data_until = readings.last().map(|r| r.sample.time);
+    epoch.data_from = readings.first().map(|r| r.sample().time);
+    epoch.data_until = readings.last().map(|r| r.sample().time);
     let referred = readings.iter_mut().filter(|r| heading_reading(r).is_some());
     for reading in referred {
         let reason = &mut reading.diagnostic.reason;
@@ -130,8 +130,8 @@ pub(super) fn fit_epoch(epoch: &mut Epoch, readings: &mut [Reading], stretch: &S
     let reference = stretch.reference;
     let own = &stretch.own;
     epoch.references = Some(reference.check);
-    epoch.data_from = readings[own.clone()].first().map(|r| r.sample.time);
-    epoch.data_until = readings[own.clone()].last().map(|r| r.sample.time);
+    epoch.data_from = readings[own.clone()].first().map(|r| r.sample().time);
+    epoch.data_until = readings[own.clone()].last().map(|r| r.sample().time);
     for index in own.clone() {
         let is_referred = heading_reading(&readings[index]).is_some();
         let diagnostic = &mut readings[index].diagnostic;

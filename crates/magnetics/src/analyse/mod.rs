@@ -192,12 +192,12 @@ pub fn analyse(
         .iter()
         .filter(|r| r.diagnostic.deviation_deg.is_some());
     let coverage = coverage(
-        with_deviation.filter_map(|r| r.earth.map(|e| (r.sample.compass, e.h_nt, e.z_nt))),
+        with_deviation.filter_map(|r| r.earth.map(|e| (r.sample().compass, e.h_nt, e.z_nt))),
     );
     Analysis {
         estimator: ESTIMATOR.to_owned(),
-        data_from: readings.first().map(|r| r.sample.time),
-        data_until: readings.last().map(|r| r.sample.time),
+        data_from: readings.first().map(|r| r.sample().time),
+        data_until: readings.last().map(|r| r.sample().time),
         last_place: readings.iter().rev().find_map(Reading::place),
         coverage,
         epochs,
@@ -224,7 +224,7 @@ impl Course {
         logbook: &[LogbookEntry],
         settings: &AnalysisSettings,
     ) {
-        let place = |time: Timestamp| readings.partition_point(|r| r.sample.time < time);
+        let place = |time: Timestamp| readings.partition_point(|r| r.sample().time < time);
         let begin = epoch.from.map_or(0, place);
         let end = epoch.to.map_or(readings.len(), place);
         let one_sd_deg = settings.reference_constant_sd_deg;
@@ -271,7 +271,7 @@ impl Course {
             if !is_later || until.is_some_and(|until| until <= at) {
                 continue;
             }
-            let to = readings.partition_point(|r| r.sample.time < at).max(from);
+            let to = readings.partition_point(|r| r.sample().time < at).max(from);
             let mut next = empty_epoch(Some(at), None);
             next.begun_by_change = Some(found.changes[boundary.change].cause);
             epoch.to = Some(at);
@@ -331,7 +331,7 @@ impl Course {
             resumes: base,
             ..empty_epoch(Some(ended.at), None)
         };
-        let from = readings.partition_point(|r| r.sample.time < ended.at);
+        let from = readings.partition_point(|r| r.sample().time < ended.at);
         let mut stretch = self.stretch(&resumed, 0..0, reference);
         // As earlier ones: what does not fit the ship with cargo may fit her without.
         stretch.earlier.push(from..readings.len());

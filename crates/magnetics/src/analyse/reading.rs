@@ -15,7 +15,6 @@ const DAY_MICROS: i64 = 86_400_000_000;
 
 /// A sample on its way through the analysis.
 pub(super) struct Reading {
-    pub(super) sample: Sample,
     /// The gyro's heading with its speed error taken out.
     pub(super) gyro: Option<TrueHeading>,
     pub(super) variation: Option<Variation>,
@@ -24,12 +23,16 @@ pub(super) struct Reading {
 }
 
 impl Reading {
+    pub(super) fn sample(&self) -> &Sample {
+        &self.diagnostic.sample
+    }
+
     /// The field where it was taken; none outside the field model's years.
     pub(super) fn place(&self) -> Option<LastPlace> {
         let (variation, earth) = self.variation.zip(self.earth)?;
         Some(LastPlace {
-            time: self.sample.time,
-            position: self.sample.position,
+            time: self.sample().time,
+            position: self.sample().position,
             variation_deg: variation.degrees_east(),
             h_nt: earth.h_nt,
             z_nt: earth.z_nt,
@@ -91,7 +94,6 @@ fn reading(sample: Sample, field: &mut DailyField, settings: &AnalysisSettings) 
             used: false,
             reason,
         },
-        sample,
     }
 }
 
@@ -106,7 +108,7 @@ fn corrected_gyro(sample: &Sample, speed_error: GyroSpeedError) -> Option<TrueHe
 
 /// What the reading says of headings; none without a reference or a field.
 pub(super) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
-    let sample = &reading.sample;
+    let sample = reading.sample();
     let (variation, earth) = reading.variation.zip(reading.earth)?;
     if reading.gyro.is_none() && sample.satellite.is_none() {
         return None;

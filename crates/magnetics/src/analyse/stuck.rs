@@ -36,8 +36,8 @@ pub(super) fn mark_stuck(readings: &mut [Reading]) -> Vec<Change> {
 
 /// How many readings from the first on are the same.
 fn same(readings: &[Reading]) -> usize {
-    let first = readings[0].sample.compass.degrees();
-    let off = |reading: &Reading| wrap_180(reading.sample.compass.degrees() - first).abs();
+    let first = readings[0].sample().compass.degrees();
+    let off = |reading: &Reading| wrap_180(reading.sample().compass.degrees() - first).abs();
     readings
         .iter()
         .position(|reading| off(reading) > SAME_DEG)
@@ -52,23 +52,26 @@ fn turns(readings: &[Reading]) -> impl Iterator<Item = usize> {
     };
     let pairs = readings.windows(2).enumerate();
     pairs.filter_map(move |(k, pair)| {
-        let (a, b) = (&pair[0].sample, &pair[1].sample);
+        let (a, b) = (pair[0].sample(), pair[1].sample());
         let any = turned(a.gyro, b.gyro) || turned(a.satellite, b.satellite);
         any.then_some(k + 1)
     })
 }
 
 fn told(readings: &[Reading], stuck: Range<usize>, showed: usize) -> Change {
-    let from = readings[stuck.start].sample.time;
-    let last = readings[stuck.end - 1].sample.time;
-    let before = stuck.start.checked_sub(1).map(|i| readings[i].sample.time);
-    let heading = readings[stuck.start].sample.compass.degrees();
+    let from = readings[stuck.start].sample().time;
+    let last = readings[stuck.end - 1].sample().time;
+    let before = stuck
+        .start
+        .checked_sub(1)
+        .map(|i| readings[i].sample().time);
+    let heading = readings[stuck.start].sample().compass.degrees();
     let turns = turns(&readings[stuck.clone()]).count();
     Change {
         from,
         from_earliest: before.unwrap_or(from),
         from_latest: from,
-        detected_at: readings[showed].sample.time,
+        detected_at: readings[showed].sample().time,
         confirmed: true,
         cause: Cause::CompassFault,
         causes: vec![CauseProbability {

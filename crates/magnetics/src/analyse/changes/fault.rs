@@ -26,7 +26,7 @@ impl Seen {
     pub(super) fn of(reading: &Reading, observation: Option<&Observation>) -> Option<Seen> {
         let read = heading_reading(reading)?;
         Some(Seen {
-            time: reading.sample.time,
+            time: reading.sample().time,
             both: read.gyro.is_some() && read.satellite.is_some(),
             gyro_share: observation.map(|o| o.gyro_share),
         })

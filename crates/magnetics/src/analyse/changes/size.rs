@@ -49,7 +49,7 @@ pub(in crate::analyse) fn sharpen(
     };
     let mut until = readings
         .iter()
-        .filter(|r| r.sample.time <= change.detected_at);
+        .filter(|r| r.sample().time <= change.detected_at);
     let Some(earth) = until.next_back().and_then(|reading| reading.earth) else {
         return;
     };
