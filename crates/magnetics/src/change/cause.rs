@@ -27,6 +27,8 @@ pub(crate) struct Circumstances {
     pub(crate) ended_at_port: Option<bool>,
     /// How long a burst lasted.
     pub(crate) burst_s: Option<f64>,
+    /// Whether another step at sea, weeks before or after, went the same way.
+    pub(crate) creeps: bool,
     /// From the change to the row that told.
     pub(crate) told_after_s: f64,
     /// What people reported at the time.
@@ -34,7 +36,7 @@ pub(crate) struct Circumstances {
 }
 
 /// Rate a vessel-year, and the probabilities of: beginning at a port call; ending
-/// again, at a port call or at sea; being told late.
+/// again, at a port call or at sea; being told late; another going the same way.
 struct Kind {
     cause: Cause,
     rate: f64,
@@ -42,10 +44,11 @@ struct Kind {
     ends_at_port: f64,
     ends_at_sea: f64,
     told_late: f64,
+    creeps: f64,
 }
 
-const fn kind(cause: Cause, numbers: [f64; 5]) -> Kind {
-    let [rate, at_port, ends_at_port, ends_at_sea, told_late] = numbers;
+const fn kind(cause: Cause, numbers: [f64; 6]) -> Kind {
+    let [rate, at_port, ends_at_port, ends_at_sea, told_late, creeps] = numbers;
     Kind {
         cause,
         rate,
@@ -53,15 +56,19 @@ const fn kind(cause: Cause, numbers: [f64; 5]) -> Kind {
         ends_at_port,
         ends_at_sea,
         told_late,
+        creeps,
     }
 }
 
 const LASTING: [Kind; 5] = [
-    kind(Cause::LightningOrShock, [0.2, 0.1, 0.02, 0.05, 0.05]),
-    kind(Cause::MagneticCargo, [1.0, 0.97, 0.8, 0.03, 0.1]),
-    kind(Cause::AdjustmentOrRepair, [0.2, 0.9, 0.02, 0.01, 0.05]),
-    kind(Cause::Drift, [0.1, 0.1, 0.02, 0.02, 0.8]),
-    kind(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2]),
+    kind(Cause::LightningOrShock, [0.2, 0.1, 0.02, 0.05, 0.05, 0.02]),
+    kind(Cause::MagneticCargo, [1.0, 0.97, 0.8, 0.03, 0.1, 0.02]),
+    kind(
+        Cause::AdjustmentOrRepair,
+        [0.2, 0.9, 0.02, 0.01, 0.05, 0.02],
+    ),
+    kind(Cause::Drift, [0.1, 0.1, 0.02, 0.02, 0.8, 0.7]),
+    kind(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2, 0.1]),
 ];
 
 /// The odds that a lead stands for.
@@ -128,6 +135,7 @@ impl Kind {
             Some(false) => self.ends_at_sea,
             None => 1.0 - 0.3 * (self.ends_at_port + self.ends_at_sea),
         };
+        weight *= of(known.creeps, self.creeps);
         weight * of(known.told_after_s > SLOW_S, self.told_late)
     }
 }

@@ -3,8 +3,9 @@
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
 use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookKind, SampleReason, analyse};
-use binnacle_magnetics::angle::TrueHeading;
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::change::{Cause, Change};
+use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 
@@ -140,4 +141,31 @@ fn a_report_dates_what_happened_between_two_samples() {
     let said = stepped.plus_seconds(0.2 * HOUR_S);
     let analysis = with(&log, &[entry(LogbookKind::Lightning, said, None)]);
     assert_eq!(nearest(&analysis, stepped).from, said);
+}
+
+#[test]
+fn what_creeps_is_called_a_drift() {
+    let mut named = 0;
+    for (seed, nt) in [(81, 4000.0), (82, 4000.0), (83, -5000.0)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let day = |time: Timestamp| time.seconds_since(log.start) / DAY_S;
+        for sample in &mut log.samples {
+            let part = ((day(sample.time) - 15.0) / 30.0).clamp(0.0, 1.0);
+            let earth = field(FieldModel::Igrf14, sample.position, 0.0, sample.time).unwrap();
+            let bearing = sample.compass.degrees().to_radians();
+            let off = (nt * part * bearing.sin() / earth.h_nt()).to_degrees();
+            sample.compass = CompassHeading::new(sample.compass.degrees() - off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<Cause> = of_the_ship(&analysis).iter().map(|c| c.cause).collect();
+        if told.len() > 1 {
+            named += told.iter().filter(|cause| **cause == Cause::Drift).count();
+            let struck = told
+                .iter()
+                .filter(|cause| **cause == Cause::LightningOrShock);
+            assert!(2 * struck.count() <= told.len(), "seed {seed}: {told:?}");
+        }
+    }
+    assert!(named >= 2, "{named}");
 }

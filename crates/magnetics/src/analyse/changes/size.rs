@@ -2,7 +2,7 @@
 
 use crate::analyse::Epoch;
 use crate::analyse::reading::Reading;
-use crate::change::{Change, Snapshot, Step};
+use crate::change::{Change, Event, Snapshot, Step};
 use crate::model::{Model, Parameters};
 use crate::ship::EarthField;
 
@@ -34,6 +34,21 @@ pub(super) fn step(before: &Snapshot, after: &Snapshot) -> Step {
         by_nt: after.parameters.by_nt - before.parameters.by_nt,
         bx_se_nt: se(0),
         by_se_nt: se(2),
+    }
+}
+
+/// The cosine between two steps of (bx, by); 0 where one is none.
+pub(super) fn cosine(one: &Event, other: &Event) -> f64 {
+    let of = |event: &Event| {
+        let step = step(&event.before, &event.after);
+        (step.bx_nt, step.by_nt)
+    };
+    let ((ax, ay), (bx, by)) = (of(one), of(other));
+    let product = ax.hypot(ay) * bx.hypot(by);
+    if product == 0.0 {
+        0.0
+    } else {
+        (ax * bx + ay * by) / product
     }
 }
 

@@ -11,6 +11,10 @@ use crate::time::Timestamp;
 /// before it is loaded, but for the clerk's haste.
 const REPORT_S: f64 = 2.0 * 86_400.0;
 const LOADED_BEFORE_S: f64 = 6.0 * 3600.0;
+/// Steps at sea that follow each other within this, in directions whose cosine is more
+/// than that, are of one drift.
+const CREEPS_S: f64 = 45.0 * 86_400.0;
+const SAME_WAY: f64 = 0.7;
 /// What is less likely than this makes no band wider.
 const SELDOM: f64 = 0.02;
 
@@ -102,6 +106,7 @@ impl Teller<'_> {
             burst_s: event
                 .last
                 .map(|last| self.time(last).seconds_since(self.time(event.first))),
+            creeps: self.creeps(index),
             told_after_s: self.time(event.told).seconds_since(from),
             reported: self.reported(from_earliest, from_latest),
         };
@@ -148,6 +153,24 @@ impl Teller<'_> {
             change,
             probability,
         })
+    }
+
+    /// Whether a step is one of several that go the same way: of something that creeps.
+    fn creeps(&self, index: usize) -> bool {
+        let event = &self.events[index];
+        let is_alone = |event: &Event| {
+            event.what == What::Step && event.confirmed && self.began_at_port(event) == Some(false)
+        };
+        let time = |event: &Event| self.time(event.first);
+        let mut others = self.events.iter().enumerate();
+        is_alone(event)
+            && others.any(|(place, other)| {
+                let apart_s = time(other).seconds_since(time(event)).abs();
+                place != index
+                    && is_alone(other)
+                    && apart_s < CREEPS_S
+                    && size::cosine(event, other) > SAME_WAY
+            })
     }
 
     /// What people reported around the interval.
@@ -216,6 +239,9 @@ fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String>
         Some(true) => told.push("the ship was herself again after a port call".to_owned()),
         Some(false) => told.push("the ship became herself again at sea".to_owned()),
         None => {}
+    }
+    if known.creeps {
+        told.push("another change within weeks went the same way".to_owned());
     }
     if let Some(seconds) = known.burst_s {
         told.push(format!("it lasted {:.1} hours", seconds / 3600.0));
