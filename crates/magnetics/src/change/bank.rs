@@ -135,6 +135,10 @@ impl Spawn {
         let bursting = (self.age_s < BURST_S).then_some(BURST);
         self.age_s += m.seconds;
         if kinds.contains(&Kind::Reference) && std::mem::take(&mut self.is_fresh) {
+            if m.difference.is_none() {
+                // Of one reference there is nothing that tells which it is.
+                self.copies[Kind::Satellite as usize] = None;
+            }
             for kind in REFERENCES {
                 if let Some(copy) = &mut self.copies[kind as usize] {
                     **copy = misled(copy, m, kind);
