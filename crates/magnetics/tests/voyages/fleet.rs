@@ -3,8 +3,9 @@
 //!
 //! The field is the IGRF's, as the analysis has it; all else is this folder's own.
 
-use super::{Errors, Faults, Mean, Passage, Truth, Variety, gauss};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
+use super::kept::Kept;
+use super::{Errors, Faults, Passage, Truth, Variety, gauss};
+use binnacle_magnetics::angle::{CompassHeading, wrap_180};
 use binnacle_magnetics::field::{FieldAt, FieldModel};
 use binnacle_magnetics::model::Parameters;
 use binnacle_magnetics::position::Position;
@@ -357,55 +358,6 @@ fn storms(sun: u64, days: f64, a_month: f64) -> Vec<(i64, f64)> {
     storms
 }
 
-/// Minutes' readings, and the means of ten.
-#[derive(Default)]
-struct Kept {
-    minutes: Vec<Sample>,
-    samples: Vec<Sample>,
-    mean: Mean,
-}
-
-impl Kept {
-    /// Takes a minute's reading, but for the gyro's fault; ten of them may be wild.
-    fn take(
-        &mut self,
-        at: Sample,
-        course: f64,
-        read: [f64; 3],
-        gyro_off: f64,
-        (faults, rng): (&Faults, &mut ChaCha8Rng),
-    ) {
-        let sample = |[compass, gyro, satellite]: [f64; 3], windows| Sample {
-            compass: CompassHeading::new(compass).unwrap(),
-            gyro: TrueHeading::new(gyro),
-            satellite: TrueHeading::new(satellite).filter(|_| faults.satellite),
-            windows,
-            ..at
-        };
-        self.minutes
-            .push(sample([read[0], read[1] + gyro_off, read[2]], at.windows));
-        let Some([compass, gyro, satellite]) = self.mean.add(course, read) else {
-            return;
-        };
-        let mut wild = [0.0; 2];
-        for wild in &mut wild {
-            if rng.random::<f64>() < faults.outliers {
-                *wild = 10.0 * gauss(rng);
-            }
-        }
-        let [gyro_wild, compass_wild] = wild;
-        for minute in self.minutes.iter_mut().rev().take(10) {
-            let compass = minute.compass.degrees() + compass_wild;
-            minute.compass = CompassHeading::new(compass).unwrap();
-            let gyro = minute.gyro.map(|gyro| gyro.degrees() + gyro_wild);
-            minute.gyro = gyro.and_then(TrueHeading::new);
-        }
-        let gyro = gyro + gyro_off + gyro_wild;
-        self.samples
-            .push(sample([compass + compass_wild, gyro, satellite], 55));
-    }
-}
-
 /// Sails a ship and keeps what her agent would.
 pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -464,7 +416,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         world.plan(plan, minute, (arrived, at_sea_for), &mut truth, &mut rng);
         let (astray, gyro_off) = world.chance(plan, minute, &passage, &errors, &mut rng);
         if alongside || passage.turning_minutes > 0.0 {
-            kept.mean = Mean::default();
+            kept.break_off();
             continue;
         }
         let position = Position::new(passage.lat, passage.lon).unwrap();

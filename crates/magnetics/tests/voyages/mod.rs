@@ -11,6 +11,7 @@ pub(crate) mod bound;
 mod errors;
 #[allow(dead_code, reason = "only what is about changes asks for it")]
 pub(crate) mod fleet;
+mod kept;
 #[allow(dead_code, reason = "only the comparison of detectors asks for it")]
 pub(crate) mod lorden;
 mod passage;

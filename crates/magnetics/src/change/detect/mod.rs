@@ -30,7 +30,8 @@ use unsettled::Unsettled;
 /// Rows between times that are tried: about an hour of sailing.
 const EVERY: usize = 6;
 /// A row that is astray by more than this is a time to be tried, if the last is so
-/// many rows before it.
+/// many rows before it: by the covariance of the row before, to which the step between
+/// has added nothing yet, so that one row in eight is.
 const ASTRAY_SD: f64 = 3.0;
 const ASTRAY_ROWS: usize = 2;
 /// After a gap of this the next row is a time to be tried, whatever the count.
