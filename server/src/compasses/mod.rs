@@ -1,5 +1,6 @@
 //! A vessel's compasses.
 
+mod amendment;
 mod store;
 
 pub use store::{insert_standard, of_fleet, of_vessel};
@@ -8,11 +9,12 @@ use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::db::Db;
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Page, Valid, text};
+use crate::http::{Id, Json, Page, Valid, optional_text, text};
 use crate::idempotency::{self, Key};
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
 use crate::vessels;
+use amendment::{Amendment, AmendmentSchema};
 use axum::extract::State;
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
@@ -22,7 +24,9 @@ use utoipa_axum::routes;
 
 /// The routes of this part.
 pub fn router() -> OpenApiRouter<App> {
-    OpenApiRouter::new().routes(routes!(list_compasses, create_compass))
+    OpenApiRouter::new()
+        .routes(routes!(list_compasses, create_compass))
+        .routes(routes!(amend_compass))
 }
 
 /// A magnetic element aboard.
@@ -37,6 +41,15 @@ pub struct Compass {
     pub name: String,
     /// What it serves as.
     pub role: Role,
+    /// Maker and type.
+    #[schema(required, example = "Cassens & Plath Reflecta 1")]
+    pub make: Option<String>,
+    /// Its serial number.
+    #[schema(required, example = "34871")]
+    pub serial_number: Option<String>,
+    /// The binnacle that it stands in: maker, type and number.
+    #[schema(required)]
+    pub binnacle: Option<String>,
     /// When it was entered.
     pub created_at: Time,
 }
@@ -63,6 +76,18 @@ pub struct NewCompass {
     pub name: String,
     /// What it serves as.
     pub role: Role,
+    /// Maker and type.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200)]
+    pub make: Option<String>,
+    /// Its serial number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200)]
+    pub serial_number: Option<String>,
+    /// The binnacle that it stands in: maker, type and number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200)]
+    pub binnacle: Option<String>,
 }
 
 /// A page of compasses.
@@ -137,6 +162,9 @@ async fn create_compass(
         vessel_id: id,
         name: text("name", &new.name)?,
         role: new.role,
+        make: optional_text("make", new.make.as_deref())?,
+        serial_number: optional_text("serial_number", new.serial_number.as_deref())?,
+        binnacle: optional_text("binnacle", new.binnacle.as_deref())?,
         created_at: app.clock.now().into(),
     };
     let mut tx = app.db.begin().await?;
@@ -155,4 +183,29 @@ async fn create_compass(
     tx.commit().await?;
     let compass = find(&app.db, id, Some(CompassId(made))).await?;
     Ok((StatusCode::CREATED, Json(compass)))
+}
+
+/// Amend what is written of a compass
+///
+/// What is left out stays as it is; null takes a value away.
+#[utoipa::path(patch, path = "/vessels/{id}/compasses/{compass}", tag = "fleet",
+    params(("id" = VesselId, Path), ("compass" = CompassId, Path)), request_body = AmendmentSchema,
+    responses((status = 200, body = Compass), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn amend_compass(
+    State(app): State<App>,
+    writer: Writer,
+    Id((vessel, id)): Id<(VesselId, CompassId)>,
+    Valid(amendment): Valid<Amendment>,
+) -> Result<Json<Compass>> {
+    vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
+    let mut tx = app.db.begin().await?;
+    let compass = store::lock(&mut tx, vessel, id)
+        .await?
+        .ok_or(Error::NotFound("compass"))?;
+    let amended = amendment.applied_to(compass)?;
+    store::update(&mut tx, &amended).await?;
+    tx.commit().await?;
+    Ok(Json(amended))
 }

@@ -84,6 +84,15 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
     })
 }
 
+/// The same where there may be none: what is blank is none.
+///
+/// # Errors
+/// When it is too long or not on one line.
+pub fn optional_text(field: &'static str, value: Option<&str>) -> Result<Option<String>> {
+    let given = value.filter(|value| !value.trim().is_empty());
+    given.map(|value| text(field, value)).transpose()
+}
+
 /// A time in a query string.
 ///
 /// # Errors

@@ -1,6 +1,7 @@
 //! Everything between the socket and the handlers: routes, limits, headers, and
 //! the small types that read a request.
 
+mod amended;
 mod docs;
 mod document;
 mod headers;
@@ -8,6 +9,7 @@ mod json;
 mod page;
 mod routes;
 
-pub use json::{Id, Json, Params, Valid, ValidOrNone, degrees, text, time};
+pub use amended::Amended;
+pub use json::{Id, Json, Params, Valid, ValidOrNone, degrees, optional_text, text, time};
 pub use page::{Listed, Page};
 pub use routes::{MAX_JSON_BYTES, openapi, router};

@@ -2,11 +2,12 @@
 
 use super::entry::NewEntry;
 use super::schema::{CargoSchema, KindSchema};
+use crate::http::Amended;
 use crate::ids::CompassId;
 use crate::time::Time;
 use binnacle_magnetics::analyse::{Cargo, LogbookKind};
 use binnacle_wire::logbook::Report;
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use utoipa::ToSchema;
 
 /// What is to be changed in an entry.
@@ -26,14 +27,6 @@ pub(super) struct Amendment {
     note: Option<String>,
     #[serde(default)]
     compass_id: Amended<CompassId>,
-}
-
-/// A value that is left as it is, set, or taken away.
-#[derive(Debug, Default)]
-enum Amended<T> {
-    #[default]
-    Left,
-    Set(Option<T>),
 }
 
 /// What is to be changed in an entry; what is left out stays, null takes a value
@@ -71,20 +64,5 @@ impl Amendment {
             },
             compass_id: self.compass_id.over(entry.compass_id),
         }
-    }
-}
-
-impl<T> Amended<T> {
-    fn over(self, was: Option<T>) -> Option<T> {
-        match self {
-            Amended::Left => was,
-            Amended::Set(value) => value,
-        }
-    }
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Amended<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        Option::deserialize(deserializer).map(Amended::Set)
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! What always holds: a vessel is found only together with the operator who asks.
 
+mod amendment;
 mod imo;
 mod store;
 
@@ -13,11 +14,12 @@ use crate::app::App;
 use crate::compasses::{self, Compass};
 use crate::deviation::Worst;
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Page, Valid, text};
+use crate::http::{Id, Json, Page, Valid, optional_text, text};
 use crate::idempotency::{self, Key};
 use crate::ids::{OperatorId, VesselId};
 use crate::models::{self, ModelSummary, StoredModel};
 use crate::time::Time;
+use amendment::{Amendment, AmendmentSchema};
 use axum::extract::State;
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
@@ -29,7 +31,7 @@ use utoipa_axum::routes;
 pub fn router() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(list_vessels, create_vessel))
-        .routes(routes!(find_vessel))
+        .routes(routes!(find_vessel, amend_vessel))
 }
 
 /// A vessel, and how its compass stands.
@@ -179,6 +181,27 @@ async fn find_vessel(
     Ok(Json(assemble(&app, reader.operator, id).await?))
 }
 
+/// Amend what is written of a vessel
+///
+/// What is left out stays as it is; null takes a value away.
+#[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
+    request_body = AmendmentSchema,
+    responses((status = 200, body = Vessel), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 422, body = Problem)))]
+async fn amend_vessel(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<VesselId>,
+    Valid(amendment): Valid<Amendment>,
+) -> Result<Json<Vessel>> {
+    let mut tx = app.db.begin().await?;
+    let vessel = store::lock(&mut tx, writer.operator, id).await?;
+    store::update(&mut tx, id, &amendment.applied_to(vessel)?).await?;
+    tx.commit().await?;
+    Ok(Json(assemble(&app, writer.operator, id).await?))
+}
+
 async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vessel> {
     let row = must_be_in_fleet(&app.db, operator, id).await?;
     let compasses = compasses::of_vessel(&app.db, id).await?;
@@ -189,13 +212,7 @@ async fn assemble(app: &App, operator: OperatorId, id: VesselId) -> Result<Vesse
 
 impl NewVessel {
     fn checked(self) -> Result<NewVessel> {
-        let optional = |field, value: Option<String>| {
-            value
-                .filter(|value| !value.trim().is_empty())
-                .map(|value| text(field, &value))
-                .transpose()
-        };
-        let imo_number = optional("imo_number", self.imo_number)?;
+        let imo_number = optional_text("imo_number", self.imo_number.as_deref())?;
         if let Some(number) = &imo_number
             && !imo::is_valid(number)
         {
@@ -207,8 +224,8 @@ impl NewVessel {
         Ok(NewVessel {
             name: text("name", &self.name)?,
             imo_number,
-            call_sign: optional("call_sign", self.call_sign)?,
-            flag: optional("flag", self.flag)?,
+            call_sign: optional_text("call_sign", self.call_sign.as_deref())?,
+            flag: optional_text("flag", self.flag.as_deref())?,
         })
     }
 }

@@ -110,3 +110,36 @@ pub(super) async fn insert(
     )?;
     Ok(())
 }
+
+/// The vessel, to be changed: others who would change it wait.
+///
+/// # Errors
+/// [`Error::NotFound`] when it does not exist or is another operator's.
+pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, id: VesselId) -> error::Result<Row> {
+    let found = row!(
+        in tx,
+        Row,
+        "UPDATE vessels SET name = name
+         WHERE id = $2 AND operator_id = $1
+         RETURNING id, name, imo_number, call_sign, flag, created_at, last_upload_at,
+                   last_sample_at, last_lat, last_lon",
+        operator,
+        id
+    )?;
+    found.ok_or(Error::NotFound("vessel"))
+}
+
+/// Writes a vessel's particulars anew.
+pub(super) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5
+         WHERE id = $1",
+        id,
+        amended.name.as_str(),
+        amended.imo_number.as_deref(),
+        amended.call_sign.as_deref(),
+        amended.flag.as_deref()
+    )?;
+    Ok(())
+}

@@ -10,6 +10,7 @@ on_both!(
     a_create_request_sent_again_creates_nothing_more,
     what_is_no_vessel_is_refused_by_its_field,
     a_vessel_may_have_more_compasses,
+    what_is_written_of_a_vessel_and_her_compass_can_be_amended,
 );
 
 async fn vessels_page_in_the_order_they_were_entered(shore: Shore) {
@@ -98,5 +99,68 @@ async fn a_vessel_may_have_more_compasses(shore: Shore) {
     assert_eq!(roles, ["standard", "steering"]);
     let odd = json!({ "name": "Aft", "role": "odd" });
     assert_eq!(ada.post(&path, &odd).await.problem(), "invalid");
+    shore.finish().await;
+}
+
+async fn what_is_written_of_a_vessel_and_her_compass_can_be_amended(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let body = json!({ "name": "Nao", "imo_number": "9074729", "flag": "Spain" });
+    let vessel = ada.post("/vessels", &body).await.good();
+    let path = format!("/vessels/{}", vessel["id"].as_str().unwrap());
+    let amend = async |path: &str, body: Value| {
+        Answer::of(ada.request(Method::PATCH, path).json(&body)).await
+    };
+    let change = json!({ "call_sign": " EAVN ", "flag": null });
+    let amended = amend(&path, change).await.good();
+    let words = ["name", "imo_number", "call_sign", "flag"].map(|field| amended[field].clone());
+    assert_eq!(
+        Value::from(words.to_vec()),
+        json!(["Nao", "9074729", "EAVN", null])
+    );
+    for (wrong, field) in [
+        (json!({ "imo_number": "9074728" }), "imo_number"),
+        (json!({ "name": " " }), "name"),
+        (json!({ "callsign": "EAVN" }), "callsign"),
+    ] {
+        let answer = amend(&path, wrong).await;
+        assert_eq!(answer.problem(), "invalid");
+        assert!(answer.text.contains(field), "{answer:?}");
+    }
+    assert_eq!(ada.get(&path).await.good(), amended);
+
+    let compass = format!(
+        "{path}/compasses/{}",
+        amended["compasses"][0]["id"].as_str().unwrap()
+    );
+    let plate = json!({ "make": "Reflecta 1", "serial_number": "34871", "binnacle": "no. 7" });
+    let amended = amend(&compass, plate).await.good();
+    assert_eq!(
+        (&amended["make"], &amended["binnacle"]),
+        (&json!("Reflecta 1"), &json!("no. 7"))
+    );
+    let amended = amend(
+        &compass,
+        json!({ "binnacle": null, "role": "transmitting" }),
+    )
+    .await
+    .good();
+    assert_eq!(amended["serial_number"], "34871");
+    assert_eq!(
+        (&amended["binnacle"], &amended["role"]),
+        (&json!(null), &json!("transmitting"))
+    );
+    assert_eq!(ada.get(&path).await.good()["compasses"], json!([amended]));
+    assert_eq!(
+        amend(&compass, json!({ "make": "a\nb" })).await.problem(),
+        "invalid"
+    );
+    let none = format!("{path}/compasses/{}", vessel["id"].as_str().unwrap());
+    assert_eq!(amend(&none, json!({})).await.problem(), "not-found");
+
+    let viewer = ada.viewer(&shore).await;
+    for path in [&path, &compass] {
+        let answer = Answer::of(viewer.request(Method::PATCH, path).json(&json!({}))).await;
+        assert_eq!(answer.problem(), "forbidden");
+    }
     shore.finish().await;
 }

@@ -59,6 +59,8 @@ async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
     let id = shore.ship(&ada, "Nao").await.id;
     let agents = ada.get(&format!("/vessels/{id}/agents")).await.good();
     let agent = agents["items"][0]["agent_id"].as_str().unwrap();
+    let compasses = ada.get(&format!("/vessels/{id}/compasses")).await.good();
+    let compass = compasses["items"][0]["id"].as_str().unwrap();
     let logbook = format!("/vessels/{id}/logbook");
     let entry = ada.post(&logbook, &lightning()).await.good()["id"].clone();
     for (method, path, body) in operations() {
@@ -68,6 +70,7 @@ async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
         let path = path.replace("{id}", &id);
         let path = path.replace("{entry}", entry.as_str().unwrap());
         let path = path.replace("{agent}", agent);
+        let path = path.replace("{compass}", compass);
         let theirs = Answer::of(eve.request(method.clone(), &path).json(&body)).await;
         assert_eq!(theirs.problem(), "not-found", "{method} {path}");
         let ours = Answer::of(ada.request(method.clone(), &path).json(&body)).await;
@@ -92,6 +95,7 @@ async fn every_route_wants_to_know_who_asks(shore: Shore) {
             .replace("{id}", &id)
             .replace("{entry}", &id)
             .replace("{agent}", &id)
+            .replace("{compass}", &id)
             .replace("{stream}", &id)
             .replace("{seq}", "1");
         let url = format!("{}/api/v1{path}", shore.url);

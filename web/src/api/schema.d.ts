@@ -429,7 +429,11 @@ export interface paths {
         delete?: never;
         options?: never;
         head?: never;
-        patch?: never;
+        /**
+         * Amend what is written of a vessel
+         * @description What is left out stays as it is; null takes a value away.
+         */
+        patch: operations["amend_vessel"];
         trace?: never;
     };
     "/api/v1/vessels/{id}/agents": {
@@ -510,6 +514,26 @@ export interface paths {
         options?: never;
         head?: never;
         patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/compasses/{compass}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        /**
+         * Amend what is written of a compass
+         * @description What is left out stays as it is; null takes a value away.
+         */
+        patch: operations["amend_compass"];
         trace?: never;
     };
     "/api/v1/vessels/{id}/coverage": {
@@ -1239,14 +1263,43 @@ export interface components {
         };
         /** @description A magnetic element aboard. */
         Compass: {
+            /** @description The binnacle that it stands in: maker, type and number. */
+            binnacle: string | null;
             /** @description When it was entered. */
             created_at: components["schemas"]["Time"];
             /** @description The compass's id. */
             id: components["schemas"]["CompassId"];
+            /**
+             * @description Maker and type.
+             * @example Cassens & Plath Reflecta 1
+             */
+            make: string | null;
             /** @description Its name. */
             name: string;
             /** @description What it serves as. */
             role: components["schemas"]["CompassRole"];
+            /**
+             * @description Its serial number.
+             * @example 34871
+             */
+            serial_number: string | null;
+        };
+        /** @description What is to be changed of a compass; what is left out stays, null takes a value away. */
+        CompassAmendment: {
+            /**
+             * @description The binnacle's maker, type and number.
+             * @example Cassens & Plath type 11, no. 2047
+             */
+            binnacle?: string | null;
+            /**
+             * @description Maker and type.
+             * @example Cassens & Plath Reflecta 1
+             */
+            make?: string | null;
+            name?: string | null;
+            role?: components["schemas"]["CompassRole"] | null;
+            /** @example 34871 */
+            serial_number?: string | null;
         };
         /**
          * Format: uuid
@@ -1959,10 +2012,16 @@ export interface components {
         };
         /** @description A compass to be entered. */
         NewCompass: {
+            /** @description The binnacle that it stands in: maker, type and number. */
+            binnacle?: string | null;
+            /** @description Maker and type. */
+            make?: string | null;
             /** @description Its name. */
             name: string;
             /** @description What it serves as. */
             role: components["schemas"]["CompassRole"];
+            /** @description Its serial number. */
+            serial_number?: string | null;
         };
         /** @description An entry to be written. */
         NewEntry: components["schemas"]["LogbookReport"] & {
@@ -2576,6 +2635,22 @@ export interface components {
             open_alerts: number;
             worst: components["schemas"]["WorstHeading"] | null;
             worst_alert: components["schemas"]["Severity"] | null;
+        };
+        /** @description What is to be changed of a vessel; what is left out stays, null takes a value away. */
+        VesselAmendment: {
+            /** @example EAVN */
+            call_sign?: string | null;
+            /**
+             * @description The flag state.
+             * @example Spain
+             */
+            flag?: string | null;
+            /**
+             * @description With its check digit.
+             * @example 9074729
+             */
+            imo_number?: string | null;
+            name?: string | null;
         };
         /** @description The data of an event. */
         VesselEvent: {
@@ -4443,6 +4518,95 @@ export interface operations {
             };
         };
     };
+    amend_vessel: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VesselAmendment"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Vessel"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_agents: {
         parameters: {
             query?: {
@@ -4787,6 +4951,96 @@ export interface operations {
         responses: {
             /** @description Created */
             201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Compass"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    amend_compass: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                compass: components["schemas"]["CompassId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CompassAmendment"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
                 headers: {
                     [name: string]: unknown;
                 };
