@@ -22,6 +22,9 @@ pub mod deviation;
 pub mod handbook;
 pub mod ship;
 
+pub mod binnacle;
+pub mod corrector;
+
 pub mod advice;
 pub mod analyse;
 pub mod berth;

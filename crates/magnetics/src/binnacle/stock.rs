@@ -1,0 +1,66 @@
+//! Whether what is said to be on board belongs to the design.
+
+use super::check::{count, number, text_given, version};
+use super::{BinnacleError, BinnacleForm};
+
+/// 2¹⁰ combinations of pieces are gone through.
+const MOST_PIECES: usize = 10;
+
+pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
+    version(form.version)?;
+    text_given("serial", &form.serial)?;
+    count("aboard.magnets", form.aboard.magnets.len())?;
+    for (index, lot) in form.aboard.magnets.iter().enumerate() {
+        let field = |part: &str| format!("aboard.magnets[{index}].{part}");
+        if form.design.magnet(&lot.magnet).is_none() {
+            let what = format!("the type has no magnets {:?}", lot.magnet);
+            return Err(BinnacleError::new(field("magnet"), what));
+        }
+        let earlier = &form.aboard.magnets[..index];
+        if earlier.iter().any(|other| other.magnet == lot.magnet) {
+            let what = format!("{:?} stands there twice", lot.magnet);
+            return Err(BinnacleError::new(field("magnet"), what));
+        }
+        if let Some(moment) = lot.tested_moment_am2 {
+            number(&field("tested_moment_am2"), moment, 1e-3, 100.0)?;
+        }
+        if let Some(sd) = lot.tested_sd {
+            number(&field("tested_sd"), sd, 0.0, 0.5)?;
+        }
+    }
+    quadrantal(form)?;
+    pieces(form)
+}
+
+fn quadrantal(form: &BinnacleForm) -> Result<(), BinnacleError> {
+    let sizes = form.design.quadrantal.as_ref().map(|iron| &iron.sizes);
+    for (index, name) in form.aboard.quadrantal.iter().enumerate() {
+        if !sizes.is_some_and(|sizes| sizes.iter().any(|size| size.name == *name)) {
+            let what = format!("the type has no quadrantal correctors {name:?}");
+            return Err(BinnacleError::new(
+                format!("aboard.quadrantal[{index}]"),
+                what,
+            ));
+        }
+    }
+    Ok(())
+}
+
+fn pieces(form: &BinnacleForm) -> Result<(), BinnacleError> {
+    let pieces = &form.aboard.flinders_pieces_mm;
+    let field = "aboard.flinders_pieces_mm";
+    if pieces.len() > MOST_PIECES {
+        let what = format!("{} pieces; at most {MOST_PIECES} are taken", pieces.len());
+        return Err(BinnacleError::new(field, what));
+    }
+    let Some(bar) = &form.design.flinders else {
+        if pieces.is_empty() {
+            return Ok(());
+        }
+        return Err(BinnacleError::new(field, "the type has no Flinders bar"));
+    };
+    for (index, length) in pieces.iter().enumerate() {
+        number(&format!("{field}[{index}]"), *length, 5.0, bar.longest_mm)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,76 @@
+//! A pair of spheres of soft iron on either side of the card.
+
+use super::magnet::MAGNETIC;
+use super::{BarMagnet, Effect, Vector};
+
+/// (µ − 1)/(µ + 2) of soft iron with a relative permeability of 200.
+pub const KAPPA: f64 = 0.985;
+
+/// Two equal spheres at the card's height, opposite each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// q = κ (a/r)³ (docs/science.md, eq. 20).
+    q: f64,
+    /// From the card's centre to either one's, metres.
+    distance_m: f64,
+    /// Towards the one that is to starboard when not slewed: forward, starboard.
+    towards: [f64; 2],
+}
+
+impl Pair {
+    /// Spheres of a radius at a distance from the card, metres, slewed clockwise from
+    /// athwartships.
+    pub fn new(radius_m: f64, distance_m: f64, slew_deg: f64) -> Pair {
+        let (sin, cos) = slew_deg.to_radians().sin_cos();
+        Pair {
+            q: KAPPA * (radius_m / distance_m).powi(3),
+            distance_m,
+            towards: [-sin, cos],
+        }
+    }
+
+    /// The same with q as it was measured.
+    pub fn measured(self, q: f64) -> Pair {
+        Pair { q, ..self }
+    }
+
+    /// q: a third of what the pair takes off λD.
+    pub fn q(&self) -> f64 {
+        self.q
+    }
+
+    /// What it does to the earth's field, and with needles of this moment, A·m².
+    pub fn effect(&self, needle_am2: f64) -> Effect {
+        let mut effect = Effect::default();
+        let n = [self.towards[0], self.towards[1], 0.0];
+        for row in 0..3 {
+            for column in 0..3 {
+                let unit = if row == column { 2.0 } else { 0.0 };
+                effect.chi[row][column] = self.q * (6.0 * n[row] * n[column] - unit);
+            }
+        }
+        // What the needles induce along themselves does not turn them: 3nn + 1 has
+        // only its first part here.
+        let needle_nt = 6.0 * self.q * MAGNETIC * needle_am2 / self.distance_m.powi(3);
+        for row in 0..2 {
+            for column in 0..2 {
+                effect.needle_nt[row][column] = needle_nt * n[row] * n[column];
+            }
+        }
+        effect
+    }
+
+    /// What it adds at the card to a magnet's field, nT.
+    pub fn reflected(&self, magnet: &BarMagnet) -> Vector {
+        let mut sum = [0.0; 3];
+        let n = [self.towards[0], self.towards[1], 0.0];
+        for side in [1.0, -1.0] {
+            let induced = magnet.field_nt(n.map(|part| side * self.distance_m * part));
+            let along: f64 = n.iter().zip(induced).map(|(n, b)| n * b).sum();
+            for axis in 0..3 {
+                sum[axis] += self.q * (3.0 * along * n[axis] - induced[axis]);
+            }
+        }
+        sum
+    }
+}
