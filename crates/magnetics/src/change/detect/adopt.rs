@@ -2,7 +2,7 @@
 
 use super::date::Dated;
 use super::event::snapshot;
-use super::learn::first_lesson;
+use super::learn::Lesson;
 use super::unsettled::Unsettled;
 use super::{EVERY, Event, Leads, Search, What};
 use crate::change::bank::{Kind, Lead, upset};
@@ -61,6 +61,10 @@ impl Search<'_> {
             self.misled = Some((self.events.len() - 1, before));
         }
         self.take_over(k, dated.filter, dated.first);
+        if what == What::Reference {
+            // Its noise may be another, too.
+            self.lesson = Lesson::next(self.observations, dated.first, dated.first, 0.0);
+        }
     }
 
     fn began_at_call(&self, dated: &Dated) -> bool {
@@ -206,7 +210,8 @@ impl Search<'_> {
         self.faint = None;
         self.spawned = k;
         self.learn_from = first;
-        self.learn_next = first_lesson(self.observations, first);
+        // Neither seas nor instruments changed: of fewer days there is less to learn.
+        self.lesson = Lesson::next(self.observations, first, first, self.learnt_days);
     }
 
     pub(super) fn push(

@@ -6,7 +6,7 @@ use crate::fit::{Observation, learn};
 use crate::ship::PARAMETERS;
 
 /// Days of data from which the sizes of noise are learnt, again and again.
-const LEARN_DAYS: [f64; 4] = [10.0, 20.0, 40.0, 80.0];
+const LEARN_DAYS: [f64; 3] = [10.0, 30.0, 90.0];
 
 /// What a stretch of rows told.
 #[derive(Clone, Copy)]
@@ -55,17 +55,29 @@ impl Learnt {
     }
 }
 
-/// The row at which levels are learnt again that were learnt at row `k`, of those
-/// from row `from` on.
-pub(super) fn next_lesson(observations: &[Observation], from: usize, k: usize) -> usize {
-    let lessons = LEARN_DAYS.iter();
-    let mut lessons = lessons.map(|days| rows_within(observations, from, *days));
-    lessons.find(|&row| row > k).unwrap_or(usize::MAX)
+/// When levels are learnt again.
+#[derive(Clone, Copy)]
+pub(super) struct Lesson {
+    /// At this row.
+    pub(super) at: usize,
+    /// From so many days.
+    pub(super) days: f64,
 }
 
-/// The row at which the first stretch of learning from row `from` ends.
-pub(super) fn first_lesson(observations: &[Observation], from: usize) -> usize {
-    rows_within(observations, from, LEARN_DAYS[0])
+impl Lesson {
+    /// The next after row `k`, of at least so many days since row `from`; one that
+    /// never comes when there is none.
+    pub(super) fn next(observations: &[Observation], from: usize, k: usize, days: f64) -> Lesson {
+        let long = LEARN_DAYS.iter().filter(|long| **long >= days);
+        let mut lessons = long.map(|&days| Lesson {
+            at: rows_within(observations, from, days),
+            days,
+        });
+        lessons.find(|lesson| lesson.at > k).unwrap_or(Lesson {
+            at: usize::MAX,
+            days,
+        })
+    }
 }
 
 /// The row after the last within `days` of row `from`.

@@ -24,7 +24,7 @@ use crate::estimate::{NoiseLevels, Point, Prior, Station, USUAL_FUSION, Unknowns
 use crate::fit::Observation;
 use crate::time::Timestamp;
 use faint::Faint;
-use learn::{Learnt, next_lesson};
+use learn::{Learnt, Lesson};
 use unsettled::Unsettled;
 
 /// Rows between times that are tried: about an hour of sailing.
@@ -67,7 +67,9 @@ struct Search<'a> {
     start_until: usize,
     /// Where the present stretch of learning began, and which comes next.
     learn_from: usize,
-    learn_next: usize,
+    lesson: Lesson,
+    /// Days that the levels were learnt from.
+    learnt_days: f64,
     null: Filter,
     bank: Bank,
     spawned: usize,
@@ -97,7 +99,8 @@ impl<'a> Search<'a> {
             start: learnt.unknowns,
             start_until: learnt.until,
             learn_from: 0,
-            learn_next: next_lesson(observations, 0, learnt.until),
+            lesson: Lesson::next(observations, 0, learnt.until, 0.0),
+            learnt_days: 0.0,
             bank: Bank::default(),
             spawned: 0,
             calls: Calls::default(),
@@ -110,7 +113,7 @@ impl<'a> Search<'a> {
     }
 
     fn step(&mut self, k: usize) {
-        if k >= self.learn_next {
+        if k >= self.lesson.at {
             self.learn(k);
         }
         let is_due = k >= FIRST && self.is_due(k);
@@ -201,7 +204,8 @@ impl<'a> Search<'a> {
             self.levels = learnt.levels;
             self.noise = learnt.noise;
         }
-        self.learn_next = next_lesson(self.observations, self.learn_from, k);
+        self.learnt_days = self.lesson.days;
+        self.lesson = Lesson::next(self.observations, self.learn_from, k, 0.0);
     }
 
     fn is_call(&self, k: usize) -> bool {
