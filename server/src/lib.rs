@@ -43,6 +43,8 @@ pub mod events;
 pub mod models;
 pub mod samples;
 
+pub mod sheet;
+
 pub mod mail;
 pub mod outbox;
 pub mod webhooks;
