@@ -3,6 +3,7 @@
 //! What always holds: what went wrong inside is logged here, once, and never sent.
 
 use crate::analysis::{LeftOut, RefusalSchema};
+use crate::card;
 use crate::models::NoModel;
 use crate::streams::CardWithdrawnSchema;
 use axum::Json;
@@ -24,6 +25,9 @@ pub enum Error {
     /// The compass has no model yet, for the reason given.
     #[error("{0}")]
     NoModelYet(NoModel),
+    /// There is a model, but no deviation card is made of it.
+    #[error("{0}")]
+    NoCard(card::Refusal),
     /// No valid session or token came with the request.
     #[error("sign in, or send a valid token")]
     Unauthenticated,
@@ -114,6 +118,10 @@ impl Error {
         match self {
             Error::NotFound(_) => (StatusCode::NOT_FOUND, "not-found", "Not found"),
             Error::NoModelYet(_) => (StatusCode::NOT_FOUND, "no-model-yet", "No model yet"),
+            Error::NoCard(refusal) => {
+                let (kind, title) = refusal.kind();
+                (StatusCode::CONFLICT, kind, title)
+            }
             Error::Unauthenticated => {
                 (StatusCode::UNAUTHORIZED, "unauthenticated", "Not signed in")
             }

@@ -43,6 +43,7 @@ pub mod events;
 pub mod models;
 pub mod samples;
 
+pub mod card;
 pub mod sheet;
 
 pub mod mail;

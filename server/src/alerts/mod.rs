@@ -29,7 +29,7 @@ pub use cloned::{agent_revoked, from_batch};
 pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;
 pub use look::{AlertNews, after_analysis, by_the_clock, for_silence, sum, watch};
-pub use store::{Standing, standing};
+pub use store::{OpenAlert, Standing, open_of_compass, standing};
 pub use wanted::{alerts_of, silence};
 
 use crate::access::{Reader, Writer};

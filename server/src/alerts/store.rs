@@ -297,6 +297,32 @@ pub async fn standing(
     )
 }
 
+/// What an open alert says, in short.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub struct OpenAlert {
+    /// What it is about.
+    pub cause: Cause,
+    /// What is so, in a sentence.
+    pub summary: String,
+}
+
+/// The alerts of a compass that are not cleared, the newest first.
+pub async fn open_of_compass(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+) -> DbResult<Vec<OpenAlert>> {
+    rows!(
+        db,
+        OpenAlert,
+        "SELECT cause, summary FROM alerts
+         WHERE vessel_id = $1 AND compass_id = $2 AND state <> 'cleared'
+         ORDER BY id DESC",
+        vessel,
+        compass
+    )
+}
+
 /// What was found of a compass at its last analysis, as JSON.
 pub(super) async fn findings(
     tx: &mut Tx,

@@ -103,15 +103,23 @@ async fn find_deviation(
 
 impl Query {
     fn place(&self, model: &models::StoredModel) -> Result<(Position, Timestamp)> {
-        let position = match (self.lat, self.lon) {
-            (Some(lat), Some(lon)) => {
-                Position::new(lat, lon).map_err(|error| invalid("lat, lon", &error))?
-            }
-            (None, None) => Position::new(model.lat, model.lon).map_err(anyhow::Error::from)?,
-            _ => return Err(invalid("lat, lon", &"one without the other")),
-        };
+        let position = position(self.lat, self.lon, (model.lat, model.lon))?;
         let at = time("at", self.at.as_deref())?.unwrap_or(model.place_at.0);
         Ok((position, at))
+    }
+}
+
+/// The place of a query, or where the vessel was last, degrees north and east.
+///
+/// # Errors
+/// When it is none, or half of one.
+pub fn position(lat: Option<f64>, lon: Option<f64>, last: (f64, f64)) -> Result<Position> {
+    match (lat, lon) {
+        (Some(lat), Some(lon)) => {
+            Position::new(lat, lon).map_err(|error| invalid("lat, lon", &error))
+        }
+        (None, None) => Ok(Position::new(last.0, last.1).map_err(anyhow::Error::from)?),
+        _ => Err(invalid("lat, lon", &"one without the other")),
     }
 }
 

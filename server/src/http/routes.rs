@@ -3,8 +3,8 @@
 use super::headers;
 use crate::app::App;
 use crate::{
-    alerts, changes, compasses, dashboard, deviation, enrolment, error, events, logbook, mail,
-    models, operations, samples, session, settings, streams, tokens, vessels, webhooks,
+    alerts, card, changes, compasses, dashboard, deviation, enrolment, error, events, logbook,
+    mail, models, operations, samples, session, settings, streams, tokens, vessels, webhooks,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -82,6 +82,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(logbook::router())
         .merge(models::router())
         .merge(deviation::router())
+        .merge(card::router())
         .merge(changes::router())
         .merge(samples::router())
         .merge(alerts::router())

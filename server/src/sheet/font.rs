@@ -111,7 +111,8 @@ mod tests {
     #[test]
     fn what_the_cards_need_is_in_the_fonts() {
         for face in [Face::Regular, Face::Bold] {
-            for drawn in face.draw("Ñandú Ωμέγα Адмирал 0°–359° ±½ λχ −…") {
+            for drawn in face.draw("Ñandú Ωμέγα Адмирал 0°–359° ±½ λχ −…")
+            {
                 assert_ne!(drawn.id, GlyphId::NOTDEF);
             }
             assert_eq!(face.draw("船")[0].id, GlyphId::NOTDEF);
@@ -132,7 +133,11 @@ mod tests {
         let text = "Predicted by a model of the ship, and not a certificate of adjustment.";
         let lines = wrap(text, Face::Regular, 8.0, 90.0);
         assert!(lines.len() > 2, "{lines:?}");
-        assert!(lines.iter().all(|line| width(line, Face::Regular, 8.0) <= 90.0));
+        assert!(
+            lines
+                .iter()
+                .all(|line| width(line, Face::Regular, 8.0) <= 90.0)
+        );
         assert_eq!(lines.join(" "), text);
     }
 }

@@ -9,6 +9,7 @@
 mod font;
 mod pdf;
 mod svg;
+pub mod words;
 
 pub use font::{Face, cut, width, wrap};
 pub use pdf::{About, pdf};
@@ -173,7 +174,7 @@ impl Style {
     }
 
     /// Where a text begins that is anchored at `x`.
-    fn start(&self, x: f32, text: &str) -> f32 {
+    fn start(self, x: f32, text: &str) -> f32 {
         let width = width(text, self.face, self.size);
         match self.anchor {
             Anchor::Start => x,

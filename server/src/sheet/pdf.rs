@@ -170,7 +170,11 @@ mod tests {
 
     fn written(title: &str) -> Vec<u8> {
         let mut sheet = Sheet::a4();
-        sheet.text((100.0, 100.0), Style::bold(12.0).middle(), "Deviation 2.5° E");
+        sheet.text(
+            (100.0, 100.0),
+            Style::bold(12.0).middle(),
+            "Deviation 2.5° E",
+        );
         sheet.rule((36.0, 110.0), (200.0, 110.0), 0.5);
         sheet.area(vec![(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)], 200);
         let about = About {

@@ -12,6 +12,7 @@ mod alerts;
 mod analysis;
 mod analysis_jobs;
 mod bursts;
+mod card;
 mod changes;
 mod commands;
 mod dashboard;

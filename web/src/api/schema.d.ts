@@ -475,6 +475,91 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/vessels/{id}/card.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A compass's deviation card as CSV
+         * @description A line for each 15° of compass heading; each says that it is predicted, and by
+         *     which model. Refused as `card.json` is.
+         */
+        get: operations["card_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/card.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See a compass's deviation card
+         * @description Predicted by the compass's model, at a place and a date: no certificate. Besides
+         *     the usual problems: `no-model-yet` (404) where there is no model, also because the
+         *     last one holds no more; and 409 where there is one that makes no card:
+         *     `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
+         *     `compass-suspected`.
+         */
+        get: operations["card_json"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/card.pdf": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Print a compass's deviation card
+         * @description One sheet of A4, upright; refused as `card.json` is.
+         */
+        get: operations["card_pdf"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/card.svg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Draw a compass's deviation card
+         * @description The sheet of `card.pdf` as a picture; refused as `card.json` is.
+         */
+        get: operations["card_svg"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/vessels/{id}/changes": {
         parameters: {
             query?: never;
@@ -1137,6 +1222,170 @@ export interface components {
             /** @description Whether the entry counts no more, taken back on board or ashore. */
             withdrawn: boolean;
         };
+        /** @description Coefficients at a card's place, degrees. */
+        CardCoefficients: {
+            /**
+             * Format: double
+             * @description What the model adds on every heading: alignment, reference and variation
+             *     offsets. The handbook's A includes it.
+             * @example 0.2
+             */
+            constant_deg: number;
+            /** @description The exact ones, × 57.3. */
+            exact: components["schemas"]["HandbookCoefficients"];
+            /** @description What an adjuster would find who swung the ship. */
+            handbook: components["schemas"]["HandbookCoefficients"];
+        };
+        /** @description The model that a card is made from. */
+        CardModel: {
+            /** @description The time of the first sample in it. */
+            data_from: components["schemas"]["Time"];
+            /** @description The time of the last sample in it. */
+            data_until: components["schemas"]["Time"];
+            /**
+             * @description The estimator that made it.
+             * @example state-space-9
+             */
+            estimator: string;
+            /** @description When it was fitted. */
+            fitted_at: components["schemas"]["Time"];
+            /** @description The model version's id. */
+            id: components["schemas"]["ModelId"];
+            /** @description SHA-256 of everything that it was made from. */
+            input_hash: string;
+            /**
+             * Format: double
+             * @description Root mean square of the residuals, degrees.
+             * @example 0.3
+             */
+            rms_deg: number | null;
+            /**
+             * Format: int64
+             * @description Samples that carried weight.
+             * @example 412
+             */
+            samples_used: number;
+            /**
+             * Format: int64
+             * @description Counts the compass's models from 1.
+             * @example 12
+             */
+            version: number;
+        };
+        /**
+         * @description What belongs on a card and nobody has recorded here.
+         * @enum {string}
+         */
+        CardNotRecorded: "correctors" | "degaussing_coils" | "adjuster" | "next_due";
+        /** @description Where and when a card holds, and the earth's field there. */
+        CardPlace: {
+            /** @description When. */
+            at: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description Horizontal field, nT.
+             * @example 24300
+             */
+            h_nt: number;
+            /**
+             * Format: double
+             * @description Degrees north.
+             * @example 43.4
+             */
+            lat: number;
+            /**
+             * Format: double
+             * @description Degrees east.
+             * @example -3.1
+             */
+            lon: number;
+            /**
+             * Format: double
+             * @description Variation, degrees, east positive.
+             * @example 0.4
+             */
+            variation_deg: number;
+            /**
+             * @description The model of the earth's field that says so.
+             * @example igrf14
+             */
+            variation_source: string;
+            /**
+             * Format: double
+             * @description Vertical field, nT, down positive.
+             * @example 39600
+             */
+            z_nt: number;
+        };
+        /** @description A line of a card. */
+        CardRow: {
+            /**
+             * Format: double
+             * @description Half the width of its 95 % band, degrees.
+             * @example 0.6
+             */
+            band95_deg: number;
+            /**
+             * Format: double
+             * @description Compass heading.
+             * @example 15
+             */
+            compass_deg: number;
+            /**
+             * Format: double
+             * @description The deviation that remains, degrees, east positive.
+             * @example 2.3
+             */
+            deviation_deg: number;
+            /**
+             * Format: double
+             * @description The magnetic heading then.
+             * @example 17.3
+             */
+            magnetic_deg: number;
+            /**
+             * Format: double
+             * @description Their mean of observed less predicted deviation, degrees; none without samples.
+             * @example -0.1
+             */
+            residual_deg: number | null;
+            /**
+             * Format: int64
+             * @description Samples within 7½° of the heading that the model rests on.
+             * @example 41
+             */
+            samples: number;
+        };
+        /**
+         * @description What a card is worth.
+         * @enum {string}
+         */
+        CardStatus: "predicted";
+        /** @description The ship that a card is of. */
+        CardVessel: {
+            /**
+             * @description Her call sign.
+             * @example EAVN
+             */
+            call_sign: string | null;
+            /**
+             * @description Her flag state.
+             * @example Spain
+             */
+            flag: string | null;
+            /** @description The vessel's id. */
+            id: components["schemas"]["VesselId"];
+            /**
+             * @description Her IMO number.
+             * @example 9074729
+             */
+            imo_number: string | null;
+            /**
+             * @description Her name.
+             * @example Nao Victoria
+             */
+            name: string;
+        };
         /** @description That cards from before hold no more. */
         CardWithdrawn: {
             /**
@@ -1145,6 +1394,17 @@ export interface components {
              * @example adjustment
              */
             reason: string;
+            /** @description Since when. */
+            since: components["schemas"]["Time"];
+        };
+        /** @description Magnetic cargo on board. */
+        CargoAboard: {
+            /**
+             * @description What it is: `steel`, `scrap`, `containers` or `other`; none where the logbook does
+             *     not say.
+             * @example steel
+             */
+            cargo: string | null;
             /** @description Since when. */
             since: components["schemas"]["Time"];
         };
@@ -1415,6 +1675,42 @@ export interface components {
          * @enum {string}
          */
         DeliveryState: "pending" | "delivered" | "dead";
+        /** @description A deviation card of one compass, at a place and a date. */
+        DeviationCard: {
+            adjusted_at: components["schemas"]["Time"] | null;
+            /** @description Magnetic cargo on board at that date, by the logbook. */
+            cargo: components["schemas"]["CargoAboard"][];
+            /** @description The coefficients there. */
+            coefficients: components["schemas"]["CardCoefficients"];
+            /** @description The compass: each magnetic element has a card of its own. */
+            compass: components["schemas"]["Compass"];
+            degaussed_at: components["schemas"]["Time"] | null;
+            /** @description The model that says so. */
+            model: components["schemas"]["CardModel"];
+            /** @description What belongs on a card and is not recorded here: a person must write it. */
+            not_recorded: components["schemas"]["CardNotRecorded"][];
+            /** @description What the reader must know, a sentence each; the most pressing first. */
+            notes: string[];
+            /** @description Where and when it holds. */
+            place: components["schemas"]["CardPlace"];
+            replaces: components["schemas"]["CardWithdrawn"] | null;
+            /** @description By compass heading from 0, each 15°. */
+            rows: components["schemas"]["CardRow"][];
+            /** @description The same in words, to stand wherever figures of the card stand. */
+            statement: string;
+            /** @description What the card is worth. */
+            status: components["schemas"]["CardStatus"];
+            /** @description The ship. */
+            vessel: components["schemas"]["CardVessel"];
+            /**
+             * Format: double
+             * @description Half the 95 % band where it is widest, degrees.
+             * @example 0.8
+             */
+            widest_band95_deg: number;
+            /** @description The heading with the greatest deviation. */
+            worst: components["schemas"]["WorstHeading"];
+        };
         /** @description Deviation on one compass heading. */
         DeviationRow: {
             /**
@@ -4798,6 +5094,370 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    card_csv: {
+        parameters: {
+            query?: {
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+                /**
+                 * @description Degrees north; where the vessel was last if not said.
+                 * @example 43.4
+                 */
+                lat?: number;
+                /**
+                 * @description Degrees east; where the vessel was last if not said.
+                 * @example -3.1
+                 */
+                lon?: number;
+                /** @description RFC 3339; the time of the model's last sample if not said. */
+                at?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when there is no model, or it holds no more */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The model makes no card: the detail says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    card_json: {
+        parameters: {
+            query?: {
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+                /**
+                 * @description Degrees north; where the vessel was last if not said.
+                 * @example 43.4
+                 */
+                lat?: number;
+                /**
+                 * @description Degrees east; where the vessel was last if not said.
+                 * @example -3.1
+                 */
+                lon?: number;
+                /** @description RFC 3339; the time of the model's last sample if not said. */
+                at?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DeviationCard"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when there is no model, or it holds no more */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The model makes no card: the detail says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    card_pdf: {
+        parameters: {
+            query?: {
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+                /**
+                 * @description Degrees north; where the vessel was last if not said.
+                 * @example 43.4
+                 */
+                lat?: number;
+                /**
+                 * @description Degrees east; where the vessel was last if not said.
+                 * @example -3.1
+                 */
+                lon?: number;
+                /** @description RFC 3339; the time of the model's last sample if not said. */
+                at?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/pdf": number[];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when there is no model, or it holds no more */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The model makes no card: the detail says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    card_svg: {
+        parameters: {
+            query?: {
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+                /**
+                 * @description Degrees north; where the vessel was last if not said.
+                 * @example 43.4
+                 */
+                lat?: number;
+                /**
+                 * @description Degrees east; where the vessel was last if not said.
+                 * @example -3.1
+                 */
+                lon?: number;
+                /** @description RFC 3339; the time of the model's last sample if not said. */
+                at?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when there is no model, or it holds no more */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The model makes no card: the detail says why */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,0 +1,222 @@
+//! From a model to a card, or to the reason why there is none.
+//!
+//! What always holds: a card is a function of what is stored and of where and when it
+//! is asked for. The time of asking only decides whether the model is too old.
+
+use super::contents::{
+    Card, CardRow, CargoAboard, Coefficients, NotRecorded, Place, STATEMENT, Ship, Source, Status,
+};
+use super::observed::{Observed, STEP_DEG};
+use super::refusal::{OLDEST_DAYS, Refusal};
+use crate::alerts::{Cause, OpenAlert};
+use crate::compasses::Compass;
+use crate::deviation::{self, Row};
+use crate::models::StoredModel;
+use crate::time::Time;
+use binnacle_magnetics::analyse::{LogbookEntry, LogbookKind};
+use binnacle_magnetics::deviation::Coefficients as Exact;
+use binnacle_magnetics::ship::EarthField;
+
+/// Degrees of compass heading between points of the curve.
+const CURVE_STEP_DEG: f64 = 5.0;
+
+/// Everything that a card is made from.
+pub(super) struct Basis {
+    pub(super) vessel: Ship,
+    pub(super) compass: Compass,
+    pub(super) place: Place,
+    pub(super) model: StoredModel,
+    /// What people reported, without what is withdrawn.
+    pub(super) logbook: Vec<LogbookEntry>,
+    /// What is open on this compass.
+    pub(super) alerts: Vec<OpenAlert>,
+    /// What was observed near each line.
+    pub(super) observed: [Observed; 24],
+    /// The widest half of a band that makes a card, degrees.
+    pub(super) limit_deg: f64,
+    /// When the card is asked for.
+    pub(super) now: Time,
+}
+
+/// The card.
+pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
+    let Basis { model, place, .. } = &basis;
+    not_suspected(&basis.alerts)?;
+    not_too_old(model.data_until, place.at.max(basis.now))?;
+    let earth = EarthField {
+        h_nt: place.h_nt,
+        z_nt: place.z_nt,
+    };
+    let ship = &model.model.0;
+    let curve = deviation::table(ship, earth, CURVE_STEP_DEG)?;
+    let widest_band95_deg = widest(&curve, basis.limit_deg)?;
+    let lines = deviation::table(ship, earth, STEP_DEG)?;
+    let coefficients = Coefficients {
+        exact: Exact::new(&ship.parameters_over_lambda, earth)?.to_degrees(),
+        constant_deg: ship.constant_deg,
+        handbook: ship.handbook(earth)?,
+    };
+    let at = place.at;
+    let cargo = cargo_at(&basis.logbook, at);
+    Ok(Card {
+        status: Status::Predicted,
+        statement: STATEMENT,
+        rows: lines.iter().zip(basis.observed).map(line).collect(),
+        worst: deviation::worst_of(&curve).ok_or(Refusal::NoBand)?,
+        widest_band95_deg,
+        coefficients,
+        replaces: model.replaces(),
+        notes: notes(model, &basis.alerts, &cargo),
+        cargo,
+        degaussed_at: last(&basis.logbook, LogbookKind::Degaussing, at),
+        adjusted_at: last(&basis.logbook, LogbookKind::Adjustment, at),
+        not_recorded: vec![
+            NotRecorded::Correctors,
+            NotRecorded::DegaussingCoils,
+            NotRecorded::Adjuster,
+            NotRecorded::NextDue,
+        ],
+        model: Source {
+            id: model.id,
+            version: model.version,
+            fitted_at: model.created_at,
+            data_from: model.data_from,
+            data_until: model.data_until,
+            samples_used: ship.samples_used,
+            rms_deg: ship.rms_deg,
+            estimator: model.estimator.clone(),
+            input_hash: model.input_hash.clone(),
+        },
+        curve,
+        vessel: basis.vessel,
+        compass: basis.compass,
+        place: basis.place,
+    })
+}
+
+/// A compass that stands still, or has parted from the gyro on board, is not described
+/// by any model.
+fn not_suspected(alerts: &[OpenAlert]) -> Result<(), Refusal> {
+    let is_of_the_compass =
+        |alert: &&OpenAlert| matches!(alert.cause, Cause::CompassFault | Cause::ReportedAboard);
+    match alerts.iter().find(is_of_the_compass) {
+        Some(alert) => Err(Refusal::CompassSuspected {
+            summary: alert.summary.clone(),
+        }),
+        None => Ok(()),
+    }
+}
+
+fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
+    let days = at.0.seconds_since(data_until.0) / 86_400.0;
+    if days > OLDEST_DAYS {
+        return Err(Refusal::TooOld { data_until, days });
+    }
+    Ok(())
+}
+
+fn widest(curve: &[Row], limit_deg: f64) -> Result<f64, Refusal> {
+    let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
+    for row in curve {
+        let band95_deg = row.band95_deg.ok_or(Refusal::NoBand)?;
+        if band95_deg > widest_deg {
+            (widest_deg, compass_deg) = (band95_deg, row.compass_deg);
+        }
+    }
+    if widest_deg > limit_deg {
+        return Err(Refusal::BandTooWide {
+            band95_deg: widest_deg,
+            compass_deg,
+            limit_deg,
+        });
+    }
+    Ok(widest_deg)
+}
+
+fn line((row, observed): (&Row, Observed)) -> CardRow {
+    CardRow {
+        compass_deg: row.compass_deg,
+        magnetic_deg: row.magnetic_deg,
+        deviation_deg: row.deviation_deg,
+        // The curve, which has every line's heading, was found to have a band.
+        band95_deg: row.band95_deg.unwrap_or(180.0),
+        samples: observed.samples,
+        residual_deg: observed.residual_deg,
+    }
+}
+
+fn cargo_at(logbook: &[LogbookEntry], at: Time) -> Vec<CargoAboard> {
+    let aboard = logbook.iter().filter(|entry| {
+        entry.kind == LogbookKind::MagneticCargo
+            && entry.from <= at.0
+            && entry.to.is_none_or(|to| to >= at.0)
+    });
+    let words = |entry: &LogbookEntry| {
+        let cargo = serde_json::to_value(entry.cargo?).ok()?;
+        cargo.as_str().map(str::to_owned)
+    };
+    aboard
+        .map(|entry| CargoAboard {
+            since: Time(entry.from),
+            cargo: words(entry),
+        })
+        .collect()
+}
+
+fn last(logbook: &[LogbookEntry], kind: LogbookKind, at: Time) -> Option<Time> {
+    let of_kind = logbook.iter().filter(|entry| entry.kind == kind);
+    let before = of_kind.map(|entry| Time(entry.to.unwrap_or(entry.from)));
+    before.filter(|time| *time <= at).max()
+}
+
+fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[CargoAboard]) -> Vec<String> {
+    let mut notes = Vec::new();
+    if let Some(replaced) = model.replaces() {
+        notes.push(sentence(&replaced.of_older_cards()));
+    }
+    notes.extend(
+        alerts
+            .iter()
+            .filter(|alert| bears_on_the_card(alert.cause))
+            .map(|alert| alert.summary.clone()),
+    );
+    if !cargo.is_empty() {
+        notes.push(
+            "The logbook has magnetic cargo on board at this date: observe the deviation before \
+             this card is used."
+                .to_owned(),
+        );
+    }
+    let quality = model.model.0.quality.as_ref();
+    let cautions = quality.iter().flat_map(|quality| &quality.cautions);
+    notes.extend(cautions.map(|caution| sentence(&caution.to_string())));
+    notes
+}
+
+/// Whether a reader of the card must know of an alert of this cause.
+fn bears_on_the_card(cause: Cause) -> bool {
+    match cause {
+        Cause::DeviationOverLimit
+        | Cause::ReferenceFault
+        | Cause::LightningOrShock
+        | Cause::MagneticCargo
+        | Cause::Drift
+        | Cause::UnknownChange => true,
+        // Refused before, or of the samples' way rather than of the ship.
+        Cause::CompassFault
+        | Cause::ReportedAboard
+        | Cause::LocalAnomaly
+        | Cause::MagneticStorm
+        | Cause::BerthSteel
+        | Cause::SilentAgent
+        | Cause::ClonedAgent
+        | Cause::NoModel
+        | Cause::WideBand => false,
+    }
+}
+
+fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters.next().into_iter().flat_map(char::to_uppercase);
+    format!("{}{}.", first.collect::<String>(), letters.as_str())
+}

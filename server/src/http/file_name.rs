@@ -1,0 +1,24 @@
+//! Names of files that are made for people.
+
+/// A name of words in small letters and figures with hyphens between: safe in a header
+/// and on any disk. What a word has beyond ASCII is left out.
+pub fn file_name(words: &[&str], ending: &str) -> String {
+    let small = words.join(" ").to_ascii_lowercase();
+    let parts: Vec<&str> = small
+        .split(|letter: char| !letter.is_ascii_alphanumeric())
+        .filter(|part| !part.is_empty())
+        .collect();
+    format!("{}.{ending}", parts.join("-"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_gets_out_of_a_header_or_a_folder() {
+        let words = ["card", "../Nao \"Victória\"\r\n", "v2"];
+        assert_eq!(file_name(&words, "pdf"), "card-nao-vict-ria-v2.pdf");
+        assert_eq!(file_name(&["card", "船"], "pdf"), "card.pdf");
+    }
+}
