@@ -60,4 +60,7 @@ id!(AlertId, "Something that people must know of.");
 id!(WebhookId, "Where an operator's programs want to be told.");
 id!(RecipientId, "Someone who gets mail.");
 id!(DeliveryId, "What a receiver is told: the id of the event.");
+id!(BinnacleId, "A revision of a binnacle.");
+id!(OrderId, "An order to adjust a compass.");
+id!(PhotoId, "A photograph in an order.");
 id!(EventId, "Something a dashboard is told.");

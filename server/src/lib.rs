@@ -27,6 +27,7 @@ pub mod secret;
 pub mod session;
 pub mod tokens;
 
+pub mod binnacles;
 pub mod compasses;
 pub mod logbook;
 pub mod settings;

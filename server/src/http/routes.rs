@@ -3,8 +3,9 @@
 use super::headers;
 use crate::app::App;
 use crate::{
-    alerts, card, changes, compasses, dashboard, deviation, enrolment, error, events, logbook,
-    mail, models, operations, samples, session, settings, streams, tokens, vessels, webhooks,
+    alerts, binnacles, card, changes, compasses, dashboard, deviation, enrolment, error, events,
+    logbook, mail, models, operations, samples, session, settings, streams, tokens, vessels,
+    webhooks,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -41,6 +42,8 @@ const PATIENCE: Duration = Duration::from_mins(2);
         (name = "session", description = "Signing in; API tokens"),
         (name = "agents", description = "What the agents aboard talk to"),
         (name = "fleet", description = "Vessels, compasses, models"),
+        (name = "adjusting", description = "Binnacles and work orders. What is foretold here is \
+            a prediction, not a certificate"),
         (name = "alerts", description = "What people must know of, and how they are told"),
         (name = "operations", description = "Health and metrics"),
     )
@@ -77,6 +80,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(tokens::router())
         .merge(vessels::router())
         .merge(compasses::router())
+        .merge(binnacles::router())
         .merge(enrolment::router())
         .merge(settings::router())
         .merge(logbook::router())

@@ -11,6 +11,7 @@ mod support;
 mod alerts;
 mod analysis;
 mod analysis_jobs;
+mod binnacles;
 mod bursts;
 mod card;
 mod changes;

@@ -1,5 +1,6 @@
 //! Nobody sees another operator's fleet, on any route there is.
 
+use crate::binnacles::{binnacle, put};
 use crate::on_both;
 use crate::support::{Answer, Shore};
 use binnacle_server::http::openapi;
@@ -30,6 +31,7 @@ fn operations() -> Vec<(Method, String, Value)> {
                 }
                 (&Method::PUT, "/vessels/{id}/settings") => settings(),
                 (&Method::POST, "/vessels/{id}/logbook") => lightning(),
+                (&Method::PUT, "/vessels/{id}/compasses/{compass}/binnacle") => binnacle(),
                 _ => json!({}),
             };
             found.push((method, path.to_owned(), body));
@@ -63,6 +65,8 @@ async fn every_vessel_route_is_blank_to_another_operator(shore: Shore) {
     let compass = compasses["items"][0]["id"].as_str().unwrap();
     let logbook = format!("/vessels/{id}/logbook");
     let entry = ada.post(&logbook, &lightning()).await.good()["id"].clone();
+    let kept = format!("/vessels/{id}/compasses/{compass}/binnacle");
+    put(&ada, &kept, &binnacle()).await.good();
     for (method, path, body) in operations() {
         if !path.contains("/vessels/{id}") {
             continue;

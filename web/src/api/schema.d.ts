@@ -138,6 +138,43 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/binnacle-types": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List the types of binnacle that come with the product */
+        get: operations["list_types"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/binnacle-types/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See a type of binnacle whole
+         * @description As it goes into a binnacle's `type`.
+         */
+        get: operations["find_type"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/events": {
         parameters: {
             query?: never;
@@ -619,6 +656,65 @@ export interface paths {
          * @description What is left out stays as it is; null takes a value away.
          */
         patch: operations["amend_compass"];
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/compasses/{compass}/binnacle": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See the binnacle that a compass stands in */
+        get: operations["find_binnacle"];
+        /**
+         * Write the binnacle that a compass stands in
+         * @description The whole of it: its type, the correctors on board and how they stand. What was
+         *     written before stays among its revisions; the same again makes no new one.
+         */
+        put: operations["put_binnacle"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/compasses/{compass}/binnacle.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export a compass's binnacle as a file
+         * @description As `binnacle-server plan --binnacle` reads it, and as it can be written again.
+         */
+        get: operations["export_binnacle"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/compasses/{compass}/binnacle/revisions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List what was written of a compass's binnacle */
+        get: operations["list_revisions"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
         trace?: never;
     };
     "/api/v1/vessels/{id}/coverage": {
@@ -1194,6 +1290,116 @@ export interface components {
              */
             worst_deg: number;
         };
+        /** @description A Flinders bar. */
+        BarSetting: {
+            /**
+             * Format: double
+             * @description Length of all its pieces, mm.
+             */
+            length_mm: number;
+            /** @description `forward` or `aft` of the card. */
+            side: string;
+            /**
+             * Format: double
+             * @description Degrees clockwise from there, seen from above.
+             */
+            slew_deg?: number;
+        };
+        /** @description A binnacle on board; docs/binnacle.md has every field. */
+        Binnacle: {
+            /** @description All correctors on board, those in use included. */
+            aboard: components["schemas"]["CorrectorsAboard"];
+            /** @description What was measured of them; it wins over the formulas. */
+            calibration?: Record<string, never>[];
+            /** @description The maker's number of this one. */
+            serial: string;
+            /** @description How they stand now. */
+            setting: components["schemas"]["CorrectorSetting"];
+            /** @description Its design, whole. */
+            type: components["schemas"]["BinnacleDesign"];
+            /**
+             * Format: int32
+             * @description Of this form: 1.
+             */
+            version: number;
+        };
+        /** @description A maker's design; docs/binnacle.md has every field. */
+        BinnacleDesign: {
+            /** @description Trays or holes of the athwartship magnets. */
+            athwartship: Record<string, never>;
+            /** @description `class_a`, `class_b` or `other`. */
+            compass: string;
+            /** @description Holder of the Flinders bar. */
+            flinders?: Record<string, never> | null;
+            /** @description Trays or holes of the fore-and-aft magnets. */
+            fore_and_aft: Record<string, never>;
+            /** @description Bucket of the vertical magnets. */
+            heeling?: Record<string, never> | null;
+            /** @description Kinds of magnets that fit somewhere in it. */
+            magnets: Record<string, never>[];
+            /** @description Who makes it. */
+            maker: string;
+            /** @description What the maker calls it. */
+            model: string;
+            /**
+             * Format: double
+             * @description Magnetic moment of the needles, A·m².
+             */
+            needle_moment_am2: number;
+            /** @description Where its figures come from. */
+            provenance: string;
+            /** @description Spheres, boxes or plates. */
+            quadrantal?: Record<string, never> | null;
+            /**
+             * Format: int32
+             * @description Of this form: 1.
+             */
+            version: number;
+        };
+        /** @description A revision of the binnacle that a compass stands in. */
+        BinnacleRevision: {
+            /** @description When it was written. */
+            at: components["schemas"]["Time"];
+            /** @description The binnacle, with the correctors on board and how they stand. */
+            binnacle: components["schemas"]["Binnacle"];
+            /** @description Who wrote it. */
+            by: string;
+            /** @description Why, in a few words. */
+            reason: string | null;
+            /**
+             * Format: int64
+             * @description Counts from 1.
+             */
+            revision: number;
+        };
+        /** @description A page of revisions. */
+        BinnacleRevisionList: {
+            /** @description The newest first. */
+            items: components["schemas"]["BinnacleRevision"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A design in a line. */
+        BinnacleType: {
+            /** @description Who makes it. */
+            maker: string;
+            /** @description What the maker calls it. */
+            model: string;
+            /**
+             * @description By which it is found.
+             * @example class_a_trays
+             */
+            name: string;
+            /** @description Where its figures come from. */
+            provenance: string;
+        };
+        /** @description All designs; they are few. */
+        BinnacleTypeList: {
+            /** @description In no order that matters. */
+            items: components["schemas"]["BinnacleType"][];
+            /** @description There is no next page. */
+            next: string | null;
+        };
         /** @description What an officer reported, whole. */
         BoardReport: components["schemas"]["LogbookReport"] & {
             /**
@@ -1578,6 +1784,25 @@ export interface components {
          * @enum {string}
          */
         CompassRole: "standard" | "steering" | "transmitting";
+        /** @description How every corrector stands; an empty list or null is none. */
+        CorrectorSetting: {
+            /** @description Athwartship magnets, a hole each. */
+            athwartship?: components["schemas"]["MagnetsInHole"][];
+            flinders?: components["schemas"]["BarSetting"] | null;
+            /** @description Fore-and-aft magnets, a hole each. */
+            fore_and_aft?: components["schemas"]["MagnetsInHole"][];
+            heeling?: components["schemas"]["HeelingSetting"] | null;
+            quadrantal?: components["schemas"]["PairSetting"] | null;
+        };
+        /** @description Correctors on board, those in use included. */
+        CorrectorsAboard: {
+            /** @description Lengths of the Flinders bar's pieces, mm. */
+            flinders_pieces_mm?: number[];
+            /** @description Magnets by their kind: `magnet`, `count`, `tested_moment_am2`, `tested_sd`. */
+            magnets: Record<string, never>[];
+            /** @description Sizes of which there is a pair. */
+            quadrantal?: string[];
+        };
         /** @description Where a compass's samples lie. */
         Coverage: {
             /** @description The bands that hold samples, from south to north. */
@@ -1952,6 +2177,21 @@ export interface components {
             /** Format: int32 */
             heading_to_deg: number;
         };
+        /** @description Magnets in the bucket. */
+        HeelingSetting: {
+            /**
+             * Format: int32
+             * @description How many magnets.
+             */
+            count: number;
+            /**
+             * Format: int32
+             * @description Number of its position, from the bottom.
+             */
+            position: number;
+            /** @description Where their red ends point: up or down. */
+            red: components["schemas"]["RedEnd"];
+        };
         /** @description Which parameters the data determine; what is false rests on the prior. */
         Identifiable: {
             bx_nt: boolean;
@@ -2108,6 +2348,26 @@ export interface components {
              * @example bns_mZ3q8k…
              */
             secret: string;
+        };
+        /** @description Magnets in one hole or tray. */
+        MagnetsInHole: {
+            /**
+             * Format: int32
+             * @description How many.
+             */
+            count: number;
+            /**
+             * Format: int32
+             * @description Number of the hole, from the bottom.
+             */
+            hole: number;
+            /**
+             * @description Their kind.
+             * @example 200 mm
+             */
+            magnet: string;
+            /** @description Where their red, north-seeking ends point. */
+            red: components["schemas"]["RedEnd"];
         };
         /** @description Someone who gets mail. */
         MailRecipient: {
@@ -2383,6 +2643,24 @@ export interface components {
          * @description A company with a fleet.
          */
         OperatorId: string;
+        /** @description A pair of spheres, boxes or plates. */
+        PairSetting: {
+            /**
+             * Format: double
+             * @description Position on the scale, mm.
+             */
+            mark_mm: number;
+            /**
+             * @description Name of the size.
+             * @example 7 inch
+             */
+            size: string;
+            /**
+             * Format: double
+             * @description Degrees clockwise from athwartships, seen from above.
+             */
+            slew_deg?: number;
+        };
         /** @description Poisson's parameters over the shielding factor. */
         ParametersOverLambda: {
             /**
@@ -2468,6 +2746,11 @@ export interface components {
          * @description Someone who gets mail.
          */
         RecipientId: string;
+        /**
+         * @description Where a red, north-seeking end points.
+         * @enum {string}
+         */
+        RedEnd: "forward" | "aft" | "starboard" | "port" | "up" | "down";
         /**
          * @description How gyro and satellite compass compare over the samples since the ship or the
          *     compass was last changed.
@@ -3591,6 +3874,94 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_types: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BinnacleTypeList"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_type: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                /** @example class_a_trays */
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BinnacleDesign"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5764,6 +6135,266 @@ export interface operations {
             };
             /** @description Unprocessable Entity */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_binnacle: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                compass: components["schemas"]["CompassId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BinnacleRevision"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    put_binnacle: {
+        parameters: {
+            query?: {
+                /** @description In a few words, such as what was bought or measured. */
+                reason?: string;
+            };
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["VesselId"];
+                compass: components["schemas"]["CompassId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Binnacle"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BinnacleRevision"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    export_binnacle: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                compass: components["schemas"]["CompassId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Binnacle"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_revisions: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                compass: components["schemas"]["CompassId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BinnacleRevisionList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
