@@ -38,6 +38,8 @@ pub enum Command {
     Deviation(Deviation),
     /// Analyse a CSV file as the server analyses a vessel's uploads
     Analyse(Analyse),
+    /// Print how to set a binnacle's correctors, from a reading at the berth
+    Plan(Plan),
 }
 
 /// Which database.
@@ -357,6 +359,20 @@ pub struct Bursts {
     /// a batch is whole
     #[arg(required = true)]
     pub messages: Vec<PathBuf>,
+}
+
+/// `plan`.
+#[derive(Debug, Args)]
+pub struct Plan {
+    /// What `fit --json` prints
+    #[arg(long)]
+    pub model: PathBuf,
+    /// The binnacle and its correctors (docs/binnacle.md)
+    #[arg(long)]
+    pub binnacle: PathBuf,
+    /// What was found at the berth (docs/plan.md)
+    #[arg(long)]
+    pub berth: PathBuf,
 }
 
 /// `analyse`.

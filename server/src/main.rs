@@ -20,5 +20,6 @@ fn main() -> Result<ExitCode> {
         Command::Fit(arguments) => command::fit(&arguments),
         Command::Deviation(arguments) => command::deviation(&arguments),
         Command::Analyse(arguments) => command::analyse(&arguments),
+        Command::Plan(arguments) => command::plan(&arguments),
     }
 }

@@ -25,6 +25,7 @@ pub mod ship;
 pub mod binnacle;
 pub mod corrector;
 
+pub mod adjust;
 pub mod advice;
 pub mod analyse;
 pub mod berth;

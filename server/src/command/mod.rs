@@ -13,6 +13,7 @@ mod fit;
 mod input;
 mod logbook;
 mod operate;
+mod plan;
 mod table;
 
 pub use admin::admin;
@@ -22,6 +23,7 @@ pub use deviation::deviation;
 pub use field::field;
 pub use fit::fit;
 pub use operate::{migrate, openapi, run, serve};
+pub use plan::plan;
 
 use serde::Serialize;
 use std::fmt::Display;

@@ -28,6 +28,7 @@ mod logbook_effects;
 mod mail;
 mod mail_tls;
 mod mail_tries;
+mod plan;
 mod sessions;
 mod ship_alerts;
 mod tenants;

@@ -166,7 +166,7 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
         }
         let twice = form.calibration[..index]
             .iter()
-            .any(|other| same_place(other, entry));
+            .any(|other| other.same_place(entry));
         if twice {
             let what = "the same corrector at the same position stands there twice";
             return Err(BinnacleError::new(format!("calibration[{index}]"), what));
@@ -175,30 +175,33 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
     Ok(())
 }
 
-fn same_place(one: &Calibrated, other: &Calibrated) -> bool {
-    use Calibrated::{Flinders, Heeling, Magnet, Quadrantal};
-    match (one, other) {
-        (
-            Magnet {
-                axis, magnet, hole, ..
-            },
-            Magnet {
-                axis: a,
-                magnet: m,
-                hole: h,
-                ..
-            },
-        ) => (axis, magnet, hole) == (a, m, h),
-        (
-            Quadrantal { size, mark_mm, .. },
-            Quadrantal {
-                size: s,
-                mark_mm: m,
-                ..
-            },
-        ) => size == s && same(*mark_mm, *m),
-        (Flinders { length_mm, .. }, Flinders { length_mm: l, .. }) => same(*length_mm, *l),
-        (Heeling { position, .. }, Heeling { position: p, .. }) => position == p,
-        _ => false,
+impl Calibrated {
+    /// Whether both are of one corrector at one position.
+    pub(crate) fn same_place(&self, other: &Calibrated) -> bool {
+        use Calibrated::{Flinders, Heeling, Magnet, Quadrantal};
+        match (self, other) {
+            (
+                Magnet {
+                    axis, magnet, hole, ..
+                },
+                Magnet {
+                    axis: a,
+                    magnet: m,
+                    hole: h,
+                    ..
+                },
+            ) => (axis, magnet, hole) == (a, m, h),
+            (
+                Quadrantal { size, mark_mm, .. },
+                Quadrantal {
+                    size: s,
+                    mark_mm: m,
+                    ..
+                },
+            ) => size == s && same(*mark_mm, *m),
+            (Flinders { length_mm, .. }, Flinders { length_mm: l, .. }) => same(*length_mm, *l),
+            (Heeling { position, .. }, Heeling { position: p, .. }) => position == p,
+            _ => false,
+        }
     }
 }

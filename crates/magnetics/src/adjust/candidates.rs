@@ -1,0 +1,290 @@
+//! Every setting there is to choose from.
+
+use super::moves;
+use crate::binnacle::{Axis, BarSetting, Binnacle, PairSetting, Setting, Soft, Tray};
+use crate::corrector::{Iron, Vector, magnet_field};
+
+/// More settings of one axis than this are not gone through: fewer trays are then
+/// used at once than there are.
+const MOST_SETTINGS: usize = 40_000;
+/// Kinds of magnets are counted in a byte each.
+const KINDS: usize = 8;
+
+/// How many magnets of each kind are used, a byte each.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Used(u64);
+
+impl Used {
+    pub(super) fn plus(self, other: Used) -> Used {
+        Used(self.0 + other.0)
+    }
+
+    /// Whether no kind is used more often than there are magnets.
+    pub(super) fn within(self, stock: Used) -> bool {
+        (0..KINDS).all(|kind| self.of(kind) <= stock.of(kind))
+    }
+
+    fn of(self, kind: usize) -> u64 {
+        (self.0 >> (8 * kind)) & 0xff
+    }
+
+    fn some(kind: usize, count: u64) -> Used {
+        Used(count.min(255) << (8 * kind))
+    }
+}
+
+/// What is on board.
+pub(super) fn stock(binnacle: &Binnacle) -> Used {
+    let kinds = binnacle.design.magnets.iter().take(KINDS).enumerate();
+    kinds.fold(Used::default(), |sum, (index, kind)| {
+        // Half a byte's range is left for the sum of two axes.
+        let count = binnacle.magnets_aboard(&kind.name).min(100);
+        sum.plus(Used::some(index, u64::from(count)))
+    })
+}
+
+pub(super) fn used_by(binnacle: &Binnacle, magnet: &str, count: u8) -> Used {
+    let index = binnacle
+        .design
+        .magnets
+        .iter()
+        .position(|kind| kind.name == magnet);
+    index.map_or_else(Used::default, |index| Used::some(index, u64::from(count)))
+}
+
+/// Magnets that one hole can hold, red end forward or to starboard.
+struct Holding {
+    tray: Tray,
+    used: Used,
+    /// Index of hole and kind among the fields of one magnet.
+    field: usize,
+}
+
+/// One way to set the magnets of an axis.
+#[derive(Clone, Debug)]
+pub(super) struct Magnets {
+    pub(super) trays: Vec<Tray>,
+    pub(super) used: Used,
+    pub(super) moves: u32,
+    /// Fields of single magnets, with how often each counts.
+    parts: Vec<(usize, f64)>,
+}
+
+impl Magnets {
+    /// Their field at the card, nT: forward and starboard.
+    pub(super) fn field_nt(&self, single: &[Vector]) -> [f64; 2] {
+        let parts = self.parts.iter();
+        parts.fold([0.0; 2], |sum, (index, count)| {
+            [0, 1].map(|axis| sum[axis] + count * single[*index][axis])
+        })
+    }
+}
+
+/// All ways to set the magnets of an axis.
+pub(super) struct AxisCandidates {
+    axis: Axis,
+    /// Holes and kinds in the order of the fields of single magnets.
+    singles: Vec<(u16, String)>,
+    pub(super) settings: Vec<Magnets>,
+    /// Most trays or holes in use at once.
+    pub(super) trays: u8,
+}
+
+impl AxisCandidates {
+    /// All that are within stock, the standing ones first; none with red ends against
+    /// each other, which only weakens magnets that are there to be strong.
+    pub(super) fn new(binnacle: &Binnacle, axis: Axis, standing: &Setting) -> AxisCandidates {
+        let rack = binnacle.design.rack(axis);
+        let stock = stock(binnacle);
+        let mut singles = Vec::new();
+        let mut holdings = Vec::new();
+        for hole in &rack.holes {
+            for magnet in &rack.magnets {
+                for count in 1..=rack.magnets_each {
+                    let used = used_by(binnacle, magnet, count);
+                    if !used.within(stock) {
+                        continue;
+                    }
+                    holdings.push(Holding {
+                        tray: Tray {
+                            hole: hole.number,
+                            magnet: magnet.clone(),
+                            count,
+                            red: axis.red(true),
+                        },
+                        used,
+                        field: singles.len(),
+                    });
+                }
+                singles.push((hole.number, magnet.clone()));
+            }
+        }
+        let standing = standing.trays(axis);
+        let mut candidates = AxisCandidates {
+            axis,
+            singles,
+            settings: Vec::new(),
+            trays: 0,
+        };
+        let as_it_stands = candidates.of_trays(binnacle, standing);
+        candidates.settings.push(as_it_stands);
+        candidates.add(&[], &holdings, standing, stock);
+        for trays in 1..=rack.at_once {
+            let chosen = choices(&holdings, usize::from(trays));
+            if candidates.settings.len() + 2 * chosen.len() > MOST_SETTINGS {
+                break;
+            }
+            candidates.trays = trays;
+            for chosen in chosen {
+                candidates.add(&chosen, &holdings, standing, stock);
+            }
+        }
+        candidates
+    }
+
+    fn add(&mut self, chosen: &[usize], holdings: &[Holding], standing: &[Tray], stock: Used) {
+        let held = || chosen.iter().map(|index| &holdings[*index]);
+        let used = held().fold(Used::default(), |sum, h| sum.plus(h.used));
+        if !used.within(stock) {
+            return;
+        }
+        for positive in [true, false] {
+            let red = self.axis.red(positive);
+            let with_red = |h: &Holding| Tray {
+                red,
+                ..h.tray.clone()
+            };
+            let trays: Vec<Tray> = held().map(with_red).collect();
+            let moves = moves::trays(standing, &trays);
+            // What stands so already is there, and nothing has no other end.
+            if moves > 0 && (positive || !trays.is_empty()) {
+                let parts = held().map(|h| (h.field, red.sign() * f64::from(h.tray.count)));
+                self.settings.push(Magnets {
+                    parts: parts.collect(),
+                    trays,
+                    used,
+                    moves,
+                });
+            }
+        }
+    }
+
+    fn of_trays(&self, binnacle: &Binnacle, trays: &[Tray]) -> Magnets {
+        let single = |tray: &Tray| {
+            let found = self
+                .singles
+                .iter()
+                .position(|(h, m)| *h == tray.hole && *m == tray.magnet);
+            found.map(|index| (index, tray.red.sign() * f64::from(tray.count)))
+        };
+        let used = trays.iter().map(|t| used_by(binnacle, &t.magnet, t.count));
+        Magnets {
+            trays: trays.to_vec(),
+            used: used.fold(Used::default(), Used::plus),
+            moves: 0,
+            parts: trays.iter().filter_map(single).collect(),
+        }
+    }
+
+    /// Fields of single magnets, soft iron standing so.
+    pub(super) fn fields(&self, binnacle: &Binnacle, iron: &Iron) -> Vec<Vector> {
+        let of = |(hole, magnet): &(u16, String)| {
+            magnet_field(binnacle, iron, self.axis, magnet, *hole).unwrap_or_default()
+        };
+        self.singles.iter().map(of).collect()
+    }
+}
+
+/// All choices of so many holdings in holes that differ.
+fn choices(holdings: &[Holding], many: usize) -> Vec<Vec<usize>> {
+    let mut all = Vec::new();
+    let mut chosen = Vec::new();
+    extend(holdings, many, 0, &mut chosen, &mut all);
+    all
+}
+
+fn extend(
+    holdings: &[Holding],
+    many: usize,
+    from: usize,
+    chosen: &mut Vec<usize>,
+    all: &mut Vec<Vec<usize>>,
+) {
+    if chosen.len() == many {
+        all.push(chosen.clone());
+        return;
+    }
+    for index in from..holdings.len() {
+        let last = chosen.last().map(|last| holdings[*last].tray.hole);
+        // So that four trays of twelve magnets do not fill the memory first.
+        if last == Some(holdings[index].tray.hole) || all.len() > MOST_SETTINGS {
+            continue;
+        }
+        chosen.push(index);
+        extend(holdings, many, index + 1, chosen, all);
+        chosen.pop();
+    }
+}
+
+/// All choices of soft iron, with the moves from how it stands.
+pub(super) fn iron(
+    binnacle: &Binnacle,
+    standing: &Setting,
+    may_move_pair: bool,
+    may_move_bar: bool,
+) -> Vec<(Soft, u32)> {
+    let pairs = pairs(binnacle, standing, may_move_pair);
+    let bars = bars(binnacle, standing, may_move_bar);
+    let mut all = Vec::with_capacity(pairs.len() * bars.len());
+    for pair in &pairs {
+        let pair_moves = moves::pair(standing.quadrantal.as_ref(), pair.as_ref());
+        for bar in &bars {
+            let soft = Soft {
+                quadrantal: pair.clone(),
+                flinders: bar.clone(),
+            };
+            let bar_moves = moves::bar(standing.flinders.as_ref(), bar.as_ref());
+            all.push((soft, pair_moves + bar_moves));
+        }
+    }
+    all
+}
+
+fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<PairSetting>> {
+    let Some(iron) = binnacle.design.quadrantal.as_ref().filter(|_| may_move) else {
+        return vec![standing.quadrantal.clone()];
+    };
+    let mut all = vec![None];
+    let aboard = |name: &String| binnacle.aboard.quadrantal.contains(name);
+    for size in iron.sizes.iter().filter(|size| aboard(&size.name)) {
+        for mark in &iron.marks {
+            for slew_deg in &iron.slews_deg {
+                all.push(Some(PairSetting {
+                    size: size.name.clone(),
+                    mark_mm: mark.mark_mm,
+                    slew_deg: *slew_deg,
+                }));
+            }
+        }
+    }
+    all
+}
+
+fn bars(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<BarSetting>> {
+    let Some(holder) = binnacle.design.flinders.as_ref().filter(|_| may_move) else {
+        return vec![standing.flinders.clone()];
+    };
+    let mut all = vec![None];
+    for (length_mm, _) in binnacle.bar_lengths() {
+        for side in &holder.sides {
+            for slew_deg in &holder.slews_deg {
+                all.push(Some(BarSetting {
+                    length_mm,
+                    side: *side,
+                    slew_deg: *slew_deg,
+                }));
+            }
+        }
+    }
+    all
+}

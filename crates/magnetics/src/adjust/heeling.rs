@@ -1,0 +1,120 @@
+//! The heeling magnets: set only where the vertical force aboard was read.
+//!
+//! The card does not err in heel while the vertical force aboard is λ(1 − D) Z: what
+//! the athwartship force would be in a field as strong (docs/science.md, eq. 23).
+
+use super::condition::Condition;
+use super::{AdjustError, Adjustment};
+use crate::binnacle::{HeelingSetting, Red, Setting};
+use crate::corrector::{Effect, Iron, effect, heeling_effect};
+use serde::{Deserialize, Serialize};
+
+/// Heeling error that is left alone, degrees for each degree of heel.
+const GOOD_ENOUGH: f64 = 0.05;
+
+/// The vertical field at the card's place, correctors as they stood.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VerticalReading {
+    /// nT, down positive.
+    pub down_nt: f64,
+}
+
+/// What becomes of the heeling magnets.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HeelingPlan {
+    /// Degrees of heeling error for each degree of heel on north, at the berth, as it
+    /// is; none where the vertical force was not read.
+    pub before_deg_per_deg: Option<f64>,
+    /// The same afterwards.
+    pub after_deg_per_deg: Option<f64>,
+    /// Whether they are left as found for want of a vertical reading.
+    pub left_as_found: bool,
+}
+
+impl VerticalReading {
+    pub(super) fn check(self) -> Result<(), AdjustError> {
+        if (-200_000.0..=200_000.0).contains(&self.down_nt) {
+            return Ok(());
+        }
+        Err(AdjustError::Value {
+            field: "down_nt",
+            value: self.down_nt,
+            least: -200_000.0,
+            greatest: 200_000.0,
+        })
+    }
+}
+
+/// J with correctors of this effect, degrees per degree.
+fn heeling_error(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    effect: &Effect,
+) -> Option<f64> {
+    let read_nt = adjustment.vertical?.down_nt;
+    let z_nt = adjustment.earth.z_nt;
+    let h_nt = adjustment.earth.h_nt;
+    let aboard_nt = read_nt + condition.chi33_change(effect) * z_nt + condition.bz_change(effect);
+    let ship = condition.aboard(effect, h_nt);
+    Some(((1.0 + ship.chi[1][1]) * z_nt - aboard_nt) / (ship.lambda() * h_nt))
+}
+
+/// The magnets that leave the least heeling error with this iron; those that stand
+/// where it was not read, or where they are good enough.
+pub(super) fn chosen(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    iron: &Iron,
+    of_iron: &Effect,
+) -> Option<HeelingSetting> {
+    let standing = adjustment.standing().heeling.clone();
+    let binnacle = condition.binnacle;
+    let error = |set: Option<&HeelingSetting>| {
+        let of_magnets = set.map(|set| heeling_effect(binnacle, iron, set));
+        let whole = of_iron.plus(&of_magnets.unwrap_or_default());
+        heeling_error(adjustment, condition, &whole).map(f64::abs)
+    };
+    let (Some(bucket), Some(now)) = (&binnacle.design.heeling, error(standing.as_ref())) else {
+        return standing;
+    };
+    if now <= GOOD_ENOUGH {
+        return standing;
+    }
+    let aboard = binnacle.magnets_aboard(&bucket.magnet);
+    let mut best = (now, standing);
+    let mut all = vec![None];
+    for place in &bucket.positions {
+        for count in (1..=bucket.at_most).filter(|count| u16::from(*count) <= aboard) {
+            for red in [Red::Up, Red::Down] {
+                all.push(Some(HeelingSetting {
+                    position: place.number,
+                    count,
+                    red,
+                }));
+            }
+        }
+    }
+    for set in all {
+        if let Some(error) = error(set.as_ref())
+            && error < best.0
+        {
+            best = (error, set);
+        }
+    }
+    best.1
+}
+
+pub(super) fn said(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    setting: &Setting,
+) -> HeelingPlan {
+    let of = |setting: &Setting| {
+        heeling_error(adjustment, condition, &effect(condition.binnacle, setting))
+    };
+    HeelingPlan {
+        before_deg_per_deg: of(&adjustment.binnacle.setting),
+        after_deg_per_deg: of(setting),
+        left_as_found: adjustment.vertical.is_none(),
+    }
+}

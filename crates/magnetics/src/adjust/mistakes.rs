@@ -1,0 +1,108 @@
+//! Mistakes at the berth that would explain a reading that does not fit.
+
+use crate::angle::MagneticHeading;
+use crate::berth::{Alignment, BerthReading, ReadingErrors, lambda_at_berth};
+use crate::model::Model;
+use crate::ship::EarthField;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// λ of a compass that was placed with any care: the unit is right.
+const USUAL_LAMBDA: std::ops::RangeInclusive<f64> = 0.5..=1.25;
+
+/// One thing that, done otherwise, makes a reading fit the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Mistake {
+    /// Numbers in gauss where nT are asked.
+    Gauss,
+    /// Numbers in milligauss.
+    Milligauss,
+    /// Numbers in µT.
+    Microtesla,
+    /// Forward and starboard have changed places.
+    SwappedAxes,
+    /// Port was taken for positive.
+    StarboardReversed,
+    /// Aft was taken for positive.
+    ForwardReversed,
+    /// The heading is that of the stern, or the magnetometer lies the wrong way round.
+    HeadingReversed,
+}
+
+impl Mistake {
+    const ALL: [Mistake; 7] = [
+        Mistake::Gauss,
+        Mistake::Milligauss,
+        Mistake::Microtesla,
+        Mistake::SwappedAxes,
+        Mistake::StarboardReversed,
+        Mistake::ForwardReversed,
+        Mistake::HeadingReversed,
+    ];
+
+    /// The field that it stands in.
+    pub fn field(self) -> &'static str {
+        match self {
+            Mistake::Gauss | Mistake::Milligauss | Mistake::Microtesla | Mistake::SwappedAxes => {
+                "forward_nt, starboard_nt"
+            }
+            Mistake::StarboardReversed => "starboard_nt",
+            Mistake::ForwardReversed => "forward_nt",
+            Mistake::HeadingReversed => "heading",
+        }
+    }
+
+    fn undone(self, degrees: f64, [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+        match self {
+            Mistake::Gauss => (degrees, [1e5 * x, 1e5 * y]),
+            Mistake::Milligauss => (degrees, [100.0 * x, 100.0 * y]),
+            Mistake::Microtesla => (degrees, [1e3 * x, 1e3 * y]),
+            Mistake::SwappedAxes => (degrees, [y, x]),
+            Mistake::StarboardReversed => (degrees, [x, -y]),
+            Mistake::ForwardReversed => (degrees, [-x, y]),
+            Mistake::HeadingReversed => (degrees + 180.0, [x, y]),
+        }
+    }
+}
+
+/// The mistakes each of which alone explains this reading; none where it fits as it is.
+pub fn mistakes(
+    model: &Model,
+    earth: EarthField,
+    magnetic: MagneticHeading,
+    field_nt: [f64; 2],
+    errors: ReadingErrors,
+    alignment: Alignment,
+) -> Vec<Mistake> {
+    let fits = |degrees: f64, field_nt: [f64; 2]| {
+        let Some(magnetic) = MagneticHeading::new(degrees) else {
+            return false;
+        };
+        let reading = BerthReading::new(magnetic, field_nt, errors, alignment);
+        let found = reading.and_then(|reading| lambda_at_berth(model, earth, &reading));
+        found.is_ok_and(|found| USUAL_LAMBDA.contains(&found.lambda.value))
+    };
+    if fits(magnetic.degrees(), field_nt) {
+        return Vec::new();
+    }
+    let explains = |mistake: &Mistake| {
+        let (degrees, field_nt) = mistake.undone(magnetic.degrees(), field_nt);
+        fits(degrees, field_nt)
+    };
+    Mistake::ALL.into_iter().filter(explains).collect()
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Mistake::Gauss => "the reading is in gauss (1 gauss is 100000 nT)",
+            Mistake::Milligauss => "the reading is in milligauss (1 milligauss is 100 nT)",
+            Mistake::Microtesla => "the reading is in microtesla (1 microtesla is 1000 nT)",
+            Mistake::SwappedAxes => "the magnetometer's axes are swapped",
+            Mistake::StarboardReversed => "the magnetometer's athwartship axis points to port",
+            Mistake::ForwardReversed => "the magnetometer's fore-and-aft axis points aft",
+            Mistake::HeadingReversed => "the heading is 180 degrees off",
+        })
+    }
+}

@@ -1,0 +1,424 @@
+//! Adjusting at the berth, without a swing: from the model, one magnetometer reading
+//! and the binnacle's correctors to settings, predictions and instructions.
+//!
+//! The ship herself is what was measured less what the correctors did then; any other
+//! setting is put to her with all its interactions (docs/science.md, §11). What always
+//! holds: a plan uses only what is on board, its predictions carry the errors of model,
+//! λ and correctors together, and where that is not good enough there is no plan but a
+//! refusal that says what would cure it. Nothing here is a certificate.
+
+mod berth;
+mod candidates;
+mod condition;
+mod form;
+mod heeling;
+mod instructions;
+mod mistakes;
+mod moves;
+mod objective;
+mod predicted;
+mod recheck;
+mod refusal;
+mod search;
+mod tolerance;
+mod verify;
+
+pub use berth::{BerthCheck, Seen};
+pub use form::{
+    Berth, BerthForm, FormError, HeadingFrom, Magnetometer, MagnetometerKind, WaterForm,
+};
+pub use heeling::{HeelingPlan, VerticalReading};
+pub use instructions::{Action, Corrector, Place, Step};
+pub use mistakes::{Mistake, mistakes};
+pub use predicted::{PredictedRow, PredictedTable};
+pub use recheck::{Recheck, recheck};
+pub use refusal::{Cure, Refusal};
+pub use verify::{Needed, Settled, Verification, verify};
+
+use crate::berth::{BerthError, BerthReading};
+use crate::binnacle::{Binnacle, Setting};
+use crate::deviation::DeviationError;
+use crate::model::Model;
+use crate::ship::EarthField;
+use condition::Condition;
+use search::{Found, Front};
+use serde::{Deserialize, Serialize};
+
+/// Everything that a plan rests on.
+#[derive(Clone, Debug)]
+pub struct Adjustment<'a> {
+    /// The ship's model, fitted while the correctors stood as `binnacle` says.
+    pub model: &'a Model,
+    /// The earth's field at the berth.
+    pub earth: EarthField,
+    /// What the magnetometer read in the bowl's place, correctors as they were.
+    pub reading: &'a BerthReading,
+    /// Relative standard deviation of the magnetometer's scale.
+    pub scale_sd: f64,
+    /// What the compass read at the berth before the bowl was taken out, degrees.
+    pub compass_deg: Option<f64>,
+    /// Vertical field there, if it was read.
+    pub vertical: Option<VerticalReading>,
+    /// The binnacle with its correctors as they stood for model and reading.
+    pub binnacle: &'a Binnacle,
+    /// How they stand now, where they were moved since.
+    pub now: Option<&'a Setting>,
+    /// Where the vessel trades; the berth counts only if it is among them.
+    pub waters: &'a [Water],
+    /// What the model and the ship are like.
+    pub circumstances: Circumstances,
+    /// What a plan must keep to.
+    pub limits: Limits,
+}
+
+/// A place where the vessel trades.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Water {
+    /// What it is called.
+    pub name: String,
+    /// Horizontal field, nT.
+    pub h_nt: f64,
+    /// Vertical field, nT, down positive.
+    pub z_nt: f64,
+    /// How much of her time she is there; only ratios count.
+    pub weight: f64,
+}
+
+/// What the model and the ship are like at the berth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Circumstances {
+    /// Days since the model's last sample.
+    pub model_age_days: Option<f64>,
+    /// Whether magnetic cargo is on board that the model does not know.
+    pub cargo_on_board: bool,
+}
+
+/// What a plan must keep to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Limits {
+    /// The greatest residual that may be foretold, band included, degrees.
+    pub residual_deg: f64,
+    /// The widest 95 % band, degrees.
+    pub band_deg: f64,
+    /// Settings within this are as good as each other, and the one with the fewest
+    /// moves is taken, degrees.
+    pub near_equal_deg: f64,
+    /// The oldest model, days.
+    pub model_age_days: f64,
+    /// With a λ less sure than this share the soft iron is left as it is.
+    pub lambda_sd: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Limits {
+        Limits {
+            residual_deg: 3.0,
+            band_deg: 2.5,
+            near_equal_deg: 0.1,
+            model_age_days: 60.0,
+            lambda_sd: 0.03,
+        }
+    }
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// What the berth told; none when its reading was refused.
+    pub berth: Option<BerthCheck>,
+    /// Why there is no plan; empty when there is one.
+    pub refusals: Vec<Refused>,
+    /// What the adjuster should know of it.
+    pub notes: Vec<String>,
+    /// The recommended plan first, then others that cost more or less.
+    pub plans: Vec<Plan>,
+    /// How well the search knows that nothing is better.
+    pub optimality: Option<Optimality>,
+}
+
+/// A refusal with what would cure it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Refused {
+    /// What is wrong.
+    #[serde(flatten)]
+    pub refusal: Refusal,
+    /// The same in words.
+    pub words: String,
+    /// What would cure it, the easiest first.
+    pub cures: Vec<Cure>,
+}
+
+/// How well the search knows that nothing is better.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Optimality {
+    /// Whether every setting of the catalogue was gone through or excluded.
+    pub proven: bool,
+    /// No setting's worst residual, weighted over the waters, is better than the best
+    /// plan's by more than this, degrees.
+    pub gap_deg: f64,
+    /// Boxes of settings that were looked at.
+    pub nodes: u64,
+    /// Most trays or holes of fore-and-aft and athwartship magnets in use at once.
+    pub trays_in_use: [u8; 2],
+}
+
+/// One way to set the correctors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plan {
+    /// How they will stand.
+    pub setting: Setting,
+    /// Movements of hand that it takes.
+    pub moves: u32,
+    /// Worst foretold residual on any heading, weighted over the waters, degrees.
+    pub worst_residual_deg: f64,
+    /// The widest 95 % band in any of them, degrees.
+    pub widest_band_deg: f64,
+    /// λ with this setting.
+    pub lambda: f64,
+    /// Deviations as they are, at the berth and in the waters.
+    pub before: Vec<PredictedTable>,
+    /// Residuals as they will be.
+    pub after: Vec<PredictedTable>,
+    /// What becomes of the heeling magnets.
+    pub heeling: HeelingPlan,
+    /// What to do, in order.
+    pub steps: Vec<Step>,
+    /// The model that holds from the last step on, its covariance with the errors of λ
+    /// and of the correctors that were moved.
+    pub model_after: Model,
+}
+
+/// Why there is nothing to plan with.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum AdjustError {
+    /// Of the reading, the model or the field at the berth.
+    #[error(transparent)]
+    Berth(#[from] BerthError),
+    /// Of a place where the vessel trades.
+    #[error("waters[{index}].{field} is {value}, not a number between {least} and {greatest}")]
+    Water {
+        /// Which.
+        index: usize,
+        /// Its field.
+        field: &'static str,
+        /// What it was.
+        value: f64,
+        /// The least accepted.
+        least: f64,
+        /// The greatest accepted.
+        greatest: f64,
+    },
+    /// There are none, or none with a weight.
+    #[error("waters: there are none with a weight")]
+    NoWaters,
+    /// A limit, or another number, that cannot be.
+    #[error("{field} is {value}, not a number between {least} and {greatest}")]
+    Value {
+        /// Which.
+        field: &'static str,
+        /// What it was.
+        value: f64,
+        /// The least accepted.
+        least: f64,
+        /// The greatest accepted.
+        greatest: f64,
+    },
+    /// The correctors cannot stand as they are said to.
+    #[error(transparent)]
+    Binnacle(#[from] crate::binnacle::BinnacleError),
+    /// The ship cannot be foretold.
+    #[error(transparent)]
+    Deviation(#[from] DeviationError),
+}
+
+/// The best few ways to set the correctors, or why there is none.
+///
+/// # Errors
+/// When something given cannot be. An inconsistent berth, a model too old and the like
+/// are no errors but refusals.
+pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
+    check(adjustment)?;
+    let mut refusals = refusal::beforehand(adjustment);
+    let condition = match Condition::new(adjustment) {
+        Ok(condition) => condition,
+        Err(AdjustError::Berth(error)) => {
+            refusals.push(refusal::of_berth(adjustment, error)?);
+            return Ok(refused(None, refusals));
+        }
+        Err(error) => return Err(error),
+    };
+    let berth = BerthCheck::new(adjustment, &condition);
+    if !refusals.is_empty() {
+        return Ok(refused(Some(berth), refusals));
+    }
+    let front = search::search(adjustment, &condition);
+    let mut plans = Vec::new();
+    for found in chosen(&front, adjustment.limits.near_equal_deg) {
+        plans.push(whole(adjustment, &condition, found)?);
+    }
+    refusals.extend(refusal::afterwards(adjustment, &condition, &plans));
+    if !refusals.is_empty() {
+        return Ok(refused(Some(berth), refusals));
+    }
+    Ok(Outcome {
+        notes: notes(adjustment, &condition, &berth),
+        berth: Some(berth),
+        refusals: Vec::new(),
+        plans,
+        optimality: Some(front.optimality),
+    })
+}
+
+fn refused(berth: Option<BerthCheck>, refusals: Vec<Refusal>) -> Outcome {
+    Outcome {
+        berth,
+        refusals: refusals.into_iter().map(Refusal::with_cures).collect(),
+        notes: Vec::new(),
+        plans: Vec::new(),
+        optimality: None,
+    }
+}
+
+/// How many plans are shown.
+const PLANS: usize = 5;
+
+/// The fewest moves among near-equals first, then what is better for more moves, then
+/// what is cheaper.
+fn chosen(front: &Front, near_equal_deg: f64) -> Vec<&Found> {
+    let found = front.undominated();
+    let Some(best) = found.last() else {
+        return Vec::new();
+    };
+    let good_enough = best.worst_deg + near_equal_deg;
+    let first = found.iter().position(|f| f.worst_deg <= good_enough);
+    let first = first.unwrap_or(found.len() - 1);
+    let mut order = vec![found[first]];
+    order.extend(found[first + 1..].iter().rev().take(1));
+    order.extend(found[..first].iter().rev());
+    order.truncate(PLANS);
+    order
+}
+
+fn whole(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    found: &Found,
+) -> Result<Plan, AdjustError> {
+    let tables = |setting: &Setting| predicted::tables(adjustment, condition, setting);
+    let after = tables(&found.setting)?;
+    let widest = after.iter().filter_map(|table| table.widest_band_deg);
+    Ok(Plan {
+        moves: found.moves,
+        worst_residual_deg: found.worst_deg,
+        widest_band_deg: widest.fold(0.0, f64::max),
+        lambda: condition.lambda_with(&found.setting),
+        before: tables(&adjustment.binnacle.setting)?,
+        after,
+        heeling: heeling::said(adjustment, condition, &found.setting),
+        steps: instructions::steps(adjustment, condition, &found.setting),
+        model_after: condition.model_with(&found.setting)?,
+        setting: found.setting.clone(),
+    })
+}
+
+fn notes(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    berth: &BerthCheck,
+) -> Vec<String> {
+    let mut notes = berth.in_words();
+    if !condition.may_move_pair && adjustment.binnacle.design.quadrantal.is_some() {
+        notes.push(format!(
+            "spheres are left as found: lambda is sure only to {:.1} per cent",
+            100.0 * condition.lambda_sd_share()
+        ));
+    }
+    if !condition.may_move_bar && adjustment.binnacle.design.flinders.is_some() {
+        notes.push(
+            "the Flinders bar is left as found: the model does not tell chi13 from bx".to_owned(),
+        );
+    }
+    notes
+}
+
+fn check(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
+    let limits = &adjustment.limits;
+    let values = [
+        ("limits.residual_deg", limits.residual_deg, 0.0, 90.0),
+        ("limits.band_deg", limits.band_deg, 0.0, 90.0),
+        ("limits.near_equal_deg", limits.near_equal_deg, 0.0, 10.0),
+        ("limits.model_age_days", limits.model_age_days, 0.0, 1e5),
+        ("limits.lambda_sd", limits.lambda_sd, 0.0, 1.0),
+        ("scale_sd", adjustment.scale_sd, 0.0, 0.5),
+        (
+            "compass_deg",
+            adjustment.compass_deg.unwrap_or(0.0),
+            0.0,
+            360.0,
+        ),
+        (
+            "model_age_days",
+            adjustment.circumstances.model_age_days.unwrap_or(0.0),
+            0.0,
+            1e5,
+        ),
+    ];
+    for (field, value, least, greatest) in values {
+        if !(least..=greatest).contains(&value) {
+            return Err(AdjustError::Value {
+                field,
+                value,
+                least,
+                greatest,
+            });
+        }
+    }
+    if let Some(vertical) = &adjustment.vertical {
+        vertical.check()?;
+    }
+    for (index, water) in adjustment.waters.iter().enumerate() {
+        for (field, value, least, greatest) in [
+            ("h_nt", water.h_nt, 2_000.0, 100_000.0),
+            ("z_nt", water.z_nt, -100_000.0, 100_000.0),
+            ("weight", water.weight, 0.0, 1e9),
+        ] {
+            if !(least..=greatest).contains(&value) {
+                return Err(AdjustError::Water {
+                    index,
+                    field,
+                    value,
+                    least,
+                    greatest,
+                });
+            }
+        }
+    }
+    if !adjustment.waters.iter().any(|water| water.weight > 0.0) {
+        return Err(AdjustError::NoWaters);
+    }
+    if let Some(now) = adjustment.now {
+        adjustment.binnacle.with_setting(now.clone())?;
+    }
+    Ok(())
+}
+
+impl Adjustment<'_> {
+    /// How the correctors stand now.
+    pub fn standing(&self) -> &Setting {
+        self.now.unwrap_or(&self.binnacle.setting)
+    }
+}
+
+impl Water {
+    /// Its field.
+    pub fn earth(&self) -> EarthField {
+        EarthField {
+            h_nt: self.h_nt,
+            z_nt: self.z_nt,
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,289 @@
+//! Why there is no plan, and what would cure it.
+
+use super::condition::Condition;
+use super::mistakes::{Mistake, mistakes};
+use super::{AdjustError, Adjustment, Plan, Refused};
+use crate::berth::{BerthError, Consistency};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What keeps a plan from being given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "refusal", rename_all = "snake_case")]
+pub enum Refusal {
+    /// The model has no covariance, so that no band can be given.
+    NoCovariance,
+    /// The model's last sample is too old.
+    ModelTooOld {
+        /// Its age.
+        days: f64,
+        /// The oldest that is taken.
+        limit_days: f64,
+    },
+    /// There is magnetic cargo on board that the model does not know.
+    CargoOnBoard,
+    /// The field at the berth is not where the model says.
+    InconsistentBerth {
+        /// By how much.
+        consistency: Consistency,
+        /// Mistakes that alone would explain it.
+        mistakes: Vec<Mistake>,
+    },
+    /// The field at the berth is not as strong as any ship's.
+    ImplausibleLambda {
+        /// What it would make λ.
+        lambda: f64,
+        /// Mistakes that alone would explain it.
+        mistakes: Vec<Mistake>,
+    },
+    /// As she is, some compass headings stand for several magnetic ones.
+    AmbiguousHeadings {
+        /// What the model says.
+        what: String,
+    },
+    /// The residual is known too badly.
+    BandTooWide {
+        /// Where.
+        place: String,
+        /// Half the widest 95 % band there.
+        band_deg: f64,
+        /// The widest that is taken.
+        limit_deg: f64,
+    },
+    /// The correctors there are do not bring the residual down far enough.
+    ResidualTooLarge {
+        /// Where.
+        place: String,
+        /// The greatest residual there, band included.
+        reach_deg: f64,
+        /// The greatest residual alone.
+        worst_deg: f64,
+        /// The greatest that is taken, band included.
+        limit_deg: f64,
+    },
+    /// Spheres would have to be moved, and λ is too unsure to tell how far.
+    MagnetometerTooPoor {
+        /// Standard error of λ as a share of it.
+        lambda_sd: f64,
+        /// The greatest with which soft iron is moved.
+        limit: f64,
+    },
+}
+
+/// What would cure a refusal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Cure {
+    /// Read again: heading, axes, unit, away from steel.
+    ReadAgain,
+    /// A few settled headings at sea, so that the model is of today.
+    HeadingsAtSea,
+    /// Headings in waters with another dip.
+    OtherWaters,
+    /// Wait until the cargo is ashore.
+    AfterDischarge,
+    /// A magnetometer with less error.
+    BetterMagnetometer,
+    /// Another berth, or farther from steel.
+    AnotherBerth,
+    /// Magnets, spheres or pieces of bar that are not on board.
+    OtherCorrectors,
+    /// Swing the ship.
+    Swing,
+}
+
+impl Refusal {
+    pub(super) fn with_cures(self) -> Refused {
+        let cures = match &self {
+            Refusal::NoCovariance | Refusal::ModelTooOld { .. } => {
+                vec![Cure::HeadingsAtSea, Cure::Swing]
+            }
+            Refusal::CargoOnBoard => vec![Cure::AfterDischarge, Cure::Swing],
+            Refusal::InconsistentBerth { .. } => {
+                vec![Cure::ReadAgain, Cure::AnotherBerth, Cure::HeadingsAtSea]
+            }
+            Refusal::ImplausibleLambda { .. } => vec![Cure::ReadAgain, Cure::BetterMagnetometer],
+            Refusal::AmbiguousHeadings { .. } => vec![Cure::Swing],
+            Refusal::BandTooWide { .. } => {
+                vec![
+                    Cure::HeadingsAtSea,
+                    Cure::OtherWaters,
+                    Cure::BetterMagnetometer,
+                    Cure::Swing,
+                ]
+            }
+            Refusal::ResidualTooLarge { .. } => {
+                vec![Cure::OtherCorrectors, Cure::HeadingsAtSea, Cure::Swing]
+            }
+            Refusal::MagnetometerTooPoor { .. } => vec![Cure::BetterMagnetometer, Cure::Swing],
+        };
+        Refused {
+            words: self.to_string(),
+            refusal: self,
+            cures,
+        }
+    }
+}
+
+/// What is known to be wrong before anything is calculated.
+pub(super) fn beforehand(adjustment: &Adjustment<'_>) -> Vec<Refusal> {
+    let mut refusals = Vec::new();
+    if adjustment.model.covariance.is_none() {
+        refusals.push(Refusal::NoCovariance);
+    }
+    let limit_days = adjustment.limits.model_age_days;
+    if let Some(days) = adjustment.circumstances.model_age_days
+        && days > limit_days
+    {
+        refusals.push(Refusal::ModelTooOld { days, limit_days });
+    }
+    if adjustment.circumstances.cargo_on_board {
+        refusals.push(Refusal::CargoOnBoard);
+    }
+    refusals
+}
+
+/// A berth that fails its check is refused; one that cannot be is an error.
+pub(super) fn of_berth(
+    adjustment: &Adjustment<'_>,
+    error: BerthError,
+) -> Result<Refusal, AdjustError> {
+    let reading = adjustment.reading;
+    let mistakes = || {
+        mistakes(
+            adjustment.model,
+            adjustment.earth,
+            reading.magnetic(),
+            reading.field_nt(),
+            reading.errors(),
+            reading.alignment(),
+        )
+    };
+    match error {
+        BerthError::Inconsistent(consistency) => Ok(Refusal::InconsistentBerth {
+            consistency,
+            mistakes: mistakes(),
+        }),
+        BerthError::Implausible(lambda) => Ok(Refusal::ImplausibleLambda {
+            lambda,
+            mistakes: mistakes(),
+        }),
+        BerthError::NoDirectiveForce { .. } => Ok(Refusal::AmbiguousHeadings {
+            what: error.to_string(),
+        }),
+        error => Err(error.into()),
+    }
+}
+
+/// What is wrong with the recommended plan.
+pub(super) fn afterwards(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    plans: &[Plan],
+) -> Vec<Refusal> {
+    let Some(plan) = plans.first() else {
+        return Vec::new();
+    };
+    let limits = &adjustment.limits;
+    let counted = plan.after.iter().enumerate().filter(|(index, _)| {
+        // The berth stands first, and is not where she trades.
+        index
+            .checked_sub(1)
+            .is_none_or(|water| adjustment.waters[water].weight > 0.0)
+    });
+    let mut worst: Option<Refusal> = None;
+    for (_, table) in counted {
+        let place = table.place.clone();
+        let (Some(reach_deg), Some(worst_deg)) = (table.reach_deg, table.worst_deg) else {
+            let what = format!("compass headings are ambiguous at {place}");
+            return vec![Refusal::AmbiguousHeadings { what }];
+        };
+        let band_deg = table.widest_band_deg.unwrap_or(f64::INFINITY);
+        if band_deg > limits.band_deg {
+            worst = Some(Refusal::BandTooWide {
+                place,
+                band_deg,
+                limit_deg: limits.band_deg,
+            });
+        } else if reach_deg > limits.residual_deg && worst.is_none() {
+            worst = Some(Refusal::ResidualTooLarge {
+                place,
+                reach_deg,
+                worst_deg,
+                limit_deg: limits.residual_deg,
+            });
+        }
+    }
+    let too_large = matches!(worst, Some(Refusal::ResidualTooLarge { .. }));
+    let mut refusals: Vec<Refusal> = worst.into_iter().collect();
+    if too_large && !condition.may_move_pair && condition.binnacle.design.quadrantal.is_some() {
+        refusals.insert(
+            0,
+            Refusal::MagnetometerTooPoor {
+                lambda_sd: condition.lambda_sd_share(),
+                limit: limits.lambda_sd,
+            },
+        );
+    }
+    refusals
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let explained = |f: &mut fmt::Formatter<'_>, mistakes: &[Mistake]| {
+            mistakes
+                .iter()
+                .try_for_each(|m| write!(f, "; it would fit if {m}"))
+        };
+        match self {
+            Refusal::NoCovariance => {
+                f.write_str("the model came without a covariance: nothing is known of the band")
+            }
+            Refusal::ModelTooOld { days, limit_days } => write!(
+                f,
+                "the model's last sample is {days:.0} days old, of {limit_days:.0} at most"
+            ),
+            Refusal::CargoOnBoard => {
+                f.write_str("magnetic cargo is on board that the model does not know")
+            }
+            Refusal::InconsistentBerth {
+                consistency,
+                mistakes,
+            } => {
+                write!(f, "the berth is inconsistent: {}", consistency.in_words())?;
+                explained(f, mistakes)
+            }
+            Refusal::ImplausibleLambda { lambda, mistakes } => {
+                write!(f, "the field read would make lambda {lambda:.4}")?;
+                explained(f, mistakes)
+            }
+            Refusal::AmbiguousHeadings { what } => f.write_str(what),
+            Refusal::BandTooWide {
+                place,
+                band_deg,
+                limit_deg,
+            } => write!(
+                f,
+                "at {place} the residual is known to {band_deg:.1} degrees only, of \
+                 {limit_deg:.1} at most"
+            ),
+            Refusal::ResidualTooLarge {
+                place,
+                reach_deg,
+                worst_deg,
+                limit_deg,
+            } => write!(
+                f,
+                "at {place} the correctors on board leave {worst_deg:.1} degrees, {reach_deg:.1} \
+                 with the band, of {limit_deg:.1} at most"
+            ),
+            Refusal::MagnetometerTooPoor { lambda_sd, limit } => write!(
+                f,
+                "lambda is sure only to {:.1} per cent, of {:.1} at most, and spheres would have \
+                 to be moved",
+                100.0 * lambda_sd,
+                100.0 * limit
+            ),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Adjusting at the berth, on ships that share no code with the planner.
+
+#![allow(clippy::unwrap_used)]
+
+#[path = "adjusting/mod.rs"]
+#[allow(dead_code)]
+mod adjusting;
+
+#[path = "adjusting/tally.rs"]
+#[allow(dead_code)]
+mod tally;
+
+use adjusting::knowledge::FLUXGATE;
+use adjusting::random::Random;
+use binnacle_magnetics::corrector::effect;
+use tally::Tally;
+
+/// With no errors at all the formulas and the independent iron say the same.
+#[test]
+fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
+    for seed in 0..20 {
+        let mut rng = Random::new(seed);
+        let binnacle = adjusting::binnacle(&mut rng, 0);
+        let mut form: binnacle_magnetics::binnacle::BinnacleForm = binnacle.into();
+        let mut design: binnacle_magnetics::binnacle::DesignForm = form.design.into();
+        for kind in &mut design.magnets {
+            kind.moment_tolerance = 0.0;
+        }
+        for rack in [&mut design.fore_and_aft, &mut design.athwartship] {
+            rack.position_sd_mm = 0.0;
+        }
+        for size in &mut design.quadrantal.as_mut().unwrap().sizes {
+            size.tolerance = 0.0;
+        }
+        design.flinders.as_mut().unwrap().tolerance = 0.0;
+        form.design = design.try_into().unwrap();
+        let binnacle = binnacle_magnetics::binnacle::Binnacle::try_from(form).unwrap();
+        let iron = adjusting::iron::Fitted::new(&mut rng, &binnacle);
+        let setting = &binnacle.setting;
+        let found = effect(&binnacle, setting);
+        for earth in [
+            [0.0; 3],
+            [30_000.0, 0.0, 0.0],
+            [0.0, 30_000.0, 0.0],
+            [0.0, 0.0, 40_000.0],
+        ] {
+            let truth = iron.field(setting, earth);
+            // Of the vertical field only χ33 and bz count, for heeling.
+            let axes = if earth[0] == 0.0 && earth[1] == 0.0 {
+                3
+            } else {
+                2
+            };
+            for axis in 0..axes {
+                let induced: f64 = (0..3).map(|c| found.chi[axis][c] * earth[c]).sum();
+                let off = found.b_nt[axis] + induced - truth[axis];
+                // What magnetises the bar across, and pairs of odd magnets, are left out.
+                let size = truth.iter().map(|part| part.abs()).fold(0.0, f64::max);
+                assert!(
+                    off.abs() < 0.03 * size + 5.0,
+                    "{seed} {earth:?} {axis}: {off} of {truth:?}"
+                );
+            }
+        }
+        for card in [[1.0, 0.0], [0.0, 1.0]] {
+            let truth = iron.of_needles(setting, card);
+            // The part along the needles, a third, turns nothing.
+            let along = if card[1] > 0.5 { 0.75 * truth[1] } else { 0.0 };
+            let formula = card[0] * found.needle_nt[1][0] + card[1] * found.needle_nt[1][1];
+            assert!((formula - along).abs() < 1e-6 * truth[1].abs() + 1e-9);
+        }
+    }
+}
+
+#[test]
+fn the_band_holds_and_little_is_left_on_ships_that_the_planner_never_saw() {
+    let tally = Tally::of(1000..1060, 0, FLUXGATE);
+    println!("{tally}");
+    assert!(tally.planned >= 30, "{tally}");
+    assert!(tally.coverage() >= 0.92, "{tally}");
+    assert!(tally.within_3_deg() >= 0.95, "{tally}");
+}

@@ -1,0 +1,184 @@
+//! `plan`, run as a user runs it.
+
+use crate::commands::{assert_refused, good, run};
+use binnacle_magnetics::binnacle::{Binnacle, SHIPPED};
+use binnacle_magnetics::corrector::effect;
+use binnacle_magnetics::ship::{EarthField, ShipMagnetism};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::process::Output;
+
+const BERTH: EarthField = EarthField {
+    h_nt: 24_000.0,
+    z_nt: 38_500.0,
+};
+
+fn binnacle() -> Value {
+    let design: Value = serde_json::from_str(SHIPPED[0].1).unwrap();
+    json!({
+        "version": 1,
+        "serial": "1234",
+        "type": design,
+        "aboard": {
+            "magnets": [{ "magnet": "200 mm", "count": 8 }, { "magnet": "heeling 150 mm", "count": 1 }],
+            "quadrantal": ["7 inch"],
+            "flinders_pieces_mm": [300, 150, 75],
+        },
+        "setting": {
+            "fore_and_aft": [{ "hole": 5, "magnet": "200 mm", "count": 2, "red": "aft" }],
+            "athwartship": [{ "hole": 7, "magnet": "200 mm", "count": 1, "red": "port" }],
+            "quadrantal": { "size": "7 inch", "mark_mm": 320, "slew_deg": 0 },
+            "flinders": { "length_mm": 225, "side": "forward", "slew_deg": 0 },
+            "heeling": { "position": 4, "count": 1, "red": "up" },
+        },
+    })
+}
+
+/// A ship's model, and what is read aboard her on true heading 63.
+fn ship() -> (Value, [f64; 2]) {
+    let binnacle: Binnacle = serde_json::from_value(binnacle()).unwrap();
+    let correctors = effect(&binnacle, &binnacle.setting);
+    let bare = ShipMagnetism {
+        chi: [[-0.06, 0.002, -0.021], [0.003, -0.15, 0.002], [0.0; 3]],
+        b_nt: [2_600.0, -1_900.0, 800.0],
+    };
+    let with = |h_nt: f64| {
+        let there = correctors.as_ship(h_nt);
+        let mut ship = bare;
+        for row in 0..3 {
+            ship.b_nt[row] += there.b_nt[row];
+            for column in 0..3 {
+                ship.chi[row][column] += there.chi[row][column];
+            }
+        }
+        ship
+    };
+    let parameters = with(BERTH.h_nt).parameters_over_lambda().unwrap();
+    let mut covariance = [[0.0; 8]; 8];
+    for (index, sd) in [60.0_f64, 1.5e-3, 50.0, 1.5e-3, 2e-3, 2e-3, 2e-3, 0.3]
+        .iter()
+        .enumerate()
+    {
+        covariance[index][index] = sd * sd;
+    }
+    let model = json!({ "parameters_over_lambda": parameters, "covariance": covariance });
+    // True heading 63 with variation 3 W is magnetic 66; no needles, bowl out.
+    let earth = BERTH.in_ship_axes(66_f64.to_radians());
+    let [forward, starboard, _] = with(f64::INFINITY).field_aboard(earth);
+    (model, [forward, starboard])
+}
+
+fn berth([forward, starboard]: [f64; 2]) -> Value {
+    json!({
+        "time": "2026-11-21T10:00:00Z",
+        "h_nt": BERTH.h_nt,
+        "z_nt": BERTH.z_nt,
+        "variation_deg": -3.0,
+        "true_heading_deg": 63.0,
+        "forward_nt": forward,
+        "starboard_nt": starboard,
+        "magnetometer": { "kind": "fluxgate" },
+        "waters": [
+            { "name": "Biscay", "lat": 45.0, "lon": -5.0, "weight": 2 },
+            { "name": "Baltic", "h_nt": 17000, "z_nt": 47000, "weight": 1 },
+        ],
+        "limits": { "residual_deg": 4.0 },
+    })
+}
+
+fn plan(folder: &Path, model: &Value, binnacle: &Value, berth: &Value) -> Output {
+    for (name, value) in [("model", model), ("binnacle", binnacle), ("berth", berth)] {
+        std::fs::write(folder.join(format!("{name}.json")), value.to_string()).unwrap();
+    }
+    let files = [
+        "--model",
+        "model.json",
+        "--binnacle",
+        "binnacle.json",
+        "--berth",
+        "berth.json",
+    ];
+    run(folder, &[&["plan"], &files[..]].concat())
+}
+
+#[test]
+fn plan_prints_settings_steps_and_what_they_leave() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, read) = ship();
+    let output = plan(folder.path(), &model, &binnacle(), &berth(read));
+    let found: Value = serde_json::from_str(&good(&output)).unwrap();
+    assert_eq!(found["verdict"], "planned", "{}", found["refusals"]);
+    let best = &found["plans"][0];
+    assert!(best["worst_residual_deg"].as_f64().unwrap() < 1.5);
+    assert_eq!(best["after"][0]["rows"].as_array().unwrap().len(), 24);
+    assert!(best["after"][1]["rows"][3]["band95_deg"].as_f64().unwrap() > 0.3);
+    let step = &best["steps"][0];
+    for name in [
+        "words",
+        "expected_compass_deg",
+        "tolerance_deg",
+        "setting_after",
+    ] {
+        assert!(!step[name].is_null(), "{name}");
+    }
+    assert_eq!(found["optimality"]["proven"], true);
+    assert!((found["berth"]["consistency"]["angle_deg"].as_f64().unwrap()).abs() < 0.05);
+}
+
+#[test]
+fn a_refusal_is_an_answer_with_its_cure() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, read) = ship();
+    let mut loaded = berth(read);
+    loaded["cargo_on_board"] = json!(true);
+    let output = plan(folder.path(), &model, &binnacle(), &loaded);
+    let found: Value = serde_json::from_str(&good(&output)).unwrap();
+    assert_eq!(found["verdict"], "refused");
+    assert_eq!(found["refusals"][0]["refusal"], "cargo_on_board");
+    assert_eq!(found["refusals"][0]["cures"][0], "after_discharge");
+    assert_eq!(found["plans"], json!([]));
+}
+
+#[test]
+fn mistakes_at_the_berth_are_bad_input_by_file_and_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, [x, y]) = ship();
+    let refused = |berth: &Value, words: &[&str]| {
+        let output = plan(folder.path(), &model, &binnacle(), berth);
+        assert_refused(&output, &[&["berth.json"], words].concat());
+    };
+    refused(&berth([x / 1e5, y / 1e5]), &["forward_nt", "gauss"]);
+    refused(&berth([x / 1e3, y / 1e3]), &["forward_nt", "microtesla"]);
+    refused(&berth([y, x]), &["forward_nt", "axes are swapped"]);
+    let mut wrong = berth([x, y]);
+    wrong["true_heading_deg"] = json!(243.0);
+    refused(&wrong, &["heading", "180 degrees off"]);
+    let mut wrong = berth([x, y]);
+    wrong["true_heading_deg"] = json!(400.0);
+    refused(&wrong, &["true_heading_deg", "400"]);
+    let mut wrong = berth([x, y]);
+    wrong["waters"][1]["h_nt"] = json!(-5);
+    refused(&wrong, &["waters[1].h_nt", "-5"]);
+    let mut wrong = berth([x, y]);
+    wrong["forwards_nt"] = json!(1);
+    refused(&wrong, &["forwards_nt"]);
+}
+
+#[test]
+fn a_binnacle_that_cannot_be_is_bad_input_by_file_and_field() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, read) = ship();
+    let refused = |binnacle: &Value, words: &[&str]| {
+        let output = plan(folder.path(), &model, binnacle, &berth(read));
+        assert_refused(&output, &[&["binnacle.json"], words].concat());
+    };
+    let mut wrong = binnacle();
+    wrong["setting"]["fore_and_aft"][0]["hole"] = json!(25);
+    refused(&wrong, &["setting.fore_and_aft[0].hole", "no hole 25"]);
+    let mut wrong = binnacle();
+    wrong["type"]["magnets"] = json!([]);
+    refused(&wrong, &["magnets", "is empty"]);
+    let mut wrong = binnacle();
+    wrong["type"]["athwartship"]["holes"][2]["below_card_mm"] = json!(-30);
+    refused(&wrong, &["athwartship.holes[2].below_card_mm", "-30"]);
+}
