@@ -138,7 +138,7 @@ impl Fitted {
         let kind = design.magnet(&tray.magnet).unwrap();
         let hole = rack.hole(tray.hole).unwrap();
         let height = hole.below_card_mm + self.heights_mm[index][usize::from(tray.hole) - 1];
-        let off = rack.off_centre_mm / 1e3 * if side % 2 == 0 { 1.0 } else { -1.0 };
+        let off = rack.off_centre_mm / 1e3 * if side.is_multiple_of(2) { 1.0 } else { -1.0 };
         let size = tray.red.sign() * kind.moment_am2 * (1.0 + self.moments[index][magnet % 16]);
         let (middle, moment) = match axis {
             Axis::ForeAndAft => ([0.0, off, height / 1e3], [size, 0.0, 0.0]),

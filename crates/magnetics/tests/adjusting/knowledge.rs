@@ -29,15 +29,20 @@ pub(crate) const PHONE: Instruments = Instruments {
     heading_sd_deg: 1.0,
 };
 
-/// The waters of a ship, the berth's first.
-pub(crate) fn waters(rng: &mut Random) -> Vec<Water> {
+/// The waters of a ship, the berth's first: over this share of what there is.
+pub(crate) fn waters(rng: &mut Random, share: f64) -> Vec<Water> {
     let count = 2 + rng.below(3);
+    let (low, high) = ([17_000.0, -25_000.0], [36_000.0, 47_000.0]);
+    let home = [0, 1].map(|i| rng.between(low[i], high[i]));
     (0..count)
-        .map(|index| Water {
-            name: format!("water {index}"),
-            h_nt: rng.between(17_000.0, 36_000.0),
-            z_nt: rng.between(-25_000.0, 47_000.0),
-            weight: rng.between(0.2, 1.0),
+        .map(|index| {
+            let away = [0, 1].map(|i| rng.between(low[i], high[i]) - home[i]);
+            Water {
+                name: format!("water {index}"),
+                h_nt: home[0] + share * away[0],
+                z_nt: home[1] + share * away[1],
+                weight: rng.between(0.2, 1.0),
+            }
         })
         .collect()
 }

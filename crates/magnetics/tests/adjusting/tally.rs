@@ -1,5 +1,7 @@
 //! Plans held against the truth.
 
+#![allow(clippy::unwrap_used)] // a study
+
 use super::adjusting::knowledge::{Instruments, model, reading, waters};
 use super::adjusting::random::Random;
 use super::adjusting::{binnacle, ship};
@@ -39,7 +41,8 @@ impl Tally {
         let mut rng = Random::new(seed);
         let binnacle = binnacle(&mut rng, which);
         let truth = ship(&mut rng, &binnacle);
-        let waters = waters(&mut rng);
+        // Small binnacles, which have no Flinders bar, keep to one sea.
+        let waters = waters(&mut rng, if which == 0 { 1.0 } else { 0.15 });
         let standing = truth.with(&binnacle.setting);
         let model = model(&mut rng, &standing, &waters);
         let berth = waters[0].earth();
