@@ -1,0 +1,10 @@
+//! Who adjusts which ship's compass, where and when.
+//!
+//! What always holds: nothing here reads a clock or draws a random number; the same
+//! input gives the same schedule. In reading order:
+
+pub mod needs;
+pub mod ports;
+pub mod rules;
+
+pub mod solve;

@@ -1,0 +1,210 @@
+//! Sea ports by UN/LOCODE, with where they are.
+//!
+//! `data/ports.csv` is made by `scripts/ports.py` from UNECE's code list (its issue
+//! 2023-1; function 1, port), as it is published for everyone's use; where UNECE gives
+//! no position, from the list "sea-ports" 0.0.9 (MIT licence, © marchah). Positions are
+//! rounded to a hundredth of a degree: good for the day's date and for distances, not
+//! for navigation.
+//!
+//! What always holds: a [`PortCode`] is two capital letters and three capital letters or
+//! digits; the table is sorted by it and names each once.
+
+use binnacle_magnetics::position::Position;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::sync::OnceLock;
+
+/// A UN/LOCODE: country and place, as `NLRTM`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct PortCode([u8; 5]);
+
+/// Why something is not a UN/LOCODE.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0:?} is not a UN/LOCODE of five letters and digits, as NLRTM")]
+pub struct PortCodeError(String);
+
+/// A port of the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Port {
+    /// Its code.
+    pub code: PortCode,
+    /// Its name.
+    pub name: &'static str,
+    /// Its name without accents.
+    pub plain_name: &'static str,
+    /// About where it is.
+    pub position: Position,
+}
+
+static PORTS: OnceLock<Vec<Port>> = OnceLock::new();
+
+/// All ports, in the order of their codes.
+#[allow(clippy::missing_panics_doc, reason = "a test reads the same table")]
+pub fn all() -> &'static [Port] {
+    PORTS.get_or_init(|| {
+        let lines = include_str!("../../data/ports.csv").lines().skip(1);
+        let ports =
+            lines.map(|line| read(line).expect("the table that is compiled in is read by a test"));
+        ports.collect()
+    })
+}
+
+/// The port of a code.
+pub fn find(code: PortCode) -> Option<&'static Port> {
+    let ports = all();
+    let at = ports.binary_search_by_key(&code, |port| port.code).ok()?;
+    Some(&ports[at])
+}
+
+/// Ports whose code or name begins with a text, then those whose name has it
+/// elsewhere; at most `most`.
+pub fn search(text: &str, most: usize) -> Vec<&'static Port> {
+    let text = text.trim().to_lowercase();
+    if text.is_empty() {
+        return Vec::new();
+    }
+    let (mut first, mut later) = (Vec::new(), Vec::new());
+    for port in all() {
+        let (name, plain) = (port.name.to_lowercase(), port.plain_name.to_lowercase());
+        let code = port.code.to_string().to_lowercase();
+        if code.starts_with(&text) || name.starts_with(&text) || plain.starts_with(&text) {
+            first.push(port);
+        } else if name.contains(&text) || plain.contains(&text) {
+            later.push(port);
+        }
+    }
+    first.append(&mut later);
+    first.truncate(most);
+    first
+}
+
+impl Port {
+    /// Hours that ship's time is ahead of UTC: the nautical zone of the longitude. Legal
+    /// time differs from it by an hour or two, which the hours of work allow for.
+    pub fn zone_h(&self) -> i32 {
+        (self.position.lon_deg() / 15.0).round() as i32
+    }
+}
+
+impl PortCode {
+    /// Reads a code, in either case and with or without the space behind the country.
+    ///
+    /// # Errors
+    /// When it is not one.
+    pub fn parse(text: &str) -> Result<PortCode, PortCodeError> {
+        let wrong = || PortCodeError(text.chars().take(20).collect());
+        let letters: Vec<u8> = text
+            .trim()
+            .bytes()
+            .enumerate()
+            .filter(|(at, byte)| !(*at == 2 && *byte == b' '))
+            .map(|(_, byte)| byte.to_ascii_uppercase())
+            .collect();
+        let code: [u8; 5] = letters.try_into().map_err(|_| wrong())?;
+        let country = code[..2].iter().all(u8::is_ascii_uppercase);
+        let place = code[2..]
+            .iter()
+            .all(|byte| byte.is_ascii_uppercase() || byte.is_ascii_digit());
+        (country && place)
+            .then_some(PortCode(code))
+            .ok_or_else(wrong)
+    }
+}
+
+impl fmt::Display for PortCode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(std::str::from_utf8(&self.0).expect("letters and digits are ASCII"))
+    }
+}
+
+impl TryFrom<String> for PortCode {
+    type Error = PortCodeError;
+    fn try_from(text: String) -> Result<PortCode, PortCodeError> {
+        PortCode::parse(&text)
+    }
+}
+
+impl From<PortCode> for String {
+    fn from(code: PortCode) -> String {
+        code.to_string()
+    }
+}
+
+/// A line of the table: code, name, the name without accents where it has some, degrees
+/// north, degrees east. Only names are quoted, and they have no quotes in them.
+fn read(line: &'static str) -> Option<Port> {
+    let (code, rest) = line.split_once(',')?;
+    let (name, rest) = cell(rest)?;
+    let (plain, rest) = cell(rest)?;
+    let (lat, lon) = rest.split_once(',')?;
+    Some(Port {
+        code: PortCode::parse(code).ok()?,
+        name,
+        plain_name: if plain.is_empty() { name } else { plain },
+        position: Position::new(lat.parse().ok()?, lon.parse().ok()?).ok()?,
+    })
+}
+
+fn cell(text: &'static str) -> Option<(&'static str, &'static str)> {
+    match text.strip_prefix('"') {
+        Some(quoted) => quoted.split_once("\","),
+        None => text.split_once(','),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_whole_table_is_read_sorted_and_without_repetition() {
+        assert!(all().len() > 10_000);
+        assert!(all().is_sorted_by(|one, next| one.code < next.code));
+        assert!(all().iter().all(|port| !port.name.contains('"')));
+    }
+
+    #[test]
+    fn the_worlds_great_ports_are_where_they_are() {
+        for (code, lat, lon) in [
+            ("NLRTM", 51.9, 4.5),
+            ("SGSIN", 1.3, 103.8),
+            ("CNSGH", 31.2, 121.5),
+            ("USHOU", 29.75, -95.4),
+            ("PABLB", 8.96, -79.57),
+            ("ESBIO", 43.3, -3.0),
+            ("BRSSZ", -23.9, -46.3),
+            ("ZADUR", -29.9, 31.0),
+            ("AUMEL", -37.8, 145.0),
+        ] {
+            let port = find(PortCode::parse(code).unwrap()).unwrap();
+            let off = (port.position.lat_deg() - lat)
+                .abs()
+                .max((port.position.lon_deg() - lon).abs());
+            assert!(off < 0.3, "{code} is {off}° off");
+        }
+    }
+
+    #[test]
+    fn a_code_is_read_in_either_case_and_with_its_space() {
+        let rotterdam = PortCode::parse("NLRTM").unwrap();
+        assert_eq!(PortCode::parse(" nl rtm ").unwrap(), rotterdam);
+        for wrong in ["", "NLRT", "NLRTMX", "N1RTM", "NLR-M", "ÄÖÜ"] {
+            assert!(PortCode::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_port_is_found_by_the_beginning_of_its_name_without_accents() {
+        let found = search("cristob", 5);
+        assert!(found.iter().any(|port| port.code.to_string() == "PACTB"));
+        assert_eq!(search("rotterdam", 1)[0].code.to_string(), "NLRTM");
+        assert!(search("  ", 5).is_empty());
+    }
+
+    #[test]
+    fn ships_time_is_the_longitudes() {
+        let zone = |code: &str| find(PortCode::parse(code).unwrap()).unwrap().zone_h();
+        assert_eq!((zone("NLRTM"), zone("SGSIN"), zone("USHOU")), (0, 7, -6));
+    }
+}

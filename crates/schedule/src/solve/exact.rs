@@ -1,0 +1,157 @@
+//! What the bound leaves open, as a mixed-integer model, part by part.
+//!
+//! What always holds: an assignment that comes back is feasible and no worse than the
+//! one given; it is called optimal only where the solver finished its proof on every
+//! part. Work is limited in nodes, not in seconds: the same problem, the same answer.
+
+use super::problem::{Assignment, Problem};
+use microlp::{
+    ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
+};
+use std::collections::BTreeMap;
+
+/// What became of a problem.
+pub(super) struct Finished {
+    pub(super) assignment: Assignment,
+    /// Whether no other assignment of these choices is cheaper.
+    pub(super) optimal: bool,
+}
+
+/// The cheapest assignment with the choices that are `open`, part by part
+/// of those that share no need and no firm's day. A part of many choices may take
+/// fewer nodes: `effort` is nodes times choices.
+pub(super) fn finish(
+    problem: &Problem,
+    open: &[bool],
+    known: Assignment,
+    effort: usize,
+) -> Finished {
+    let mut assignment = known;
+    let mut optimal = true;
+    for part in parts(problem, open) {
+        let nodes = (effort / part.len().max(1)).max(1) as u64;
+        match solve(problem, &part, &assignment, nodes) {
+            Some((found, proven)) => {
+                optimal &= proven;
+                let mut changed = assignment.clone();
+                for (need, choice) in found {
+                    changed[need] = choice;
+                }
+                let cheaper = match (problem.cost(&changed), problem.cost(&assignment)) {
+                    (Some(new), Some(old)) => new < old,
+                    (Some(_), None) => true,
+                    _ => false,
+                };
+                if cheaper {
+                    assignment = changed;
+                }
+            }
+            None => optimal = false,
+        }
+    }
+    Finished {
+        assignment,
+        optimal,
+    }
+}
+
+/// The open choices, by parts that do not touch.
+fn parts(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
+    let needs = problem.unmet.len();
+    let mut leader: Vec<usize> = (0..needs + problem.teams.len()).collect();
+    for (choice, open) in problem.choices.iter().zip(open) {
+        if *open {
+            let day = needs + problem.visits[choice.visit].firm_day;
+            let (one, other) = (find(&mut leader, choice.need), find(&mut leader, day));
+            leader[one.max(other)] = one.min(other);
+        }
+    }
+    let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (index, choice) in problem.choices.iter().enumerate() {
+        if open[index] {
+            parts
+                .entry(find(&mut leader, choice.need))
+                .or_default()
+                .push(index);
+        }
+    }
+    parts.into_values().collect()
+}
+
+fn find(leader: &mut [usize], mut of: usize) -> usize {
+    while leader[of] != of {
+        leader[of] = leader[leader[of]];
+        of = leader[of];
+    }
+    of
+}
+
+type Found = Vec<(usize, Option<usize>)>;
+
+/// One part's best, and whether that is proven; nothing when the solver has none.
+fn solve(
+    problem: &Problem,
+    part: &[usize],
+    known: &[Option<usize>],
+    nodes: u64,
+) -> Option<(Found, bool)> {
+    const CENTS: f64 = 100.0;
+    let mut model = microlp::Problem::new(OptimizationDirection::Minimize);
+    let mut warm: Vec<(Variable, f64)> = Vec::new();
+    let mut of_need: BTreeMap<usize, Vec<(Variable, usize)>> = BTreeMap::new();
+    let mut of_visit: BTreeMap<usize, Vec<Variable>> = BTreeMap::new();
+    let mut going: BTreeMap<usize, u32> = BTreeMap::new();
+    for &index in part {
+        let choice = problem.choices[index];
+        // A choice is worth what it saves beside leaving the need unmet.
+        let worth = (choice.cost - problem.unmet[choice.need]) as f64 / CENTS;
+        let x = model.add_binary_var(worth);
+        let made = known[choice.need] == Some(index);
+        warm.push((x, f64::from(u8::from(made))));
+        *going.entry(choice.visit).or_default() += u32::from(made);
+        of_need.entry(choice.need).or_default().push((x, index));
+        of_visit.entry(choice.visit).or_default().push(x);
+    }
+    let mut of_day: BTreeMap<usize, LinearExpr> = BTreeMap::new();
+    for (&at, jobs) in &of_visit {
+        let visit = problem.visits[at];
+        let most = problem.teams[visit.firm_day]
+            .min(jobs.len() as u32)
+            .cast_signed();
+        let y = model.add_integer_var(visit.travel as f64 / CENTS, (0, most));
+        warm.push((y, f64::from(going[&at].div_ceil(visit.jobs_a_team))));
+        let mut room = LinearExpr::empty();
+        room.add(y, -f64::from(visit.jobs_a_team));
+        for &x in jobs {
+            room.add(x, 1.0);
+            if visit.jobs_a_team > 1 {
+                model.add_constraint([(x, 1.0), (y, -1.0)], ComparisonOp::Le, 0.0);
+            }
+        }
+        model.add_constraint(room, ComparisonOp::Le, 0.0);
+        of_day
+            .entry(visit.firm_day)
+            .or_insert_with(LinearExpr::empty)
+            .add(y, 1.0);
+    }
+    for choices in of_need.values() {
+        let row: Vec<(Variable, f64)> = choices.iter().map(|(x, _)| (*x, 1.0)).collect();
+        model.add_constraint(row, ComparisonOp::Le, 1.0);
+    }
+    for (day, sent) in of_day {
+        model.add_constraint(sent, ComparisonOp::Le, f64::from(problem.teams[day]));
+    }
+    let mut options = SolveOptions::default();
+    options.node_limit = Some(nodes);
+    options.warm_start = Some(warm);
+    let solved = model.solve_with(options).ok()?.into_solution().ok()?;
+    let proven = solved.termination_reason() == TerminationReason::ProvenOptimal;
+    let found = of_need
+        .into_iter()
+        .map(|(need, choices)| {
+            let made = choices.iter().find(|(x, _)| solved.var_value(*x) > 0.5);
+            (need, made.map(|(_, index)| *index))
+        })
+        .collect();
+    Some((found, proven))
+}

@@ -1,0 +1,93 @@
+//! The assignment as numbers only: who is who does not matter here.
+//!
+//! What always holds: a [`Problem`] that [`Problem::checked`] gave back has every
+//! index within its list, no negative cost, and for each visit room for at least
+//! one job. Costs are whole cents, so that sums are exact and a bound can be rounded.
+
+use std::collections::BTreeMap;
+
+/// One way to meet one need: on one visit, at a cost of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Whose need, by index.
+    pub need: usize,
+    /// On which visit, by index.
+    pub visit: usize,
+    /// What it costs beside the visit's travel.
+    pub cost: i64,
+}
+
+/// A firm's presence in one port on one day.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Visit {
+    /// Of which firm and day, by index.
+    pub firm_day: usize,
+    /// What it costs to send one team.
+    pub travel: i64,
+    /// How many jobs one team does there that day.
+    pub jobs_a_team: u32,
+}
+
+/// At most one choice for each need, within the teams of each firm and day.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Problem {
+    /// For each need, what it costs to leave it unmet.
+    pub unmet: Vec<i64>,
+    /// All ways to meet needs.
+    pub choices: Vec<Choice>,
+    /// All visits that a choice may ask for.
+    pub visits: Vec<Visit>,
+    /// For each firm and day, the teams that it has.
+    pub teams: Vec<u32>,
+}
+
+/// For each need the choice that was made, by index, or none.
+pub type Assignment = Vec<Option<usize>>;
+
+impl Problem {
+    /// What an assignment costs; `None` when it asks for more teams than there are.
+    pub fn cost(&self, assignment: &[Option<usize>]) -> Option<i64> {
+        let mut cost = 0;
+        let mut jobs: BTreeMap<usize, u32> = BTreeMap::new();
+        for (need, choice) in assignment.iter().enumerate() {
+            let Some(choice) = choice.map(|index| self.choices[index]) else {
+                cost += self.unmet[need];
+                continue;
+            };
+            cost += choice.cost;
+            *jobs.entry(choice.visit).or_default() += 1;
+        }
+        let mut sent: BTreeMap<usize, u32> = BTreeMap::new();
+        for (visit, jobs) in jobs {
+            let visit = self.visits[visit];
+            let teams = jobs.div_ceil(visit.jobs_a_team);
+            cost += i64::from(teams) * visit.travel;
+            *sent.entry(visit.firm_day).or_default() += teams;
+        }
+        let within = sent
+            .iter()
+            .all(|(firm_day, sent)| *sent <= self.teams[*firm_day]);
+        within.then_some(cost)
+    }
+
+    /// The indices of each need's choices, the cheapest first.
+    pub(super) fn by_need(&self) -> Vec<Vec<usize>> {
+        let mut of = vec![Vec::new(); self.unmet.len()];
+        for (index, choice) in self.choices.iter().enumerate() {
+            of[choice.need].push(index);
+        }
+        for choices in &mut of {
+            choices.sort_by_key(|index| (self.choices[*index].cost, *index));
+        }
+        of
+    }
+
+    /// The indices of each visit's choices.
+    pub(super) fn by_visit(&self) -> Vec<Vec<usize>> {
+        let mut of = vec![Vec::new(); self.visits.len()];
+        for (index, choice) in self.choices.iter().enumerate() {
+            of[choice.visit].push(index);
+        }
+        of
+    }
+}

@@ -1,0 +1,147 @@
+//! Due dates by the shipped rules, each worked out by hand.
+
+use binnacle_schedule::needs::{CauseKind, Compass, Due, Ship, Terms, Urgency, due};
+use binnacle_schedule::rules::shipped;
+use chrono::NaiveDate;
+use serde_json::{Value, from_value, json};
+
+/// On the twenty-first of November 2026.
+fn due_of(ship: Value, compass: Value) -> Due {
+    let ship: Ship = from_value(ship).unwrap();
+    let compass: Compass = from_value(compass).unwrap();
+    let today = day("2026-11-21");
+    due(&ship, &compass, shipped(), &Terms::default(), today).unwrap()
+}
+
+fn day(text: &str) -> NaiveDate {
+    text.parse().unwrap()
+}
+
+#[test]
+fn two_years_after_the_last_adjustment_by_iso_25862() {
+    let due = due_of(json!({"flag": "NO"}), json!({"adjusted_on": "2025-03-01"}));
+    assert_eq!((due.on, due.urgency), (day("2027-03-01"), Urgency::Routine));
+    assert_eq!(
+        due.reason,
+        "24 months after the adjustment of 2025-03-01 (ISO 25862:2019, Annex G, read second-hand)"
+    );
+}
+
+#[test]
+fn a_leap_days_adjustment_is_due_on_the_last_of_february() {
+    let due = due_of(json!({"flag": "NO"}), json!({"adjusted_on": "2024-02-29"}));
+    assert_eq!(due.on, day("2026-02-28"));
+    assert_eq!(due.urgency, Urgency::Overdue);
+}
+
+#[test]
+fn a_panama_ship_that_keeps_no_record_is_due_after_one_year() {
+    let compass = json!({"adjusted_on": "2026-01-15"});
+    let without = due_of(json!({"flag": "PA"}), compass.clone());
+    assert_eq!(
+        (without.on, without.urgency),
+        (day("2027-01-15"), Urgency::Soon)
+    );
+    assert!(without.reason.contains("MMC-138"), "{}", without.reason);
+    let with = due_of(json!({"flag": "PA", "deviation_record": "kept"}), compass);
+    assert_eq!(with.on, day("2028-01-15"));
+}
+
+#[test]
+fn a_compass_without_a_record_is_due_today() {
+    let due = due_of(json!({"flag": "NO"}), json!({}));
+    assert_eq!((due.on, due.urgency), (day("2026-11-21"), Urgency::Urgent));
+    assert_eq!(due.causes[0].kind, CauseKind::NeverAdjusted);
+}
+
+#[test]
+fn a_transit_of_panama_asks_for_a_table_of_the_last_twelve_months() {
+    let ship = |tonnage: u32, on: &str| json!({"flag": "NO", "gross_tonnage": tonnage, "transits": [{"canal": "panama", "on": on}]});
+    let compass = json!({"adjusted_on": "2026-01-10"});
+    let late = due_of(ship(150, "2027-01-11"), compass.clone());
+    assert_eq!(
+        (late.on, late.causes[0].kind),
+        (day("2027-01-11"), CauseKind::Transit)
+    );
+    assert!(late.reason.contains("N-1-2022"), "{}", late.reason);
+    let in_time = due_of(ship(150, "2027-01-10"), compass.clone());
+    assert_eq!(in_time.on, day("2028-01-10"));
+    let small = due_of(ship(149, "2027-01-11"), compass);
+    assert_eq!(small.on, day("2028-01-10"));
+}
+
+#[test]
+fn seven_degrees_at_the_transit_are_too_much_and_six_point_nine_are_not() {
+    let at = |deviation: f64| {
+        due_of(
+            json!({"flag": "NO", "gross_tonnage": 5000, "transits": [{"canal": "panama", "on": "2027-01-05"}]}),
+            json!({"adjusted_on": "2026-06-01",
+                   "predicted": [{"on": "2026-12-01", "worst_deviation_deg": deviation}]}),
+        )
+        .on
+    };
+    assert_eq!(at(7.0), day("2027-01-05"));
+    assert_eq!(at(6.9), day("2028-06-01"));
+}
+
+#[test]
+fn deviation_over_five_degrees_brings_a_marshall_islands_ship_forward() {
+    let of = |flag: &str, deviation: f64| {
+        due_of(
+            json!({"flag": flag}),
+            json!({"adjusted_on": "2026-06-01",
+                   "predicted": [{"on": "2026-12-01", "worst_deviation_deg": 3.0},
+                                 {"on": "2027-01-01", "worst_deviation_deg": deviation}]}),
+        )
+    };
+    let over = of("MH", 5.1);
+    // Two weeks from the day on which it is over the limit.
+    assert_eq!(
+        (over.on, over.urgency),
+        (day("2027-01-15"), Urgency::Urgent)
+    );
+    assert_eq!(over.causes.len(), 2);
+    assert_eq!(of("MH", 5.0).on, day("2028-06-01"));
+    assert_eq!(of("NO", 5.1).on, day("2028-06-01"));
+}
+
+#[test]
+fn an_event_counts_until_the_next_adjustment() {
+    let of = |adjusted: &str| {
+        let compass = json!({"adjusted_on": adjusted, "events": [{"kind": "dry_docking", "on": "2026-11-01"}]});
+        due_of(json!({"flag": "NO"}), compass)
+    };
+    let before = of("2026-05-01");
+    assert_eq!(
+        (before.on, before.causes[0].kind),
+        (day("2026-12-01"), CauseKind::Event)
+    );
+    assert_eq!(of("2026-11-02").on, day("2028-11-02"));
+}
+
+#[test]
+fn a_change_of_two_degrees_counts_and_a_smaller_one_does_not() {
+    let of = |size: f64| {
+        let compass =
+            json!({"adjusted_on": "2026-05-01", "change": {"on": "2026-11-11", "size_deg": size}});
+        due_of(json!({"flag": "NO"}), compass)
+    };
+    assert_eq!(
+        (of(-2.0).on, of(-2.0).urgency),
+        (day("2026-12-11"), Urgency::Urgent)
+    );
+    assert_eq!(of(1.9).on, day("2028-05-01"));
+}
+
+#[test]
+fn a_failed_verification_is_urgent_and_says_by_how_much() {
+    let due = due_of(
+        json!({"flag": "NO"}),
+        json!({"adjusted_on": "2026-11-01", "failed_verification": {"on": "2026-11-10", "worst_error_deg": 2.44}}),
+    );
+    assert_eq!((due.on, due.urgency), (day("2026-12-10"), Urgency::Urgent));
+    assert_eq!(
+        due.reason,
+        "the verification of 2026-11-10 failed: headings are 2.4° off the card on the worst heading"
+    );
+}

@@ -1,0 +1,88 @@
+//! The solver against two ways to the same answer that share no code with it: every
+//! assignment there is, and, where a team does one job a day, minimum-cost flow.
+
+mod brute_force;
+mod flow;
+
+use binnacle_schedule::solve::{Choice, Problem, Visit, solve};
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+/// Up to five needs, four firm-days and six visits.
+fn problems(most_jobs: u32) -> impl Strategy<Value = Problem> {
+    let visit = (0..4_usize, 0..900_i64, 1..=most_jobs);
+    let choice = (0..5_usize, 0..6_usize, 0..2000_i64);
+    (
+        vec(0..3000_i64, 5),
+        vec(visit, 6),
+        vec(0..3_u32, 4),
+        vec(choice, 0..13),
+    )
+        .prop_map(|(unmet, visits, teams, choices)| {
+            let visits = visits
+                .into_iter()
+                .map(|(firm_day, travel, jobs_a_team)| Visit {
+                    firm_day,
+                    travel,
+                    jobs_a_team,
+                });
+            let choices =
+                choices
+                    .into_iter()
+                    .map(|(need, visit, cost)| Choice { need, visit, cost });
+            Problem {
+                unmet,
+                visits: visits.collect(),
+                teams,
+                choices: choices.collect(),
+            }
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_assignment_of_a_small_problem_is_cheaper(problem in problems(3)) {
+        let solved = solve(&problem);
+        prop_assert_eq!(problem.cost(&solved.assignment), Some(solved.cost));
+        prop_assert_eq!(solved.cost, brute_force::least_cost(&problem));
+        prop_assert_eq!(solved.bound, solved.cost);
+    }
+
+    #[test]
+    fn minimum_cost_flow_finds_the_same_cost(problem in problems(1)) {
+        prop_assert_eq!(solve(&problem).cost, flow::least_cost(&problem));
+    }
+
+    #[test]
+    fn the_same_problem_has_the_same_answer(problem in problems(3)) {
+        prop_assert_eq!(solve(&problem), solve(&problem));
+    }
+}
+
+#[test]
+fn two_ships_in_one_port_share_a_teams_travel() {
+    let visit = |firm_day| Visit {
+        firm_day,
+        travel: 500,
+        jobs_a_team: 2,
+    };
+    let choice = |need, visit, cost| Choice { need, visit, cost };
+    // Apart each would go on its own cheaper day: 100 + 500, twice. Together, 300 + 500.
+    let problem = Problem {
+        unmet: vec![10_000, 10_000],
+        visits: vec![visit(0), visit(1)],
+        teams: vec![1, 1],
+        choices: vec![choice(0, 0, 100), choice(1, 0, 200), choice(1, 1, 100)],
+    };
+    let solved = solve(&problem);
+    assert_eq!(solved.assignment, [Some(0), Some(1)]);
+    assert_eq!((solved.cost, solved.bound), (800, 800));
+}
+
+#[test]
+fn a_problem_without_needs_costs_nothing() {
+    let solved = solve(&Problem::default());
+    assert_eq!((solved.cost, solved.bound), (0, 0));
+}
