@@ -19,6 +19,8 @@ pub enum Manners {
     ShowsPage,
     /// Answers that something went wrong.
     Fails,
+    /// Refuses with this status, in JSON.
+    Refuses(&'static str),
     /// Passes so many octets of each way on, and then cuts it.
     CutsAfter(u64),
     /// Begins an answer, and then sends an octet of it twice a second, for ever.
@@ -29,6 +31,7 @@ pub enum Manners {
 const DRIP: Duration = Duration::from_millis(500);
 
 const PAGE: &str = "<html><body>Welcome to Harbour Wi-Fi</body></html>";
+const REFUSAL: &str = r#"{"title":"no route matched","message":"sign in first"}"#;
 
 /// A gateway before a shore; what it answers itself is without TLS.
 #[derive(Debug)]
@@ -120,6 +123,7 @@ async fn treat(mut ship: TcpStream, shore: SocketAddr, manners: Manners) -> Resu
         }
         Manners::ShowsPage => answer(ship, "200 OK", PAGE).await?,
         Manners::Drips => drip(ship).await?,
+        Manners::Refuses(status) => answer(ship, status, REFUSAL).await?,
         Manners::Fails => answer(ship, "500 Internal Server Error", "oh").await?,
         Manners::CutsAfter(octets) => {
             let shore = TcpStream::connect(shore).await?;

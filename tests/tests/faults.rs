@@ -23,6 +23,9 @@ async fn no_wrong_answer() -> Result<()> {
     let wrong = [
         Manners::Fails,
         Manners::ShowsPage,
+        Manners::Refuses("400 Bad Request"),
+        Manners::Refuses("401 Unauthorized"),
+        Manners::Refuses("404 Not Found"),
         // Of a request; then of an answer.
         Manners::CutsAfter(100),
         Manners::CutsAfter(60),
@@ -39,6 +42,7 @@ async fn no_wrong_answer() -> Result<()> {
         coast.gateway.set(Manners::Passes);
         before = coast.all_ashore().await?;
         ensure_same_at_both_ends(&coast.shore, coast.vessel, &before).await?;
+        coast.says("/spool/parked_batches", "0").await?;
     }
     coast.arrive().await
 }

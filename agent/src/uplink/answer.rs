@@ -16,10 +16,10 @@ impl Uplink {
         batch: Option<&SealedBatch>,
         downlink: Downlink,
     ) -> sqlx::Result<Next> {
-        if self.spool.identity().await?.as_ref() != Some(identity) {
-            // Enrolled anew meanwhile: this answer is for another stream.
+        if self.has_left(identity).await? {
             return Ok(Next::GoOn);
         }
+        self.refused = None;
         let downlink = self.without_unread(downlink);
         match batch {
             Some(batch) => {
@@ -54,6 +54,9 @@ impl Uplink {
         batch: Option<&SealedBatch>,
         trouble: Trouble,
     ) -> sqlx::Result<Next> {
+        if self.has_left(identity).await? {
+            return Ok(Next::GoOn);
+        }
         let mut problem = trouble.to_string();
         let (state, pause) = match (trouble, batch) {
             (Trouble::Forked, _) => {
@@ -69,7 +72,7 @@ impl Uplink {
                 self.spool.park(batch.seq, &problem).await?;
                 (LinkState::Up, self.backoff.next(&mut self.rng))
             }
-            (Trouble::Unknown(_), _) if self.spool.swap_tokens(&identity.token).await? => {
+            (Trouble::Unknown(_), _) if self.has_untried_token(identity).await? => {
                 tracing::warn!(problem, "trying the agent's other token");
                 (LinkState::Refused, self.backoff.next(&mut self.rng))
             }
@@ -109,6 +112,14 @@ impl Uplink {
             link.problem = Some(problem);
         });
         Ok(Next::Pause(pause))
+    }
+
+    /// Goes on with the agent's other token, if there is one; whether it was not refused
+    /// since the shore last knew either.
+    async fn has_untried_token(&mut self, identity: &Identity) -> sqlx::Result<bool> {
+        let before = self.refused.replace(identity.token.clone());
+        let is_second = before.is_some_and(|before| before != identity.token);
+        Ok(self.spool.swap_tokens(&identity.token).await? && !is_second)
     }
 
     async fn open_stream(&mut self, identity: &Identity) -> sqlx::Result<Next> {

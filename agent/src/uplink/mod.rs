@@ -41,6 +41,8 @@ use tokio_util::sync::CancellationToken;
 
 /// How often a pause or idleness is interrupted to see whether the agent was enrolled anew.
 const LOOK_FOR_ENROLMENT: Duration = Duration::from_secs(5);
+/// What the shore refused is offered again so often: it may be another version by then.
+const OFFER_AGAIN: Duration = Duration::from_hours(24);
 
 /// Everything the uplink works with.
 #[derive(Debug)]
@@ -59,6 +61,8 @@ pub(crate) struct Uplink {
     pub(crate) in_touch: bool,
     /// The token that the model and settings in effect came with.
     pub(crate) token: Option<String>,
+    /// The token that the shore did not know when it last answered.
+    pub(crate) refused: Option<String>,
     /// A shore that knows no reports is not asked again before this.
     pub(crate) no_reports_before: Option<Instant>,
     /// Rings when a batch has been sealed or a report was written.
@@ -81,14 +85,18 @@ enum Next {
 impl Uplink {
     /// Runs until `shutdown`.
     pub(crate) async fn run(mut self, shutdown: CancellationToken) {
-        if let Err(error) = self.spool.unpark().await {
-            tracing::error!(%error, "cannot look at the parked batches");
-        }
+        let mut offer_again = Instant::now();
         if let Err(error) = self.spool.keep_account(&self.budget.account()).await {
             tracing::error!(%error, "the budget cannot be kept");
         }
         let mut answered = None;
         loop {
+            if offer_again <= Instant::now() {
+                offer_again = Instant::now() + OFFER_AGAIN;
+                if let Err(error) = self.spool.unpark().await {
+                    tracing::error!(%error, "cannot look at the parked batches");
+                }
+            }
             let work = self.step(&mut answered);
             let Some(next) = shutdown.run_until_cancelled(work).await else {
                 return;
@@ -166,6 +174,13 @@ impl Uplink {
             }
             Err(trouble) => self.fail(&identity, batch.as_ref(), trouble).await,
         }
+    }
+
+    /// Whether another stream has taken the place of this one meanwhile: an answer for
+    /// it changes nothing any more. Another token changes nothing about what was said.
+    async fn has_left(&self, identity: &Identity) -> sqlx::Result<bool> {
+        let now = self.spool.identity().await?;
+        Ok(now.is_none_or(|now| now.stream != identity.stream))
     }
 
     /// All is said for now.

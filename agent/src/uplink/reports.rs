@@ -31,7 +31,7 @@ impl Uplink {
         self.settle(cost, result.as_ref().err()).await?;
         match result {
             Ok(answer) => {
-                if self.spool.identity().await?.as_ref() == Some(identity) {
+                if !self.has_left(identity).await? {
                     self.spool.report_answered(report, &answer).await?;
                     tracing::info!(id = %report.id, "a report is ashore");
                 }

@@ -1,7 +1,8 @@
 //! Requests to the shore and what their answers mean.
 //!
 //! Nothing counts as an answer but what the shore writes, JSON or the compact form with
-//! its checksum: the login page of a harbour's network, with whatever status, is a
+//! its checksum, and nothing as its refusal but a problem of its own kinds: what a
+//! harbour's network or a proxy says, with whatever status and in whatever form, is a
 //! failure of the link.
 
 use crate::spool::{Identity, SealedBatch, StoredReport};
@@ -109,10 +110,13 @@ impl fmt::Display for Trouble {
     }
 }
 
+/// What the types of the shore's problems have in common, and others' have not.
+const KINDS: &str = "/problems/";
+
 /// RFC 9457, as far as it is read.
 #[derive(Deserialize)]
 struct Problem {
-    #[serde(rename = "type", default)]
+    #[serde(rename = "type")]
     kind: String,
     #[serde(default)]
     title: String,
@@ -326,7 +330,8 @@ async fn answer<T>(
     if status.is_success() {
         return read(&body).ok_or_else(|| not_the_shore(status));
     }
-    let Ok(problem) = serde_json::from_slice::<Problem>(&body) else {
+    let problem = serde_json::from_slice::<Problem>(&body).ok();
+    let Some(problem) = problem.filter(|problem| problem.kind.contains(KINDS)) else {
         if status.is_server_error() || status == StatusCode::TOO_MANY_REQUESTS {
             return Err(Trouble::Busy {
                 problem: format!("the shore answered {status}"),

@@ -59,6 +59,7 @@ pub(crate) async fn prepare(
     let uplink = Uplink {
         spool: spool.clone(),
         token: spool.identity().await?.map(|identity| identity.token),
+        refused: None,
         shore: Shore::new(config.pinned_ca.as_deref(), &line)?,
         backoff: Backoff::new(
             config.retry_min_s.get_ref().duration(),

@@ -43,6 +43,39 @@ async fn no_failure_of_the_link_loses_a_batch() {
 }
 
 #[tokio::test]
+async fn no_json_of_a_proxy_passes_for_the_shores_word() {
+    let says = |status: u16, body: Value| {
+        let status = StatusCode::from_u16(status).unwrap();
+        (status, Json(body)).into_response()
+    };
+    let mut rig = rig(3, Fake::default()).await;
+    rig.all_sent().await;
+    let answers = [
+        says(400, json!({ "error": "bad request" })),
+        says(401, json!({ "error": "login required" })),
+        says(403, json!({ "captive": true })),
+        says(404, json!({ "message": "no route matched" })),
+        says(404, json!({ "type": "about:blank", "title": "Not Found" })),
+        says(409, json!({ "type": "stream-forked" })),
+        says(410, json!({})),
+    ];
+    rig.fake.lock().unwrap().answers.extend(answers);
+    seal(&rig.spool, 3).await;
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    let says = |link: &LinkStatus| {
+        let problem = link.problem.as_deref();
+        problem.is_some_and(|problem| problem.contains("other than the shore"))
+    };
+    rig.link.wait_for(says).await.unwrap();
+    rig.all_sent().await;
+    // It was neither put aside nor sent with all the others, nor in another stream.
+    assert_eq!(rig.seqs(STREAM), [1, 2, 3, 4]);
+    let fake = rig.fake.lock().unwrap();
+    assert_eq!((fake.requests, fake.streams), (3 + 7 + 1, 0));
+}
+
+#[tokio::test]
 async fn the_shore_is_given_the_time_it_asks_for() {
     let busy = (
         StatusCode::TOO_MANY_REQUESTS,

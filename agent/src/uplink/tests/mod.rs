@@ -211,6 +211,7 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
     let uplink = Uplink {
         spool: spool.clone(),
         token: Some(identity.token.clone()),
+        refused: None,
         shore: Shore::new(None, &plan.line()).unwrap(),
         backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
         poll: Duration::from_hours(1),

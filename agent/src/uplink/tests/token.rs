@@ -24,3 +24,50 @@ async fn an_agent_that_did_not_hear_whether_its_token_was_replaced_tries_both() 
     let shown = format!("{identity:?}");
     assert!(!shown.contains("new"), "{shown}");
 }
+
+#[tokio::test]
+async fn an_agent_of_whose_tokens_none_is_known_says_that_it_must_be_enrolled_again() {
+    let unknown = || problem(StatusCode::UNAUTHORIZED, "unauthorized");
+    let mut rig = rig(0, Fake::default()).await;
+    rig.all_sent().await;
+    rig.spool.keep_other_token("before").await.unwrap();
+    let answers = [unknown(), unknown(), unknown()];
+    rig.fake.lock().unwrap().answers.extend(answers);
+    seal(&rig.spool, 1).await;
+    rig.sealed.notify_one();
+    let says = |link: &LinkStatus| {
+        let problem = link.problem.as_deref();
+        problem.is_some_and(|problem| problem.contains("enrol it again"))
+    };
+    rig.link.wait_for(says).await.unwrap();
+    // It goes on asking with either, and knows when it is known.
+    rig.all_sent().await;
+    assert_eq!(rig.seqs(STREAM), [1]);
+    assert_eq!(rig.fake.lock().unwrap().requests, 3 + 1);
+}
+
+#[tokio::test]
+async fn a_token_that_is_replaced_while_a_batch_is_on_its_way_costs_no_second_one() {
+    let mut rig = rig(0, Fake::default()).await;
+    rig.all_sent().await;
+    let (is_replaced, replaced) = tokio::sync::oneshot::channel::<()>();
+    let acknowledged = json!({ "contiguous_seq": 1, "server_time": time() }).to_string();
+    let later = futures_util::stream::once(async move {
+        replaced.await.map(|()| acknowledged).map_err(axum::Error::new)
+    });
+    let answer = axum::body::Body::from_stream(later).into_response();
+    rig.fake.lock().unwrap().answers.push_back(answer);
+    seal(&rig.spool, 1).await;
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    while rig.fake.lock().unwrap().requests == 0 {
+        tokio::task::yield_now().await;
+    }
+    rig.spool.keep_other_token("new").await.unwrap();
+    assert!(rig.spool.swap_tokens("t").await.unwrap());
+    is_replaced.send(()).unwrap();
+    rig.all_sent().await;
+    assert_eq!(rig.fake.lock().unwrap().requests, 1);
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!(standing.acknowledged_batches, 1);
+}
