@@ -167,7 +167,7 @@ fn execute(command: Command) -> anyhow::Result<()> {
         .enable_all()
         .build()
         .context("cannot start")?;
-    runtime.block_on(async {
+    let done = runtime.block_on(async {
         match command {
             Command::Run { config } => {
                 let config = load(&config)?;
@@ -199,7 +199,10 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 tokio::task::block_in_place(|| replay(&files, config.as_deref(), csv.as_deref()))
             }
         }
-    })
+    });
+    // Whoever looks a name up without a network may do so for half a minute more.
+    runtime.shutdown_background();
+    done
 }
 
 fn load(path: &Path) -> Result<Config, BadInput> {
@@ -280,7 +283,13 @@ async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
         let path = config.data_dir.display();
         return Err(BadInput(format!("{path}: there is no such data directory yet")).into());
     }
-    let spool = Spool::open(&config.data_dir).await?;
+    let spool = match Spool::open(&config.data_dir).await {
+        Ok(spool) => spool,
+        // Of a disk that has failed there is the more to be told.
+        Err(error) => Spool::open_to_read(&config.data_dir)
+            .await
+            .map_err(|_| error)?,
+    };
     let status = match ask_running(&spool).await {
         Some(status) => status,
         None => offline_status(&spool).await?,

@@ -38,3 +38,4 @@ mod replay;
 mod whole_file;
 
 mod clock;
+mod clocks;

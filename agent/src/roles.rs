@@ -73,6 +73,11 @@ impl Roles {
         self.clock.now()
     }
 
+    /// The ship's own time, if it is to be relied on.
+    pub(crate) fn certain_time(&self) -> Option<Timestamp> {
+        self.clock.now().filter(|_| !self.clock.is_in_doubt())
+    }
+
     /// The ship's clock, to be told of other clocks.
     pub(crate) fn clock(&mut self) -> &mut ShipClock {
         &mut self.clock

@@ -8,6 +8,7 @@
 use crate::alert::{Aboard, AlarmSentence, Card, Lookout};
 use crate::burst::{self, FileModem};
 use crate::clock;
+use crate::clocks::Clocks;
 use crate::config::{Config, SilenceConfig};
 use crate::corrected::{self, Corrected, Ingredients};
 use crate::hold::Hold;
@@ -22,7 +23,7 @@ use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
 use crate::spool::{MOST_PENDING, Pending, Seal, Spool, is_want_of_room};
 use crate::status::{InputReport, ModelStatus, Status};
-use crate::uplink::{self, Plan, Told};
+use crate::uplink::{self, LinkState, Plan, Told};
 use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
@@ -118,6 +119,9 @@ impl Agent {
             // The computer may have lost its time with its power.
             let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
             ship.judge_time_by(known, Instant::now());
+            if let Some(before) = spool.clocks().await? {
+                ship.remember_clocks(before);
+            }
         }
         let unstored = Unstored {
             pending: spool.pending().await?,
@@ -224,6 +228,7 @@ impl Agent {
         self.ship.sampler.finish();
         self.collect();
         self.store(Seal::Full).await;
+        self.note_clocks().await;
         self.ring.flush(Instant::now());
         if let Err(error) = self.uplink.await {
             tracing::error!(%error, "the uplink ended badly");
@@ -384,12 +389,17 @@ impl Agent {
                     self.make_room().await;
                 }
                 if sealed > 0 {
+                    self.note_clocks().await;
                     self.told.sealed.notify_one();
                 }
             }
             Err(error) => {
-                tracing::error!(%error, waiting = unstored.samples.len(), "samples cannot be stored");
-                unstored.problem = Some(error.to_string());
+                let problem = error.to_string();
+                if unstored.problem.as_ref() != Some(&problem) {
+                    let waiting = unstored.samples.len();
+                    tracing::error!(problem, waiting, "samples cannot be stored");
+                }
+                unstored.problem = Some(problem);
                 if is_want_of_room(&error) {
                     self.ring.give_way(&error.to_string(), Instant::now());
                 }
@@ -399,8 +409,24 @@ impl Agent {
         }
     }
 
-    /// Within the disk, and within what the link may cost.
+    /// For the first time stamp after a restart.
+    async fn note_clocks(&self) {
+        let Some(ship) = self.ship.certain_time() else {
+            return;
+        };
+        let computer = clock::now();
+        if let Err(error) = self.spool.note_clocks(&Clocks { ship, computer }).await {
+            tracing::error!(%error, "the time cannot be noted");
+        }
+    }
+
+    /// Few batches, within the disk and within what the link may cost.
     async fn make_room(&self) {
+        let gathered = if self.batches_wait() {
+            self.spool.gather().await
+        } else {
+            Ok(())
+        };
         let within_disk = self.spool.make_room(self.spool_limit_bytes).await;
         let within_messages = match self.plan.batch_octets() {
             Some(octets) => self.spool.thin_each(octets).await,
@@ -410,9 +436,19 @@ impl Agent {
             Some(octets) => self.spool.thin_backlog(octets).await,
             None => Ok(()),
         };
-        if let Err(error) = within_messages.and(within_disk).and(within_budget) {
-            tracing::error!(%error, "the spool cannot be thinned");
+        if let Err(error) = gathered
+            .and(within_messages)
+            .and(within_disk)
+            .and(within_budget)
+        {
+            tracing::error!(%error, "the spool cannot be put in order");
         }
+    }
+
+    /// Whether what is sealed now is not sent at once, and not in messages either.
+    fn batches_wait(&self) -> bool {
+        let is_up = self.told.link.borrow().state == LinkState::Up;
+        self.plan.batch_octets().is_none() && (!is_up || self.plan.day_octets.is_some())
     }
 
     fn correct(&self) -> (Corrected, Vec<corrected::CardRow>) {

@@ -1,5 +1,6 @@
 //! The ship as her instruments tell it: roles and sampler, and the latest readings.
 
+use crate::clocks::Clocks;
 use crate::config::RolesConfig;
 use crate::hold::Hold;
 use crate::input::is_recorded_time;
@@ -82,6 +83,16 @@ impl Ship {
     /// recordings.
     pub(crate) fn judge_time_by(&mut self, time: Timestamp, now: Instant) {
         self.roles.clock().judge_by(time, now);
+    }
+
+    /// What was noted before the restart.
+    pub(crate) fn remember_clocks(&mut self, before: Clocks) {
+        self.roles.clock().remember(before);
+    }
+
+    /// The ship's own time, if it is to be relied on.
+    pub(crate) fn certain_time(&self) -> Option<Timestamp> {
+        self.roles.certain_time()
     }
 
     /// The shore's time is better than the computer's.

@@ -8,11 +8,14 @@
 //!   is in doubt: time stands still, so that nothing is sampled, until the receiver is
 //!   back where it would have been, the shore's or the computer's time decides, or the
 //!   new time has lasted for a day with nothing that speaks against it.
+//! - Aboard, the first stamp after a restart is in doubt too where what was noted before
+//!   speaks against it ([`crate::clocks`]).
 //! - Aboard, a date that is right but for some times 1,024 weeks, after which GPS counts
 //!   them from 0 again (IS-GPS-200, 20.3.3.3.1.1), is put right.
 //! - Recorded and accelerated data work: without [`ShipClock::judge_by`] no other clock
 //!   is asked, and a jump is a jump.
 
+use crate::clocks::Clocks;
 use binnacle_magnetics::time::Timestamp;
 use tokio::time::Instant;
 
@@ -56,6 +59,8 @@ pub(crate) struct ShipClock {
     /// For each rank: what it first said since the active source was heard.
     waiting: Vec<Option<Timestamp>>,
     computer: Option<Computer>,
+    /// What was noted before the restart, until there is a first stamp.
+    before: Option<Clocks>,
     doubt: Option<Doubt>,
     rolled_over: bool,
 }
@@ -83,6 +88,8 @@ impl Computer {
 /// A jump that nothing bears out.
 #[derive(Clone, Copy, Debug)]
 struct Doubt {
+    /// Whether it was so from the start.
+    is_first: bool,
     jump_s: f64,
     last: Timestamp,
     /// By the receiver.
@@ -99,6 +106,7 @@ impl ShipClock {
             active: ranks.saturating_sub(1),
             waiting: vec![None; ranks],
             computer: None,
+            before: None,
             doubt: None,
             rolled_over: false,
         }
@@ -119,6 +127,16 @@ impl ShipClock {
         });
     }
 
+    /// The first stamp is held against what was noted before the restart.
+    pub(crate) fn remember(&mut self, before: Clocks) {
+        self.before = Some(before);
+    }
+
+    /// Whether its time is not to be relied on.
+    pub(crate) fn is_in_doubt(&self) -> bool {
+        self.doubt.is_some()
+    }
+
     /// The shore says what time it is, which the computer may not know.
     pub(crate) fn correct(&mut self, time: Timestamp, now: Instant) {
         if let Some(computer) = &mut self.computer {
@@ -136,10 +154,18 @@ impl ShipClock {
     /// What is wrong with the receiver's time, in words.
     pub(crate) fn problem(&self) -> Option<String> {
         if let Some(doubt) = self.doubt {
+            let far = if doubt.jump_s.abs() < 2.0 * LASTED_S {
+                format!("{:+.1} h", doubt.jump_s / 3_600.0)
+            } else {
+                format!("{:+.0} days", doubt.jump_s / 86_400.0)
+            };
+            let what = if doubt.is_first {
+                format!("is {far} from what this computer's clock or spool says")
+            } else {
+                format!("jumped by {far}")
+            };
             return Some(format!(
-                "the receiver's time jumped by {:+.1} h: nothing is sampled until it is clear \
-                 which is right",
-                doubt.jump_s / 3_600.0
+                "the receiver's time {what}: nothing is sampled until it is clear which is right"
             ));
         }
         self.rolled_over.then(|| {
@@ -176,7 +202,8 @@ impl ShipClock {
         let Some(computer) = self.computer else {
             return stamp;
         };
-        let known = self.now.unwrap_or_else(|| computer.now());
+        let noted = self.before.map_or(computer.now(), |before| before.ship);
+        let known = self.now.unwrap_or(computer.now().max(noted));
         let behind_s = known.seconds_since(stamp);
         let cycles = (behind_s / ROLL_OVER_S).round();
         if cycles < 1.0 || (behind_s - cycles * ROLL_OVER_S).abs() > YEAR_S {
@@ -201,8 +228,7 @@ impl ShipClock {
 
     fn set(&mut self, stamp: Timestamp) -> Step {
         let Some(now) = self.now else {
-            self.now = Some(stamp);
-            return Step::Advanced(stamp);
+            return self.begin(stamp);
         };
         let step_s = stamp.seconds_since(now);
         if (0.0..=LONGEST_STEP_S).contains(&step_s) {
@@ -228,12 +254,31 @@ impl ShipClock {
             return self.jump(stamp);
         }
         let doubt = Doubt {
+            is_first: false,
             jump_s: step_s,
             last: stamp,
             lasted_s: 0.0,
         };
         self.doubt = Some(doubt);
         self.settle(doubt, stamp)
+    }
+
+    fn begin(&mut self, stamp: Timestamp) -> Step {
+        let known = match (self.before.take(), self.computer) {
+            (Some(before), Some(computer)) => before.contradict(stamp, computer.now()),
+            _ => None,
+        };
+        self.now = Some(known.unwrap_or(stamp));
+        let Some(known) = known else {
+            return Step::Advanced(stamp);
+        };
+        self.doubt = Some(Doubt {
+            is_first: true,
+            jump_s: stamp.seconds_since(known),
+            last: stamp,
+            lasted_s: 0.0,
+        });
+        Step::Held
     }
 
     /// Whether so much time may have passed since the clock was right.
@@ -404,6 +449,58 @@ mod tests {
         clock.judge_by(at(0), Instant::now());
         let old = at(-2 * YEARS_S);
         assert_eq!(clock.observe(0, old), Step::Advanced(old));
+    }
+
+    /// A clock aboard after a restart, with a computer that knows the time.
+    fn restarted() -> (ShipClock, Instant) {
+        let mut clock = ShipClock::new(1, 15.0);
+        let start = Instant::now();
+        clock.judge_by(at(0), start);
+        clock.remember(Clocks {
+            ship: at(-9_000),
+            computer: at(-9_000),
+        });
+        (clock, start)
+    }
+
+    #[test]
+    fn a_first_stamp_that_cannot_be_right_is_not_believed() {
+        const WEEK_S: i64 = 7 * 86_400;
+        for off_s in [WEEK_S, -WEEK_S, 4 * YEARS_S, -4 * YEARS_S] {
+            let (mut clock, start) = restarted();
+            let steps = hear(&mut clock, start, 0..90_000, off_s);
+            assert!(steps.iter().all(|step| *step == Step::Held), "{off_s}");
+            let problem = clock.problem().unwrap();
+            assert!(problem.contains("nothing is sampled"), "{problem}");
+            let back = hear(&mut clock, start, 90_000..90_002, 0);
+            assert_eq!(back, [Step::Jumped(at(90_000)), Step::Advanced(at(90_001))]);
+            assert_eq!(clock.problem(), None);
+        }
+        let (mut clock, start) = restarted();
+        let steps = hear(&mut clock, start, 0..1, 60_000);
+        assert_eq!(steps, [Step::Advanced(at(60_000))]);
+    }
+
+    #[test]
+    fn a_first_stamp_in_doubt_is_believed_when_the_shore_bears_it_out() {
+        const WEEK_S: i64 = 7 * 86_400;
+        let (mut clock, start) = restarted();
+        hear(&mut clock, start, 0..60, WEEK_S);
+        clock.correct(at(60 + WEEK_S), start + Duration::from_mins(1));
+        let steps = hear(&mut clock, start, 60..61, WEEK_S);
+        assert_eq!(steps, [Step::Jumped(at(60 + WEEK_S))]);
+    }
+
+    #[test]
+    fn a_roll_over_is_put_right_by_a_computer_that_lost_its_time_as_well() {
+        let mut clock = ShipClock::new(1, 15.0);
+        clock.judge_by(Timestamp::from_micros(0).unwrap(), Instant::now());
+        clock.remember(Clocks {
+            ship: at(-86_400),
+            computer: at(-86_400),
+        });
+        let step = clock.observe(0, at(0).plus_seconds(-ROLL_OVER_S));
+        assert_eq!(step, Step::Advanced(at(0)));
     }
 
     #[test]

@@ -148,6 +148,11 @@ impl Program {
         Ok(self.child.try_wait()?.is_none())
     }
 
+    /// It has ended, as it should.
+    pub fn done(&mut self) {
+        self.done = true;
+    }
+
     /// Signal 9: it has no chance to tidy up.
     ///
     /// # Errors

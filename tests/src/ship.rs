@@ -207,6 +207,22 @@ stale_s = 15
         agent.kill().await
     }
 
+    /// Asks the agent to end, and waits until it has.
+    ///
+    /// # Errors
+    /// When it does not, or not well.
+    pub async fn stop(&mut self) -> Result<()> {
+        let mut agent = self.agent.take().context("the agent runs")?;
+        let id = agent.child().id().context("it has ended by itself")?;
+        let id = rustix::process::Pid::from_raw(id.cast_signed()).context("a process")?;
+        rustix::process::kill_process(id, rustix::process::Signal::TERM)?;
+        let ended = timeout(START, agent.child().wait()).await;
+        let ended = ended.with_context(|| format!("{} goes on", self.name))??;
+        ensure!(ended.success(), "{ended}:\n{}", agent.log());
+        agent.done();
+        Ok(())
+    }
+
     /// Kills the agent with signal 9 and starts it again.
     ///
     /// # Errors

@@ -30,7 +30,7 @@ pub(crate) struct Standing {
     pub(crate) pending_samples: u64,
     /// Sealed batches that were not acknowledged.
     pub(crate) waiting_batches: u64,
-    /// Batches that the shore refused; kept, and tried again at the next start.
+    /// Batches that the shore refused; kept, and offered again once a day.
     pub(crate) parked_batches: u64,
     /// Why the last of those was refused.
     pub(crate) parked_because: Option<String>,

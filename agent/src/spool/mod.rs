@@ -5,7 +5,7 @@
 //!
 //! - A sample is in exactly one place: pending, or in one sealed batch.
 //! - A sealed batch is never changed once it was tried; before that it may be thinned
-//!   for want of room, and says so. Batches of a stream are numbered from 1 without
+//!   for want of room, and says so, or take in the one that was sealed after it. Batches of a stream are numbered from 1 without
 //!   gaps, and sent again byte for byte until they are acknowledged.
 //! - A batch is deleted only when the shore acknowledged that very batch and
 //!   everything before it, and a month later or when room is short; a record of its
@@ -20,6 +20,7 @@
 
 mod batches;
 mod bursts;
+mod gather;
 mod kept;
 mod repair;
 mod reports;
@@ -34,6 +35,7 @@ pub(crate) use room::{MOST_PENDING, is_want_of_room};
 pub(crate) use seal::{Pending, Seal};
 
 use crate::alert::Aboard;
+use crate::clocks::Clocks;
 use crate::hold::Hold;
 use crate::uplink::Account;
 use anyhow::Context;
@@ -98,6 +100,7 @@ const LAST_CONTACT: &str = "last_contact";
 const ALERT: &str = "alert";
 const THINNED: &str = "thinned";
 const ACCOUNT: &str = "account";
+const CLOCKS: &str = "clocks";
 
 /// Columns of `batches` that earlier agents did not have.
 const LATER_COLUMNS: [(&str, &str); 5] = [
@@ -141,6 +144,16 @@ impl Spool {
         let added = spool.add_missing_columns().await;
         added.with_context(|| format!("{}: cannot use the spool", path.display()))?;
         Ok(spool)
+    }
+
+    /// Opens a spool that cannot be written to, as on a disk that has failed: what is in
+    /// it can still be told.
+    pub(crate) async fn open_to_read(directory: &Path) -> sqlx::Result<Spool> {
+        let options = SqliteConnectOptions::new()
+            .filename(directory.join("spool.db"))
+            .read_only(true);
+        let pool = one_connection().connect_with(options).await?;
+        Ok(Spool { pool })
     }
 
     /// A spool that an older agent made lacks what came later.
@@ -266,6 +279,18 @@ impl Spool {
         tx.commit().await
     }
 
+    /// What both clocks said when it was last noted.
+    pub(crate) async fn clocks(&self) -> sqlx::Result<Option<Clocks>> {
+        self.get(CLOCKS).await
+    }
+
+    /// Notes what both clocks say.
+    pub(crate) async fn note_clocks(&self, clocks: &Clocks) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        put(&mut tx, CLOCKS, clocks).await?;
+        tx.commit().await
+    }
+
     /// When the shore last answered, by its clock.
     pub(crate) async fn last_contact(&self) -> sqlx::Result<Option<Timestamp>> {
         self.get(LAST_CONTACT).await
@@ -328,14 +353,16 @@ async fn connect(path: &Path) -> sqlx::Result<SqlitePool> {
         .journal_mode(SqliteJournalMode::Wal)
         .synchronous(SqliteSynchronous::Full)
         .busy_timeout(Duration::from_secs(20));
-    // Reaping idle connections may spin for ever in this version of sqlx (its issue
-    // 3645), and one connection to a file of our own needs none.
+    one_connection().connect_with(options).await
+}
+
+/// Reaping idle connections may spin for ever in this version of sqlx (its issue 3645),
+/// and one connection to a file of our own needs none.
+fn one_connection() -> SqlitePoolOptions {
     SqlitePoolOptions::new()
         .max_connections(1)
         .idle_timeout(None)
         .max_lifetime(None)
-        .connect_with(options)
-        .await
 }
 
 /// A value by name. One that does not read is reported and counts as absent:
@@ -407,17 +434,42 @@ async fn keep_downlink(connection: &mut SqliteConnection, downlink: &Downlink) -
 #[cfg(unix)]
 fn create_private(directory: &Path, file: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
+    let is_new = !directory.exists();
     std::fs::DirBuilder::new()
         .recursive(true)
         .mode(0o700)
         .create(directory)?;
-    // SQLite gives its journals the mode of the database.
+    if is_new {
+        set_mode(directory, 0o700);
+    }
     std::fs::OpenOptions::new()
         .append(true)
         .create(true)
         .mode(0o600)
         .open(file)?;
+    // SQLite gives new journals the mode of the database. A copy that was put back may
+    // have any mode, and so may what was made under a strange mask.
+    for suffix in ["", "-wal", "-shm"] {
+        let mut path = file.as_os_str().to_owned();
+        path.push(suffix);
+        set_mode(Path::new(&path), 0o600);
+    }
     Ok(())
+}
+
+/// What is another's cannot be put right, and stops nothing.
+#[cfg(unix)]
+fn set_mode(path: &Path, mode: u32) {
+    use std::os::unix::fs::PermissionsExt;
+    let Ok(found) = std::fs::metadata(path) else {
+        return;
+    };
+    if found.permissions().mode() & 0o777 == mode {
+        return;
+    }
+    if let Err(error) = std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)) {
+        tracing::warn!(path = %path.display(), %error, "others may read what is the agent's own");
+    }
 }
 
 #[cfg(not(unix))]

@@ -270,7 +270,7 @@ fn one(sample: &Sample) -> Thinned {
     }
 }
 
-fn sum(a: Thinned, b: Thinned) -> Thinned {
+pub(super) fn sum(a: Thinned, b: Thinned) -> Thinned {
     Thinned {
         samples: a.samples.saturating_add(b.samples),
         windows: a.windows.saturating_add(b.windows),

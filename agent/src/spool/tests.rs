@@ -319,6 +319,24 @@ async fn the_token_is_readable_by_its_owner_only_and_never_shown() {
     assert!(!format!("{:?}", identity(7)).contains("secret"));
 }
 
+#[cfg(unix)]
+#[tokio::test]
+async fn a_copy_that_was_put_back_for_all_to_read_is_the_owners_only_again() {
+    use std::os::unix::fs::PermissionsExt;
+    let (directory, spool) = enrolled().await;
+    let names = ["spool.db", "spool.db-wal"].map(|name| directory.path().join(name));
+    let mode = |path| std::fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    for name in &names {
+        std::fs::set_permissions(name, std::fs::Permissions::from_mode(0o644)).unwrap();
+    }
+    let again = Spool::open(directory.path()).await.unwrap();
+    for name in &names {
+        assert_eq!(mode(name), 0o600, "{}", name.display());
+    }
+    again.close().await;
+    spool.close().await;
+}
+
 #[tokio::test]
 async fn a_sample_that_damage_made_impossible_does_not_keep_others_from_being_sealed() {
     let (_directory, spool) = enrolled().await;

@@ -98,7 +98,8 @@ impl Shore {
 
 async fn enrol(Json(request): Json<EnrolRequest>) -> Response {
     if request.code != CODE {
-        let problem = json!({"type": "/problems/not-found", "title": "No such code", "status": 404});
+        let problem =
+            json!({"type": "/problems/not-found", "title": "No such code", "status": 404});
         return (StatusCode::NOT_FOUND, Json(problem)).into_response();
     }
     Json::<Value>(json!({

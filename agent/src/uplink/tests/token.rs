@@ -53,7 +53,10 @@ async fn a_token_that_is_replaced_while_a_batch_is_on_its_way_costs_no_second_on
     let (is_replaced, replaced) = tokio::sync::oneshot::channel::<()>();
     let acknowledged = json!({ "contiguous_seq": 1, "server_time": time() }).to_string();
     let later = futures_util::stream::once(async move {
-        replaced.await.map(|()| acknowledged).map_err(axum::Error::new)
+        replaced
+            .await
+            .map(|()| acknowledged)
+            .map_err(axum::Error::new)
     });
     let answer = axum::body::Body::from_stream(later).into_response();
     rig.fake.lock().unwrap().answers.push_back(answer);

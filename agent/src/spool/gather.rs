@@ -1,0 +1,153 @@
+//! Batches that wait behind one that cannot be sent become fewer: each costs a request,
+//! and a round trip, of its own.
+//!
+//! What always holds:
+//!
+//! - Only the two that were sealed last are ever joined, and neither if it was tried: no
+//!   number changes that anybody may know of.
+//! - Evidence of alerts, and what was thinned, stays as it is.
+//! - What is joined goes into one packet, head and all, and through a proxy that cuts
+//!   after a kilobyte.
+
+use super::room::sum;
+use super::seal::SAMPLES_PER_BATCH;
+use super::{NEXT_SEQ, Spool, put};
+
+/// A request's head takes some 300 octets.
+const MOST_OCTETS: usize = 700;
+
+impl Spool {
+    /// Joins the batch that was sealed last to the one before, where that may be done.
+    pub(crate) async fn gather(&self) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        let last_two: Vec<(i64, Vec<u8>)> = sqlx::query_as(
+            "SELECT seq, bytes FROM batches
+             WHERE seq > (SELECT MAX(seq) FROM batches) - 2 AND standing = 'waiting'
+                   AND NOT tried AND NOT urgent AND thinned = 0 AND burst = 0
+             ORDER BY seq",
+        )
+        .fetch_all(&mut *tx)
+        .await?;
+        let [(seq, before), (last_seq, last)] = last_two.as_slice() else {
+            return Ok(());
+        };
+        let Some((bytes, samples)) = joined(before, last) else {
+            return Ok(());
+        };
+        sqlx::query("UPDATE batches SET bytes = $2, samples = $3 WHERE seq = $1")
+            .bind(seq)
+            .bind(bytes)
+            .bind(samples)
+            .execute(&mut *tx)
+            .await?;
+        sqlx::query("DELETE FROM batches WHERE seq = $1")
+            .bind(last_seq)
+            .execute(&mut *tx)
+            .await?;
+        put(&mut tx, NEXT_SEQ, &last_seq.cast_unsigned()).await?;
+        tx.commit().await
+    }
+}
+
+/// One batch of two, and its samples; none when it would be too large, or one of them
+/// does not read: what is damaged is dealt with where it is sent.
+fn joined(before: &[u8], last: &[u8]) -> Option<(Vec<u8>, i64)> {
+    let mut batch = binnacle_wire::decode(before).ok()?;
+    let last = binnacle_wire::decode(last).ok()?;
+    batch.samples.extend(last.samples);
+    batch.samples.sort_by_key(|sample| sample.time);
+    if batch.samples.len() > SAMPLES_PER_BATCH as usize {
+        return None;
+    }
+    for (reason, windows) in last.tally {
+        let sum = batch.tally.entry(reason).or_default();
+        *sum = sum.saturating_add(windows);
+    }
+    batch.thinned = match (batch.thinned, last.thinned) {
+        (Some(before), Some(last)) => Some(sum(before, last)),
+        (before, last) => before.or(last),
+    };
+    let bytes = binnacle_wire::encode(&batch).ok()?;
+    let samples = i64::try_from(batch.samples.len()).ok()?;
+    (bytes.len() <= MOST_OCTETS).then_some((bytes, samples))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{accepted, alert, enrolled, restless, sample, seal};
+    use crate::spool::{Seal, Spool};
+    use binnacle_wire::batch::Batch;
+
+    /// A quarter of a day, as it is sealed where nothing is sent.
+    async fn quarter(spool: &Spool, number: i64) {
+        let samples: Vec<_> = (0..36).map(|i| sample(number * 360 + i * 10)).collect();
+        let stored = spool.store(&samples, &accepted(2_160), Seal::All).await;
+        assert_eq!(stored.unwrap().1, 1);
+        spool.gather().await.unwrap();
+    }
+
+    async fn waiting(spool: &Spool) -> Vec<Batch> {
+        let rows: Vec<(Vec<u8>,)> =
+            sqlx::query_as("SELECT bytes FROM batches WHERE standing = 'waiting' ORDER BY seq")
+                .fetch_all(&spool.pool)
+                .await
+                .unwrap();
+        let read = |(bytes,): &(Vec<u8>,)| binnacle_wire::decode(bytes).unwrap();
+        rows.iter().map(read).collect()
+    }
+
+    #[tokio::test]
+    async fn a_month_without_a_link_waits_in_few_batches_with_every_sample() {
+        let (_directory, spool) = enrolled().await;
+        quarter(&spool, 0).await;
+        let tried = spool.next_batch().await.unwrap().unwrap();
+        assert!(spool.note_try(&tried).await.unwrap());
+        for number in 1..120 {
+            quarter(&spool, number).await;
+        }
+        assert_eq!(spool.next_batch().await.unwrap().unwrap(), tried);
+        let batches = waiting(&spool).await;
+        assert!((5..40).contains(&batches.len()), "{}", batches.len());
+        let seqs: Vec<u64> = batches.iter().map(|batch| batch.seq).collect();
+        let all: Vec<u64> = (1..).take(batches.len()).collect();
+        assert_eq!(seqs, all);
+        let times = batches.iter().flat_map(|b| &b.samples).map(|s| s.time);
+        let sealed: Vec<_> = (0..120 * 36).map(|i| sample(i * 10).time).collect();
+        assert_eq!(times.collect::<Vec<_>>(), sealed);
+        let windows: u64 = batches.iter().map(|batch| batch.tally["accepted"]).sum();
+        assert_eq!(windows, 120 * 2_160);
+    }
+
+    #[tokio::test]
+    async fn what_may_be_ashore_and_evidence_stay_as_they_are() {
+        let (_directory, spool) = enrolled().await;
+        seal(&spool, 0..1).await;
+        let tried = spool.next_batch().await.unwrap().unwrap();
+        spool.note_try(&tried).await.unwrap();
+        seal(&spool, 1..2).await;
+        spool.gather().await.unwrap();
+        let nothing = std::collections::BTreeMap::new();
+        spool
+            .store_evidence(&[sample(2)], &nothing, &[alert(2)], None)
+            .await
+            .unwrap();
+        spool.gather().await.unwrap();
+        seal(&spool, 3..4).await;
+        spool.gather().await.unwrap();
+        let batches = waiting(&spool).await;
+        let samples: Vec<usize> = batches.iter().map(|batch| batch.samples.len()).collect();
+        assert_eq!(samples, [1; 4]);
+    }
+
+    #[tokio::test]
+    async fn what_would_not_go_through_a_kilobyte_stays_apart() {
+        let (_directory, spool) = enrolled().await;
+        for from in [0, 150] {
+            let samples: Vec<_> = (from..from + 150).map(restless).collect();
+            let stored = spool.store(&samples, &accepted(150), Seal::All).await;
+            stored.unwrap();
+            spool.gather().await.unwrap();
+        }
+        assert_eq!(waiting(&spool).await.len(), 2);
+    }
+}
