@@ -27,8 +27,9 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-const DEFAULT_VALID_FOR_S: u32 = 7 * 86_400;
-const LONGEST_VALID_FOR_S: u32 = 90 * 86_400;
+/// Made on a Friday ashore, it can be typed on board after the weekend.
+const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
+const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
 
 /// The routes that people use.
 pub fn router() -> OpenApiRouter<App> {
@@ -91,8 +92,8 @@ pub struct AgentStreamList {
 pub struct NewCode {
     /// The compass that the agent will report; the vessel's first if not said.
     pub compass_id: Option<CompassId>,
-    /// How long the code is valid, seconds; a week if not said.
-    #[schema(minimum = 1, maximum = 7_776_000)]
+    /// How long the code is valid, seconds; three days if not said.
+    #[schema(minimum = 1, maximum = 1_209_600)]
     pub valid_for_s: Option<u32>,
 }
 

@@ -74,7 +74,9 @@ pub(super) async fn enrol(
     )?
     .ok_or(Error::NotFound("enrolment code"))?;
     if found.expires_at <= now {
-        return Err(Error::Gone("this enrolment code has expired"));
+        return Err(Error::Gone(
+            "this enrolment code has expired: have a new one made ashore",
+        ));
     }
     // Of two that come at once, the database lets one through.
     let used = execute!(
@@ -84,7 +86,9 @@ pub(super) async fn enrol(
         now
     )?;
     if used == 0 {
-        return Err(Error::Gone("this enrolment code was used before"));
+        return Err(Error::Gone(
+            "this enrolment code was used before: have a new one made ashore",
+        ));
     }
     let token = secret::new_vessel_token(found.vessel_id.0);
     let agent = Agent {

@@ -49,7 +49,10 @@ async fn a_code_expires(shore: Shore) {
     shore.advance(60.0);
     let late = exchange(&shore, made["code"].as_str().unwrap()).await;
     assert_eq!(late.problem(), "gone");
-    for wrong in [0, 7_776_001] {
+    assert!(late.json["detail"].as_str().unwrap().contains("a new one"));
+    let usual = ada.post(&path, &json!({})).await.good();
+    assert_eq!(usual["expires_at"], "2026-11-24T07:01:00Z");
+    for wrong in [0, 1_209_601] {
         let refused = ada.post(&path, &json!({ "valid_for_s": wrong })).await;
         assert_eq!(refused.problem(), "invalid");
     }

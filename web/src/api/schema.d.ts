@@ -2561,7 +2561,7 @@ export interface components {
             compass_id: components["schemas"]["CompassId"] | null;
             /**
              * Format: int32
-             * @description How long the code is valid, seconds; a week if not said.
+             * @description How long the code is valid, seconds; three days if not said.
              * @default null
              */
             valid_for_s: number | null;
