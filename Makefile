@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build deb demo test test-rust test-web test-browser lint soak bench bench-link bench-formats bench-peer bench-changes study study-changes study-losses methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-browser lint soak bench bench-link bench-formats bench-peer bench-changes study study-adjust study-changes study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -60,6 +60,9 @@ bench-formats: setup ## Compare frames with other formats, over stock HTTPS, and
 
 study: setup ## Measure the estimator on many voyages: coverage, error over the bound
 	$(CARGO) run --locked --release -p binnacle-magnetics --example study
+
+study-adjust: setup ## Measure plans of adjustments on simulated ships and binnacles
+	$(CARGO) run --locked --release -p binnacle-magnetics --example adjust_study
 
 study-changes: setup ## Measure how changes are found on simulated fleets: delay, false alarms
 	$(CARGO) run --locked --release -p binnacle-magnetics --example changes_study

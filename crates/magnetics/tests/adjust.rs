@@ -72,6 +72,20 @@ fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
     }
 }
 
+/// The berth of docs/plan.md is one.
+#[test]
+fn the_berth_in_the_documentation_reads() {
+    let page = include_str!("../../../docs/plan.md");
+    let from = page.split("```json\n").nth(1).unwrap();
+    let form = from.split("```").next().unwrap();
+    let form: binnacle_magnetics::adjust::BerthForm = serde_json::from_str(form).unwrap();
+    let berth = form.read().unwrap();
+    assert_eq!(berth.waters.len(), 2);
+    assert!((22_000.0..27_000.0).contains(&berth.earth.h_nt));
+    // Variation is about nil there in 2026.
+    assert!((berth.reading.magnetic().degrees() - 63.0).abs() < 1.5);
+}
+
 #[test]
 fn the_band_holds_and_little_is_left_on_ships_that_the_planner_never_saw() {
     let tally = Tally::of(1000..1060, 0, FLUXGATE);
