@@ -1,0 +1,129 @@
+//! The agent's Debian package, installed, upgraded, removed and purged by dpkg in a copy of
+//! this system.
+
+#![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
+
+use anyhow::{Context, Result, ensure};
+use binnacle_tests::namespace::in_own_mounts;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const CONFIG: &str = "etc/binnacle/agent.toml";
+
+#[test]
+fn the_package_is_installed_again_and_again_and_leaves_what_the_agent_has_kept() {
+    in_own_mounts(
+        "the_package_is_installed_again_and_again_and_leaves_what_the_agent_has_kept",
+        installed(),
+    );
+}
+
+async fn installed() -> Result<()> {
+    let has_dpkg = Path::new("/usr/bin/dpkg-deb").exists();
+    if !rustix::process::geteuid().is_root() || !has_dpkg {
+        println!("not shown here: it takes root and dpkg");
+        return Ok(());
+    }
+    let folder = tempfile::tempdir()?;
+    let copy = Copy::of_this_system(folder.path())?;
+    let package = copy.package()?;
+    copy.dpkg("-i", &package)?;
+    ensure!(copy.calls()? == ["daemon-reload"], "it is started");
+    copy.run(
+        "if command -v systemd-analyze; then
+         systemd-analyze verify /usr/lib/systemd/system/binnacle-agent.service; fi",
+    )?;
+    let config = copy.root.join(CONFIG);
+    let edited = std::fs::read_to_string(&config)? + "# the owner's\n";
+    std::fs::write(&config, &edited)?;
+    let kept = copy.root.join("var/lib/binnacle-agent/spool.db");
+    std::fs::create_dir_all(kept.parent().context("a folder")?)?;
+    std::fs::write(&kept, "samples")?;
+
+    copy.dpkg("-i", &package)?;
+    let calls = copy.calls()?;
+    let restarts = "try-restart binnacle-agent.service";
+    ensure!(
+        calls.last().is_some_and(|call| call == restarts),
+        "{calls:?}"
+    );
+    ensure!(std::fs::read_to_string(&config)? == edited);
+
+    copy.dpkg("-r", "binnacle-agent")?;
+    let calls = copy.calls()?;
+    ensure!(
+        calls[0].ends_with("disable --now binnacle-agent.service"),
+        "{calls:?}"
+    );
+    ensure!(!copy.root.join("usr/bin/binnacle-agent").exists());
+    ensure!(std::fs::read_to_string(&config)? == edited);
+    copy.dpkg("-P", "binnacle-agent")?;
+    ensure!(!config.exists());
+    ensure!(std::fs::read(&kept)? == b"samples");
+    Ok(())
+}
+
+/// This system, with a layer above it that takes all changes, and a service manager that
+/// only notes what it is asked for.
+struct Copy {
+    root: PathBuf,
+}
+
+impl Copy {
+    fn of_this_system(folder: &Path) -> Result<Copy> {
+        mount(&["-t", "tmpfs", "tmpfs"], folder)?;
+        let [upper, work, root] = ["upper", "work", "root"].map(|name| folder.join(name));
+        for path in [&upper, &work, &root] {
+            std::fs::create_dir(path)?;
+        }
+        let (upper, work) = (upper.display(), work.display());
+        let layers = format!("lowerdir=/,upperdir={upper},workdir={work}");
+        mount(&["-t", "overlay", "-o", &layers, "overlay"], &root)?;
+        mount(&["--bind", "/proc"], &root.join("proc"))?;
+        std::fs::create_dir_all(root.join("run/systemd/system"))?;
+        let copy = Copy { root };
+        copy.run(
+            "printf '#!/bin/sh\\necho \"$*\" >>/asked\\n' >/usr/local/bin/systemctl
+             chmod 755 /usr/local/bin/systemctl",
+        )?;
+        Ok(copy)
+    }
+
+    /// The package around a program that does nothing: where it is in the copy.
+    fn package(&self) -> Result<String> {
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scripts/deb");
+        let into = self.root.join("packages");
+        let made = Command::new(script).arg("/bin/true").arg(&into).output()?;
+        ensure!(made.status.success(), "{made:?}");
+        let path = PathBuf::from(String::from_utf8(made.stdout)?.trim());
+        let name = path.file_name().context("a package")?;
+        Ok(Path::new("/packages").join(name).display().to_string())
+    }
+
+    fn dpkg(&self, action: &str, what: &str) -> Result<()> {
+        std::fs::write(self.root.join("asked"), "")?;
+        self.run(&format!("dpkg {action} {what}"))
+    }
+
+    /// What the service manager was asked for by the last action.
+    fn calls(&self) -> Result<Vec<String>> {
+        let asked = std::fs::read_to_string(self.root.join("asked"))?;
+        Ok(asked.lines().map(str::to_owned).collect())
+    }
+
+    fn run(&self, script: &str) -> Result<()> {
+        let done = Command::new("chroot")
+            .arg(&self.root)
+            .args(["/bin/sh", "-e", "-c", script])
+            .env("PATH", "/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin")
+            .output()?;
+        ensure!(done.status.success(), "{script}: {done:?}");
+        Ok(())
+    }
+}
+
+fn mount(arguments: &[&str], place: &Path) -> Result<()> {
+    let status = Command::new("mount").args(arguments).arg(place).status()?;
+    ensure!(status.success(), "mount {arguments:?}: {status}");
+    Ok(())
+}
