@@ -378,7 +378,8 @@ pub struct Plan {
 /// `analyse`.
 #[derive(Debug, Args)]
 pub struct Analyse {
-    /// Samples, as `fit` reads them, with time and place
+    /// Samples, as `fit` reads them, with time and place; a field or a weight of their own is
+    /// not used
     pub file: PathBuf,
     /// Logbook entries: a JSON array, or a page of them as the API answers it
     #[arg(long)]

@@ -107,8 +107,8 @@ pub enum Caution {
     FewSamples,
     /// Without times nobody knows which samples share one error of a gyro.
     #[error(
-        "rows without times: which of them share one error of the reference is not known; the band \
-         takes rows on like headings for half a day's"
+        "rows without times of their own: which of them share one error of the reference is not \
+         known; the band takes rows on like headings for half a day's"
     )]
     NoTimes,
     /// Residuals are larger than sound instruments leave.

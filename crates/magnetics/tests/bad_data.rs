@@ -86,11 +86,27 @@ fn rows_of_one_time_do_not_upset_the_fit() {
         observation.time = stopped;
     }
     assert!(held(&voyage, &fit(&observations).unwrap()) > 0.9);
-    for observation in &mut observations {
-        observation.time = stopped;
+}
+
+/// Rows of one time or of two seem to tell the same again and again, or something new
+/// each: their times are not believed.
+#[test]
+fn rows_that_share_their_times_are_taken_for_rows_without() {
+    let voyage = voyage(30.0);
+    let mut untimed = voyage.observations.clone();
+    for observation in &mut untimed {
+        observation.time = None;
     }
-    let all_at_once = fit(&observations).unwrap();
-    assert!(band(&voyage, &all_at_once).is_finite());
+    let untimed = fit(&untimed).unwrap();
+    for times in [1, 2] {
+        let mut observations = voyage.observations.clone();
+        for (row, observation) in observations.iter_mut().enumerate() {
+            observation.time = voyage.observations[row % times].time;
+        }
+        let at_once = fit(&observations).unwrap();
+        assert_eq!(at_once, untimed);
+        assert!(cautions(&at_once).contains(&Caution::NoTimes));
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::config::Analyse;
 use binnacle_magnetics::advice::{SailNext, sail_next};
 use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookEntry, analyse as run};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::fit::CsvRow;
+use binnacle_magnetics::fit::{CsvRow, readings_from_csv};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use serde::Serialize;
@@ -30,6 +30,9 @@ pub fn analyse(arguments: &Analyse) -> anyhow::Result<ExitCode> {
 
 fn find(arguments: &Analyse) -> Result<String, BadInput> {
     let table = input::Table::read(&arguments.file)?;
+    // What `fit` refuses is refused here, too.
+    readings_from_csv(&table.rows, arguments.gyro_speed_error.into())
+        .map_err(|error| table.complaint(&error))?;
     let mut samples = Vec::with_capacity(table.rows.len());
     for (index, row) in table.rows.iter().enumerate() {
         samples.push(sample(row).map_err(|(column, what)| table.invalid(index, column, what))?);

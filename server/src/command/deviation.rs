@@ -78,11 +78,16 @@ fn describe(rows: &[Row]) -> String {
     let rows: Vec<[String; 4]> = rows
         .iter()
         .map(|row| {
-            let side = if row.deviation_deg < 0.0 { 'W' } else { 'E' };
+            let size = format!("{:.1}", row.deviation_deg.abs());
+            let side = match row.deviation_deg {
+                _ if size == "0.0" => "",
+                west if west < 0.0 => " W",
+                _ => " E",
+            };
             [
                 format!("{:.1}", row.compass_deg),
                 format!("{:.1}", row.magnetic_deg),
-                format!("{:.1} {side}", row.deviation_deg.abs()),
+                size + side,
                 row.band95_deg
                     .map_or(String::new(), |band| format!("{band:.1}")),
             ]

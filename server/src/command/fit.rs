@@ -171,15 +171,23 @@ fn band(next: &SailNext) -> String {
         lines.extend(elsewhere.suggestions.first().map(|best| {
             let on: Vec<String> = best.headings.iter().map(|&range| headings(range)).collect();
             format!(
-                "to sail next: magnetic latitude {}° to {}°, on {}, for ± {:.1}°",
-                best.magnetic_latitude_from_deg,
-                best.magnetic_latitude_to_deg,
+                "to sail next: magnetic latitude {} to {}, on {}, for ± {:.1}°",
+                latitude(best.magnetic_latitude_from_deg),
+                latitude(best.magnetic_latitude_to_deg),
                 on.join(", "),
                 best.after_three.rms_deg
             )
         }));
     }
     format!("\n{}", lines.join("\n"))
+}
+
+fn latitude(degrees: i16) -> String {
+    match degrees {
+        0 => "0°".to_owned(),
+        south if south < 0 => format!("{}° S", -south),
+        north => format!("{north}° N"),
+    }
 }
 
 fn headings(range: HeadingRange) -> String {

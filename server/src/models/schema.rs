@@ -91,7 +91,7 @@ pub(super) enum CautionSchema {
     OneMagneticLatitude,
     /// More samples in the same latitudes would tell what the sums are made of.
     FewSamples,
-    /// Rows without times; only of fits of a file.
+    /// Rows without times, or that share them.
     NoTimes,
     /// Residuals are larger than sound instruments leave.
     LargeResiduals {

@@ -280,6 +280,12 @@ fn bad_input_is_refused_by_file_line_and_field() {
             &["spread.csv:2", "spread_deg", "wide"],
         ),
         (
+            "windows.csv",
+            head.replace("deg\n", "deg,windows\n")
+                .replace(",8\n", ",8,-1\n"),
+            &["windows.csv:2", "windows", "-1"],
+        ),
+        (
             "short.csv",
             format!("{head}2026-11-15T00:10:00Z,48"),
             &["short.csv:3"],
@@ -294,7 +300,7 @@ fn bad_input_is_refused_by_file_line_and_field() {
     for (name, text, words) in cases {
         write(name, &text);
         assert_refused(&run(folder.path(), &["fit", name]), words);
-        if name != "few.csv" && name != "old.csv" {
+        if name != "few.csv" {
             assert_refused(&run(folder.path(), &["analyse", name]), words);
         }
     }

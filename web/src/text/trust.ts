@@ -46,7 +46,7 @@ export const trust = {
     fewSamples:
       'Her latitudes would tell permanent from induced magnetism, but her samples are too few yet. The curve is good where she has been; elsewhere it leans on what is usual in ships until more samples come in, which needs nothing but sailing on.',
     noTimes:
-      'The rows have no times, so that nobody knows which of them share one error of the gyro. The band takes rows on like headings for half a day’s.',
+      'The rows have no times, or share them, so that nobody knows which of them share one error of the gyro. The band takes rows on like headings for half a day’s.',
     largeResiduals: (residual: string) =>
       `Measured and predicted deviation usually differ by ${residual}, more than sound instruments leave. Check compass, gyro and satellite compass, and which input is taken for which, before these figures are believed.`,
     longGap: (days: string, last: string) =>

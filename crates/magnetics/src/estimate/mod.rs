@@ -46,4 +46,5 @@ pub(crate) use row::{
     CONSTANT, OFFSET_SD_DEG, Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,
 };
 pub(crate) use solve::{Options, Rough, estimate, rough};
+pub(crate) use untimed::are_times_believed;
 pub(crate) use whiten::{loss_of, weight};

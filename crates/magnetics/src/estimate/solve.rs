@@ -8,7 +8,7 @@ use super::problem::{Matrix, Problem, Solution};
 use super::quality::{Evidence, quality};
 use super::row::{CONSTANT, USUAL_FUSION, in_own_units, plain_residual};
 use super::start::start;
-use super::untimed::{all_timed, cell_of};
+use super::untimed::{all_timed, are_times_believed, cell_of};
 use crate::fit::Observation;
 use crate::model::{Caution, Covariance, Identifiable, Parameters, Quality};
 use crate::ship::EarthField;
@@ -64,8 +64,10 @@ pub(crate) struct Rough {
 /// Fits the ship to observations in any order; none when the iteration does not
 /// settle. The result depends on the order only where times are equal.
 pub(crate) fn estimate(observations: &[Observation], options: &Options<'_>) -> Option<Estimate> {
-    let order = order(observations);
-    let sorted = sorted(observations, &order);
+    let Sorted {
+        observations: sorted,
+        order,
+    } = Sorted::new(observations);
     let problem = Problem::new(&sorted, options.prior)?;
     let few = few(&sorted);
     let (solution, levels) = match &few {
@@ -138,8 +140,7 @@ pub(crate) fn rough(
     prior: &Prior,
     before: Option<&NoiseLevels>,
 ) -> Option<Rough> {
-    let order = order(observations);
-    let sorted = sorted(observations, &order);
+    let sorted = Sorted::new(observations).observations;
     let few = few(&sorted);
     let problem = Problem::new(few.as_deref().unwrap_or(&sorted), prior)?;
     let (solution, levels) = seek(&problem, begin(&problem, before), Sought::Fairly)?;
@@ -152,23 +153,39 @@ pub(crate) fn rough(
     })
 }
 
-/// Indices from the earliest observation to the latest, without times from cell to
-/// cell.
-fn order(observations: &[Observation]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..observations.len()).collect();
-    if all_timed(observations) {
-        order.sort_by_key(|&i| observations[i].time);
-    } else {
-        order.sort_by_key(|&i| cell_of(&observations[i]));
-    }
-    order
+/// Observations from the earliest to the latest; where times are not to be believed
+/// without them, from cell to cell.
+struct Sorted<'a> {
+    observations: Cow<'a, [Observation]>,
+    /// The place that each had.
+    order: Vec<usize>,
 }
 
-fn sorted<'a>(observations: &'a [Observation], order: &[usize]) -> Cow<'a, [Observation]> {
-    if order.is_sorted() {
-        return Cow::Borrowed(observations);
+impl<'a> Sorted<'a> {
+    fn new(observations: &'a [Observation]) -> Sorted<'a> {
+        let mut order: Vec<usize> = (0..observations.len()).collect();
+        if !are_times_believed(observations) {
+            order.sort_by_key(|&i| cell_of(&observations[i]));
+            let untimed = |&i: &usize| Observation {
+                time: None,
+                ..observations[i]
+            };
+            return Sorted {
+                observations: order.iter().map(untimed).collect(),
+                order,
+            };
+        }
+        order.sort_by_key(|&i| observations[i].time);
+        let observations = if order.is_sorted() {
+            Cow::Borrowed(observations)
+        } else {
+            order.iter().map(|&i| observations[i]).collect()
+        };
+        Sorted {
+            observations,
+            order,
+        }
     }
-    order.iter().map(|&i| observations[i]).collect()
 }
 
 /// Those by which levels are sought, where it need not be all.
@@ -237,7 +254,7 @@ fn in_own_units_squared(covariance: &Matrix) -> Covariance {
     for i in 0..8 {
         for j in 0..8 {
             let mean = f64::midpoint(covariance[(i, j)], covariance[(j, i)]);
-            out[i][j] = mean * scale[i] * scale[j];
+            out[i][j] = mean * (scale[i] * scale[j]);
         }
     }
     out

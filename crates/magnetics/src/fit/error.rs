@@ -94,8 +94,8 @@ pub enum FitError {
     /// What the best ship leaves over is more than instruments do.
     #[error(
         "residuals of {residual_deg:.1} degrees, where no instruments leave more than \
-         {allowed_deg:.0}: no ship explains these; check the sign of the variation and which \
-         column is which"
+         {allowed_deg:.0}: no ship explains these; check the sign of the variation, which column \
+         is which, and whether the compass or the reference stood still for days"
     )]
     Contradictory {
         /// Robust standard deviation of the residuals, degrees.
@@ -106,7 +106,8 @@ pub enum FitError {
     /// The iteration did not settle.
     #[error(
         "the fit did not settle: the samples contradict each other or any ship; check the sign of \
-         the variation and which column is which"
+         the variation, which column is which, and whether the compass or the reference stood still \
+         for days"
     )]
     NotConverged,
 }

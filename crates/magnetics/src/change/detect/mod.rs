@@ -20,7 +20,9 @@ pub(crate) use port::at_port;
 use super::bank::{Bank, Earlier, Kind, Lead};
 use super::calls::Calls;
 use super::filter::{Filter, Measurement, Noise, measurement};
-use crate::estimate::{NoiseLevels, Point, Prior, Station, USUAL_FUSION, Unknowns, row, stations};
+use crate::estimate::{
+    NoiseLevels, Point, Prior, Station, USUAL_FUSION, Unknowns, are_times_believed, row, stations,
+};
 use crate::fit::Observation;
 use crate::time::Timestamp;
 use faint::Faint;
@@ -43,8 +45,12 @@ const FIRST: usize = 100;
 /// Something is up when a lead is beyond this, though not yet what.
 const SUSPECTED_NATS: f64 = 8.0;
 
-/// Searches rows, which are in order of time and all have one.
+/// Searches rows, which are in order of time and all have one; where most share theirs
+/// nothing can be dated.
 pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Told {
+    if !are_times_believed(observations) {
+        return Told::default();
+    }
     let Some(learnt) = Learnt::first(observations, given.prior) else {
         return Told::default();
     };
