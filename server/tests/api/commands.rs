@@ -232,7 +232,7 @@ fn bad_input_is_refused_by_file_line_and_field() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     let head = "time,lat,lon,compass_deg,gyro_deg\n2026-11-15T00:00:00Z,48,-6,10,8\n";
-    let cases: [(&str, String, &[&str]); 12] = [
+    let cases: [(&str, String, &[&str]); 13] = [
         (
             "column.csv",
             head.replace("compass", "needle"),
