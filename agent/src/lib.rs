@@ -30,6 +30,7 @@ mod output;
 mod sentences;
 
 mod offline;
+mod guests;
 mod page;
 mod reports;
 mod status;

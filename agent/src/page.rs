@@ -8,6 +8,7 @@
 
 use crate::alert::Aboard;
 use crate::config::PageConfig;
+use crate::guests::Guests;
 use crate::hold::Hold;
 use crate::reports;
 use crate::spool::Spool;
@@ -71,7 +72,7 @@ pub(crate) async fn serve(
     page.spool.set_page(Some(address)).await?;
     let stopped = shutdown.clone().cancelled_owned();
     tokio::spawn(async move {
-        let served = axum::serve(listener, router(page))
+        let served = axum::serve(Guests::of(listener), router(page))
             .with_graceful_shutdown(stopped)
             .await;
         if let Err(error) = served {

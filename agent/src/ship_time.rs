@@ -202,8 +202,13 @@ impl ShipClock {
         let Some(computer) = self.computer else {
             return stamp;
         };
-        let noted = self.before.map_or(computer.now(), |before| before.ship);
-        let known = self.now.unwrap_or(computer.now().max(noted));
+        let outside = computer.now();
+        if stamp.seconds_since(outside).abs() <= YEAR_S {
+            // The ship's clock is wrong, if any: a receiver may have counted a cycle too many.
+            return stamp;
+        }
+        let noted = self.before.map_or(outside, |before| before.ship);
+        let known = self.now.unwrap_or(outside.max(noted));
         let behind_s = known.seconds_since(stamp);
         let cycles = (behind_s / ROLL_OVER_S).round();
         if cycles < 1.0 || (behind_s - cycles * ROLL_OVER_S).abs() > YEAR_S {
@@ -489,6 +494,18 @@ mod tests {
         clock.correct(at(60 + WEEK_S), start + Duration::from_mins(1));
         let steps = hear(&mut clock, start, 60..61, WEEK_S);
         assert_eq!(steps, [Step::Jumped(at(60 + WEEK_S))]);
+    }
+
+    #[test]
+    fn a_receiver_that_was_1024_weeks_ahead_is_believed_when_it_is_right_again() {
+        const WEEKS_S: i64 = 1_024 * 7 * 86_400;
+        let mut clock = ShipClock::new(1, 15.0);
+        let start = Instant::now();
+        clock.judge_by(at(0), start);
+        hear(&mut clock, start, 0..60, WEEKS_S);
+        let steps = hear(&mut clock, start, 60..62, 0);
+        assert_eq!(steps[1], Step::Jumped(at(61)));
+        assert_eq!(clock.problem(), None);
     }
 
     #[test]
