@@ -45,6 +45,7 @@ pub mod models;
 pub mod samples;
 
 pub mod card;
+pub mod deviation_book;
 pub mod sheet;
 
 pub mod mail;

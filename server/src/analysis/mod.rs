@@ -22,5 +22,5 @@ pub use input::{Input, input_hash};
 pub use left_out::LeftOut;
 pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};
 pub use refusal::RefusalSchema;
-pub use store::{Covered, chunks, coverage, refusal};
+pub use store::{Chunk, Covered, chunk, chunks, chunks_between, coverage, refusal};
 pub use worker::{Worked, run, step};

@@ -4,7 +4,7 @@ use super::LeftOut;
 use crate::alerts::Findings;
 use crate::changes;
 use crate::db::{Db, Tx, execute, row, rows};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::events::{self, Event, Kind};
 use crate::ids::{CompassId, ModelId, VesselId};
 use crate::models::{self, ModelJson, StoredModel};
@@ -13,6 +13,7 @@ use binnacle_magnetics::advice::SailNext;
 use binnacle_magnetics::analyse::{Analysis, Epoch, SampleDiagnostic};
 use binnacle_magnetics::coverage::Coverage;
 use binnacle_magnetics::fit::{FitError, ReferenceCheck};
+use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -125,7 +126,6 @@ pub async fn chunks(
     from: Option<Time>,
     to: Option<Time>,
 ) -> Result<Vec<String>> {
-    let chunk = |time: Time| time.0.micros().div_euclid(CHUNK_MICROS);
     let found = rows!(
         db,
         (String,),
@@ -134,10 +134,72 @@ pub async fn chunks(
          ORDER BY chunk",
         vessel,
         compass,
-        from.map_or(i64::MIN, chunk),
-        to.map_or(i64::MAX, chunk)
+        from.map_or(i64::MIN, number_of),
+        to.map_or(i64::MAX, number_of)
     )?;
     Ok(found.into_iter().map(|(samples,)| samples).collect())
+}
+
+/// A row of samples, and the time that it is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chunk {
+    number: i64,
+    /// Its beginning, which is that of a day.
+    pub from: Time,
+    /// The instant after its end.
+    pub to: Time,
+}
+
+/// The rows that [`chunks`] brings, to be read one by one.
+pub async fn chunks_between(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    from: Option<Time>,
+    to: Option<Time>,
+) -> Result<Vec<Chunk>> {
+    let found = rows!(
+        db,
+        (i64,),
+        "SELECT chunk FROM diagnostics
+         WHERE vessel_id = $1 AND compass_id = $2 AND chunk BETWEEN $3 AND $4
+         ORDER BY chunk",
+        vessel,
+        compass,
+        from.map_or(i64::MIN, number_of),
+        to.map_or(i64::MAX, number_of)
+    )?;
+    let begins = |number: i64| {
+        let begin = Timestamp::from_micros(number * CHUNK_MICROS).map_err(anyhow::Error::from);
+        Ok::<_, Error>(Time(begin?))
+    };
+    let chunk = |(number,): (i64,)| {
+        Ok(Chunk {
+            number,
+            from: begins(number)?,
+            to: begins(number + 1)?,
+        })
+    };
+    found.into_iter().map(chunk).collect()
+}
+
+/// The samples of a row as a JSON array; an empty one if it is there no more.
+pub async fn chunk(db: &Db, vessel: VesselId, compass: CompassId, chunk: &Chunk) -> Result<String> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT samples FROM diagnostics
+         WHERE vessel_id = $1 AND compass_id = $2 AND chunk = $3
+         ORDER BY chunk",
+        vessel,
+        compass,
+        chunk.number
+    )?;
+    Ok(found.map_or_else(|| "[]".to_owned(), |(samples,)| samples))
+}
+
+fn number_of(time: Time) -> i64 {
+    time.0.micros().div_euclid(CHUNK_MICROS)
 }
 
 /// Stores what was found in place of what was found before; a new model is the
@@ -217,8 +279,10 @@ async fn save_diagnostics(tx: &mut Tx, found: &Found) -> Result<()> {
     )?;
     let mut chunks: BTreeMap<i64, Vec<&SampleDiagnostic>> = BTreeMap::new();
     for sample in &found.analysis.samples {
-        let chunk = sample.sample.time.micros().div_euclid(CHUNK_MICROS);
-        chunks.entry(chunk).or_default().push(sample);
+        chunks
+            .entry(number_of(Time(sample.sample.time)))
+            .or_default()
+            .push(sample);
     }
     for (chunk, samples) in chunks {
         execute!(

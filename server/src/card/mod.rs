@@ -26,7 +26,7 @@ use crate::app::App;
 use crate::compasses;
 use crate::deviation;
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Params, file_name, time};
+use crate::http::{Id, Json, Params, file, file_name, time};
 use crate::ids::{CompassId, VesselId};
 use crate::logbook;
 use crate::models::{self, StoredModel};
@@ -35,8 +35,7 @@ use crate::sheet;
 use crate::time::Time;
 use crate::vessels;
 use axum::extract::State;
-use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
-use axum::response::{IntoResponse, Response};
+use axum::response::Response;
 use binnacle_magnetics::field::field;
 use binnacle_magnetics::position::Position;
 use contents::{Place, Ship};
@@ -136,7 +135,7 @@ async fn card_svg(
 ) -> Result<Response> {
     let card = find(&app, reader, id, &query).await?;
     let svg = sheet::svg(&layout::sheet(&card), &layout::about(&card).title);
-    Ok(file("image/svg+xml", &name(&card, "svg"), svg.into()))
+    Ok(file("image/svg+xml", &name(&card, "svg"), svg))
 }
 
 /// A compass's deviation card as CSV
@@ -241,13 +240,4 @@ fn name(card: &Card, ending: &str) -> String {
         ],
         ending,
     )
-}
-
-fn file(kind: &'static str, name: &str, bytes: Vec<u8>) -> Response {
-    let disposition = format!("inline; filename=\"{name}\"");
-    let headers = [
-        (CONTENT_TYPE, kind.to_owned()),
-        (CONTENT_DISPOSITION, disposition),
-    ];
-    (headers, bytes).into_response()
 }

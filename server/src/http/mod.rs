@@ -4,14 +4,14 @@
 mod amended;
 mod docs;
 mod document;
-mod file_name;
+mod file;
 mod headers;
 mod json;
 mod page;
 mod routes;
 
 pub use amended::Amended;
-pub use file_name::file_name;
+pub use file::{file, file_name};
 pub use json::{Id, Json, Params, Valid, ValidOrNone, degrees, optional_text, text, time};
 pub use page::{Listed, Page};
 pub use routes::{MAX_JSON_BYTES, openapi, router};

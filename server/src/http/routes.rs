@@ -3,9 +3,9 @@
 use super::headers;
 use crate::app::App;
 use crate::{
-    alerts, binnacles, card, changes, compasses, dashboard, deviation, enrolment, error, events,
-    logbook, mail, models, operations, samples, session, settings, streams, tokens, vessels,
-    webhooks,
+    alerts, binnacles, card, changes, compasses, dashboard, deviation, deviation_book, enrolment,
+    error, events, logbook, mail, models, operations, samples, session, settings, streams, tokens,
+    vessels, webhooks,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -87,6 +87,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(models::router())
         .merge(deviation::router())
         .merge(card::router())
+        .merge(deviation_book::router())
         .merge(changes::router())
         .merge(samples::router())
         .merge(alerts::router())

@@ -9,8 +9,8 @@ mod store;
 pub use missing::NoModel;
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
 pub use store::{
-    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, insert, lately,
-    withdrawn,
+    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, in_force, insert,
+    lately, withdrawn,
 };
 
 use crate::access::Reader;

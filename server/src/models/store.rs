@@ -119,6 +119,31 @@ pub async fn lately(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec
     list(db, vessel, compass, None, LATELY).await
 }
 
+/// The models of a compass that were current at some time between two instants, the
+/// oldest first: those made between them, and the last one made before.
+pub async fn in_force(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    from: Time,
+    to: Time,
+) -> Result<Vec<StoredModel>> {
+    rows!(
+        db,
+        StoredModel,
+        "SELECT * FROM models
+         WHERE vessel_id = $1 AND compass_id = $2 AND created_at < $4
+           AND created_at >= COALESCE((SELECT MAX(created_at) FROM models
+                                       WHERE vessel_id = $1 AND compass_id = $2
+                                         AND created_at <= $3), $3)
+         ORDER BY version",
+        vessel,
+        compass,
+        from,
+        to
+    )
+}
+
 /// Since when, and why, the compass's last card holds no more; none while it holds.
 pub async fn card_withdrawn(
     db: &Db,

@@ -111,16 +111,26 @@ struct SampleSchema {
     dead_code,
     reason = "describes binnacle_magnetics::analyse::SampleReason"
 )]
-enum SampleReasonSchema {
+pub enum SampleReasonSchema {
+    /// Neither gyro nor satellite compass.
     NoReference,
+    /// Gyro and satellite compass contradict each other, or one repeated itself.
     ReferenceFailed,
+    /// The compass repeated itself while the ship turned.
     CompassStuck,
+    /// Before or after the years that the field model covers.
     OutsideFieldModel,
+    /// The horizontal field is too weak for a compass.
     FieldTooWeak,
+    /// Taken with magnetic cargo on board.
     MagneticCargo,
+    /// Taken alongside.
     Berth,
+    /// Taken in a magnetic storm, over a local anomaly, or near other iron.
     Disturbance,
+    /// It disagrees with the rest.
     Outlier,
+    /// Its epoch has no model.
     NoModel,
 }
 

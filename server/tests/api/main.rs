@@ -17,6 +17,7 @@ mod card;
 mod changes;
 mod commands;
 mod dashboard;
+mod deviation_book;
 mod document;
 mod enrolment;
 mod events;

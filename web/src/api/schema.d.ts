@@ -751,6 +751,65 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/vessels/{id}/deviation-book": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read a compass's deviation book
+         * @description An entry for the first settled stretch of heading in each watch of four hours, and
+         *     for the first after each alteration of course by 20° or more. Watches in which none
+         *     was observed, as in port, have none.
+         */
+        get: operations["list_book"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/deviation-book.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A compass's deviation book as CSV */
+        get: operations["book_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/deviation-book.pdf": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Print a compass's deviation book
+         * @description Sheets of A4, lying; at most 5000 entries.
+         */
+        get: operations["book_pdf"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/vessels/{id}/logbook": {
         parameters: {
             query?: never;
@@ -1428,6 +1487,21 @@ export interface components {
             /** @description Whether the entry counts no more, taken back on board or ashore. */
             withdrawn: boolean;
         };
+        /**
+         * @description Who observed a compass error.
+         * @enum {string}
+         */
+        BookObserver: "automatic";
+        /**
+         * @description What an entry was made for.
+         * @enum {string}
+         */
+        BookOccasion: "watch" | "alteration";
+        /**
+         * @description What a true heading is taken from.
+         * @enum {string}
+         */
+        BookReference: "gyro" | "satellite" | "gyro_and_satellite";
         /** @description Coefficients at a card's place, degrees. */
         CardCoefficients: {
             /**
@@ -1900,6 +1974,109 @@ export interface components {
          * @enum {string}
          */
         DeliveryState: "pending" | "delivered" | "dead";
+        /** @description A page of a deviation book. */
+        DeviationBook: {
+            /** @description In order of time. */
+            items: components["schemas"]["DeviationBookEntry"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A compass error that was observed under way. */
+        DeviationBookEntry: {
+            /**
+             * Format: double
+             * @description Half the width of its 95 % band, degrees.
+             * @example 0.6
+             */
+            card_band95_deg: number | null;
+            /**
+             * Format: double
+             * @description Deviation by the card of that model, degrees, east positive.
+             * @example 2.1
+             */
+            card_deviation_deg: number | null;
+            /**
+             * Format: double
+             * @description Mean raw compass heading.
+             * @example 92.4
+             */
+            compass_deg: number;
+            /**
+             * Format: double
+             * @description Deviation as it was observed, degrees, east positive.
+             * @example 2.3
+             */
+            deviation_deg: number;
+            /**
+             * Format: double
+             * @description Observed less card, degrees.
+             * @example 0.2
+             */
+            difference_deg: number | null;
+            /**
+             * Format: double
+             * @description The gyro's heading, as it gave it.
+             * @example 95
+             */
+            gyro_deg: number | null;
+            /**
+             * Format: double
+             * @description Degrees north.
+             * @example 43.4
+             */
+            lat: number;
+            /**
+             * Format: double
+             * @description Degrees east.
+             * @example -3.1
+             */
+            lon: number;
+            /**
+             * Format: int64
+             * @description The version of the model that was in force then; none where there was no model yet,
+             *     or it held no more.
+             * @example 12
+             */
+            model_version: number | null;
+            /** @description Who observed it. */
+            observer: components["schemas"]["BookObserver"];
+            /** @description What it was made for. */
+            occasion: components["schemas"]["BookOccasion"];
+            reason: components["schemas"]["SampleReason"] | null;
+            /** @description What the true heading was taken from. */
+            reference: components["schemas"]["BookReference"];
+            /**
+             * Format: double
+             * @description The satellite compass's heading.
+             */
+            satellite_deg: number | null;
+            /**
+             * Format: double
+             * @description Standard deviation of compass less reference among them, degrees.
+             * @example 0.3
+             */
+            spread_deg: number | null;
+            /** @description The middle of the stretch. */
+            time: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description The true heading, with what the vessel's settings have corrected.
+             * @example 95.1
+             */
+            true_deg: number;
+            /**
+             * Format: double
+             * @description Variation there, degrees, east positive.
+             * @example 0.4
+             */
+            variation_deg: number;
+            /**
+             * Format: int32
+             * @description How many settled ten-second windows the means are of.
+             * @example 60
+             */
+            windows: number;
+        };
         /** @description A deviation card of one compass, at a place and a date. */
         DeviationCard: {
             adjusted_at: components["schemas"]["Time"] | null;
@@ -6533,6 +6710,250 @@ export interface operations {
                 };
             };
             /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_book: {
+        parameters: {
+            query?: {
+                /**
+                 * @description The first instant, RFC 3339.
+                 * @example 2026-11-01T00:00:00Z
+                 */
+                from?: string;
+                /**
+                 * @description The instant after the last, RFC 3339.
+                 * @example 2026-12-01T00:00:00Z
+                 */
+                to?: string;
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DeviationBook"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    book_csv: {
+        parameters: {
+            query?: {
+                /**
+                 * @description The first instant, RFC 3339.
+                 * @example 2026-11-01T00:00:00Z
+                 */
+                from?: string;
+                /**
+                 * @description The instant after the last, RFC 3339.
+                 * @example 2026-12-01T00:00:00Z
+                 */
+                to?: string;
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    book_pdf: {
+        parameters: {
+            query?: {
+                /**
+                 * @description The first instant, RFC 3339.
+                 * @example 2026-11-01T00:00:00Z
+                 */
+                from?: string;
+                /**
+                 * @description The instant after the last, RFC 3339.
+                 * @example 2026-12-01T00:00:00Z
+                 */
+                to?: string;
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/pdf": number[];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when there are more entries than are printed */
             422: {
                 headers: {
                     [name: string]: unknown;

@@ -1,4 +1,17 @@
-//! Names of files that are made for people.
+//! Files that are made for people, and their names.
+
+use axum::body::Body;
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::response::{IntoResponse, Response};
+
+/// A file that a browser shows, and saves under the name given.
+pub fn file(kind: &'static str, name: &str, body: impl Into<Body>) -> Response {
+    let headers = [
+        (CONTENT_TYPE, kind.to_owned()),
+        (CONTENT_DISPOSITION, format!("inline; filename=\"{name}\"")),
+    ];
+    (headers, body.into()).into_response()
+}
 
 /// A name of words in small letters and figures with hyphens between: safe in a header
 /// and on any disk. What a word has beyond ASCII is left out.

@@ -1,0 +1,192 @@
+//! A book on sheets of A4, lying.
+
+use super::entry::{Entry, Reference};
+use super::select::Occasion;
+use crate::sheet::words::{east_west, heading_to_a_tenth, latitude, longitude, signed};
+use crate::sheet::{A4, Face, MARGIN, Pen, Sheet, Style, cut};
+use crate::time::Time;
+use binnacle_magnetics::analyse::SampleReason;
+
+const WIDTH: f32 = A4.1;
+const HEIGHT: f32 = A4.0;
+const LEFT: f32 = MARGIN;
+const RIGHT: f32 = WIDTH - MARGIN;
+const TOP: f32 = MARGIN + 74.0;
+const LINE: f32 = 11.6;
+const FAINT: u8 = 90;
+/// Entries on a sheet.
+const ROWS: usize = 33;
+
+/// Columns: two lines of title, where the text is anchored, and whether it ends there.
+const COLUMNS: [([&str; 2], f32, bool); 10] = [
+    (["", "UTC"], LEFT, false),
+    (["", "Position"], 112.0, false),
+    (["Compass", "heading"], 292.0, true),
+    (["True", "heading"], 338.0, true),
+    (["", "by"], 346.0, false),
+    (["", "Variation"], 456.0, true),
+    (["Deviation", "observed"], 510.0, true),
+    (["by the card", "(95 % band)"], 590.0, true),
+    (["Observed", "less card"], 640.0, true),
+    (["", "Remarks"], 650.0, false),
+];
+
+/// Whose book it is, and of when.
+pub(super) struct Book {
+    pub(super) vessel: String,
+    pub(super) imo_number: Option<String>,
+    pub(super) compass: String,
+    pub(super) from: Option<Time>,
+    pub(super) to: Option<Time>,
+}
+
+/// The book's sheets; one that says so where there is no entry.
+pub(super) fn sheets(book: &Book, entries: &[Entry]) -> Vec<Sheet> {
+    let pages: Vec<&[Entry]> = match entries {
+        [] => vec![&[]],
+        some => some.chunks(ROWS).collect(),
+    };
+    let of = pages.len();
+    let page = |(index, rows): (usize, &&[Entry])| {
+        let mut sheet = Sheet::a4_lying();
+        head(&mut sheet, book, index + 1, of);
+        for (line, entry) in rows.iter().enumerate() {
+            row(&mut sheet, entry, TOP + LINE * line as f32, line);
+        }
+        if rows.is_empty() {
+            let says = "No settled stretch of heading was observed in this time.";
+            sheet.text((LEFT, TOP + 8.0), Style::plain(9.0), says);
+        }
+        foot(&mut sheet);
+        sheet
+    };
+    pages.iter().enumerate().map(page).collect()
+}
+
+fn head(sheet: &mut Sheet, book: &Book, page: usize, of: usize) {
+    sheet.text(
+        (LEFT, MARGIN + 14.0),
+        Style::bold(15.0),
+        "Compass deviation book",
+    );
+    let number = book.imo_number.as_ref();
+    let number = number.map_or(String::new(), |number| format!(", IMO {number}"));
+    let whose = format!("{}{number} – {}", book.vessel, book.compass);
+    let whose = cut(&whose, Face::Bold, 10.0, 480.0);
+    sheet.text((LEFT, MARGIN + 30.0), Style::bold(10.0), whose);
+    let since = book
+        .from
+        .map_or("the first sample".to_owned(), Time::to_the_minute);
+    let until = book.to.map_or("the last".to_owned(), Time::to_the_minute);
+    let right = Style::plain(8.0).end();
+    sheet.text(
+        (RIGHT, MARGIN + 14.0),
+        right,
+        format!("page {page} of {of}"),
+    );
+    sheet.text(
+        (RIGHT, MARGIN + 30.0),
+        right,
+        format!("from {since} to {until}"),
+    );
+    let rule = MARGIN + 38.0;
+    sheet.rule((LEFT, rule), (RIGHT, rule), 1.0);
+    for ([first, second], x, ends) in COLUMNS {
+        let style = Style::plain(7.0).grey(FAINT);
+        let style = if ends { style.end() } else { style };
+        sheet.text((x, TOP - 22.0), style, first);
+        sheet.text((x, TOP - 13.5), style, second);
+    }
+    sheet.rule((LEFT, TOP - 9.0), (RIGHT, TOP - 9.0), 0.4);
+}
+
+fn row(sheet: &mut Sheet, entry: &Entry, y: f32, line: usize) {
+    let cells = [
+        entry.time.to_the_minute().replace(" UTC", ""),
+        format!("{}  {}", latitude(entry.lat), longitude(entry.lon)),
+        heading_to_a_tenth(entry.compass_deg),
+        heading_to_a_tenth(entry.true_deg),
+        by(entry.reference).to_owned(),
+        east_west(entry.variation_deg),
+        east_west(entry.deviation_deg),
+        card(entry),
+        entry.difference_deg.map_or("–".to_owned(), signed),
+        remarks(entry),
+    ];
+    for (column, ((_, x, ends), text)) in COLUMNS.into_iter().zip(cells).enumerate() {
+        let style = if column == 6 {
+            Style::bold(8.0)
+        } else {
+            Style::plain(8.0)
+        };
+        let style = if ends { style.end() } else { style };
+        let room = if x > 600.0 && !ends { RIGHT - x } else { WIDTH };
+        let text = cut(&text, style.face, style.size, room);
+        sheet.text((x, y), style, text);
+    }
+    if line % 3 == 2 {
+        let under = y + 3.6;
+        sheet.line(
+            vec![(LEFT, under), (RIGHT, under)],
+            Pen::black(0.3).grey(170),
+        );
+    }
+}
+
+fn by(reference: Reference) -> &'static str {
+    match reference {
+        Reference::Gyro => "gyro",
+        Reference::Satellite => "satellite",
+        Reference::GyroAndSatellite => "gyro, satellite",
+    }
+}
+
+fn card(entry: &Entry) -> String {
+    let Some(card_deg) = entry.card_deviation_deg else {
+        return "none in force".to_owned();
+    };
+    let band = entry
+        .card_band95_deg
+        .map_or(String::new(), |band| format!(" ±{band:.1}°"));
+    format!("{}{band}", east_west(card_deg))
+}
+
+fn remarks(entry: &Entry) -> String {
+    let occasion = match entry.occasion {
+        Occasion::Watch => "",
+        Occasion::Alteration => "course altered",
+    };
+    let doubt = entry.reason.map_or("", doubt);
+    let both = [occasion, doubt]
+        .into_iter()
+        .filter(|words| !words.is_empty());
+    both.collect::<Vec<_>>().join("; ")
+}
+
+fn doubt(reason: SampleReason) -> &'static str {
+    match reason {
+        SampleReason::NoReference => "no reference",
+        SampleReason::ReferenceFailed => "reference failed",
+        SampleReason::CompassStuck => "compass stuck",
+        SampleReason::OutsideFieldModel => "variation not known",
+        SampleReason::FieldTooWeak => "field too weak",
+        SampleReason::MagneticCargo => "magnetic cargo",
+        SampleReason::Berth => "alongside",
+        SampleReason::Disturbance => "disturbed",
+        SampleReason::Outlier => "disagrees with the rest",
+        SampleReason::NoModel => "",
+    }
+}
+
+fn foot(sheet: &mut Sheet) {
+    let y = HEIGHT - MARGIN;
+    let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
+                each watch that has one, and after alterations of course of 20° or more.";
+    sheet.text((LEFT, y), Style::plain(7.0).grey(FAINT), says);
+    sheet.rule((RIGHT - 150.0, y - 9.0), (RIGHT, y - 9.0), 0.5);
+    sheet.text(
+        (RIGHT - 150.0, y),
+        Style::plain(7.0).grey(FAINT),
+        "Seen by the master",
+    );
+}
