@@ -29,8 +29,8 @@ mod corrected;
 mod output;
 mod sentences;
 
-mod offline;
 mod guests;
+mod offline;
 mod page;
 mod reports;
 mod status;

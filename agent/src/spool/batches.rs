@@ -2,10 +2,11 @@
 
 use super::seal::insert_batch;
 use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, kept, put};
-use binnacle_wire::batch::StreamId;
+use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::messages::Downlink;
 use serde::{Deserialize, Serialize};
 use sqlx::SqliteConnection;
+use std::collections::BTreeMap;
 
 /// So many acknowledged batches are remembered.
 const REMEMBERED: i64 = 20_000;
@@ -30,7 +31,7 @@ pub(crate) struct Standing {
     pub(crate) pending_samples: u64,
     /// Sealed batches that were not acknowledged.
     pub(crate) waiting_batches: u64,
-    /// Batches that the shore refused; kept, and offered again once a day.
+    /// Batches that the shore refused; kept, and offered again.
     pub(crate) parked_batches: u64,
     /// Why the last of those was refused.
     pub(crate) parked_because: Option<String>,
@@ -92,6 +93,16 @@ impl Spool {
         let before = get(&mut tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
         put(&mut tx, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
         keep_downlink(&mut tx, downlink).await?;
+        let was_refused: Option<i64> = sqlx::query_scalar(
+            "SELECT 1 FROM batches WHERE seq = $1 AND bytes = $2 AND problem IS NOT NULL",
+        )
+        .bind(batch.seq.cast_signed())
+        .bind(&batch.bytes)
+        .fetch_optional(&mut *tx)
+        .await?;
+        if was_refused.is_some() {
+            unpark(&mut tx).await?;
+        }
         let samples: Option<i64> = sqlx::query_scalar(
             "UPDATE batches SET standing = 'acknowledged', problem = NULL
              WHERE seq = $1 AND bytes = $2 RETURNING samples",
@@ -107,9 +118,13 @@ impl Spool {
         tx.commit().await
     }
 
-    /// The shore refused this batch: keeps it, and goes on without it.
+    /// The shore refused this batch: keeps it, and goes on without it. One that the disk has
+    /// damaged is put aside, and an empty one takes its number: the shore need not wait for it.
     pub(crate) async fn park(&self, seq: u64, problem: &str) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
+        if give_up_damaged(&mut tx, seq).await? {
+            return tx.commit().await;
+        }
         sqlx::query("UPDATE batches SET standing = 'parked', problem = $2 WHERE seq = $1")
             .bind(seq.cast_signed())
             .bind(problem)
@@ -118,12 +133,22 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Gives parked batches another chance, as at a start.
+    /// Gives all parked batches another chance, as at a start.
     pub(crate) async fn unpark(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        sqlx::query("UPDATE batches SET standing = 'waiting' WHERE standing = 'parked'")
-            .execute(&mut *tx)
-            .await?;
+        unpark(&mut tx).await?;
+        tx.commit().await
+    }
+
+    /// Gives the first parked batch another chance: if it is taken, the others have it too.
+    pub(crate) async fn unpark_first(&self) -> sqlx::Result<()> {
+        let mut tx = self.write().await?;
+        sqlx::query(
+            "UPDATE batches SET standing = 'waiting'
+             WHERE seq = (SELECT MIN(seq) FROM batches WHERE standing = 'parked')",
+        )
+        .execute(&mut *tx)
+        .await?;
         tx.commit().await
     }
 
@@ -183,6 +208,54 @@ impl Spool {
     }
 }
 
+async fn unpark(tx: &mut SqliteConnection) -> sqlx::Result<()> {
+    sqlx::query("UPDATE batches SET standing = 'waiting' WHERE standing = 'parked'")
+        .execute(tx)
+        .await?;
+    Ok(())
+}
+
+/// Whether this batch was damaged, and is put aside.
+async fn give_up_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
+    let bytes: Option<Vec<u8>> = sqlx::query_scalar("SELECT bytes FROM batches WHERE seq = $1")
+        .bind(seq.cast_signed())
+        .fetch_optional(&mut *tx)
+        .await?;
+    let identity = get::<Identity>(tx, IDENTITY).await?;
+    let (Some(bytes), Some(identity)) = (bytes, identity) else {
+        return Ok(false);
+    };
+    let Err(problem) = binnacle_wire::decode(&bytes) else {
+        return Ok(false);
+    };
+    put_aside(tx, &bytes, &problem.to_string()).await?;
+    let empty = Batch {
+        stream: identity.stream,
+        seq,
+        samples: Vec::new(),
+        tally: BTreeMap::new(),
+        alerts: Vec::new(),
+        thinned: None,
+    };
+    let empty = binnacle_wire::encode(&empty).map_err(|e| sqlx::Error::Encode(e.into()))?;
+    sqlx::query("UPDATE batches SET bytes = $2, samples = 0 WHERE seq = $1")
+        .bind(seq.cast_signed())
+        .bind(empty)
+        .execute(tx)
+        .await?;
+    Ok(true)
+}
+
+async fn put_aside(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sqlx::Result<()> {
+    tracing::error!(problem, "a damaged batch was put aside");
+    sqlx::query("INSERT INTO quarantine (bytes, problem) VALUES ($1, $2)")
+        .bind(bytes)
+        .bind(problem)
+        .execute(tx)
+        .await?;
+    Ok(())
+}
+
 pub(super) async fn remember(
     tx: &mut SqliteConnection,
     stream: StreamId,
@@ -230,14 +303,7 @@ pub(super) async fn renumber(tx: &mut SqliteConnection, stream: StreamId) -> sql
                 insert_batch(tx, next, &bytes, samples, urgent).await?;
                 next += 1;
             }
-            Err(problem) => {
-                tracing::error!(problem, "a damaged batch was put aside");
-                sqlx::query("INSERT INTO quarantine (bytes, problem) VALUES ($1, $2)")
-                    .bind(bytes)
-                    .bind(problem)
-                    .execute(&mut *tx)
-                    .await?;
-            }
+            Err(problem) => put_aside(tx, &bytes, &problem).await?,
         }
     }
     put(tx, NEXT_SEQ, &next).await?;

@@ -72,6 +72,20 @@ pub(crate) fn restless(window: i64) -> Sample {
     }
 }
 
+impl Spool {
+    /// Lets a bit of a batch fall over.
+    pub(crate) async fn damage(&self, seq: i64) {
+        sqlx::query(
+            "UPDATE batches SET bytes = CAST(substr(bytes, 1, length(bytes) - 1) || x'00' AS BLOB)
+             WHERE seq = $1",
+        )
+        .bind(seq)
+        .execute(&self.pool)
+        .await
+        .unwrap();
+    }
+}
+
 pub(crate) async fn enrolled() -> (TempDir, Spool) {
     let directory = TempDir::new().unwrap();
     let spool = Spool::open(directory.path()).await.unwrap();

@@ -85,7 +85,10 @@ enum Next {
 impl Uplink {
     /// Runs until `shutdown`.
     pub(crate) async fn run(mut self, shutdown: CancellationToken) {
-        let mut offer_again = Instant::now();
+        if let Err(error) = self.spool.unpark().await {
+            tracing::error!(%error, "cannot look at the parked batches");
+        }
+        let mut offer_again = Instant::now() + OFFER_AGAIN;
         if let Err(error) = self.spool.keep_account(&self.budget.account()).await {
             tracing::error!(%error, "the budget cannot be kept");
         }
@@ -93,7 +96,7 @@ impl Uplink {
         loop {
             if offer_again <= Instant::now() {
                 offer_again = Instant::now() + OFFER_AGAIN;
-                if let Err(error) = self.spool.unpark().await {
+                if let Err(error) = self.spool.unpark_first().await {
                     tracing::error!(%error, "cannot look at the parked batches");
                 }
             }

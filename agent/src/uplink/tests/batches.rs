@@ -168,6 +168,46 @@ async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
 }
 
 #[tokio::test]
+async fn what_was_refused_goes_when_the_shore_takes_the_first_of_it() {
+    let refusal = || problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable");
+    let fake = Fake {
+        answers: [refusal(), refusal(), refusal()].into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(3, fake).await;
+    rig.all_sent().await;
+    assert_eq!(rig.spool.standing().await.unwrap().parked_batches, 3);
+    rig.spool.unpark_first().await.unwrap();
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    while rig.seqs(STREAM) != [1, 2, 3] {
+        rig.link.changed().await.unwrap();
+    }
+}
+
+#[tokio::test]
+async fn a_batch_that_the_disk_has_damaged_keeps_no_number_open() {
+    let fake = Fake {
+        answers: [problem(StatusCode::BAD_REQUEST, "bad-request")].into(),
+        ..Fake::default()
+    };
+    let mut rig = rig(0, fake).await;
+    rig.all_sent().await;
+    seal(&rig.spool, 1).await;
+    rig.spool.damage(1).await;
+    seal(&rig.spool, 2).await;
+    rig.link.mark_unchanged();
+    rig.sealed.notify_one();
+    rig.all_sent().await;
+    let standing = rig.spool.standing().await.unwrap();
+    assert_eq!((standing.parked_batches, standing.contiguous_seq), (0, 2));
+    let fake = rig.fake.lock().unwrap();
+    let samples =
+        |seq| binnacle_wire::decode(&fake.batches[&(STREAM, seq)]).map(|b| b.samples.len());
+    assert_eq!((samples(1), samples(2)), (Ok(0), Ok(1)));
+}
+
+#[tokio::test]
 async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
     let fake = Fake {
         answers: [
