@@ -1,0 +1,138 @@
+//! What has settled goes into the spool, in batches when it is time, and the spool is kept
+//! in order.
+
+use super::Agent;
+use crate::clock;
+use crate::clocks::Clocks;
+use crate::sampler::Tally;
+use crate::spool::{MOST_PENDING, Seal, is_want_of_room};
+use crate::uplink::LinkState;
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::messages::Settings;
+use tokio::time::Instant;
+
+/// Windows that were only refused are reported this often, by ship time.
+const TALLY_ALONE_S: f64 = 86_400.0;
+/// If the disk takes nothing, so many samples are kept in memory.
+const MOST_UNSTORED: usize = 20_000;
+
+impl Agent {
+    /// By the ship's time; after a jump of her clock, whichever way.
+    pub(super) fn seal_due(&self) -> Seal {
+        let Some(now) = self.ship.time() else {
+            return Seal::Full;
+        };
+        let seal_s = f64::from(self.seal_s());
+        let older = |since: Option<Timestamp>, seconds: f64| {
+            since.is_some_and(|since| now.seconds_since(since).abs() >= seconds)
+        };
+        let first = self.unstored.samples.first().map(|sample| sample.time);
+        let due = older(self.unstored.pending.since, seal_s)
+            || older(first, seal_s)
+            || older(self.unstored.tally_since, TALLY_ALONE_S.max(seal_s));
+        if due { Seal::All } else { Seal::Full }
+    }
+
+    /// As the profile has it, unless the shore wants other than the usual.
+    fn seal_s(&self) -> u32 {
+        let asked = self.told.settings.borrow().seal_s;
+        if asked == Settings::default().seal_s {
+            self.plan.seal_s
+        } else {
+            asked
+        }
+    }
+
+    pub(super) async fn store(&mut self, seal: Seal) {
+        self.told.ship_time.send_replace(self.ship.time());
+        let unstored = &mut self.unstored;
+        let tally = unstored.tally.by_name();
+        let has_evidence = !unstored.alerts.is_empty();
+        let stored = if has_evidence {
+            let aboard = self.lookout.aboard();
+            let (samples, alerts) = (&unstored.samples, &unstored.alerts);
+            let spool = &self.spool;
+            spool.store_evidence(samples, &tally, alerts, aboard).await
+        } else {
+            self.spool.store(&unstored.samples, &tally, seal).await
+        };
+        match stored {
+            Ok((pending, sealed)) => {
+                unstored.problem = None;
+                if has_evidence {
+                    self.alert_kept = self.lookout.aboard().copied();
+                    unstored.alerts.clear();
+                    self.told.urgent.notify_one();
+                }
+                unstored.samples.clear();
+                unstored.tally = Tally::default();
+                unstored.pending = pending;
+                if has_evidence || seal == Seal::All {
+                    unstored.tally_since = self.ship.time();
+                }
+                if sealed > 0 || unstored.pending.samples > MOST_PENDING {
+                    self.make_room().await;
+                }
+                if sealed > 0 {
+                    self.note_clocks().await;
+                    self.told.sealed.notify_one();
+                }
+            }
+            Err(error) => {
+                let problem = error.to_string();
+                if unstored.problem.as_ref() != Some(&problem) {
+                    let waiting = unstored.samples.len();
+                    tracing::error!(problem, waiting, "samples cannot be stored");
+                }
+                unstored.problem = Some(problem);
+                if is_want_of_room(&error) {
+                    self.ring.give_way(&error.to_string(), Instant::now());
+                }
+                let excess = unstored.samples.len().saturating_sub(MOST_UNSTORED);
+                unstored.samples.drain(..excess);
+            }
+        }
+    }
+
+    /// For the first time stamp after a restart.
+    pub(super) async fn note_clocks(&self) {
+        let Some(ship) = self.ship.certain_time() else {
+            return;
+        };
+        let computer = clock::now();
+        if let Err(error) = self.spool.note_clocks(&Clocks { ship, computer }).await {
+            tracing::error!(%error, "the time cannot be noted");
+        }
+    }
+
+    /// Few batches, within the disk and within what the link may cost.
+    async fn make_room(&self) {
+        let gathered = if self.batches_wait() {
+            self.spool.gather().await
+        } else {
+            Ok(())
+        };
+        let within_disk = self.spool.make_room(self.spool_limit_bytes).await;
+        let within_messages = match self.plan.batch_octets() {
+            Some(octets) => self.spool.thin_each(octets).await,
+            None => Ok(()),
+        };
+        let within_budget = match self.plan.backlog_octets() {
+            Some(octets) => self.spool.thin_backlog(octets).await,
+            None => Ok(()),
+        };
+        if let Err(error) = gathered
+            .and(within_messages)
+            .and(within_disk)
+            .and(within_budget)
+        {
+            tracing::error!(%error, "the spool cannot be put in order");
+        }
+    }
+
+    /// Whether what is sealed now is not sent at once, and not in messages either.
+    fn batches_wait(&self) -> bool {
+        let is_up = self.told.link.borrow().state == LinkState::Up;
+        self.plan.batch_octets().is_none() && (!is_up || self.plan.day_octets.is_some())
+    }
+}
