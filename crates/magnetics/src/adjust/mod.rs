@@ -32,7 +32,7 @@ pub use instructions::{Action, Corrector, Place, Step};
 pub use mistakes::{Mistake, mistakes};
 pub use predicted::{PredictedRow, PredictedTable};
 pub use recheck::{Recheck, recheck};
-pub use refusal::{Cure, Refusal};
+pub use refusal::{Coefficient, Cure, Refusal};
 pub use verify::{Needed, Settled, Verification, verify};
 
 use crate::berth::{BerthError, BerthReading};
@@ -280,6 +280,9 @@ fn refused(berth: Option<BerthCheck>, refusals: Vec<Refusal>) -> Outcome {
     }
 }
 
+/// More places do not say more of where a vessel trades.
+const MOST_WATERS: usize = 24;
+
 /// How many plans are shown.
 const PLANS: usize = 5;
 
@@ -376,6 +379,15 @@ fn check(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
     }
     if let Some(vertical) = &adjustment.vertical {
         vertical.check()?;
+    }
+    let waters = adjustment.waters.len();
+    if waters > MOST_WATERS {
+        return Err(AdjustError::Value {
+            field: "number of waters",
+            value: waters as f64,
+            least: 1.0,
+            greatest: MOST_WATERS as f64,
+        });
     }
     for (index, water) in adjustment.waters.iter().enumerate() {
         for (field, value, least, greatest) in [

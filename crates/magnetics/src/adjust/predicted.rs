@@ -64,7 +64,8 @@ pub(super) fn tables(
         let rows: Result<Vec<PredictedRow>, DeviationError> = (0..HEADINGS)
             .map(|index| {
                 let compass_deg = f64::from(index) * 360.0 / f64::from(HEADINGS);
-                let compass = CompassHeading::new(compass_deg).unwrap_or_else(|| unreachable!());
+                let compass =
+                    CompassHeading::new(compass_deg).expect("a few steps of 3 degrees are finite");
                 let predicted = model.deviation(compass, water.earth())?;
                 Ok(PredictedRow {
                     compass_deg,

@@ -2,8 +2,10 @@
 
 use super::condition::Condition;
 use super::mistakes::{Mistake, mistakes};
-use super::{AdjustError, Adjustment, Plan, Refused};
+use super::{AdjustError, Adjustment, Plan, PredictedTable, Refused};
 use crate::berth::{BerthError, Consistency};
+use crate::deviation::Coefficients;
+use crate::ship::EarthField;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -60,6 +62,8 @@ pub enum Refusal {
         worst_deg: f64,
         /// The greatest that is taken, band included.
         limit_deg: f64,
+        /// The coefficient that most of it is.
+        mostly: Coefficient,
     },
     /// Spheres would have to be moved, and λ is too unsure to tell how far.
     MagnetometerTooPoor {
@@ -68,6 +72,22 @@ pub enum Refusal {
         /// The greatest with which soft iron is moved.
         limit: f64,
     },
+}
+
+/// A coefficient of the deviation, and so what would correct it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Coefficient {
+    /// The same on all headings: lubber line and reference, which no corrector cures.
+    A,
+    /// Fore-and-aft magnets and Flinders bar.
+    B,
+    /// Athwartship magnets.
+    C,
+    /// Spheres.
+    D,
+    /// Slewed spheres.
+    E,
 }
 
 /// What would cure a refusal.
@@ -211,6 +231,7 @@ pub(super) fn afterwards(
                 reach_deg,
                 worst_deg,
                 limit_deg: limits.residual_deg,
+                mostly: mostly(plan, table),
             });
         }
     }
@@ -226,6 +247,42 @@ pub(super) fn afterwards(
         );
     }
     refusals
+}
+
+/// The greatest of the exact coefficients, the model's constant with A.
+fn mostly(plan: &Plan, table: &PredictedTable) -> Coefficient {
+    let earth = EarthField {
+        h_nt: table.h_nt,
+        z_nt: table.z_nt,
+    };
+    let model = &plan.model_after;
+    let Ok(found) = Coefficients::new(&model.parameters_over_lambda, earth) else {
+        return Coefficient::A;
+    };
+    let a = found.a + model.constant_deg.to_radians();
+    let sizes = [
+        (a, Coefficient::A),
+        (found.b, Coefficient::B),
+        (found.c, Coefficient::C),
+        (found.d, Coefficient::D),
+        (found.e, Coefficient::E),
+    ];
+    let largest = sizes
+        .into_iter()
+        .max_by(|x, y| x.0.abs().total_cmp(&y.0.abs()));
+    largest.map_or(Coefficient::A, |(_, which)| which)
+}
+
+impl fmt::Display for Coefficient {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Coefficient::A => "A, which is alignment and no corrector's",
+            Coefficient::B => "B, of fore-and-aft magnets and Flinders bar",
+            Coefficient::C => "C, of athwartship magnets",
+            Coefficient::D => "D, of spheres",
+            Coefficient::E => "E, of slewed spheres",
+        })
+    }
 }
 
 impl fmt::Display for Refusal {
@@ -272,10 +329,11 @@ impl fmt::Display for Refusal {
                 reach_deg,
                 worst_deg,
                 limit_deg,
+                mostly,
             } => write!(
                 f,
                 "at {place} the correctors on board leave {worst_deg:.1} degrees, {reach_deg:.1} \
-                 with the band, of {limit_deg:.1} at most"
+                 with the band, of {limit_deg:.1} at most; most of it is {mostly}"
             ),
             Refusal::MagnetometerTooPoor { lambda_sd, limit } => write!(
                 f,

@@ -87,80 +87,103 @@ impl Front {
 }
 
 /// One choice of soft iron with the heeling magnets that go with it.
-struct Choice<'a> {
+struct Choice {
     soft: Soft,
     heeling: Option<HeelingSetting>,
     moves: u32,
     used: Used,
     iron: Iron,
-    objective: Objective<'a>,
+    effect: Effect,
     bound_deg: f64,
+}
+
+/// What all choices are judged by.
+struct Search<'s> {
+    adjustment: &'s Adjustment<'s>,
+    condition: &'s Condition<'s>,
+    compass: Compass,
+    axes: [AxisCandidates; 2],
+    groups: [Vec<Group>; 2],
+    stock: Used,
 }
 
 pub(super) fn search(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> Front {
     let binnacle = condition.binnacle;
     let standing = adjustment.standing();
-    let compass = Compass::new(condition.constant_deg());
-    let mut choices: Vec<Choice<'_>> = iron(
+    let axes = Axis::BOTH.map(|axis| AxisCandidates::new(binnacle, axis, standing));
+    let search = Search {
+        adjustment,
+        condition,
+        compass: Compass::new(condition.constant_deg()),
+        groups: [0, 1].map(|axis| Group::by_moves(condition, &axes[axis])),
+        axes,
+        stock: stock(binnacle),
+    };
+    let mut front = Front::new();
+    front.optimality.trays_in_use = [search.axes[0].trays, search.axes[1].trays];
+    let irons = iron(
         binnacle,
         standing,
         condition.may_move_pair,
         condition.may_move_bar,
-    )
-    .into_iter()
-    .map(|(soft, moves)| choice(adjustment, condition, &compass, soft, moves))
-    .collect();
+    );
+    let mut choices: Vec<Choice> = irons
+        .into_iter()
+        // What is known of few moves makes the bounds of more moves bite.
+        .map(|(soft, moves)| search.with_magnets_as_they_stand(soft, moves, &mut front))
+        .collect();
     choices.sort_by(|a, b| {
-        a.bound_deg
-            .total_cmp(&b.bound_deg)
-            .then(a.moves.cmp(&b.moves))
+        let by_bound = a.bound_deg.total_cmp(&b.bound_deg);
+        by_bound.then(a.moves.cmp(&b.moves))
     });
-    let axes = Axis::BOTH.map(|axis| AxisCandidates::new(binnacle, axis, standing));
-    let groups = [0, 1].map(|axis| Group::by_moves(condition, &axes[axis]));
-    let mut front = Front::new();
-    front.optimality.trays_in_use = [axes[0].trays, axes[1].trays];
-    // What is known of few moves makes the bounds of more moves bite.
-    as_they_stand(condition, &axes, &mut choices, &mut front);
     for choice in &choices {
-        magnets(condition, &axes, &groups, choice, &mut front);
+        search.magnets(choice, &mut front);
     }
-    let best = front.at(u32::MAX);
     if front.optimality.nodes >= MOST_NODES {
         front.optimality.proven = false;
-        front.optimality.gap_deg = (best - front.left_out_deg).max(SLACK_DEG);
+        front.optimality.gap_deg = (front.at(u32::MAX) - front.left_out_deg).max(SLACK_DEG);
     }
     front
 }
 
-fn choice<'a>(
-    adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    compass: &'a Compass,
-    soft: Soft,
-    soft_moves: u32,
-) -> Choice<'a> {
-    let binnacle = condition.binnacle;
-    let standing = adjustment.standing();
-    let iron = Iron::new(binnacle, &soft);
-    let of_iron = iron.effect(binnacle.design.needle_moment_am2);
-    let heeling = heeling::chosen(adjustment, condition, &iron, &of_iron);
-    let of_heeling = heeling
-        .as_ref()
-        .map(|set| heeling_effect(binnacle, &iron, set));
-    let effect: Effect = of_iron.plus(&of_heeling.unwrap_or_default());
-    let objective = Objective::new(compass, adjustment.waters, |h_nt| {
-        condition.aboard(&effect, h_nt)
-    });
-    let bucket = binnacle.design.heeling.as_ref().zip(heeling.as_ref());
-    let used = bucket.map(|(bucket, set)| used_by(binnacle, &bucket.magnet, set.count));
-    Choice {
-        moves: soft_moves + moves::heeling(standing.heeling.as_ref(), heeling.as_ref()),
-        bound_deg: objective.bound_for_iron(),
-        soft,
-        heeling,
-        used: used.unwrap_or_default(),
-        iron,
-        objective,
+impl Search<'_> {
+    fn objective(&self, effect: &Effect) -> Objective<'_> {
+        Objective::new(&self.compass, self.adjustment.waters, |h_nt| {
+            self.condition.aboard(effect, h_nt)
+        })
+    }
+
+    /// A choice with its bound; with the magnets as they stand it is offered at once.
+    fn with_magnets_as_they_stand(&self, soft: Soft, moves: u32, front: &mut Front) -> Choice {
+        let binnacle = self.condition.binnacle;
+        let iron = Iron::new(binnacle, &soft);
+        let of_iron = iron.effect(binnacle.design.needle_moment_am2);
+        let heeling = heeling::chosen(self.adjustment, self.condition, &iron, &of_iron);
+        let of_heeling = heeling
+            .as_ref()
+            .map(|set| heeling_effect(binnacle, &iron, set));
+        let effect = of_iron.plus(&of_heeling.unwrap_or_default());
+        let objective = self.objective(&effect);
+        let bucket = binnacle.design.heeling.as_ref().zip(heeling.as_ref());
+        let used = bucket.map(|(bucket, set)| used_by(binnacle, &bucket.magnet, set.count));
+        let stood = self.adjustment.standing().heeling.as_ref();
+        let choice = Choice {
+            moves: moves + moves::heeling(stood, heeling.as_ref()),
+            bound_deg: objective.bound_for_iron(),
+            soft,
+            heeling,
+            used: used.unwrap_or_default(),
+            iron,
+            effect,
+        };
+        let [one, other] = &self.axes;
+        let b = [one, other]
+            .map(|axis| axis.settings[0].field_nt(&axis.fields(binnacle, &choice.iron)));
+        let worst_deg = objective.worst_deg([b[0][0] + b[1][0], b[0][1] + b[1][1]]);
+        front.offer(choice.moves, worst_deg, || {
+            setting(&choice, &one.settings[0], &other.settings[0])
+        });
+        choice
     }
 }
 
@@ -220,28 +243,7 @@ impl Group {
     }
 }
 
-/// Every choice of iron with the magnets as they stand.
-fn as_they_stand(
-    condition: &Condition<'_>,
-    axes: &[AxisCandidates; 2],
-    choices: &mut [Choice<'_>],
-    front: &mut Front,
-) {
-    for choice in choices {
-        let mut b = [0.0; 2];
-        for axis in axes {
-            let fields = axis.fields(condition.binnacle, &choice.iron);
-            let more = axis.settings[0].field_nt(&fields);
-            b = [b[0] + more[0], b[1] + more[1]];
-        }
-        let worst_deg = choice.objective.worst_deg(b);
-        front.offer(choice.moves, worst_deg, || {
-            setting(choice, &axes[0].settings[0], &axes[1].settings[0])
-        });
-    }
-}
-
-fn setting(choice: &Choice<'_>, fore_and_aft: &Magnets, athwartship: &Magnets) -> Setting {
+fn setting(choice: &Choice, fore_and_aft: &Magnets, athwartship: &Magnets) -> Setting {
     Setting {
         fore_and_aft: fore_and_aft.trays.clone(),
         athwartship: athwartship.trays.clone(),
@@ -251,112 +253,118 @@ fn setting(choice: &Choice<'_>, fore_and_aft: &Magnets, athwartship: &Magnets) -
     }
 }
 
-/// Looks through the magnets of one choice of iron.
-fn magnets(
-    condition: &Condition<'_>,
-    axes: &[AxisCandidates; 2],
-    groups: &[Vec<Group>; 2],
-    choice: &Choice<'_>,
-    front: &mut Front,
-) {
-    let mut fields = None;
-    let mut trees: [Vec<Option<Vec<Box2>>>; 2] = [0, 1].map(|a| vec![None; groups[a].len()]);
-    for (i, one) in groups[0].iter().enumerate() {
-        for (j, other) in groups[1].iter().enumerate() {
-            let moves = choice.moves + one.moves + other.moves;
-            if choice.bound_deg >= front.at(moves) - SLACK_DEG {
+impl Search<'_> {
+    /// Looks through the magnets of one choice of iron.
+    fn magnets(&self, choice: &Choice, front: &mut Front) {
+        let mut known = None;
+        let mut trees = [0, 1].map(|a| vec![None; self.groups[a].len()]);
+        for (i, one) in self.groups[0].iter().enumerate() {
+            for (j, other) in self.groups[1].iter().enumerate() {
+                let moves = choice.moves + one.moves + other.moves;
+                if choice.bound_deg >= front.at(moves) - SLACK_DEG {
+                    continue;
+                }
+                let (fields, objective) = known.get_or_insert_with(|| {
+                    let fields =
+                        |a: usize| self.axes[a].fields(self.condition.binnacle, &choice.iron);
+                    ([fields(0), fields(1)], self.objective(&choice.effect))
+                });
+                let [along, across] = &mut trees;
+                let along =
+                    along[i].get_or_insert_with(|| one.tree(&self.axes[0].settings, &fields[0]));
+                let across =
+                    across[j].get_or_insert_with(|| other.tree(&self.axes[1].settings, &fields[1]));
+                let pair = Pair {
+                    groups: [one, other],
+                    trees: [along, across],
+                    moves,
+                };
+                self.descend(choice, objective, &pair, front);
+            }
+        }
+    }
+
+    /// Goes down both trees at once, the better half first.
+    fn descend(
+        &self,
+        choice: &Choice,
+        objective: &Objective<'_>,
+        pair: &Pair<'_>,
+        front: &mut Front,
+    ) {
+        let bound = |node: [usize; 2]| objective.bound_deg(&pair.within(node));
+        let mut open = vec![([1, 1], bound([1, 1]))];
+        while let Some((node, node_bound)) = open.pop() {
+            if node_bound >= front.at(pair.moves) - SLACK_DEG {
                 continue;
             }
-            let fields = fields.get_or_insert_with(|| {
-                [0, 1].map(|a| axes[a].fields(condition.binnacle, &choice.iron))
-            });
-            trees[0][i].get_or_insert_with(|| one.tree(&axes[0].settings, &fields[0]));
-            trees[1][j].get_or_insert_with(|| other.tree(&axes[1].settings, &fields[1]));
-            let (Some(tree), Some(across)) = (&trees[0][i], &trees[1][j]) else {
+            if front.optimality.nodes >= MOST_NODES {
+                let bound_deg = node_bound.max(choice.bound_deg);
+                front.left_out_deg = front.left_out_deg.min(bound_deg);
                 continue;
-            };
-            let leaf = |node: [usize; 2]| {
-                (
-                    &axes[0].settings[one.members[node[0] - one.members.len()]],
-                    &axes[1].settings[other.members[node[1] - other.members.len()]],
-                )
-            };
-            descend(
-                choice,
-                [tree, across],
-                moves,
-                stock(condition.binnacle),
-                &leaf,
-                front,
-            );
+            }
+            front.optimality.nodes += 1;
+            if let [Some(one), Some(other)] = [0, 1].map(|a| pair.leaf(a, node[a])) {
+                let [one, other] = [&self.axes[0].settings[one], &self.axes[1].settings[other]];
+                if one
+                    .used
+                    .plus(other.used)
+                    .plus(choice.used)
+                    .within(self.stock)
+                {
+                    let within = pair.within(node);
+                    let worst_deg = objective.worst_deg([within.x[0], within.y[0]]);
+                    front.offer(pair.moves, worst_deg, || setting(choice, one, other));
+                }
+                continue;
+            }
+            let split = pair.wider(node);
+            let mut children = [0, 1].map(|which| {
+                let mut child = node;
+                child[split] = 2 * node[split] + which;
+                (child, bound(child))
+            });
+            // The last one in is the first out.
+            if children[0].1 < children[1].1 {
+                children.swap(0, 1);
+            }
+            open.extend(children);
         }
     }
 }
 
-/// Goes down both trees at once, the better half first.
-fn descend<'m>(
-    choice: &Choice<'_>,
-    trees: [&[Box2]; 2],
+/// A group of each axis, with their trees.
+struct Pair<'p> {
+    groups: [&'p Group; 2],
+    trees: [&'p [Box2]; 2],
     moves: u32,
-    stock: Used,
-    leaf: &impl Fn([usize; 2]) -> (&'m Magnets, &'m Magnets),
-    front: &mut Front,
-) {
-    let bound = |node: [usize; 2]| {
-        choice
-            .objective
-            .bound_deg(&sum(trees[0][node[0]], trees[1][node[1]]))
-    };
-    let leaves = trees.map(|tree| tree.len() / 2);
-    let mut open = vec![([1, 1], bound([1, 1]))];
-    while let Some((node, node_bound)) = open.pop() {
-        if node_bound >= front.at(moves) - SLACK_DEG {
-            continue;
+}
+
+impl Pair<'_> {
+    fn within(&self, node: [usize; 2]) -> Box2 {
+        let [one, other] = [self.trees[0][node[0]], self.trees[1][node[1]]];
+        Box2 {
+            x: [one.x[0] + other.x[0], one.x[1] + other.x[1]],
+            y: [one.y[0] + other.y[0], one.y[1] + other.y[1]],
         }
-        if front.optimality.nodes >= MOST_NODES {
-            front.left_out_deg = front.left_out_deg.min(node_bound.max(choice.bound_deg));
-            continue;
-        }
-        front.optimality.nodes += 1;
-        let at_leaf = [0, 1].map(|a| node[a] >= leaves[a]);
-        if at_leaf == [true, true] {
-            let (one, other) = leaf(node);
-            if one.used.plus(other.used).plus(choice.used).within(stock) {
-                let [one_box, other_box] = [trees[0][node[0]], trees[1][node[1]]];
-                let b = [one_box.x[0] + other_box.x[0], one_box.y[0] + other_box.y[0]];
-                let worst_deg = choice.objective.worst_deg(b);
-                front.offer(moves, worst_deg, || setting(choice, one, other));
-            }
-            continue;
-        }
-        let wide = |a: usize| {
-            if at_leaf[a] {
-                -1.0
-            } else {
-                extent(trees[a][node[a]])
-            }
+    }
+
+    /// The setting at a leaf of one axis.
+    fn leaf(&self, axis: usize, node: usize) -> Option<usize> {
+        let members = &self.groups[axis].members;
+        node.checked_sub(members.len()).map(|leaf| members[leaf])
+    }
+
+    /// The axis whose node can and should be split.
+    fn wider(&self, node: [usize; 2]) -> usize {
+        let wide = |axis: usize| match self.leaf(axis, node[axis]) {
+            Some(_) => -1.0,
+            None => extent(self.trees[axis][node[axis]]),
         };
-        let split = usize::from(wide(1) > wide(0));
-        let mut children = [0, 1].map(|which| {
-            let mut child = node;
-            child[split] = 2 * node[split] + which;
-            (child, bound(child))
-        });
-        // The last one in is the first out.
-        if children[0].1 < children[1].1 {
-            children.swap(0, 1);
-        }
-        open.extend(children);
+        usize::from(wide(1) > wide(0))
     }
 }
 
 fn extent(within: Box2) -> f64 {
     (within.x[1] - within.x[0]).max(within.y[1] - within.y[0])
-}
-
-fn sum(one: Box2, other: Box2) -> Box2 {
-    Box2 {
-        x: [one.x[0] + other.x[0], one.x[1] + other.x[1]],
-        y: [one.y[0] + other.y[0], one.y[1] + other.y[1]],
-    }
 }

@@ -12,6 +12,8 @@ const FARTHEST_MM: f64 = 2_000.0;
 const GREATEST_TOLERANCE: f64 = 0.5;
 /// So that a search ends: more of a thing than this is a mistake in the file.
 const MOST: usize = 64;
+/// Kinds of magnets.
+const MOST_KINDS: usize = 8;
 /// Trays of one axis, magnets in a tray or a bucket.
 const MOST_TRAYS: u8 = 4;
 const MOST_MAGNETS: u8 = 12;
@@ -77,6 +79,10 @@ pub(super) fn count(field: &str, length: usize) -> Checked {
 
 fn magnets(kinds: &[MagnetKind]) -> Checked {
     count("magnets", kinds.len())?;
+    if kinds.len() > MOST_KINDS {
+        let what = format!("{} kinds; at most {MOST_KINDS} are taken", kinds.len());
+        return Err(BinnacleError::new("magnets", what));
+    }
     for (index, kind) in kinds.iter().enumerate() {
         let field = |name: &str| format!("magnets[{index}].{name}");
         text_given(&field("name"), &kind.name)?;

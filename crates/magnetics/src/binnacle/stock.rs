@@ -3,6 +3,8 @@
 use super::check::{count, number, text_given, version};
 use super::{BinnacleError, BinnacleForm};
 
+/// Ways to set spheres and bar.
+const MOST_CHOICES: usize = 50_000;
 /// 2¹⁰ combinations of pieces are gone through.
 const MOST_PIECES: usize = 10;
 
@@ -29,7 +31,24 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
         }
     }
     quadrantal(form)?;
-    pieces(form)
+    pieces(form)?;
+    choices(form)
+}
+
+/// So that a search ends, and its memory is bounded.
+fn choices(form: &BinnacleForm) -> Result<(), BinnacleError> {
+    let pairs = form.design.quadrantal.as_ref().map_or(0, |iron| {
+        form.aboard.quadrantal.len() * iron.marks.len() * iron.slews_deg.len()
+    });
+    let bars = form.design.flinders.as_ref().map_or(0, |bar| {
+        form.bar_lengths().len() * bar.sides.len() * bar.slews_deg.len()
+    });
+    let all = (pairs + 1) * (bars + 1);
+    if all > MOST_CHOICES {
+        let what = format!("{all} choices of soft iron, of {MOST_CHOICES} at most");
+        return Err(BinnacleError::new("aboard", what));
+    }
+    Ok(())
 }
 
 fn quadrantal(form: &BinnacleForm) -> Result<(), BinnacleError> {

@@ -1,0 +1,209 @@
+//! What the search finds, and that nothing is better.
+
+use super::super::*;
+use super::*;
+
+#[test]
+fn the_search_finds_what_trying_everything_finds() {
+    let mut ship = bare();
+    ship.b_nt = [1_500.0, -2_200.0, 0.0];
+    let case = Case::new(ship, little(), 60.0);
+    let adjustment = case.adjustment();
+    let condition = Condition::new(&adjustment).unwrap();
+    let front = search::search(&adjustment, &condition);
+    let mut best: Vec<f64> = vec![f64::INFINITY; 20];
+    every_setting(&case.binnacle, |setting| {
+        if case.binnacle.with_setting(setting.clone()).is_err() {
+            return;
+        }
+        let standing = &case.binnacle.setting;
+        let moves = moves::trays(&standing.fore_and_aft, &setting.fore_and_aft)
+            + moves::trays(&standing.athwartship, &setting.athwartship)
+            + moves::pair(standing.quadrantal.as_ref(), setting.quadrantal.as_ref())
+            + moves::bar(standing.flinders.as_ref(), setting.flinders.as_ref());
+        let worst = worst_of(&case, &condition, setting);
+        let known = &mut best[moves as usize];
+        *known = known.min(worst);
+    });
+    let mut least = f64::INFINITY;
+    let mut levels = 0;
+    for (moves, worst) in best.into_iter().enumerate() {
+        least = least.min(worst);
+        let found = front.undominated();
+        let found = found.iter().filter(|f| f.moves as usize <= moves);
+        let found = found.map(|f| f.worst_deg).fold(f64::INFINITY, f64::min);
+        assert!((found - least).abs() < 0.0051, "{moves}: {found} {least}");
+        levels += usize::from(worst.is_finite());
+    }
+    assert!(levels > 4 && front.optimality.proven);
+}
+
+fn worst_of(case: &Case, condition: &Condition<'_>, setting: &Setting) -> f64 {
+    let compass = objective::Compass::new(condition.constant_deg());
+    let effect = effect(&case.binnacle, setting);
+    objective::Objective::new(&compass, &case.waters, |h_nt| {
+        condition.aboard(&effect, h_nt)
+    })
+    .worst_deg([0.0; 2])
+}
+
+fn every_setting(binnacle: &Binnacle, mut visit: impl FnMut(&Setting)) {
+    let standing = &binnacle.setting;
+    let options = |axis: Axis| {
+        let mut all = vec![Vec::new()];
+        for hole in &binnacle.design.rack(axis).holes {
+            for count in 1..=2 {
+                for positive in [true, false] {
+                    all.push(vec![crate::binnacle::Tray {
+                        hole: hole.number,
+                        magnet: "200 mm".to_owned(),
+                        count,
+                        red: axis.red(positive),
+                    }]);
+                }
+            }
+        }
+        all
+    };
+    for (soft, _) in candidates::iron(binnacle, standing, true, true) {
+        for fore_and_aft in options(Axis::ForeAndAft) {
+            for athwartship in options(Axis::Athwartship) {
+                visit(&Setting {
+                    fore_and_aft: fore_and_aft.clone(),
+                    athwartship,
+                    quadrantal: soft.quadrantal.clone(),
+                    flinders: soft.flinders.clone(),
+                    heeling: standing.heeling.clone(),
+                });
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bound_is_never_above_what_it_bounds() {
+    use rand::{RngExt, SeedableRng};
+    let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+    let waters = [
+        water("a", 24_000.0, 38_000.0, 1.0),
+        water("b", 30_000.0, -9_000.0, 0.5),
+    ];
+    let compass = objective::Compass::new(0.7);
+    for _ in 0..200 {
+        let ship = crate::ship::test_support::random_ship(&mut rng);
+        let objective = objective::Objective::new(&compass, &waters, |_| ship);
+        let corner: [f64; 2] = std::array::from_fn(|_| rng.random_range(-9_000.0..9_000.0));
+        let size: [f64; 2] = std::array::from_fn(|_| rng.random_range(0.0..4_000.0));
+        let within = objective::Box2 {
+            x: [corner[0], corner[0] + size[0]],
+            y: [corner[1], corner[1] + size[1]],
+        };
+        let (iron, bound) = (objective.bound_for_iron(), objective.bound_deg(&within));
+        for _ in 0..20 {
+            let b = [0, 1].map(|a| corner[a] + size[a] * rng.random_range(0.0..1.0));
+            let worst = objective.worst_deg(b);
+            assert!(bound <= worst + 1e-9, "{bound} {worst}");
+            assert!(iron <= worst + 1e-9, "{iron} {worst}");
+        }
+    }
+}
+
+/// Whatever the quadrant of the ship's field, magnets go in with the right ends, and
+/// what is left is small.
+#[test]
+fn magnets_cure_every_quadrant_of_signs() {
+    for (bx, by) in [
+        (4_000.0, 3_000.0),
+        (4_000.0, -3_000.0),
+        (-4_000.0, 3_000.0),
+        (-4_000.0, -3_000.0),
+    ] {
+        let mut ship = bare();
+        ship.b_nt = [bx, by, 0.0];
+        let case = Case::new(ship, class_a(), 33.0);
+        let outcome = case.plan();
+        let plan = &outcome.plans[0];
+        assert!(
+            plan.worst_residual_deg < 1.0,
+            "{bx} {by}: {}",
+            plan.worst_residual_deg
+        );
+        let cures = |axis: Axis, b: f64| {
+            let trays = plan.setting.trays(axis);
+            assert!(!trays.is_empty());
+            trays.iter().all(|tray| tray.red == axis.red(b > 0.0))
+        };
+        assert!(
+            cures(Axis::ForeAndAft, bx) && cures(Axis::Athwartship, by),
+            "{bx} {by}"
+        );
+    }
+}
+
+#[test]
+fn the_first_plan_takes_the_fewest_moves_among_near_equals_and_the_others_trade() {
+    let outcome = case(60.0).plan();
+    let first = &outcome.plans[0];
+    let best = outcome
+        .plans
+        .iter()
+        .map(|p| p.worst_residual_deg)
+        .fold(f64::INFINITY, f64::min);
+    assert!(first.worst_residual_deg <= best + 0.1);
+    assert!(outcome.plans.len() >= 3);
+    for other in &outcome.plans[1..] {
+        assert!(other.moves != first.moves);
+        let more = other.moves > first.moves;
+        assert_eq!(more, other.worst_residual_deg < first.worst_residual_deg);
+    }
+    assert!(outcome.optimality.unwrap().proven);
+}
+
+#[test]
+fn no_plan_uses_what_is_not_on_board() {
+    let mut form: BinnacleForm = class_a().into();
+    form.aboard.magnets[0].count = 5;
+    form.aboard.quadrantal = vec!["7 inch".to_owned()];
+    form.aboard.flinders_pieces_mm = vec![225.0];
+    let binnacle = Binnacle::try_from(form).unwrap();
+    let mut ship = bare();
+    ship.b_nt = [9_000.0, 7_000.0, 0.0];
+    let outcome = Case::new(ship, binnacle.clone(), 60.0).plan();
+    assert!(!outcome.plans.is_empty());
+    for plan in &outcome.plans {
+        for step in &plan.steps {
+            binnacle.with_setting(step.setting_after.clone()).unwrap();
+        }
+        let used: u8 = Axis::BOTH
+            .iter()
+            .flat_map(|a| plan.setting.trays(*a))
+            .map(|t| t.count)
+            .sum();
+        assert!(used <= 5);
+    }
+}
+
+/// Port for starboard: the plan leaves as much, with as many moves.
+#[test]
+fn the_mirror_image_of_a_ship_gets_as_good_a_plan() {
+    let mut ship = bare();
+    ship.b_nt = [2_500.0, 1_800.0, 500.0];
+    let mut mirrored = ship;
+    for (row, column) in [(0, 1), (1, 0), (1, 2), (2, 1)] {
+        mirrored.chi[row][column] *= -1.0;
+    }
+    mirrored.b_nt[1] *= -1.0;
+    let mut binnacle: BinnacleForm = class_a().into();
+    binnacle.setting.athwartship.clear();
+    let binnacle = Binnacle::try_from(binnacle).unwrap();
+    let plan = |ship, heading| {
+        let mut case = Case::new(ship, binnacle.clone(), heading);
+        case.model.constant_deg = 0.0;
+        case.plan().plans.remove(0)
+    };
+    let (one, other) = (plan(ship, 70.0), plan(mirrored, 290.0));
+    assert!((one.worst_residual_deg - other.worst_residual_deg).abs() < 0.011);
+    assert_eq!(one.moves, other.moves);
+    let [a, b] = [one, other].map(|plan| plan.setting.athwartship[0].red);
+    assert_eq!(a, b.reversed());
+}

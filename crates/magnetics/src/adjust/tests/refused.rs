@@ -1,0 +1,151 @@
+//! What is refused, and what cannot be.
+
+use super::super::*;
+use super::*;
+
+fn refusal_of(change: impl FnOnce(&mut Adjustment<'_>)) -> Refused {
+    let case = case(60.0);
+    let mut adjustment = case.adjustment();
+    adjustment.limits = Limits::default();
+    change(&mut adjustment);
+    let outcome = plan(&adjustment).unwrap();
+    assert!(outcome.plans.is_empty(), "a refused plan is not given");
+    outcome.refusals.into_iter().next().unwrap()
+}
+
+#[test]
+fn what_is_refused_says_why_and_what_would_cure_it() {
+    let refused = refusal_of(|a| a.circumstances.cargo_on_board = true);
+    assert_eq!(refused.refusal, Refusal::CargoOnBoard);
+    assert_eq!(refused.cures[0], Cure::AfterDischarge);
+    let refused = refusal_of(|a| a.circumstances.model_age_days = Some(400.0));
+    assert!(refused.words.contains("400 days old"), "{}", refused.words);
+    assert_eq!(refused.cures[0], Cure::HeadingsAtSea);
+    let refused = refusal_of(|a| a.limits.band_deg = 0.2);
+    assert!(matches!(refused.refusal, Refusal::BandTooWide { .. }));
+    let refused = refusal_of(|a| a.limits.residual_deg = 0.5);
+    assert!(
+        matches!(refused.refusal, Refusal::ResidualTooLarge { .. }),
+        "{}",
+        refused.words
+    );
+    assert_eq!(refused.cures[0], Cure::OtherCorrectors);
+}
+
+#[test]
+fn a_model_without_covariance_is_refused() {
+    let mut case = case(60.0);
+    case.model.covariance = None;
+    let outcome = case.plan();
+    assert_eq!(outcome.refusals[0].refusal, Refusal::NoCovariance);
+}
+
+#[test]
+fn with_a_poor_magnetometer_spheres_stay_and_where_they_must_move_that_is_said() {
+    let mut ship = bare();
+    ship.chi[1][1] = -0.30;
+    let case = Case::new(ship, class_a(), 60.0);
+    let mut adjustment = case.adjustment();
+    adjustment.scale_sd = 0.05;
+    adjustment.limits = Limits::default();
+    let outcome = plan(&adjustment).unwrap();
+    let refused = &outcome.refusals[0];
+    assert!(
+        matches!(refused.refusal, Refusal::MagnetometerTooPoor { .. }),
+        "{}",
+        refused.words
+    );
+    assert_eq!(refused.cures[0], Cure::BetterMagnetometer);
+    adjustment.limits.residual_deg = 20.0;
+    adjustment.limits.band_deg = 20.0;
+    let outcome = plan(&adjustment).unwrap();
+    assert_eq!(
+        outcome.plans[0].setting.quadrantal,
+        case.binnacle.setting.quadrantal
+    );
+    assert!(
+        outcome
+            .notes
+            .iter()
+            .any(|note| note.contains("spheres are left as found"))
+    );
+}
+
+#[test]
+fn a_bar_is_left_alone_where_the_data_do_not_tell_chi13() {
+    let mut case = case(60.0);
+    case.model.identifiable = Some(Identifiable {
+        bx_nt: false,
+        chi13: false,
+        by_nt: true,
+        chi23: true,
+        chi11_minus_chi22: true,
+        chi12: false,
+        chi21: false,
+        constant_deg: false,
+    });
+    let outcome = case.plan();
+    for plan in &outcome.plans {
+        assert_eq!(plan.setting.flinders, case.binnacle.setting.flinders);
+    }
+}
+
+#[test]
+fn mistakes_at_the_berth_are_named() {
+    let case = case(60.0);
+    let [x, y] = case.reading.field_nt();
+    for (heading, field, mistake) in [
+        (60.0, [x / 1e5, y / 1e5], Mistake::Gauss),
+        (60.0, [x / 1e3, y / 1e3], Mistake::Microtesla),
+        (60.0, [y, x], Mistake::SwappedAxes),
+        (60.0, [x, -y], Mistake::StarboardReversed),
+        (60.0, [-x, y], Mistake::ForwardReversed),
+        (240.0, [x, y], Mistake::HeadingReversed),
+    ] {
+        let found = mistakes(
+            &case.model,
+            BISCAY,
+            MagneticHeading::new(heading).unwrap(),
+            field,
+            case.reading.errors(),
+            Alignment::Keel,
+        );
+        assert_eq!(found, [mistake], "{mistake}");
+    }
+    let right = mistakes(
+        &case.model,
+        BISCAY,
+        case.reading.magnetic(),
+        [x, y],
+        case.reading.errors(),
+        Alignment::Keel,
+    );
+    assert_eq!(right, []);
+    let mut wrong = case;
+    let heading = MagneticHeading::new(240.0).unwrap();
+    let errors = wrong.reading.errors();
+    wrong.reading = BerthReading::new(heading, [x, y], errors, Alignment::Keel).unwrap();
+    let outcome = wrong.plan();
+    let words = &outcome.refusals[0].words;
+    assert!(words.contains("the heading is 180 degrees off"), "{words}");
+}
+
+#[test]
+fn what_cannot_be_is_named() {
+    let case = case(60.0);
+    let named = |change: &dyn Fn(&mut Adjustment<'_>)| {
+        let mut adjustment = case.adjustment();
+        change(&mut adjustment);
+        plan(&adjustment).unwrap_err().to_string()
+    };
+    assert!(named(&|a| a.waters = &[]).starts_with("waters: there are none"));
+    assert!(named(&|a| a.scale_sd = -1.0).starts_with("scale_sd is -1"));
+    assert!(named(&|a| a.compass_deg = Some(f64::NAN)).starts_with("compass_deg is NaN"));
+    let error = named(&|a| a.vertical = Some(VerticalReading { down_nt: 1e9 }));
+    assert!(error.starts_with("down_nt is"), "{error}");
+    let weak = [water("pole", 900.0, 55_000.0, 1.0)];
+    let mut adjustment = case.adjustment();
+    adjustment.waters = &weak;
+    let error = plan(&adjustment).unwrap_err().to_string();
+    assert!(error.starts_with("waters[0].h_nt is 900"), "{error}");
+}
