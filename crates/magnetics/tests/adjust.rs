@@ -86,6 +86,67 @@ fn the_berth_in_the_documentation_reads() {
     assert!((berth.reading.magnetic().degrees() - 63.0).abs() < 1.5);
 }
 
+/// Numbers that no ship has, in every field of the form: an error, a refusal or a plan in
+/// finite numbers, and never a panic.
+#[test]
+fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
+    let page = include_str!("../../../docs/plan.md");
+    let form = page
+        .split("```json\n")
+        .nth(1)
+        .unwrap()
+        .split("```")
+        .next()
+        .unwrap();
+    let mut form: serde_json::Value = serde_json::from_str(form).unwrap();
+    let mut rng = Random::new(5);
+    let binnacle = adjusting::binnacle(&mut rng, 1);
+    let truth = adjusting::ship(&mut rng, &binnacle).with(&binnacle.setting);
+    let waters = adjusting::knowledge::waters(&mut rng, 0.15);
+    let model = adjusting::knowledge::model(&mut rng, &truth, &waters);
+    // The reading is hers, so that most of what is written does give a plan.
+    let page: binnacle_magnetics::adjust::BerthForm = serde_json::from_value(form.clone()).unwrap();
+    let there = page.read().unwrap();
+    let place = (there.earth.h_nt, there.earth.z_nt);
+    let [x, y, z] = truth.field(place, there.reading.magnetic().degrees());
+    form["forward_nt"] = serde_json::json!(x);
+    form["starboard_nt"] = serde_json::json!(y);
+    form["down_nt"] = serde_json::json!(z);
+    form["limits"] = serde_json::json!({ "residual_deg": 60, "band_deg": 60 });
+    let strange = [
+        0.0, -0.0, 1e-300, -1.0, 1.0, 89.9, 180.0, 359.9, 4e3, -7e4, 1e9, -1e308,
+    ];
+    let fields: Vec<String> = form.as_object().unwrap().keys().cloned().collect();
+    let mut planned = 0;
+    for field in &fields {
+        for value in strange {
+            let mut form = form.clone();
+            form[field] = serde_json::json!(value);
+            let form = serde_json::from_value::<binnacle_magnetics::adjust::BerthForm>(form);
+            let Ok(berth) = form
+                .map_err(drop)
+                .and_then(|form| form.read().map_err(drop))
+            else {
+                continue;
+            };
+            let adjustment = berth.adjustment(&model, &binnacle);
+            let Ok(outcome) = binnacle_magnetics::adjust::plan(&adjustment) else {
+                continue;
+            };
+            planned += u32::from(!outcome.plans.is_empty());
+            for plan in &outcome.plans {
+                assert!(plan.worst_residual_deg.is_finite() && plan.widest_band_deg.is_finite());
+                assert!(
+                    plan.steps
+                        .iter()
+                        .all(|step| step.expected_compass_deg.is_finite())
+                );
+            }
+        }
+    }
+    assert!(planned > 20, "{planned}");
+}
+
 #[test]
 fn the_band_holds_and_little_is_left_on_ships_that_the_planner_never_saw() {
     let tally = Tally::of(1000..1060, 0, FLUXGATE);

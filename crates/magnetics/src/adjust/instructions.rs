@@ -103,12 +103,9 @@ pub(super) fn steps(
     to: &Setting,
 ) -> Vec<Step> {
     let start = adjustment.standing();
-    let first_deg = adjustment
-        .compass_deg
-        .filter(|_| adjustment.now.is_none())
-        .unwrap_or_else(|| {
-            compass_at_berth(adjustment, condition, &effect(condition.binnacle, start))
-        });
+    let first_deg = adjustment.compass_deg.unwrap_or_else(|| {
+        compass_at_berth(adjustment, condition, &effect(condition.binnacle, start))
+    });
     let mut steps = Vec::new();
     let mut before = start.clone();
     let mut shown_deg = first_deg;

@@ -55,7 +55,7 @@ pub struct Adjustment<'a> {
     pub reading: &'a BerthReading,
     /// Relative standard deviation of the magnetometer's scale.
     pub scale_sd: f64,
-    /// What the compass read at the berth before the bowl was taken out, degrees.
+    /// What the compass reads at the berth with the correctors as they stand now, degrees.
     pub compass_deg: Option<f64>,
     /// Vertical field there, if it was read.
     pub vertical: Option<VerticalReading>,

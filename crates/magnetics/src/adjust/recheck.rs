@@ -91,6 +91,7 @@ pub fn recheck(
     if let Some(setting) = wrong_end(adjustment, &condition, step, turned_deg) {
         let outcome = Box::new(plan(&Adjustment {
             now: Some(&setting),
+            compass_deg: Some(after_deg),
             ..adjustment.clone()
         })?);
         return Ok(Recheck::WrongEnd {
@@ -106,6 +107,7 @@ pub fn recheck(
     let outcome = Box::new(plan(&Adjustment {
         binnacle: &binnacle,
         now: Some(&setting),
+        compass_deg: Some(after_deg),
         ..adjustment.clone()
     })?);
     Ok(Recheck::OtherStrength {

@@ -153,6 +153,11 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
         panic!("{change:?}")
     };
     assert_eq!(setting, reversed);
+    // The new plan goes on from what was read.
+    let first = &outcome.plans[0].steps[0];
+    let read_deg = wrap(50.0 + change.0);
+    let next_deg = wrap(read_deg + first.change_deg);
+    assert!((first.expected_compass_deg - next_deg).abs() < 1e-9);
     assert!(outcome.plans[0].moves > 0);
 
     // Magnets of 0.6 of their moment, then as when she was measured.
