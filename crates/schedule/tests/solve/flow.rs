@@ -64,7 +64,7 @@ pub(crate) fn least_cost(problem: &Problem) -> i64 {
     let (source, sink) = (needs + problem.teams.len(), needs + problem.teams.len() + 1);
     let mut network = Network {
         edges: Vec::new(),
-        from: (0..sink + 1).map(|_| Vec::new()).collect(),
+        from: (0..=sink).map(|_| Vec::new()).collect(),
     };
     for (need, unmet) in problem.unmet.iter().enumerate() {
         network.add(source, need, 1, 0);
