@@ -1,10 +1,12 @@
 //! What a deviation card says; its form as JSON.
 
+use crate::binnacles::SettingSchema;
 use crate::compasses::Compass;
 use crate::deviation::{HandbookSchema, Row, Worst};
 use crate::ids::{ModelId, VesselId};
 use crate::streams::CardWithdrawnSchema;
 use crate::time::Time;
+use binnacle_magnetics::binnacle::{Setting, Shape};
 use binnacle_magnetics::handbook::Handbook;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
@@ -40,6 +42,10 @@ pub struct Card {
     /// Why no card from before the model's epoch holds; none where there was no change.
     #[schema(required, value_type = Option<CardWithdrawnSchema>)]
     pub replaces: Option<CardWithdrawn>,
+    /// The binnacle's correctors as they were last recorded; none where nobody recorded
+    /// them.
+    #[schema(required)]
+    pub correctors: Option<Correctors>,
     /// Magnetic cargo on board at that date, by the logbook.
     pub cargo: Vec<CargoAboard>,
     /// The last degaussing or deperming in the logbook.
@@ -152,6 +158,26 @@ pub struct Coefficients {
     /// What an adjuster would find who swung the ship.
     #[schema(value_type = HandbookSchema)]
     pub handbook: Handbook,
+}
+
+/// How a binnacle's correctors stand.
+#[derive(Clone, Debug, Serialize, ToSchema)]
+#[schema(as = CardCorrectors)]
+pub struct Correctors {
+    /// The revision of the binnacle that says so.
+    #[schema(example = 3)]
+    pub revision: i64,
+    /// When it was written.
+    pub at: Time,
+    /// The binnacle: maker, model and serial number.
+    #[schema(example = "Cassens & Plath type 11, no. 2047")]
+    pub binnacle: String,
+    /// How each of them stands.
+    #[schema(value_type = SettingSchema)]
+    pub setting: Setting,
+    /// What the quadrantal correctors are.
+    #[serde(skip)]
+    pub shape: Option<Shape>,
 }
 
 /// Magnetic cargo on board.

@@ -4,11 +4,13 @@
 //! is asked for. The time of asking only decides whether the model is too old.
 
 use super::contents::{
-    Card, CardRow, CargoAboard, Coefficients, NotRecorded, Place, STATEMENT, Ship, Source, Status,
+    Card, CardRow, CargoAboard, Coefficients, Correctors, NotRecorded, Place, STATEMENT, Ship,
+    Source, Status,
 };
 use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
 use crate::alerts::{Cause, OpenAlert};
+use crate::binnacles::Revised;
 use crate::compasses::Compass;
 use crate::deviation::{self, Row};
 use crate::models::StoredModel;
@@ -26,6 +28,8 @@ pub(super) struct Basis {
     pub(super) compass: Compass,
     pub(super) place: Place,
     pub(super) model: StoredModel,
+    /// The binnacle as it is recorded.
+    pub(super) binnacle: Option<Revised>,
     /// What people reported, without what is withdrawn.
     pub(super) logbook: Vec<LogbookEntry>,
     /// What is open on this compass.
@@ -68,14 +72,10 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
         replaces: model.replaces(),
         notes: notes(model, &basis.alerts, &cargo),
         cargo,
+        not_recorded: not_recorded(basis.binnacle.as_ref()),
+        correctors: basis.binnacle.as_ref().map(correctors),
         degaussed_at: last(&basis.logbook, LogbookKind::Degaussing, at),
         adjusted_at: last(&basis.logbook, LogbookKind::Adjustment, at),
-        not_recorded: vec![
-            NotRecorded::Correctors,
-            NotRecorded::DegaussingCoils,
-            NotRecorded::Adjuster,
-            NotRecorded::NextDue,
-        ],
         model: Source {
             id: model.id,
             version: model.version,
@@ -142,6 +142,31 @@ fn line((row, observed): (&Row, Observed)) -> CardRow {
         band95_deg: row.band95_deg.unwrap_or(180.0),
         samples: observed.samples,
         residual_deg: observed.residual_deg,
+    }
+}
+
+fn not_recorded(binnacle: Option<&Revised>) -> Vec<NotRecorded> {
+    let correctors = binnacle.is_none().then_some(NotRecorded::Correctors);
+    let always = [
+        NotRecorded::DegaussingCoils,
+        NotRecorded::Adjuster,
+        NotRecorded::NextDue,
+    ];
+    correctors.into_iter().chain(always).collect()
+}
+
+fn correctors(found: &Revised) -> Correctors {
+    let binnacle = &found.binnacle.0;
+    let design = &binnacle.design;
+    Correctors {
+        revision: found.revision,
+        at: found.at,
+        binnacle: format!("{} {}, no. {}", design.maker, design.model, binnacle.serial),
+        shape: binnacle.setting.quadrantal.as_ref().and_then(|pair| {
+            let sizes = &design.quadrantal.as_ref()?.sizes;
+            Some(sizes.iter().find(|size| size.name == pair.size)?.shape)
+        }),
+        setting: binnacle.setting.clone(),
     }
 }
 

@@ -23,6 +23,7 @@ use crate::access::Reader;
 use crate::alerts;
 use crate::analysis;
 use crate::app::App;
+use crate::binnacles;
 use crate::compasses;
 use crate::deviation;
 use crate::error::{Error, Problem, Result};
@@ -172,6 +173,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let place = place(position, query.at(&model)?, &settings)?;
     let (from, until) = (model.data_from, model.data_until.0.plus_seconds(1.0));
     let samples = analysis::chunks(db, id, compass.id, Some(from), Some(until.into())).await?;
+    let binnacle = binnacles::current(db, id, compass.id).await?;
     let logbook = logbook::of_compass(db, id, compass.id).await?;
     let alerts = alerts::open_of_compass(db, id, compass.id).await?;
     let now = app.clock.now().into();
@@ -188,6 +190,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             place,
             observed: observed(&samples, from)?,
             model,
+            binnacle,
             logbook,
             alerts,
             limit_deg: settings.alerts.band95_deg,

@@ -1,5 +1,6 @@
 //! Deviation cards, and when there is none.
 
+use crate::binnacles::{binnacle, put};
 use crate::on_both;
 use crate::support::{Answer, Person, Ship, Shore, days_at_sea, passage, struck, truth};
 use reqwest::Method;
@@ -10,6 +11,7 @@ on_both!(
     the_four_forms_of_a_card_agree_and_are_the_same_each_time,
     a_card_is_for_the_place_and_the_date_that_are_asked_for,
     each_compass_has_a_card_of_its_own,
+    a_card_tells_how_the_correctors_were_last_recorded,
     what_cannot_be_asked_is_refused_by_its_field,
     there_is_no_card_where_it_would_mislead,
     a_card_from_after_a_change_says_that_no_older_one_holds,
@@ -189,6 +191,32 @@ async fn each_compass_has_a_card_of_its_own(shore: Shore) {
         ada.get(&of(&card["vessel"]["id"])).await.problem(),
         "not-found"
     );
+    shore.finish().await;
+}
+
+async fn a_card_tells_how_the_correctors_were_last_recorded(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = modelled(&shore, &ada).await;
+    let card = ada.get(&nao.path("/card.json")).await.good();
+    assert_eq!(card["correctors"], json!(null));
+    let compass = card["compass"]["id"].as_str().unwrap();
+    let path = nao.path(&format!("/compasses/{compass}/binnacle"));
+    let mut moved = binnacle();
+    moved["setting"]["athwartship"] =
+        json!([{ "hole": 7, "magnet": "200 mm", "count": 1, "red": "port" }]);
+    put(&ada, &path, &moved).await.good();
+    let card = ada.get(&nao.path("/card.json")).await.good();
+    assert_eq!(card["correctors"]["revision"], 1);
+    let athwartship = &card["correctors"]["setting"]["athwartship"];
+    assert_eq!(*athwartship, moved["setting"]["athwartship"]);
+    let unrecorded = card["not_recorded"].to_string();
+    assert!(!unrecorded.contains("correctors"), "{unrecorded}");
+    let svg = ada.get(&nao.path("/card.svg")).await.text;
+    let stands_in = card["correctors"]["binnacle"].as_str().unwrap();
+    assert!(stands_in.ends_with(", no. 2047"), "{stands_in}");
+    for words in ["1 × 200 mm in 7, red to port", ">Flinders bar<"] {
+        assert!(svg.contains(words), "{words}");
+    }
     shore.finish().await;
 }
 

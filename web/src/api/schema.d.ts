@@ -1516,6 +1516,24 @@ export interface components {
             /** @description What an adjuster would find who swung the ship. */
             handbook: components["schemas"]["HandbookCoefficients"];
         };
+        /** @description How a binnacle's correctors stand. */
+        CardCorrectors: {
+            /** @description When it was written. */
+            at: components["schemas"]["Time"];
+            /**
+             * @description The binnacle: maker, model and serial number.
+             * @example Cassens & Plath type 11, no. 2047
+             */
+            binnacle: string;
+            /**
+             * Format: int64
+             * @description The revision of the binnacle that says so.
+             * @example 3
+             */
+            revision: number;
+            /** @description How each of them stands. */
+            setting: components["schemas"]["CorrectorSetting"];
+        };
         /** @description The model that a card is made from. */
         CardModel: {
             /** @description The time of the first sample in it. */
@@ -2086,6 +2104,7 @@ export interface components {
             coefficients: components["schemas"]["CardCoefficients"];
             /** @description The compass: each magnetic element has a card of its own. */
             compass: components["schemas"]["Compass"];
+            correctors: components["schemas"]["CardCorrectors"] | null;
             degaussed_at: components["schemas"]["Time"] | null;
             /** @description The model that says so. */
             model: components["schemas"]["CardModel"];

@@ -16,7 +16,8 @@ const NOTE_LINE: f32 = 9.4;
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
     coefficients(sheet, card, top + 8.0);
     state(sheet, card, top + 8.0);
-    notes(sheet, card, top + 90.0);
+    let below = correctors(sheet, card, top + 90.0);
+    notes(sheet, card, below);
     signatures(sheet);
     source(sheet, card);
 }
@@ -64,8 +65,18 @@ fn state(sheet: &mut Sheet, card: &Card, top: f32) {
         "coils {UNKNOWN}; last degaussed: {}",
         in_logbook(card.degaussed_at)
     );
+    let recorded = card
+        .correctors
+        .as_ref()
+        .map_or(UNKNOWN.to_owned(), |found| {
+            format!(
+                "as below, recorded {} (revision {})",
+                day(found.at),
+                found.revision
+            )
+        });
     let facts = [
-        ("Correctors", UNKNOWN.to_owned()),
+        ("Correctors", recorded),
         ("Degaussing", degaussing),
         ("Cargo", cargo(&card.cargo)),
         ("Last adjusted", in_logbook(card.adjusted_at)),
@@ -93,6 +104,20 @@ fn cargo(aboard: &[CargoAboard]) -> String {
         [] => "no magnetic cargo in the logbook".to_owned(),
         some => format!("magnetic: {}", some.join(", ")),
     }
+}
+
+/// A line for each; answers with where the next thing begins.
+fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
+    let Some(found) = &card.correctors else {
+        return top;
+    };
+    sheet.text((LEFT, top), Style::bold(8.0), "Correctors");
+    let lines = super::correctors::lines(found);
+    for (index, (label, value)) in lines.iter().enumerate() {
+        let at = (LEFT + 74.0, top + NOTE_LINE * index as f32);
+        fact(sheet, at, label, value, RIGHT - LEFT - 74.0);
+    }
+    top + NOTE_LINE * lines.len() as f32 + 7.0
 }
 
 /// As many as there is room for; the last line says how many more there are.

@@ -70,6 +70,11 @@ fn facts(card: &Card) -> (Facts, Facts) {
     } else {
         format!("{} ({role})", compass.name)
     };
+    let recorded = card
+        .correctors
+        .as_ref()
+        .map(|found| found.binnacle.as_str());
+    let binnacle = compass.binnacle.as_deref().or(recorded);
     let of_compass = vec![
         ("Compass", named),
         ("Make and type", known(compass.make.as_deref()).to_owned()),
@@ -77,7 +82,7 @@ fn facts(card: &Card) -> (Facts, Facts) {
             "Serial number",
             known(compass.serial_number.as_deref()).to_owned(),
         ),
-        ("Binnacle", known(compass.binnacle.as_deref()).to_owned()),
+        ("Binnacle", known(binnacle).to_owned()),
         (
             "Variation",
             format!(

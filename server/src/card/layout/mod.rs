@@ -4,6 +4,7 @@
 //! straight across; all that the card says of itself stands on the one sheet.
 
 mod chart;
+mod correctors;
 mod foot;
 mod head;
 mod table;
