@@ -10,11 +10,12 @@ import { mkdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 import { alerts } from './scenarios/alerts.mjs';
+import { papers } from './scenarios/papers.mjs';
 import { session } from './scenarios/session.mjs';
 import { vessel } from './scenarios/vessel.mjs';
 
 /** What a user must be able to do, each in a browser of its own. */
-const scenarios = { ...vessel, ...alerts, ...session };
+const scenarios = { ...vessel, ...papers, ...alerts, ...session };
 
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
 

@@ -87,6 +87,13 @@ export const findDeviation = (id: string, compass?: string, place?: Place) =>
     }),
   );
 
+export const findCard = (id: string, compass?: string, place?: Place) =>
+  answer(
+    client.GET('/api/v1/vessels/{id}/card.json', {
+      params: { path: { id }, query: { ...which(compass), ...place } },
+    }),
+  );
+
 export const findCoverage = (id: string, compass?: string) =>
   answer(
     client.GET('/api/v1/vessels/{id}/coverage', {

@@ -16,6 +16,7 @@ export type Change = Schemas['Change'];
 export type ChangeCause = Schemas['ChangeCause'];
 export type Compass = Schemas['Compass'];
 export type Coverage = Schemas['Coverage'];
+export type DeviationCard = Schemas['DeviationCard'];
 export type DeviationRow = Schemas['DeviationRow'];
 export type DeviationTable = Schemas['DeviationTable'];
 export type Delivery = Schemas['Delivery'];

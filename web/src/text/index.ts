@@ -7,7 +7,16 @@ import { alerts } from './alerts';
 import { changes } from './changes';
 import { common } from './common';
 import { deviation } from './deviation';
+import { papers } from './papers';
 import { trust } from './trust';
 import { vessels } from './vessels';
 
-export const text = { ...common, ...alerts, ...vessels, ...deviation, ...changes, ...trust };
+export const text = {
+  ...common,
+  ...alerts,
+  ...vessels,
+  ...deviation,
+  ...changes,
+  ...trust,
+  ...papers,
+};
