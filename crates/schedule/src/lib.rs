@@ -3,8 +3,17 @@
 //! What always holds: nothing here reads a clock or draws a random number; the same
 //! input gives the same schedule. In reading order:
 
-pub mod needs;
+pub mod time;
+
 pub mod ports;
 pub mod rules;
+
+pub mod needs;
+
+pub mod calls;
+
+pub mod input;
+
+pub mod plan;
 
 pub mod solve;

@@ -1,5 +1,7 @@
 //! Due dates by the shipped rules, each worked out by hand.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use binnacle_schedule::needs::{CauseKind, Compass, Due, Ship, Terms, Urgency, due};
 use binnacle_schedule::rules::shipped;
 use chrono::NaiveDate;

@@ -210,24 +210,34 @@ pub fn due(
     })
 }
 
-fn urgency(first: &Cause, terms: &Terms, today: NaiveDate) -> Urgency {
-    let within = |days: u32| {
-        first.due
-            <= today
+impl Terms {
+    /// How much a due date presses, when nothing but the date does.
+    pub fn urgency(&self, due: NaiveDate, today: NaiveDate) -> Urgency {
+        let within = |days: u32| {
+            today
                 .checked_add_days(Days::new(days.into()))
-                .unwrap_or(NaiveDate::MAX)
-    };
+                .is_none_or(|last| due <= last)
+        };
+        if due < today {
+            Urgency::Overdue
+        } else if within(self.urgent_days) {
+            Urgency::Urgent
+        } else if within(self.soon_days) {
+            Urgency::Soon
+        } else {
+            Urgency::Routine
+        }
+    }
+}
+
+/// A card that is not to be trusted makes urgent what would be due soon.
+fn urgency(first: &Cause, terms: &Terms, today: NaiveDate) -> Urgency {
     let distrusted = matches!(
         first.kind,
         CauseKind::OverLimit | CauseKind::Change | CauseKind::FailedVerification
     );
-    if first.due < today {
-        Urgency::Overdue
-    } else if within(terms.urgent_days) || (distrusted && within(terms.soon_days)) {
-        Urgency::Urgent
-    } else if within(terms.soon_days) {
-        Urgency::Soon
-    } else {
-        Urgency::Routine
+    match terms.urgency(first.due, today) {
+        Urgency::Soon if distrusted => Urgency::Urgent,
+        by_date => by_date,
     }
 }

@@ -1,0 +1,156 @@
+//! Port calls: when a ship is where, and how sure that is.
+//!
+//! What always holds: a call that [`PortCall::checked`] let pass ends after it begins
+//! and is not over; its uncertainties are hours within reason.
+
+mod berth;
+
+pub use berth::{BerthHeading, HeadingSource, Observed, berth_heading};
+
+use crate::ports::PortCode;
+use crate::time::Instant;
+use serde::{Deserialize, Serialize};
+
+/// A ship's call at a port.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PortCall {
+    /// Its name.
+    pub id: String,
+    /// The ship.
+    pub vessel: String,
+    /// The port.
+    pub port: PortCode,
+    /// The berth, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub berth: Option<String>,
+    /// When she is expected alongside.
+    pub eta: Instant,
+    /// She comes within so many hours of that, nineteen times in twenty.
+    #[serde(default)]
+    pub eta_uncertainty_h: f64,
+    /// When she is expected to leave.
+    pub etd: Instant,
+    /// She leaves within so many hours of that, nineteen times in twenty.
+    #[serde(default)]
+    pub etd_uncertainty_h: f64,
+    /// Her heading alongside, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub berth_heading_deg: Option<f64>,
+}
+
+/// What is wrong with a call.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{field}: {detail}")]
+pub struct CallError {
+    /// The field at fault.
+    pub field: &'static str,
+    /// What is wrong with it.
+    pub detail: String,
+}
+
+impl PortCall {
+    /// Looks at what can be said of one call alone.
+    ///
+    /// # Errors
+    /// [`CallError`] with the first field that cannot be.
+    pub fn checked(&self, now: Instant) -> Result<(), CallError> {
+        let wrong = |field, detail| Err(CallError { field, detail });
+        if self.etd <= self.eta {
+            return wrong("etd", format!("{} is not after eta, {}", self.etd, self.eta));
+        }
+        if self.etd <= now {
+            return wrong("etd", format!("{} is in the past: it is {now}", self.etd));
+        }
+        for (field, hours) in [
+            ("eta_uncertainty_h", self.eta_uncertainty_h),
+            ("etd_uncertainty_h", self.etd_uncertainty_h),
+        ] {
+            if !(0.0..=720.0).contains(&hours) {
+                return wrong(field, format!("{hours} is not within 0 to 720"));
+            }
+        }
+        match self.berth_heading_deg {
+            Some(heading) if !(0.0..=360.0).contains(&heading) => {
+                wrong("berth_heading_deg", format!("{heading} is not within 0 to 360"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The chance that she is not alongside for `job_h` hours between two instants.
+    ///
+    /// Arrival and departure are taken as normal and independent, and the three ways to
+    /// fail (she comes too late, leaves too early, stays too short) as if they were too.
+    pub fn chance_of_missing(&self, begins: Instant, ends: Instant, job_h: f64) -> f64 {
+        let (arrival, departure) = (self.eta_uncertainty_h / 1.96, self.etd_uncertainty_h / 1.96);
+        let in_time = below(ends.hours_since(self.eta) - job_h, arrival);
+        let long_enough = below(self.etd.hours_since(begins) - job_h, departure);
+        let stays = below(self.etd.hours_since(self.eta) - job_h, arrival.hypot(departure));
+        1.0 - in_time * long_enough * stays
+    }
+}
+
+/// The chance that a normal error of this size is below a margin; at no error at all,
+/// whether the margin is one.
+fn below(margin: f64, sigma: f64) -> f64 {
+    if sigma <= 0.0 {
+        return f64::from(u8::from(margin >= 0.0));
+    }
+    let z = margin / sigma;
+    let tail = half_erfc(z.abs() / std::f64::consts::SQRT_2);
+    if z >= 0.0 { 1.0 - tail } else { tail }
+}
+
+/// Half the complementary error function of what is not negative (Abramowitz and Stegun
+/// 1964, 7.1.26: within 1.5e-7).
+fn half_erfc(x: f64) -> f64 {
+    let t = 1.0 / (1.0 + 0.327_591_1 * x);
+    let series = 0.254_829_592
+        + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429)));
+    0.5 * t * series * (-x * x).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(text: &str) -> Instant {
+        Instant::parse(text).unwrap()
+    }
+
+    fn call(eta_uncertainty_h: f64) -> PortCall {
+        PortCall {
+            id: "c".to_owned(),
+            vessel: "v".to_owned(),
+            port: PortCode::parse("NLRTM").unwrap(),
+            berth: None,
+            eta: at("2026-12-01T06:00:00Z"),
+            eta_uncertainty_h,
+            etd: at("2026-12-03T06:00:00Z"),
+            etd_uncertainty_h: 0.0,
+            berth_heading_deg: None,
+        }
+    }
+
+    #[test]
+    fn at_the_bounds_of_the_uncertainty_one_call_in_forty_is_missed() {
+        // Latest start 15:00, nine hours after an ETA good to nine hours: 2.5 %.
+        let (begins, ends) = (at("2026-12-01T08:00:00Z"), at("2026-12-01T18:00:00Z"));
+        let missed = call(9.0).chance_of_missing(begins, ends, 3.0);
+        assert!((missed - 0.025).abs() < 1e-4, "{missed}");
+        assert!(call(0.0).chance_of_missing(begins, ends, 3.0).abs() < 1e-12);
+        let noon = at("2026-12-01T08:30:00Z");
+        assert!((call(0.0).chance_of_missing(begins, noon, 3.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_call_that_is_over_or_ends_before_it_begins_is_refused_by_field() {
+        let over = call(0.0).checked(at("2026-12-03T06:00:00Z")).unwrap_err();
+        assert_eq!(over.field, "etd");
+        assert!(over.detail.contains("in the past"));
+        let mut backwards = call(0.0);
+        backwards.etd = backwards.eta;
+        assert_eq!(backwards.checked(at("2026-11-01T00:00:00Z")).unwrap_err().field, "etd");
+    }
+}

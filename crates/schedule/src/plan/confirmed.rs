@@ -1,0 +1,78 @@
+//! Which confirmed jobs stand, and the cause for which another does not.
+
+use super::jobs::Job;
+use super::quote::{self, Obstacle, Quote};
+use crate::calls::PortCall;
+use crate::input::{Input, JobState};
+use crate::ports::PortCode;
+use chrono::NaiveDate;
+use std::collections::BTreeMap;
+
+/// Whether a job stands as a firm confirmed it.
+pub(super) enum Standing<'a> {
+    /// Nobody confirmed it.
+    Open,
+    /// It stands.
+    Stands { call: &'a PortCall, firm: usize, day: NaiveDate, quote: Quote },
+    /// It may move, for this cause.
+    Loose { cause: String },
+}
+
+/// For each job whether it stands. Where a firm confirmed more than it has teams for,
+/// what presses most, and then what is due first, stands.
+pub(super) fn standing<'a>(input: &'a Input, jobs: &[Job<'a>]) -> Vec<Standing<'a>> {
+    let mut all: Vec<Standing<'a>> = jobs.iter().map(|job| of(input, job)).collect();
+    let mut order: Vec<usize> = (0..jobs.len()).collect();
+    order.sort_by_key(|at| (std::cmp::Reverse(jobs[*at].urgency()), jobs[*at].due(), *at));
+    let mut there: BTreeMap<(usize, NaiveDate), BTreeMap<PortCode, u32>> = BTreeMap::new();
+    for at in order {
+        let Standing::Stands { call, firm, day, .. } = &all[at] else { continue };
+        let of = &input.firms[*firm];
+        let jobs_there = there.entry((*firm, *day)).or_default();
+        *jobs_there.entry(call.port).or_default() += 1;
+        let sent: u32 = jobs_there.values().map(|jobs| jobs.div_ceil(of.jobs_a_team_day)).sum();
+        if sent > of.teams {
+            *jobs_there.entry(call.port).or_default() -= 1;
+            let teams = if of.teams == 1 { "team" } else { "teams" };
+            let cause = format!("{} has only {} {teams} on {day}", of.called(), of.teams);
+            all[at] = Standing::Loose { cause };
+        }
+    }
+    all
+}
+
+fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
+    let Some(former) = job.former.filter(|former| former.state == JobState::Confirmed) else {
+        return Standing::Open;
+    };
+    let loose = |cause| Standing::Loose { cause };
+    let Some(&call) = job.calls.iter().find(|call| call.id == former.call) else {
+        return loose(format!("call {} is cancelled", former.call));
+    };
+    let index = input.firms.iter().position(|firm| firm.id == former.firm);
+    let at = index.expect("the firms of a checked input's former plan are there");
+    let firm = &input.firms[at];
+    let (name, day) = (firm.called(), former.day);
+    if firm.travel(call.port).is_none() {
+        return loose(format!("call {} is at {}, which {name} does not serve", call.id, call.port));
+    }
+    match quote::quote(input, job, call, firm, day) {
+        // Late as it is, it remains one of the job's options.
+        Ok(quote) if quote.late_days > 0 && job.due() >= input.now.date(0) => {
+            loose(format!("{day} is after the due date, {}", job.due()))
+        }
+        Ok(quote) => Standing::Stands { call, firm: at, day, quote },
+        Err(obstacles) => loose(match obstacles[0] {
+            Obstacle::Flag => format!("flag {} does not accept {name}", job.vessel.flag.letters()),
+            Obstacle::Licence => format!("{name} lacks the licence that the operator asks for"),
+            Obstacle::NotWorking => format!("{name} does not work on {day}"),
+            Obstacle::LeadTime => format!("too little is left of {day}"),
+            Obstacle::Stay => format!(
+                "the ship is now alongside from {} to {}, not long enough in {name}'s hours of {day}",
+                call.eta, call.etd
+            ),
+            Obstacle::AfterDue => format!("{day} is after the due date, {}", job.due()),
+            Obstacle::Declined => format!("{name} declined after all"),
+        }),
+    }
+}

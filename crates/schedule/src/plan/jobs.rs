@@ -1,0 +1,134 @@
+//! From needs to jobs: what is due on one ship at about one time is one job.
+
+use crate::calls::PortCall;
+use crate::input::{Checked, FormerJob, Input, JobState, Vessel};
+use crate::needs::{Urgency, due};
+use crate::rules::shipped;
+use chrono::{Days, NaiveDate};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A compass that is due within the horizon.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct DueNeed {
+    pub(super) id: String,
+    pub(super) due: NaiveDate,
+    pub(super) urgency: Urgency,
+    pub(super) reason: String,
+}
+
+/// Needs that are met together.
+pub(super) struct Job<'a> {
+    pub(super) vessel: &'a Vessel,
+    /// The first that is due speaks for all.
+    pub(super) needs: Vec<DueNeed>,
+    /// The ship's calls, in order of time.
+    pub(super) calls: Vec<&'a PortCall>,
+    pub(super) former: Option<&'a FormerJob>,
+}
+
+impl Job<'_> {
+    pub(super) fn due(&self) -> NaiveDate {
+        self.needs[0].due
+    }
+
+    pub(super) fn urgency(&self) -> Urgency {
+        self.needs.iter().map(|need| need.urgency).max().unwrap_or(Urgency::Routine)
+    }
+
+    pub(super) fn ids(&self) -> Vec<String> {
+        self.needs.iter().map(|need| need.id.clone()).collect()
+    }
+
+    /// Whether the former plan has it so.
+    pub(super) fn was(&self, call: &str, firm: &str, day: NaiveDate) -> bool {
+        self.former
+            .is_some_and(|former| former.call == call && former.firm == firm && former.day == day)
+    }
+}
+
+/// The jobs of the horizon, the first due first, and the needs that are due later.
+pub(super) fn jobs(checked: &Checked) -> (Vec<Job<'_>>, Vec<DueNeed>) {
+    let input = checked.get();
+    let today = input.now.date(0);
+    let ends = today + Days::new(input.horizon_days.into());
+    let mut former: BTreeMap<&str, &FormerJob> = BTreeMap::new();
+    for job in &input.former {
+        former.extend(job.needs.iter().map(|need| (need.as_str(), job)));
+    }
+    let confirmed = |id: &str| former.get(id).filter(|job| job.state == JobState::Confirmed).copied();
+    let mut later = Vec::new();
+    let mut of_vessel: BTreeMap<&str, Vec<DueNeed>> = BTreeMap::new();
+    for (vessel, need) in needs(input, today) {
+        if need.due > ends && confirmed(&need.id).is_none() {
+            later.push(need);
+        } else {
+            of_vessel.entry(vessel).or_default().push(need);
+        }
+    }
+    let mut calls: BTreeMap<&str, Vec<&PortCall>> = BTreeMap::new();
+    for call in &input.port_calls {
+        calls.entry(&call.vessel).or_default().push(call);
+    }
+    let mut jobs = Vec::new();
+    for vessel in &input.vessels {
+        let mut calls = calls.remove(vessel.id.as_str()).unwrap_or_default();
+        calls.sort_by_key(|call| call.eta);
+        let mut open = of_vessel.remove(vessel.id.as_str()).unwrap_or_default();
+        open.sort_by(|one, other| (one.due, &one.id).cmp(&(other.due, &other.id)));
+        while !open.is_empty() {
+            let needs = take_group(&mut open, confirmed, input.weights.join_days);
+            let former = needs.iter().find_map(|need| former.get(need.id.as_str()).copied());
+            jobs.push(Job { vessel, needs, calls: calls.clone(), former });
+        }
+    }
+    jobs.sort_by(|one, other| (one.due(), &one.needs[0].id).cmp(&(other.due(), &other.needs[0].id)));
+    (jobs, later)
+}
+
+/// The first need and those that go with it: what a firm confirmed together stays
+/// together, and what is not confirmed joins what is due soon after.
+fn take_group<'a>(
+    open: &mut Vec<DueNeed>,
+    confirmed: impl Fn(&str) -> Option<&'a FormerJob>,
+    join_days: u32,
+) -> Vec<DueNeed> {
+    let first = confirmed(&open[0].id);
+    let latest = open[0].due.checked_add_days(Days::new(join_days.into())).unwrap_or(NaiveDate::MAX);
+    let together: BTreeSet<String> = open
+        .iter()
+        .filter(|need| match first {
+            Some(job) => job.needs.contains(&need.id),
+            None => confirmed(&need.id).is_none() && need.due <= latest,
+        })
+        .map(|need| need.id.clone())
+        .collect();
+    let (group, rest) = std::mem::take(open)
+        .into_iter()
+        .partition(|need| together.contains(&need.id));
+    *open = rest;
+    group
+}
+
+/// All needs with their ships: those given, and those found by the rules.
+fn needs(input: &Input, today: NaiveDate) -> Vec<(&str, DueNeed)> {
+    let given = input.needs.iter().map(|need| {
+        let urgency = need.urgency.unwrap_or_else(|| input.terms.urgency(need.due, today));
+        let reason = need.reason.clone().unwrap_or_else(|| format!("due {}", need.due));
+        let found = DueNeed { id: need.id.clone(), due: need.due, urgency, reason };
+        (need.vessel.as_str(), found)
+    });
+    let ships: BTreeMap<&str, &Vessel> =
+        input.vessels.iter().map(|vessel| (vessel.id.as_str(), vessel)).collect();
+    let found = input.compasses.iter().filter_map(|compass| {
+        let ship = ships[compass.vessel.as_str()].ship();
+        let due = due(&ship, &compass.facts, shipped(), &input.terms, today)?;
+        let need = DueNeed {
+            id: compass.id.clone(),
+            due: due.on,
+            urgency: due.urgency,
+            reason: due.reason,
+        };
+        Some((compass.vessel.as_str(), need))
+    });
+    given.chain(found).collect()
+}

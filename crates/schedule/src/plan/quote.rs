@@ -1,0 +1,147 @@
+//! What one firm on one day of one call would cost a job, or what stands against it.
+
+use super::jobs::Job;
+use crate::calls::PortCall;
+use crate::input::{Firm, Input, JobState};
+use crate::needs::Urgency;
+use crate::ports::{self, Port};
+use crate::time::Instant;
+use chrono::{Days, NaiveDate};
+
+/// One thing that stands against it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Obstacle {
+    /// The flag does not accept the firm's adjusters.
+    Flag,
+    /// The firm lacks the licence that the operator asks for.
+    Licence,
+    /// The firm does not work that day.
+    NotWorking,
+    /// The firm needs to be asked earlier.
+    LeadTime,
+    /// The ship is not alongside long enough in the firm's hours.
+    Stay,
+    /// The day is after the due date.
+    AfterDue,
+    /// The firm said no.
+    Declined,
+}
+
+/// What it would cost, in cents, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Quote {
+    pub(super) from: Instant,
+    pub(super) to: Instant,
+    pub(super) chance_of_missing: f64,
+    pub(super) late_days: i64,
+    pub(super) fee: i64,
+    pub(super) risk: i64,
+    pub(super) waiting: i64,
+    pub(super) late: i64,
+    pub(super) early: i64,
+    pub(super) changed: i64,
+}
+
+impl Quote {
+    /// All but the travel, which jobs may share.
+    pub(super) fn cost(&self) -> i64 {
+        self.fee + self.risk + self.waiting + self.late + self.early + self.changed
+    }
+}
+
+/// The port of a call of a checked input.
+pub(super) fn port_of(call: &PortCall) -> &'static Port {
+    ports::find(call.port).expect("the ports of a checked input are in the table")
+}
+
+/// The days of a call, from today on, in ship's time.
+pub(super) fn days(call: &PortCall, now: Instant) -> impl Iterator<Item = NaiveDate> + use<> {
+    let zone_h = port_of(call).zone_h();
+    let first = call.eta.date(zone_h).max(now.date(zone_h));
+    let last = call.etd.date(zone_h);
+    std::iter::successors(Some(first), |day| day.checked_add_days(Days::new(1)))
+        .take_while(move |day| *day <= last)
+}
+
+/// A quote, or everything that stands against it.
+pub(super) fn quote(
+    input: &Input,
+    job: &Job<'_>,
+    call: &PortCall,
+    firm: &Firm,
+    day: NaiveDate,
+) -> Result<Quote, Vec<Obstacle>> {
+    let zone_h = port_of(call).zone_h();
+    let weights = &input.weights;
+    let today = input.now.date(zone_h);
+    let confirmed = job.was(&call.id, &firm.id, day)
+        && job.former.is_some_and(|former| former.state == JobState::Confirmed);
+    let opens = Instant::at(day, firm.first_hour, zone_h);
+    let closes = Instant::at(day, firm.last_hour, zone_h);
+    // Whom the firm has confirmed to, it has been asked by in time.
+    let ready = if confirmed { input.now } else { input.now.plus_hours(firm.lead_time_h) };
+    let begins = opens.max(ready);
+    let (from, to) = (begins.max(call.eta), closes.min(call.etd));
+    let late_days = (day - job.due()).num_days().max(0);
+
+    let mut against = Vec::new();
+    let mut unless = |fine: bool, obstacle| {
+        if !fine {
+            against.push(obstacle);
+        }
+    };
+    unless(firm.flags.is_empty() || firm.flags.contains(&job.vessel.flag), Obstacle::Flag);
+    let licence = job.vessel.licence.as_ref();
+    unless(licence.is_none_or(|asked| firm.licences.contains(asked)), Obstacle::Licence);
+    unless(firm.works(day), Obstacle::NotWorking);
+    let in_hours = closes.min(call.etd).hours_since(opens.max(call.eta)) >= weights.job_h;
+    unless(in_hours, Obstacle::Stay);
+    unless(!in_hours || to.hours_since(from) >= weights.job_h, Obstacle::LeadTime);
+    let allowed = late_days <= i64::from(weights.late_days) || job.due() < today || confirmed;
+    unless(allowed, Obstacle::AfterDue);
+    unless(!declined(input, job, firm, day), Obstacle::Declined);
+    if !against.is_empty() {
+        return Err(against);
+    }
+
+    let urgency = job.urgency();
+    let chance_of_missing = call.chance_of_missing(begins, closes, weights.job_h);
+    let waits = (day - today).num_days().max(0);
+    let early_days = match urgency {
+        Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().max(0),
+        Urgency::Urgent | Urgency::Overdue => 0,
+    };
+    let extra = job.needs.len() as i64 - 1;
+    Ok(Quote {
+        from,
+        to,
+        chance_of_missing,
+        late_days,
+        fee: firm.fee_eur.cents() + extra * firm.extra_compass_eur.cents(),
+        risk: (chance_of_missing * weights.missed_eur.of(urgency).cents() as f64).round() as i64,
+        waiting: waits * weights.waiting_eur_day.of(urgency).cents(),
+        late: late_days * weights.late_eur_day.cents(),
+        early: early_days * weights.early_eur_day.cents(),
+        changed: changed(input, job, call, firm, day),
+    })
+}
+
+/// What it costs to depart from the former plan.
+fn changed(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
+    match job.former {
+        Some(former) if !job.was(&call.id, &firm.id, day) => match former.state {
+            JobState::Proposed => input.weights.changed_eur.cents(),
+            // A confirmed job that moves has its cause, and none of these is it.
+            JobState::Offered | JobState::Confirmed => input.weights.withdrawn_eur.cents(),
+        },
+        _ => 0,
+    }
+}
+
+fn declined(input: &Input, job: &Job<'_>, firm: &Firm, day: NaiveDate) -> bool {
+    input.declined.iter().any(|declined| {
+        declined.firm == firm.id
+            && declined.day.is_none_or(|only| only == day)
+            && job.needs.iter().any(|need| need.id == declined.need)
+    })
+}

@@ -1,0 +1,165 @@
+//! Instants and sums of money, as they are written.
+//!
+//! What always holds: an [`Instant`] was written with its time zone, and an [`Eur`] is
+//! not negative. Money is counted in cents.
+
+use binnacle_magnetics::time::Timestamp;
+use chrono::{DateTime, FixedOffset, NaiveDate, NaiveDateTime, NaiveTime};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// An instant in RFC 3339.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Instant(pub Timestamp);
+
+/// Why a text is no instant.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum InstantError {
+    /// It would be one, if it said in which time zone.
+    #[error("{0:?} says no time zone; write Z for UTC or an offset as +01:00")]
+    NoZone(String),
+    /// It is none.
+    #[error("{0:?} is not an RFC 3339 time as 2026-12-01T08:00:00Z")]
+    NotRfc3339(String),
+}
+
+impl Instant {
+    /// Reads RFC 3339.
+    ///
+    /// # Errors
+    /// When it is something else, and in so many words when only the zone is missing.
+    pub fn parse(text: &str) -> Result<Instant, InstantError> {
+        if let Ok(time) = Timestamp::parse(text) {
+            return Ok(Instant(time));
+        }
+        let short = || text.chars().take(40).collect();
+        let without = text.trim().replace(' ', "T");
+        let naive = ["%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%dT%H:%M"]
+            .iter()
+            .any(|format| NaiveDateTime::parse_from_str(&without, format).is_ok());
+        Err(if naive {
+            InstantError::NoZone(short())
+        } else {
+            InstantError::NotRfc3339(short())
+        })
+    }
+
+    /// Hours since `earlier`, negative when that is later.
+    pub fn hours_since(self, earlier: Instant) -> f64 {
+        self.0.seconds_since(earlier.0) / 3600.0
+    }
+
+    /// The instant so many hours later.
+    pub fn plus_hours(self, hours: f64) -> Instant {
+        Instant(self.0.plus_seconds(hours * 3600.0))
+    }
+
+    /// The date of a zone so many hours ahead of UTC.
+    pub fn date(self, zone_h: i32) -> NaiveDate {
+        self.plus_hours(f64::from(zone_h)).0.to_chrono().date_naive()
+    }
+
+    /// An hour of a day in a zone so many hours ahead of UTC.
+    pub fn at(day: NaiveDate, hour: f64, zone_h: i32) -> Instant {
+        let midnight = day.and_time(NaiveTime::MIN).and_utc().timestamp_micros();
+        let midnight = Timestamp::from_micros(midnight);
+        // Days come out of instants and texts of four-digit years.
+        Instant(midnight.expect("a day of this calendar")).plus_hours(hour - f64::from(zone_h))
+    }
+}
+
+impl fmt::Display for Instant {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl TryFrom<String> for Instant {
+    type Error = InstantError;
+    fn try_from(text: String) -> Result<Instant, InstantError> {
+        Instant::parse(&text)
+    }
+}
+
+impl From<Instant> for String {
+    fn from(instant: Instant) -> String {
+        instant.to_string()
+    }
+}
+
+impl From<DateTime<FixedOffset>> for Instant {
+    fn from(time: DateTime<FixedOffset>) -> Instant {
+        let micros = Timestamp::from_micros(time.timestamp_micros());
+        Instant(micros.expect("four-digit years were read"))
+    }
+}
+
+/// A sum of money, 0 to 1 000 000 euros; euros in JSON, cents inside.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(try_from = "f64", into = "f64")]
+pub struct Eur(i64);
+
+/// Why a number is no sum of money.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{0} is not within 0 to 1000000 euros")]
+pub struct EurError(f64);
+
+impl Eur {
+    /// So many whole euros, up to 65 535.
+    pub const fn whole(euros: u16) -> Eur {
+        Eur(euros as i64 * 100)
+    }
+
+    /// Cents.
+    pub fn cents(self) -> i64 {
+        self.0
+    }
+}
+
+impl TryFrom<f64> for Eur {
+    type Error = EurError;
+    fn try_from(euros: f64) -> Result<Eur, EurError> {
+        let valid = (0.0..=1e6).contains(&euros);
+        valid.then_some(Eur((euros * 100.0).round() as i64)).ok_or(EurError(euros))
+    }
+}
+
+impl From<Eur> for f64 {
+    fn from(eur: Eur) -> f64 {
+        eur.0 as f64 / 100.0
+    }
+}
+
+/// Cents as euros, for JSON.
+pub(crate) fn euros(cents: i64) -> f64 {
+    cents as f64 / 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_without_a_zone_is_refused_as_such() {
+        for text in ["2026-12-01T08:00:00", "2026-12-01 08:00", "2026-12-01T08:00"] {
+            assert_eq!(Instant::parse(text), Err(InstantError::NoZone(text.to_owned())));
+        }
+        assert!(matches!(Instant::parse("tomorrow"), Err(InstantError::NotRfc3339(_))));
+    }
+
+    #[test]
+    fn a_date_is_that_of_the_zone() {
+        let evening = Instant::parse("2026-12-01T20:00:00Z").unwrap();
+        assert_eq!(evening.date(7).to_string(), "2026-12-02");
+        assert_eq!(evening.date(-6).to_string(), "2026-12-01");
+        let morning = Instant::at(evening.date(7), 8.0, 7);
+        assert_eq!(morning.to_string(), "2026-12-02T01:00:00Z");
+    }
+
+    #[test]
+    fn a_negative_fee_is_no_fee() {
+        assert!(serde_json::from_str::<Eur>("-0.01").is_err());
+        assert_eq!(serde_json::from_str::<Eur>("1800.5").unwrap().cents(), 180_050);
+    }
+}

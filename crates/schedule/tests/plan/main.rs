@@ -1,0 +1,181 @@
+//! Schedules of small fleets, worked out by hand.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+mod confirmed;
+mod explained;
+
+use binnacle_schedule::input::read;
+use binnacle_schedule::plan::{Schedule, plan};
+use serde_json::{Value, json};
+
+/// The schedule of an input as of Saturday, 21 November 2026.
+pub(crate) fn schedule(mut input: Value) -> Schedule {
+    input["now"] = json!("2026-11-21T00:00:00Z");
+    plan(&read(&input.to_string()).unwrap())
+}
+
+/// A call in Rotterdam, whose ship's time is UTC, alongside from midnight to midnight.
+pub(crate) fn call(id: &str, vessel: &str, from: &str, to: &str) -> Value {
+    json!({"id": id, "vessel": vessel, "port": "NLRTM",
+           "eta": format!("{from}T00:00:00Z"), "etd": format!("{to}T00:00:00Z")})
+}
+
+pub(crate) fn vessel(id: &str) -> Value {
+    json!({"id": id, "flag": "NO"})
+}
+
+pub(crate) fn need(id: &str, vessel: &str, due: &str) -> Value {
+    json!({"id": id, "vessel": vessel, "due": due})
+}
+
+pub(crate) fn firm(id: &str, fee_eur: u32) -> Value {
+    json!({"id": id, "ports": [{"port": "NLRTM", "travel_eur": 100}], "fee_eur": fee_eur})
+}
+
+/// Who goes where on which day.
+fn jobs(schedule: &Schedule) -> Vec<(String, String, String)> {
+    let jobs = schedule.jobs.iter();
+    jobs.map(|job| (job.vessel.clone(), job.firm.clone(), job.day.to_string()))
+        .collect()
+}
+
+fn job(vessel: &str, firm: &str, day: &str) -> (String, String, String) {
+    (vessel.to_owned(), firm.to_owned(), day.to_owned())
+}
+
+#[test]
+fn the_cheaper_of_two_firms_goes() {
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2026-12-20")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02")],
+        "firms": [firm("dear", 2000), firm("cheap", 1500)],
+    }));
+    assert_eq!(jobs(&found), [job("v", "cheap", "2026-12-01")]);
+    assert!(found.proven_optimal);
+    assert!((found.paid_eur - 1600.0).abs() < 1e-9);
+    // 19 days early at 3 euros.
+    assert!((found.cost_eur - 1657.0).abs() < 1e-9, "{}", found.cost_eur);
+}
+
+#[test]
+fn one_team_takes_one_ship_a_day_and_the_weekend_is_free() {
+    let found = schedule(json!({
+        "vessels": [vessel("v"), vessel("w"), vessel("x")],
+        "needs": [need("n", "v", "2026-12-20"), need("m", "w", "2026-12-20"), need("o", "x", "2026-12-20")],
+        // Friday to Sunday.
+        "port_calls": [call("c", "v", "2026-12-03", "2026-12-05"), call("d", "w", "2026-12-04", "2026-12-07"),
+                       call("e", "x", "2026-12-05", "2026-12-07")],
+        "firms": [firm("f", 1500)],
+    }));
+    assert_eq!(
+        jobs(&found),
+        [job("v", "f", "2026-12-03"), job("w", "f", "2026-12-04")]
+    );
+    assert_eq!(found.unscheduled[0].vessel, "x");
+}
+
+#[test]
+fn two_ships_on_one_day_share_the_travel_of_a_team_that_does_two() {
+    let two = json!({"id": "f", "fee_eur": 1500, "jobs_a_team_day": 2,
+                     "ports": [{"port": "NLRTM", "travel_eur": 800}]});
+    let found = schedule(json!({
+        "vessels": [vessel("v"), vessel("w")],
+        "needs": [need("n", "v", "2026-12-20"), need("m", "w", "2026-12-20")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-05"), call("d", "w", "2026-12-02", "2026-12-04")],
+        "firms": [two],
+    }));
+    assert_eq!(found.jobs[0].day, found.jobs[1].day);
+    assert!((found.paid_eur - 3800.0).abs() < 1e-9);
+    assert!((found.jobs[0].travel_eur - 400.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_ship_that_may_come_too_late_is_met_on_the_second_day() {
+    let mut unsure = call("c", "v", "2026-12-01", "2026-12-03");
+    unsure["eta_uncertainty_h"] = json!(24);
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2026-12-20")],
+        "port_calls": [unsure],
+        "firms": [firm("f", 1500)],
+    }));
+    assert_eq!(found.jobs[0].day.to_string(), "2026-12-02");
+    assert!(found.jobs[0].chance_of_missing < 0.01);
+}
+
+#[test]
+fn the_urgent_ship_has_the_only_team() {
+    let mut urgent = need("m", "w", "2026-12-20");
+    urgent["urgency"] = json!("urgent");
+    let found = schedule(json!({
+        "vessels": [vessel("v"), vessel("w")],
+        "needs": [need("n", "v", "2026-12-20"), urgent],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02"), call("d", "w", "2026-12-01", "2026-12-02")],
+        "firms": [firm("f", 1500)],
+    }));
+    assert_eq!(jobs(&found), [job("w", "f", "2026-12-01")]);
+}
+
+#[test]
+fn two_compasses_of_a_ship_are_one_job() {
+    let mut both = firm("f", 1500);
+    both["extra_compass_eur"] = json!(300);
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n1", "v", "2026-12-20"), need("n2", "v", "2027-01-20"), need("n3", "v", "2027-04-20")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02")],
+        "firms": [both],
+    }));
+    assert_eq!(found.jobs[0].needs, ["n1", "n2"]);
+    assert!((found.jobs[0].fee_eur - 1800.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_is_overdue_is_done_at_the_first_call_there_is() {
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2026-11-01")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02"), call("d", "v", "2026-12-08", "2026-12-09")],
+        "firms": [firm("f", 1500)],
+    }));
+    assert_eq!(jobs(&found), [job("v", "f", "2026-12-01")]);
+    assert_eq!(found.jobs[0].late_days, 30);
+    assert!(found.unscheduled.is_empty());
+}
+
+#[test]
+fn a_need_beyond_the_horizon_waits() {
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2028-01-01")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02")],
+        "firms": [firm("f", 1500)],
+    }));
+    assert!(found.jobs.is_empty() && found.unscheduled.is_empty());
+    assert_eq!(found.later[0].need, "n");
+}
+
+#[test]
+fn a_compass_is_due_by_the_rules_that_bind_its_ship() {
+    let found = schedule(json!({
+        "vessels": [{"id": "v", "flag": "PA"}],
+        "compasses": [{"id": "k", "vessel": "v", "facts": {"adjusted_on": "2025-12-10"}}],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02")],
+        "firms": [firm("f", 1500)],
+    }));
+    assert_eq!(found.jobs[0].due.to_string(), "2026-12-10");
+    assert!(found.jobs[0].reason.contains("MMC-138"));
+}
+
+#[test]
+fn the_same_input_gives_the_same_schedule() {
+    let input = json!({
+        "vessels": [vessel("v"), vessel("w")],
+        "needs": [need("n", "v", "2026-12-20"), need("m", "w", "2026-12-20")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-04"), call("d", "w", "2026-12-01", "2026-12-04")],
+        "firms": [firm("f", 1500), firm("g", 1500)],
+    });
+    assert_eq!(schedule(input.clone()), schedule(input));
+}
