@@ -57,14 +57,20 @@ impl Instant {
 
     /// The date of a zone so many hours ahead of UTC.
     pub fn date(self, zone_h: i32) -> NaiveDate {
-        self.plus_hours(f64::from(zone_h)).0.to_chrono().date_naive()
+        self.plus_hours(f64::from(zone_h))
+            .0
+            .to_chrono()
+            .date_naive()
     }
 
     /// An hour of a day in a zone so many hours ahead of UTC.
+    #[allow(
+        clippy::missing_panics_doc,
+        reason = "days come of instants, whose years have four digits"
+    )]
     pub fn at(day: NaiveDate, hour: f64, zone_h: i32) -> Instant {
         let midnight = day.and_time(NaiveTime::MIN).and_utc().timestamp_micros();
         let midnight = Timestamp::from_micros(midnight);
-        // Days come out of instants and texts of four-digit years.
         Instant(midnight.expect("a day of this calendar")).plus_hours(hour - f64::from(zone_h))
     }
 }
@@ -121,7 +127,9 @@ impl TryFrom<f64> for Eur {
     type Error = EurError;
     fn try_from(euros: f64) -> Result<Eur, EurError> {
         let valid = (0.0..=1e6).contains(&euros);
-        valid.then_some(Eur((euros * 100.0).round() as i64)).ok_or(EurError(euros))
+        valid
+            .then_some(Eur((euros * 100.0).round() as i64))
+            .ok_or(EurError(euros))
     }
 }
 
@@ -142,10 +150,20 @@ mod tests {
 
     #[test]
     fn a_time_without_a_zone_is_refused_as_such() {
-        for text in ["2026-12-01T08:00:00", "2026-12-01 08:00", "2026-12-01T08:00"] {
-            assert_eq!(Instant::parse(text), Err(InstantError::NoZone(text.to_owned())));
+        for text in [
+            "2026-12-01T08:00:00",
+            "2026-12-01 08:00",
+            "2026-12-01T08:00",
+        ] {
+            assert_eq!(
+                Instant::parse(text),
+                Err(InstantError::NoZone(text.to_owned()))
+            );
         }
-        assert!(matches!(Instant::parse("tomorrow"), Err(InstantError::NotRfc3339(_))));
+        assert!(matches!(
+            Instant::parse("tomorrow"),
+            Err(InstantError::NotRfc3339(_))
+        ));
     }
 
     #[test]
@@ -160,6 +178,9 @@ mod tests {
     #[test]
     fn a_negative_fee_is_no_fee() {
         assert!(serde_json::from_str::<Eur>("-0.01").is_err());
-        assert_eq!(serde_json::from_str::<Eur>("1800.5").unwrap().cents(), 180_050);
+        assert_eq!(
+            serde_json::from_str::<Eur>("1800.5").unwrap().cents(),
+            180_050
+        );
     }
 }

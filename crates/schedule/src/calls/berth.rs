@@ -42,14 +42,25 @@ pub struct Observed {
 /// headings do not agree to about ±25°, none is given.
 pub fn berth_heading(call: &super::PortCall, earlier: &[Observed]) -> Option<BerthHeading> {
     if let Some(heading_deg) = call.berth_heading_deg {
-        return Some(BerthHeading { heading_deg, source: HeadingSource::Given });
+        return Some(BerthHeading {
+            heading_deg,
+            source: HeadingSource::Given,
+        });
     }
     let in_port = || earlier.iter().filter(|seen| seen.port == call.port);
     let here = in_port().filter(|seen| call.berth.is_some() && seen.berth == call.berth);
-    let of = |source, heading| Some(BerthHeading { heading_deg: heading, source });
+    let of = |source, heading| {
+        Some(BerthHeading {
+            heading_deg: heading,
+            source,
+        })
+    };
     match mean(here.map(|seen| seen.heading_deg)) {
         Some(heading) => of(HeadingSource::Berth, heading),
-        None => of(HeadingSource::Port, mean(in_port().map(|seen| seen.heading_deg))?),
+        None => of(
+            HeadingSource::Port,
+            mean(in_port().map(|seen| seen.heading_deg))?,
+        ),
     }
 }
 
@@ -76,8 +87,10 @@ mod tests {
     use serde_json::{from_value, json};
 
     fn call(berth: Option<&str>) -> PortCall {
-        from_value(json!({"id": "c", "vessel": "v", "port": "NLRTM", "berth": berth,
-            "eta": "2026-12-01T06:00:00Z", "etd": "2026-12-03T06:00:00Z"}))
+        from_value(
+            json!({"id": "c", "vessel": "v", "port": "NLRTM", "berth": berth,
+            "eta": "2026-12-01T06:00:00Z", "etd": "2026-12-03T06:00:00Z"}),
+        )
         .unwrap()
     }
 
@@ -87,7 +100,11 @@ mod tests {
 
     #[test]
     fn a_heading_is_learnt_from_the_same_berth_across_north() {
-        let earlier = [seen("NLRTM", "A1", 350.0), seen("NLRTM", "A1", 10.0), seen("NLRTM", "B2", 90.0)];
+        let earlier = [
+            seen("NLRTM", "A1", 350.0),
+            seen("NLRTM", "A1", 10.0),
+            seen("NLRTM", "B2", 90.0),
+        ];
         let learnt = berth_heading(&call(Some("A1")), &earlier).unwrap();
         assert_eq!(learnt.source, HeadingSource::Berth);
         assert!(learnt.heading_deg.min(360.0 - learnt.heading_deg) < 1e-9);
@@ -95,7 +112,11 @@ mod tests {
 
     #[test]
     fn headings_that_disagree_teach_nothing() {
-        let earlier = [seen("NLRTM", "A1", 80.0), seen("NLRTM", "A1", 260.0), seen("BEANR", "A1", 80.0)];
+        let earlier = [
+            seen("NLRTM", "A1", 80.0),
+            seen("NLRTM", "A1", 260.0),
+            seen("BEANR", "A1", 80.0),
+        ];
         assert_eq!(berth_heading(&call(Some("A1")), &earlier), None);
     }
 
@@ -103,10 +124,16 @@ mod tests {
     fn a_given_heading_stands_and_another_berth_of_the_port_may_do() {
         let earlier = [seen("NLRTM", "A1", 80.0)];
         let learnt = berth_heading(&call(None), &earlier).unwrap();
-        assert_eq!((learnt.source, learnt.heading_deg.round()), (HeadingSource::Port, 80.0));
+        assert_eq!(
+            (learnt.source, learnt.heading_deg.round()),
+            (HeadingSource::Port, 80.0)
+        );
         let mut given = call(None);
         given.berth_heading_deg = Some(123.0);
         let given = berth_heading(&given, &earlier).unwrap();
-        assert_eq!((given.source, given.heading_deg), (HeadingSource::Given, 123.0));
+        assert_eq!(
+            (given.source, given.heading_deg),
+            (HeadingSource::Given, 123.0)
+        );
     }
 }

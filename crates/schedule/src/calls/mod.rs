@@ -4,6 +4,8 @@
 //! and is not over; its uncertainties are hours within reason.
 
 mod berth;
+pub mod csv;
+pub mod ics;
 
 pub use berth::{BerthHeading, HeadingSource, Observed, berth_heading};
 
@@ -57,7 +59,10 @@ impl PortCall {
     pub fn checked(&self, now: Instant) -> Result<(), CallError> {
         let wrong = |field, detail| Err(CallError { field, detail });
         if self.etd <= self.eta {
-            return wrong("etd", format!("{} is not after eta, {}", self.etd, self.eta));
+            return wrong(
+                "etd",
+                format!("{} is not after eta, {}", self.etd, self.eta),
+            );
         }
         if self.etd <= now {
             return wrong("etd", format!("{} is in the past: it is {now}", self.etd));
@@ -71,9 +76,10 @@ impl PortCall {
             }
         }
         match self.berth_heading_deg {
-            Some(heading) if !(0.0..=360.0).contains(&heading) => {
-                wrong("berth_heading_deg", format!("{heading} is not within 0 to 360"))
-            }
+            Some(heading) if !(0.0..=360.0).contains(&heading) => wrong(
+                "berth_heading_deg",
+                format!("{heading} is not within 0 to 360"),
+            ),
             _ => Ok(()),
         }
     }
@@ -86,7 +92,10 @@ impl PortCall {
         let (arrival, departure) = (self.eta_uncertainty_h / 1.96, self.etd_uncertainty_h / 1.96);
         let in_time = below(ends.hours_since(self.eta) - job_h, arrival);
         let long_enough = below(self.etd.hours_since(begins) - job_h, departure);
-        let stays = below(self.etd.hours_since(self.eta) - job_h, arrival.hypot(departure));
+        let stays = below(
+            self.etd.hours_since(self.eta) - job_h,
+            arrival.hypot(departure),
+        );
         1.0 - in_time * long_enough * stays
     }
 }
@@ -151,6 +160,12 @@ mod tests {
         assert!(over.detail.contains("in the past"));
         let mut backwards = call(0.0);
         backwards.etd = backwards.eta;
-        assert_eq!(backwards.checked(at("2026-11-01T00:00:00Z")).unwrap_err().field, "etd");
+        assert_eq!(
+            backwards
+                .checked(at("2026-11-01T00:00:00Z"))
+                .unwrap_err()
+                .field,
+            "etd"
+        );
     }
 }

@@ -14,19 +14,35 @@ type Result<T> = std::result::Result<T, InputError>;
 
 pub(super) fn check(input: Input) -> Result<Checked> {
     lists(&input)?;
-    let vessels = names("vessels", input.vessels.iter().map(|vessel| vessel.id.as_str()))?;
+    let vessels = names(
+        "vessels",
+        input.vessels.iter().map(|vessel| vessel.id.as_str()),
+    )?;
     let needs = input.needs.iter().map(|need| need.id.as_str());
     let mut compasses = names("needs", needs)?;
     for (at, compass) in input.compasses.iter().enumerate() {
         let path = format!("compasses[{at}]");
         one_more(&mut compasses, &path, &compass.id)?;
-        known(&vessels, format!("{path}.vessel"), &compass.vessel, "vessel")?;
+        known(
+            &vessels,
+            format!("{path}.vessel"),
+            &compass.vessel,
+            "vessel",
+        )?;
         facts(&format!("{path}.facts"), &compass.facts)?;
     }
     for (at, need) in input.needs.iter().enumerate() {
-        known(&vessels, format!("needs[{at}].vessel"), &need.vessel, "vessel")?;
+        known(
+            &vessels,
+            format!("needs[{at}].vessel"),
+            &need.vessel,
+            "vessel",
+        )?;
     }
-    let calls = names("port_calls", input.port_calls.iter().map(|call| call.id.as_str()))?;
+    let calls = names(
+        "port_calls",
+        input.port_calls.iter().map(|call| call.id.as_str()),
+    )?;
     calls_of(&input, &vessels)?;
     let firms = names("firms", input.firms.iter().map(|firm| firm.id.as_str()))?;
     for (at, firm) in input.firms.iter().enumerate() {
@@ -36,13 +52,19 @@ pub(super) fn check(input: Input) -> Result<Checked> {
     for (at, job) in input.former.iter().enumerate() {
         known(&firms, format!("former[{at}].firm"), &job.firm, "firm")?;
         if job.needs.is_empty() {
-            return Err(InputError::new(format!("former[{at}].needs"), "a job meets at least one need"));
+            return Err(InputError::new(
+                format!("former[{at}].needs"),
+                "a job meets at least one need",
+            ));
         }
         for (of, need) in job.needs.iter().enumerate() {
             let path = format!("former[{at}].needs[{of}]");
             known(&compasses, path.clone(), need, "need or compass")?;
             if !met.insert(need) {
-                return Err(InputError::new(path, format!("{need:?} is in two former jobs")));
+                return Err(InputError::new(
+                    path,
+                    format!("{need:?} is in two former jobs"),
+                ));
             }
         }
         // A call may have been cancelled since; its name must still be one.
@@ -51,8 +73,18 @@ pub(super) fn check(input: Input) -> Result<Checked> {
         }
     }
     for (at, declined) in input.declined.iter().enumerate() {
-        known(&firms, format!("declined[{at}].firm"), &declined.firm, "firm")?;
-        known(&compasses, format!("declined[{at}].need"), &declined.need, "need or compass")?;
+        known(
+            &firms,
+            format!("declined[{at}].firm"),
+            &declined.firm,
+            "firm",
+        )?;
+        known(
+            &compasses,
+            format!("declined[{at}].need"),
+            &declined.need,
+            "need or compass",
+        )?;
     }
     Ok(Checked(input))
 }
@@ -69,7 +101,10 @@ fn lists(input: &Input) -> Result<()> {
     ];
     for (list, length) in lengths {
         if length > MOST {
-            return Err(InputError::new(list, format!("{length} are more than {MOST}")));
+            return Err(InputError::new(
+                list,
+                format!("{length} are more than {MOST}"),
+            ));
         }
     }
     if !(1..=730).contains(&input.horizon_days) {
@@ -93,10 +128,16 @@ fn names<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<BTreeSet<
 
 fn one_more<'a>(names: &mut BTreeSet<&'a str>, path: &str, id: &'a str) -> Result<()> {
     if id.trim().is_empty() || id.chars().count() > 100 {
-        return Err(InputError::new(format!("{path}.id"), "is empty or longer than 100 characters"));
+        return Err(InputError::new(
+            format!("{path}.id"),
+            "is empty or longer than 100 characters",
+        ));
     }
     if !names.insert(id) {
-        return Err(InputError::new(format!("{path}.id"), format!("{id:?} stands there twice")));
+        return Err(InputError::new(
+            format!("{path}.id"),
+            format!("{id:?} stands there twice"),
+        ));
     }
     Ok(())
 }
@@ -105,26 +146,36 @@ fn known(names: &BTreeSet<&str>, path: String, name: &str, what: &str) -> Result
     if names.contains(name) {
         return Ok(());
     }
-    Err(InputError::new(path, format!("there is no {what} {name:?}")))
+    Err(InputError::new(
+        path,
+        format!("there is no {what} {name:?}"),
+    ))
 }
 
 fn facts(path: &str, compass: &crate::needs::Compass) -> Result<()> {
     let degrees = |path: String, value: f64| {
         let fine = (-180.0..=180.0).contains(&value);
-        fine.then_some(()).ok_or_else(|| InputError::new(path, format!("{value} is not within -180 to 180")))
+        fine.then_some(())
+            .ok_or_else(|| InputError::new(path, format!("{value} is not within -180 to 180")))
     };
     for (at, predicted) in compass.predicted.iter().enumerate() {
         let path = format!("{path}.predicted[{at}].worst_deviation_deg");
         degrees(path.clone(), predicted.worst_deviation_deg)?;
         if predicted.worst_deviation_deg < 0.0 {
-            return Err(InputError::new(path, "is negative; it is the largest on any heading, either way"));
+            return Err(InputError::new(
+                path,
+                "is negative; it is the largest on any heading, either way",
+            ));
         }
     }
     if let Some(change) = compass.change {
         degrees(format!("{path}.change.size_deg"), change.size_deg)?;
     }
     if let Some(failed) = compass.failed_verification {
-        degrees(format!("{path}.failed_verification.worst_error_deg"), failed.worst_error_deg)?;
+        degrees(
+            format!("{path}.failed_verification.worst_error_deg"),
+            failed.worst_error_deg,
+        )?;
     }
     Ok(())
 }
@@ -139,10 +190,16 @@ fn calls_of(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
             return Err(InputError::new(format!("{path}.port"), what));
         }
         if let Err(error) = call.checked(input.now) {
-            return Err(InputError::new(format!("{path}.{}", error.field), error.detail));
+            return Err(InputError::new(
+                format!("{path}.{}", error.field),
+                error.detail,
+            ));
         }
         if call.etd.hours_since(call.eta) > LONGEST_STAY_DAYS * 24.0 {
-            let what = format!("{} is more than {LONGEST_STAY_DAYS} days after eta", call.etd);
+            let what = format!(
+                "{} is more than {LONGEST_STAY_DAYS} days after eta",
+                call.etd
+            );
             return Err(InputError::new(format!("{path}.etd"), what));
         }
         of.entry(&call.vessel).or_default().push((at, call));
@@ -166,7 +223,10 @@ fn calls_of(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
 fn firm_is_sound(firm: &Firm, path: &str) -> Result<()> {
     let wrong = |field: &str, detail: &str| Err(InputError::new(format!("{path}.{field}"), detail));
     if firm.working_days.is_empty() {
-        return wrong("working_days", "a firm that works on no day of the week serves nobody");
+        return wrong(
+            "working_days",
+            "a firm that works on no day of the week serves nobody",
+        );
     }
     if firm.ports.is_empty() {
         return wrong("ports", "a firm without ports serves nobody");
@@ -195,7 +255,10 @@ fn firm_is_sound(firm: &Firm, path: &str) -> Result<()> {
             return Err(InputError::new(path, what));
         }
         if !served.insert(port.port) {
-            return Err(InputError::new(path, format!("{} stands there twice", port.port)));
+            return Err(InputError::new(
+                path,
+                format!("{} stands there twice", port.port),
+            ));
         }
     }
     Ok(())

@@ -14,7 +14,10 @@ pub struct InputError {
 
 impl InputError {
     pub(super) fn new(path: impl Into<String>, detail: impl Into<String>) -> InputError {
-        InputError { path: path.into(), detail: detail.into() }
+        InputError {
+            path: path.into(),
+            detail: detail.into(),
+        }
     }
 }
 
@@ -31,6 +34,7 @@ pub fn read(text: &str) -> Result<Checked, InputError> {
         };
         InputError::new(path, error.inner().to_string())
     })?;
-    json.end().map_err(|error| InputError::new("$", error.to_string()))?;
+    json.end()
+        .map_err(|error| InputError::new("$", error.to_string()))?;
     check::check(input)
 }

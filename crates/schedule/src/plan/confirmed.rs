@@ -13,7 +13,12 @@ pub(super) enum Standing<'a> {
     /// Nobody confirmed it.
     Open,
     /// It stands.
-    Stands { call: &'a PortCall, firm: usize, day: NaiveDate, quote: Quote },
+    Stands {
+        call: &'a PortCall,
+        firm: usize,
+        day: NaiveDate,
+        quote: Quote,
+    },
     /// It may move, for this cause.
     Loose { cause: String },
 }
@@ -26,11 +31,19 @@ pub(super) fn standing<'a>(input: &'a Input, jobs: &[Job<'a>]) -> Vec<Standing<'
     order.sort_by_key(|at| (std::cmp::Reverse(jobs[*at].urgency()), jobs[*at].due(), *at));
     let mut there: BTreeMap<(usize, NaiveDate), BTreeMap<PortCode, u32>> = BTreeMap::new();
     for at in order {
-        let Standing::Stands { call, firm, day, .. } = &all[at] else { continue };
+        let Standing::Stands {
+            call, firm, day, ..
+        } = &all[at]
+        else {
+            continue;
+        };
         let of = &input.firms[*firm];
         let jobs_there = there.entry((*firm, *day)).or_default();
         *jobs_there.entry(call.port).or_default() += 1;
-        let sent: u32 = jobs_there.values().map(|jobs| jobs.div_ceil(of.jobs_a_team_day)).sum();
+        let sent: u32 = jobs_there
+            .values()
+            .map(|jobs| jobs.div_ceil(of.jobs_a_team_day))
+            .sum();
         if sent > of.teams {
             *jobs_there.entry(call.port).or_default() -= 1;
             let teams = if of.teams == 1 { "team" } else { "teams" };
@@ -42,7 +55,10 @@ pub(super) fn standing<'a>(input: &'a Input, jobs: &[Job<'a>]) -> Vec<Standing<'
 }
 
 fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
-    let Some(former) = job.former.filter(|former| former.state == JobState::Confirmed) else {
+    let Some(former) = job
+        .former
+        .filter(|former| former.state == JobState::Confirmed)
+    else {
         return Standing::Open;
     };
     let loose = |cause| Standing::Loose { cause };
@@ -54,14 +70,22 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
     let firm = &input.firms[at];
     let (name, day) = (firm.called(), former.day);
     if firm.travel(call.port).is_none() {
-        return loose(format!("call {} is at {}, which {name} does not serve", call.id, call.port));
+        return loose(format!(
+            "call {} is at {}, which {name} does not serve",
+            call.id, call.port
+        ));
     }
     match quote::quote(input, job, call, firm, day) {
         // Late as it is, it remains one of the job's options.
         Ok(quote) if quote.late_days > 0 && job.due() >= input.now.date(0) => {
             loose(format!("{day} is after the due date, {}", job.due()))
         }
-        Ok(quote) => Standing::Stands { call, firm: at, day, quote },
+        Ok(quote) => Standing::Stands {
+            call,
+            firm: at,
+            day,
+            quote,
+        },
         Err(obstacles) => loose(match obstacles[0] {
             Obstacle::Flag => format!("flag {} does not accept {name}", job.vessel.flag.letters()),
             Obstacle::Licence => format!("{name} lacks the licence that the operator asks for"),

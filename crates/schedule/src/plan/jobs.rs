@@ -32,7 +32,11 @@ impl Job<'_> {
     }
 
     pub(super) fn urgency(&self) -> Urgency {
-        self.needs.iter().map(|need| need.urgency).max().unwrap_or(Urgency::Routine)
+        self.needs
+            .iter()
+            .map(|need| need.urgency)
+            .max()
+            .unwrap_or(Urgency::Routine)
     }
 
     pub(super) fn ids(&self) -> Vec<String> {
@@ -55,7 +59,12 @@ pub(super) fn jobs(checked: &Checked) -> (Vec<Job<'_>>, Vec<DueNeed>) {
     for job in &input.former {
         former.extend(job.needs.iter().map(|need| (need.as_str(), job)));
     }
-    let confirmed = |id: &str| former.get(id).filter(|job| job.state == JobState::Confirmed).copied();
+    let confirmed = |id: &str| {
+        former
+            .get(id)
+            .filter(|job| job.state == JobState::Confirmed)
+            .copied()
+    };
     let mut later = Vec::new();
     let mut of_vessel: BTreeMap<&str, Vec<DueNeed>> = BTreeMap::new();
     for (vessel, need) in needs(input, today) {
@@ -77,11 +86,20 @@ pub(super) fn jobs(checked: &Checked) -> (Vec<Job<'_>>, Vec<DueNeed>) {
         open.sort_by(|one, other| (one.due, &one.id).cmp(&(other.due, &other.id)));
         while !open.is_empty() {
             let needs = take_group(&mut open, confirmed, input.weights.join_days);
-            let former = needs.iter().find_map(|need| former.get(need.id.as_str()).copied());
-            jobs.push(Job { vessel, needs, calls: calls.clone(), former });
+            let former = needs
+                .iter()
+                .find_map(|need| former.get(need.id.as_str()).copied());
+            jobs.push(Job {
+                vessel,
+                needs,
+                calls: calls.clone(),
+                former,
+            });
         }
     }
-    jobs.sort_by(|one, other| (one.due(), &one.needs[0].id).cmp(&(other.due(), &other.needs[0].id)));
+    jobs.sort_by(|one, other| {
+        (one.due(), &one.needs[0].id).cmp(&(other.due(), &other.needs[0].id))
+    });
     (jobs, later)
 }
 
@@ -93,7 +111,10 @@ fn take_group<'a>(
     join_days: u32,
 ) -> Vec<DueNeed> {
     let first = confirmed(&open[0].id);
-    let latest = open[0].due.checked_add_days(Days::new(join_days.into())).unwrap_or(NaiveDate::MAX);
+    let latest = open[0]
+        .due
+        .checked_add_days(Days::new(join_days.into()))
+        .unwrap_or(NaiveDate::MAX);
     let together: BTreeSet<String> = open
         .iter()
         .filter(|need| match first {
@@ -112,13 +133,26 @@ fn take_group<'a>(
 /// All needs with their ships: those given, and those found by the rules.
 fn needs(input: &Input, today: NaiveDate) -> Vec<(&str, DueNeed)> {
     let given = input.needs.iter().map(|need| {
-        let urgency = need.urgency.unwrap_or_else(|| input.terms.urgency(need.due, today));
-        let reason = need.reason.clone().unwrap_or_else(|| format!("due {}", need.due));
-        let found = DueNeed { id: need.id.clone(), due: need.due, urgency, reason };
+        let urgency = need
+            .urgency
+            .unwrap_or_else(|| input.terms.urgency(need.due, today));
+        let reason = need
+            .reason
+            .clone()
+            .unwrap_or_else(|| format!("due {}", need.due));
+        let found = DueNeed {
+            id: need.id.clone(),
+            due: need.due,
+            urgency,
+            reason,
+        };
         (need.vessel.as_str(), found)
     });
-    let ships: BTreeMap<&str, &Vessel> =
-        input.vessels.iter().map(|vessel| (vessel.id.as_str(), vessel)).collect();
+    let ships: BTreeMap<&str, &Vessel> = input
+        .vessels
+        .iter()
+        .map(|vessel| (vessel.id.as_str(), vessel))
+        .collect();
     let found = input.compasses.iter().filter_map(|compass| {
         let ship = ships[compass.vessel.as_str()].ship();
         let due = due(&ship, &compass.facts, shipped(), &input.terms, today)?;

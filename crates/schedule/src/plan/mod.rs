@@ -26,7 +26,7 @@ use jobs::Job;
 use quote::Quote;
 use std::collections::BTreeMap;
 
-/// A confirmed job that stands is worth more than all others together, in cents.
+/// What a confirmed job that stands is worth beyond its cost, in cents: ten million euros.
 const STANDS: i64 = 1_000_000_000;
 
 /// One way to do one job.
@@ -73,7 +73,11 @@ pub fn plan(checked: &Checked) -> Schedule {
         changes: moves::changes(input, &jobs, &standing, &options, &made),
         later: later
             .into_iter()
-            .map(|need| Later { need: need.id, due: need.due, reason: need.reason })
+            .map(|need| Later {
+                need: need.id,
+                due: need.due,
+                reason: need.reason,
+            })
             .collect(),
     }
 }
@@ -93,13 +97,20 @@ impl<'a> Options<'a> {
             }
         }
         for (at, (job, standing)) in jobs.iter().zip(standing).enumerate() {
-            let unmet = input.weights.unmet_eur.of(job.urgency()).cents();
-            let stands = matches!(standing, Standing::Stands { .. });
-            options.problem.unmet.push(if stands { STANDS } else { unmet });
-            if let Standing::Stands { call, firm, day, quote } = standing {
+            if let Standing::Stands {
+                call,
+                firm,
+                day,
+                quote,
+            } = standing
+            {
+                let travel = travel(&input.firms[*firm], call.port);
+                options.problem.unmet.push(quote.cost() + travel + STANDS);
                 options.add(input, at, call, *firm, *day, *quote);
                 continue;
             }
+            let unmet = input.weights.unmet_eur.of(job.urgency());
+            options.problem.unmet.push(unmet.cents());
             for &call in &job.calls {
                 for &firm in serving.get(&call.port).into_iter().flatten() {
                     for day in quote::days(call, input.now) {
@@ -128,16 +139,30 @@ impl<'a> Options<'a> {
             problem.teams.push(of.teams);
             problem.teams.len() - 1
         });
-        let visit = *self.visits.entry((firm, call.port, day)).or_insert_with(|| {
-            problem.visits.push(Visit {
-                firm_day,
-                travel: travel(of, call.port),
-                jobs_a_team: of.jobs_a_team_day,
+        let visit = *self
+            .visits
+            .entry((firm, call.port, day))
+            .or_insert_with(|| {
+                problem.visits.push(Visit {
+                    firm_day,
+                    travel: travel(of, call.port),
+                    jobs_a_team: of.jobs_a_team_day,
+                });
+                problem.visits.len() - 1
             });
-            problem.visits.len() - 1
+        problem.choices.push(Choice {
+            need: job,
+            visit,
+            cost: quote.cost(),
         });
-        problem.choices.push(Choice { need: job, visit, cost: quote.cost() });
-        self.all.push(Way { job, call, firm, day, quote, visit });
+        self.all.push(Way {
+            job,
+            call,
+            firm,
+            day,
+            quote,
+            visit,
+        });
     }
 }
 
@@ -155,7 +180,9 @@ fn planned(input: &Input, jobs: &[Job<'_>], made: &[Option<&Way<'_>>]) -> Vec<Pl
         .flatten()
         .map(|option| planned_job(input, &jobs[option.job], option, at_visit[&option.visit]))
         .collect();
-    planned.sort_by(|one, other| (one.day, one.from, &one.needs).cmp(&(other.day, other.from, &other.needs)));
+    planned.sort_by(|one, other| {
+        (one.day, one.from, &one.needs).cmp(&(other.day, other.from, &other.needs))
+    });
     planned
 }
 
@@ -174,9 +201,10 @@ fn planned_job(input: &Input, job: &Job<'_>, option: &Way<'_>, jobs_there: u32) 
         day: option.day,
         from: quote.from,
         to: quote.to,
-        berth_heading: call
-            .berth_heading_deg
-            .map(|heading_deg| BerthHeading { heading_deg, source: HeadingSource::Given }),
+        berth_heading: call.berth_heading_deg.map(|heading_deg| BerthHeading {
+            heading_deg,
+            source: HeadingSource::Given,
+        }),
         state: match job.former {
             Some(former) if kept => former.state,
             _ => JobState::Proposed,

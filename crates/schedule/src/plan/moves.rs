@@ -33,13 +33,30 @@ pub(super) fn changes(
             (None, Some(_)) => (ChangeKind::New, job.needs[0].reason.clone()),
             (Some(_), Some(_)) if from == to => (ChangeKind::Kept, kept(&standing[at])),
             (Some(former), way) => {
-                let what = if way.is_some() { ChangeKind::Moved } else { ChangeKind::Dropped };
-                (what, cause(input, job, &standing[at], options, former, at, way, made))
+                let what = if way.is_some() {
+                    ChangeKind::Moved
+                } else {
+                    ChangeKind::Dropped
+                };
+                (
+                    what,
+                    cause(input, job, &standing[at], options, former, at, way, made),
+                )
             }
         };
-        changes.push(Change { needs: job.ids(), what, from, to, why });
+        changes.push(Change {
+            needs: job.ids(),
+            what,
+            from,
+            to,
+            why,
+        });
     }
-    let planned: Vec<&String> = jobs.iter().flat_map(|job| &job.needs).map(|need| &need.id).collect();
+    let planned: Vec<&String> = jobs
+        .iter()
+        .flat_map(|job| &job.needs)
+        .map(|need| &need.id)
+        .collect();
     for former in &input.former {
         if former.needs.iter().any(|need| planned.contains(&need)) {
             continue;
@@ -47,7 +64,11 @@ pub(super) fn changes(
         changes.push(Change {
             needs: former.needs.clone(),
             what: ChangeKind::Dropped,
-            from: Some(Place { call: former.call.clone(), firm: former.firm.clone(), day: former.day }),
+            from: Some(Place {
+                call: former.call.clone(),
+                firm: former.firm.clone(),
+                day: former.day,
+            }),
             to: None,
             why: "not due within the horizon any more".to_owned(),
         });
@@ -63,7 +84,10 @@ fn kept(standing: &Standing<'_>) -> String {
     }
 }
 
-#[allow(clippy::too_many_arguments, reason = "each is a different thing that is known")]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "each is a different thing that is known"
+)]
 fn cause(
     input: &Input,
     job: &Job<'_>,
@@ -80,9 +104,10 @@ fn cause(
     let Some(call) = job.calls.iter().find(|call| call.id == former.call) else {
         return format!("call {} is cancelled", former.call);
     };
-    let old = options.all.iter().find(|old| {
-        old.job == at && job.was(&old.call.id, &input.firms[old.firm].id, old.day)
-    });
+    let old = options
+        .all
+        .iter()
+        .find(|old| old.job == at && job.was(&old.call.id, &input.firms[old.firm].id, old.day));
     let Some(old) = old else {
         let firm = input.firms.iter().find(|firm| firm.id == former.firm);
         let declined = input.declined.iter().any(|declined| {
@@ -94,12 +119,19 @@ fn cause(
         } else {
             let stay = format!("{} to {}", call.eta, call.etd);
             let port = quote::port_of(call).name;
-            format!("{name} on {} is no longer possible: call {} is at {port}, {stay}", former.day, call.id)
+            format!(
+                "{name} on {} is no longer possible: call {} is at {port}, {stay}",
+                former.day, call.id
+            )
         };
     };
-    let others = made.iter().flatten().filter(|other| other.firm == old.firm && other.day == old.day);
+    let others = made
+        .iter()
+        .flatten()
+        .filter(|other| other.firm == old.firm && other.day == old.day);
     let names: Vec<&str> = others.map(|other| other.call.vessel.as_str()).collect();
-    let teams = input.firms[old.firm].teams as usize * input.firms[old.firm].jobs_a_team_day as usize;
+    let teams =
+        input.firms[old.firm].teams as usize * input.firms[old.firm].jobs_a_team_day as usize;
     if names.len() >= teams {
         return format!("gives way to {}", names.join(", "));
     }
@@ -108,7 +140,10 @@ fn cause(
             let travel = |way: &Way<'_>| options.problem.visits[way.visit].travel;
             let saved = old.quote.cost() + travel(old) - way.quote.cost() - travel(way);
             if saved > 0 {
-                format!("better by {:.2} euros, the cost of moving it included", euros(saved))
+                format!(
+                    "better by {:.2} euros, the cost of moving it included",
+                    euros(saved)
+                )
             } else {
                 "makes the whole plan better, for others' sake".to_owned()
             }

@@ -8,6 +8,9 @@ use crate::ports::{self, Port};
 use crate::time::Instant;
 use chrono::{Days, NaiveDate};
 
+/// No more days are counted, so that sums of money stay sums.
+const MOST_DAYS: i64 = 3650;
+
 /// One thing that stands against it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Obstacle {
@@ -75,11 +78,17 @@ pub(super) fn quote(
     let weights = &input.weights;
     let today = input.now.date(zone_h);
     let confirmed = job.was(&call.id, &firm.id, day)
-        && job.former.is_some_and(|former| former.state == JobState::Confirmed);
+        && job
+            .former
+            .is_some_and(|former| former.state == JobState::Confirmed);
     let opens = Instant::at(day, firm.first_hour, zone_h);
     let closes = Instant::at(day, firm.last_hour, zone_h);
     // Whom the firm has confirmed to, it has been asked by in time.
-    let ready = if confirmed { input.now } else { input.now.plus_hours(firm.lead_time_h) };
+    let ready = if confirmed {
+        input.now
+    } else {
+        input.now.plus_hours(firm.lead_time_h)
+    };
     let begins = opens.max(ready);
     let (from, to) = (begins.max(call.eta), closes.min(call.etd));
     let late_days = (day - job.due()).num_days().max(0);
@@ -90,13 +99,22 @@ pub(super) fn quote(
             against.push(obstacle);
         }
     };
-    unless(firm.flags.is_empty() || firm.flags.contains(&job.vessel.flag), Obstacle::Flag);
+    unless(
+        firm.flags.is_empty() || firm.flags.contains(&job.vessel.flag),
+        Obstacle::Flag,
+    );
     let licence = job.vessel.licence.as_ref();
-    unless(licence.is_none_or(|asked| firm.licences.contains(asked)), Obstacle::Licence);
+    unless(
+        licence.is_none_or(|asked| firm.licences.contains(asked)),
+        Obstacle::Licence,
+    );
     unless(firm.works(day), Obstacle::NotWorking);
     let in_hours = closes.min(call.etd).hours_since(opens.max(call.eta)) >= weights.job_h;
     unless(in_hours, Obstacle::Stay);
-    unless(!in_hours || to.hours_since(from) >= weights.job_h, Obstacle::LeadTime);
+    unless(
+        !in_hours || to.hours_since(from) >= weights.job_h,
+        Obstacle::LeadTime,
+    );
     let allowed = late_days <= i64::from(weights.late_days) || job.due() < today || confirmed;
     unless(allowed, Obstacle::AfterDue);
     unless(!declined(input, job, firm, day), Obstacle::Declined);
@@ -106,21 +124,22 @@ pub(super) fn quote(
 
     let urgency = job.urgency();
     let chance_of_missing = call.chance_of_missing(begins, closes, weights.job_h);
-    let waits = (day - today).num_days().max(0);
+    let waits = (day - today).num_days().clamp(0, MOST_DAYS);
     let early_days = match urgency {
-        Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().max(0),
+        Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MOST_DAYS),
         Urgency::Urgent | Urgency::Overdue => 0,
     };
-    let extra = job.needs.len() as i64 - 1;
+    let more = job.needs.iter().skip(1);
+    let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
     Ok(Quote {
         from,
         to,
         chance_of_missing,
         late_days,
-        fee: firm.fee_eur.cents() + extra * firm.extra_compass_eur.cents(),
+        fee: firm.fee_eur.cents() + extra,
         risk: (chance_of_missing * weights.missed_eur.of(urgency).cents() as f64).round() as i64,
         waiting: waits * weights.waiting_eur_day.of(urgency).cents(),
-        late: late_days * weights.late_eur_day.cents(),
+        late: late_days.min(MOST_DAYS) * weights.late_eur_day.cents(),
         early: early_days * weights.early_eur_day.cents(),
         changed: changed(input, job, call, firm, day),
     })

@@ -16,11 +16,18 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOST: usize = 8;
 
 /// All jobs that are not in the plan, or there after their due date.
-pub(super) fn unscheduled(input: &Input, jobs: &[Job<'_>], made: &[Option<&Way<'_>>]) -> Vec<Unscheduled> {
+pub(super) fn unscheduled(
+    input: &Input,
+    jobs: &[Job<'_>],
+    made: &[Option<&Way<'_>>],
+) -> Vec<Unscheduled> {
     let mut taken: BTreeMap<(&str, NaiveDate), Vec<&str>> = BTreeMap::new();
     for way in made.iter().flatten() {
         let firm = input.firms[way.firm].id.as_str();
-        taken.entry((firm, way.day)).or_default().push(&jobs[way.job].vessel.id);
+        taken
+            .entry((firm, way.day))
+            .or_default()
+            .push(&jobs[way.job].vessel.id);
     }
     let overdue = |job: &Job<'_>| job.due() < input.now.date(0);
     let open = jobs.iter().zip(made).filter(|(job, way)| match way {
@@ -52,11 +59,19 @@ struct Found {
 }
 
 impl Found {
-    fn look(&mut self, input: &Input, job: &Job<'_>, taken: &BTreeMap<(&str, NaiveDate), Vec<&str>>) {
+    fn look(
+        &mut self,
+        input: &Input,
+        job: &Job<'_>,
+        taken: &BTreeMap<(&str, NaiveDate), Vec<&str>>,
+    ) {
         let in_time: Vec<&PortCall> = job
             .calls
             .iter()
-            .filter(|call| call.eta.date(quote::port_of(call).zone_h()) <= job.due() || job.due() < input.now.date(0))
+            .filter(|call| {
+                call.eta.date(quote::port_of(call).zone_h()) <= job.due()
+                    || job.due() < input.now.date(0)
+            })
             .copied()
             .collect();
         if in_time.is_empty() {
@@ -77,7 +92,11 @@ impl Found {
                 .take(200)
                 .collect();
             let ports: Vec<String> = served.into_iter().take(12).collect();
-            let help = format!("a call by {} at a port that a firm serves: {}", job.due(), ports.join(", "));
+            let help = format!(
+                "a call by {} at a port that a firm serves: {}",
+                job.due(),
+                ports.join(", ")
+            );
             self.near.insert((3, job.due(), help));
         }
         for call in &job.calls {
@@ -93,10 +112,16 @@ impl Found {
         taken: &BTreeMap<(&str, NaiveDate), Vec<&str>>,
     ) {
         let port = quote::port_of(call);
-        let serving: Vec<&Firm> =
-            input.firms.iter().filter(|firm| firm.travel(call.port).is_some()).collect();
+        let serving: Vec<&Firm> = input
+            .firms
+            .iter()
+            .filter(|firm| firm.travel(call.port).is_some())
+            .collect();
         if serving.is_empty() {
-            self.say(format!("no firm serves {} ({}), call {}", port.name, call.port, call.id));
+            self.say(format!(
+                "no firm serves {} ({}), call {}",
+                port.name, call.port, call.id
+            ));
             let day = call.eta.date(port.zone_h());
             if day <= job.due() {
                 let help = format!("a firm at {} ({}) on {day}", port.name, call.port);
@@ -126,15 +151,31 @@ impl Found {
             if firm.teams == 0 {
                 self.say(format!("{name} has no teams"));
             } else {
-                self.say(format!("{name} at {port} on {day} costs more than leaving it undone"));
+                self.say(format!(
+                    "{name} at {port} on {day} costs more than leaving it undone"
+                ));
             }
             return;
         };
-        self.say(format!("{name}'s teams of {day} go to {}", others.join(", ")));
-        self.near.insert((0, day, format!("one more team of {name} on {day}, at {port}")));
+        self.say(format!(
+            "{name}'s teams of {day} go to {}",
+            others.join(", ")
+        ));
+        self.near.insert((
+            0,
+            day,
+            format!("one more team of {name} on {day}, at {port}"),
+        ));
     }
 
-    fn obstacles(&mut self, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate, obstacles: &[Obstacle]) {
+    fn obstacles(
+        &mut self,
+        job: &Job<'_>,
+        call: &PortCall,
+        firm: &Firm,
+        day: NaiveDate,
+        obstacles: &[Obstacle],
+    ) {
         let (name, port, due) = (firm.called(), quote::port_of(call).name, job.due());
         let flag = job.vessel.flag.letters();
         let only = |help: String| (obstacles.len() == 1).then_some((1, day, help));
@@ -154,15 +195,24 @@ impl Found {
                     format!("{name} working at {port} on {}, {day}", day.format("%A")),
                 ),
                 Obstacle::LeadTime => (
-                    format!("{name} wants to be asked {} h ahead, too long for {day}", firm.lead_time_h),
+                    format!(
+                        "{name} wants to be asked {} h ahead, too long for {day}",
+                        firm.lead_time_h
+                    ),
                     format!("{name} coming to {port} at shorter notice, on {day}"),
                 ),
                 Obstacle::Stay => (
-                    format!("call {} leaves {name} too few working hours on {day} at {port}", call.id),
+                    format!(
+                        "call {} leaves {name} too few working hours on {day} at {port}",
+                        call.id
+                    ),
                     format!("a longer stay at {port} on {day}, for {name}"),
                 ),
                 Obstacle::AfterDue => (
-                    format!("call {} at {port} on {day} is after the due date, {due}", call.id),
+                    format!(
+                        "call {} at {port} on {day} is after the due date, {due}",
+                        call.id
+                    ),
                     format!("a due date of {day} or later: {name} could come to {port}"),
                 ),
                 Obstacle::Declined => (
@@ -184,6 +234,10 @@ impl Found {
     }
 
     fn help(&self) -> Vec<String> {
-        self.near.iter().map(|(_, _, help)| help.clone()).take(MOST).collect()
+        self.near
+            .iter()
+            .map(|(_, _, help)| help.clone())
+            .take(MOST)
+            .collect()
     }
 }

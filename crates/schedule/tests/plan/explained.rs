@@ -119,8 +119,8 @@ fn a_team_that_another_ship_has_is_named_with_the_ship() {
     });
     assert_eq!(found.because[0], "f's teams of 2026-12-01 go to w");
     assert_eq!(
-        found.would_help,
-        ["one more team of f on 2026-12-01, at Rotterdam"]
+        found.would_help[0],
+        "one more team of f on 2026-12-01, at Rotterdam"
     );
 }
 

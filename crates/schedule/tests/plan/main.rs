@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests
 
 mod confirmed;
+mod documented;
 mod explained;
 
 use binnacle_schedule::input::read;

@@ -1,0 +1,261 @@
+//! Port calls as CSV, in and out.
+//!
+//! The first line names the columns: `id`, `vessel`, `port`, `eta`, `etd`, and if wanted
+//! `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`, `berth_heading_deg`. A file for one
+//! ship needs no `vessel`, and a call without `id` is named after its port and ETA.
+//!
+//! What always holds: memory is bounded by a line and by the calls that were read,
+//! however large the file; what is wrong is said with its line and column; what is
+//! written opens in a spreadsheet without being taken for a formula, and reads back.
+
+use super::PortCall;
+use crate::ports::{self, PortCode};
+use crate::time::Instant;
+use std::io::{BufRead, Read, Write};
+
+/// No line is longer, in bytes.
+const LONGEST_LINE: u64 = 4096;
+/// No file has more calls.
+pub const MOST_CALLS: usize = 50_000;
+
+/// What is wrong with a file, and where.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {field}: {detail}")]
+pub struct FileError {
+    /// The line, from 1.
+    pub line: usize,
+    /// The column or property at fault.
+    pub field: String,
+    /// What is wrong with it.
+    pub detail: String,
+}
+
+impl FileError {
+    pub(super) fn new(line: usize, field: &str, detail: impl Into<String>) -> FileError {
+        FileError {
+            line,
+            field: field.to_owned(),
+            detail: detail.into(),
+        }
+    }
+}
+
+const COLUMNS: [&str; 9] = [
+    "id",
+    "vessel",
+    "port",
+    "berth",
+    "eta",
+    "eta_uncertainty_h",
+    "etd",
+    "etd_uncertainty_h",
+    "berth_heading_deg",
+];
+
+/// Reads a file's calls; `vessel` is the ship of rows that name none.
+///
+/// # Errors
+/// [`FileError`] with the first thing that is wrong: nothing is kept of a bad file.
+pub fn read(
+    mut file: impl BufRead,
+    vessel: Option<&str>,
+    now: Instant,
+) -> Result<Vec<PortCall>, FileError> {
+    let (mut header, mut calls, mut line) = (None, Vec::new(), 0);
+    while let Some(text) = next_line(&mut file, line + 1)? {
+        line += 1;
+        if text.trim().is_empty() {
+            continue;
+        }
+        let cells = cells(&text, line)?;
+        let Some(header) = &header else {
+            header = Some(columns(cells, line)?);
+            continue;
+        };
+        if calls.len() == MOST_CALLS {
+            return Err(FileError::new(
+                line,
+                "row",
+                format!("more than {MOST_CALLS} calls"),
+            ));
+        }
+        calls.push(row(header, &cells, vessel, now, line)?);
+    }
+    if header.is_none() {
+        return Err(FileError::new(1, "row", "the file is empty"));
+    }
+    Ok(calls)
+}
+
+/// Writes calls, with the line of columns.
+///
+/// # Errors
+/// When the writer does not take them.
+pub fn write(calls: &[PortCall], out: impl Write) -> std::io::Result<()> {
+    let mut out = csv::Writer::from_writer(out);
+    out.write_record(COLUMNS)?;
+    for call in calls {
+        let heading = call
+            .berth_heading_deg
+            .map_or(String::new(), |heading| heading.to_string());
+        let cells = [
+            call.id.clone(),
+            call.vessel.clone(),
+            call.port.to_string(),
+            call.berth.clone().unwrap_or_default(),
+            call.eta.to_string(),
+            call.eta_uncertainty_h.to_string(),
+            call.etd.to_string(),
+            call.etd_uncertainty_h.to_string(),
+            heading,
+        ];
+        out.write_record(cells.map(|cell| harmless(&cell)))?;
+    }
+    out.flush()
+}
+
+/// What a spreadsheet takes for a formula begins so.
+fn formula(text: &str) -> bool {
+    text.starts_with(['=', '+', '-', '@', '\t', '\r'])
+}
+
+/// A cell that no spreadsheet takes for a formula.
+pub fn harmless(text: &str) -> String {
+    let apostrophes = text.trim_start_matches('\'');
+    if formula(apostrophes) {
+        format!("'{text}")
+    } else {
+        text.to_owned()
+    }
+}
+
+/// A cell as it was before [`harmless`].
+fn as_it_was(text: &str) -> &str {
+    match text.strip_prefix('\'') {
+        Some(rest) if formula(rest.trim_start_matches('\'')) => rest,
+        _ => text,
+    }
+}
+
+fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, FileError> {
+    let failed = |what: String| FileError::new(line, "row", what);
+    let mut bytes = Vec::new();
+    let read = file
+        .by_ref()
+        .take(LONGEST_LINE + 1)
+        .read_until(b'\n', &mut bytes);
+    read.map_err(|error| failed(error.to_string()))?;
+    if bytes.is_empty() {
+        return Ok(None);
+    }
+    if bytes.len() as u64 > LONGEST_LINE {
+        return Err(failed(format!("is longer than {LONGEST_LINE} bytes")));
+    }
+    let text = String::from_utf8(bytes).map_err(|_| failed("is not UTF-8 text".to_owned()))?;
+    let text = if line == 1 {
+        text.trim_start_matches('\u{feff}')
+    } else {
+        &text
+    };
+    Ok(Some(text.to_owned()))
+}
+
+/// A line's cells (RFC 4180, but for line ends within quotes), without blanks around.
+fn cells(text: &str, line: usize) -> Result<Vec<String>, FileError> {
+    let mut cells = vec![String::new()];
+    let mut quoted = false;
+    let mut letters = text.trim_end_matches(['\r', '\n']).chars().peekable();
+    while let Some(letter) = letters.next() {
+        let cell = cells.last_mut().expect("there is a first");
+        match letter {
+            '"' if quoted && letters.peek() == Some(&'"') => cell.extend(letters.next()),
+            '"' => quoted = !quoted,
+            ',' if !quoted => cells.push(String::new()),
+            _ => cell.push(letter),
+        }
+    }
+    if quoted {
+        return Err(FileError::new(
+            line,
+            "row",
+            "a quote is not closed on its line",
+        ));
+    }
+    Ok(cells.iter().map(|cell| cell.trim().to_owned()).collect())
+}
+
+fn columns(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
+    for (at, name) in header.iter().enumerate() {
+        if !COLUMNS.contains(&name.as_str()) {
+            let what = format!("is no column; known are {}", COLUMNS.join(", "));
+            return Err(FileError::new(line, name, what));
+        }
+        if header[..at].contains(name) {
+            return Err(FileError::new(line, name, "stands there twice"));
+        }
+    }
+    for needed in ["port", "eta", "etd"] {
+        if !header.iter().any(|name| name == needed) {
+            return Err(FileError::new(line, needed, "the column is missing"));
+        }
+    }
+    Ok(header)
+}
+
+fn row(
+    header: &[String],
+    cells: &[String],
+    vessel: Option<&str>,
+    now: Instant,
+    line: usize,
+) -> Result<PortCall, FileError> {
+    if cells.len() != header.len() {
+        let what = format!(
+            "{} fields, where the first line has {}",
+            cells.len(),
+            header.len()
+        );
+        return Err(FileError::new(line, "row", what));
+    }
+    let cell = |name: &str| {
+        let at = header.iter().position(|column| column == name)?;
+        Some(as_it_was(&cells[at])).filter(|text| !text.is_empty())
+    };
+    let needed = |name: &str| cell(name).ok_or_else(|| FileError::new(line, name, "is empty"));
+    let instant = |name: &str| {
+        Instant::parse(needed(name)?).map_err(|error| FileError::new(line, name, error.to_string()))
+    };
+    let number = |name: &str| match cell(name).map(|text| (text, text.parse::<f64>())) {
+        None => Ok(None),
+        Some((_, Ok(number))) if number.is_finite() => Ok(Some(number)),
+        Some((text, _)) => Err(FileError::new(
+            line,
+            name,
+            format!("{text:?} is not a number"),
+        )),
+    };
+    let port = PortCode::parse(needed("port")?)
+        .map_err(|error| FileError::new(line, "port", error.to_string()))?;
+    if ports::find(port).is_none() {
+        let what = format!("{port} is no sea port of the UN/LOCODE table");
+        return Err(FileError::new(line, "port", what));
+    }
+    let (eta, etd) = (instant("eta")?, instant("etd")?);
+    let vessel = cell("vessel").or(vessel);
+    let call = PortCall {
+        id: cell("id").map_or_else(|| format!("{port} {eta}"), str::to_owned),
+        vessel: vessel
+            .ok_or_else(|| FileError::new(line, "vessel", "is empty"))?
+            .to_owned(),
+        port,
+        berth: cell("berth").map(str::to_owned),
+        eta,
+        eta_uncertainty_h: number("eta_uncertainty_h")?.unwrap_or(0.0),
+        etd,
+        etd_uncertainty_h: number("etd_uncertainty_h")?.unwrap_or(0.0),
+        berth_heading_deg: number("berth_heading_deg")?,
+    };
+    call.checked(now)
+        .map_err(|error| FileError::new(line, error.field, error.detail))?;
+    Ok(call)
+}

@@ -1,0 +1,216 @@
+//! Port calls from iCalendar (RFC 5545), as agents and fleet programs export them.
+//!
+//! A `VEVENT` is a call: `UID` its name, `DTSTART` the ETA, `DTEND` the ETD, and its port
+//! the first UN/LOCODE in `X-UNLOCODE`, `LOCATION` or `SUMMARY`, or the one port whose
+//! name is `LOCATION`'s up to a comma. Cancelled events are passed over.
+//!
+//! What always holds: a time is taken only where the file says in which zone it is:
+//! UTC, or a `VTIMEZONE` of one offset or of yearly rules; floating times, whole days and
+//! repeating events are refused with their line.
+
+mod line;
+mod zone;
+
+use super::PortCall;
+use super::csv::{FileError, MOST_CALLS};
+use crate::ports::{self, PortCode};
+use crate::time::Instant;
+use chrono::{NaiveDateTime, TimeZone, Utc};
+use line::{Line, lines};
+use std::collections::BTreeMap;
+use zone::Zone;
+
+/// Reads the calls of one ship.
+///
+/// # Errors
+/// [`FileError`] with the first thing that is wrong: nothing is kept of a bad file.
+pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Vec<PortCall>, FileError> {
+    let lines = lines(text)?;
+    if lines
+        .first()
+        .is_none_or(|line| !line.is("BEGIN", "VCALENDAR"))
+    {
+        return Err(FileError::new(
+            1,
+            "BEGIN",
+            "a calendar begins with BEGIN:VCALENDAR",
+        ));
+    }
+    let zones = zone::zones(&lines)?;
+    let mut calls = Vec::new();
+    let mut event: Option<(usize, Vec<&Line>)> = None;
+    // An alarm within an event has lines of its own.
+    let mut inner = 0;
+    for line in &lines {
+        match &mut event {
+            None if line.is("BEGIN", "VEVENT") => event = Some((line.number, Vec::new())),
+            Some((begins, own)) if line.is("END", "VEVENT") => {
+                if calls.len() == MOST_CALLS {
+                    return Err(FileError::new(
+                        *begins,
+                        "VEVENT",
+                        format!("more than {MOST_CALLS} calls"),
+                    ));
+                }
+                calls.extend(call(*begins, own, &zones, vessel, now)?);
+                (event, inner) = (None, 0);
+            }
+            Some(_) if line.name == "BEGIN" => inner += 1,
+            Some(_) if line.name == "END" => inner -= 1,
+            Some((_, own)) if inner == 0 => own.push(line),
+            _ => {}
+        }
+    }
+    match event {
+        Some((begins, _)) => Err(FileError::new(begins, "VEVENT", "has no end")),
+        None => Ok(calls),
+    }
+}
+
+fn call(
+    begins: usize,
+    own: &[&Line],
+    zones: &BTreeMap<String, Zone>,
+    vessel: &str,
+    now: Instant,
+) -> Result<Option<PortCall>, FileError> {
+    let find = |name: &str| own.iter().find(|line| line.name == name).copied();
+    if find("STATUS").is_some_and(|line| line.value.eq_ignore_ascii_case("CANCELLED")) {
+        return Ok(None);
+    }
+    if let Some(line) = own
+        .iter()
+        .find(|line| line.name == "RRULE" || line.name == "RDATE")
+    {
+        return Err(FileError::new(
+            line.number,
+            &line.name,
+            "a port call does not repeat",
+        ));
+    }
+    let needed = |name: &str| {
+        find(name).ok_or_else(|| FileError::new(begins, name, "is missing in the event"))
+    };
+    let (eta, etd) = (needed("DTSTART")?, needed("DTEND")?);
+    let call = PortCall {
+        id: needed("UID")?.value.clone(),
+        vessel: vessel.to_owned(),
+        port: port(begins, &find)?,
+        berth: None,
+        eta: instant(eta, zones)?,
+        eta_uncertainty_h: 0.0,
+        etd: instant(etd, zones)?,
+        etd_uncertainty_h: 0.0,
+        berth_heading_deg: None,
+    };
+    call.checked(now).map_err(|error| {
+        let line = if error.field == "eta" { eta } else { etd };
+        FileError::new(line.number, &line.name, error.detail)
+    })?;
+    Ok(Some(call))
+}
+
+fn port<'a>(
+    begins: usize,
+    find: &impl Fn(&str) -> Option<&'a Line>,
+) -> Result<PortCode, FileError> {
+    for name in ["X-UNLOCODE", "LOCATION", "SUMMARY"] {
+        let Some(line) = find(name) else { continue };
+        if let Some(code) = code_in(&line.value) {
+            return Ok(code);
+        }
+    }
+    let Some(location) = find("LOCATION") else {
+        return Err(FileError::new(
+            begins,
+            "LOCATION",
+            "is missing in the event",
+        ));
+    };
+    let name = location
+        .value
+        .split(',')
+        .next()
+        .unwrap_or_default()
+        .trim()
+        .to_lowercase();
+    let mut named = ports::all()
+        .iter()
+        .filter(|port| port.name.to_lowercase() == name || port.plain_name.to_lowercase() == name);
+    match (named.next(), named.next()) {
+        (Some(port), None) => Ok(port.code),
+        (Some(one), Some(other)) => {
+            let what = format!(
+                "{:?} may be {} or {}; write the UN/LOCODE",
+                name, one.code, other.code
+            );
+            Err(FileError::new(location.number, "LOCATION", what))
+        }
+        _ => {
+            let what = format!(
+                "{:?} is no port that is known; write the UN/LOCODE",
+                location.value
+            );
+            Err(FileError::new(location.number, "LOCATION", what))
+        }
+    }
+}
+
+/// The first word in capitals that is a port's code, with or without its space.
+fn code_in(text: &str) -> Option<PortCode> {
+    let words: Vec<&str> = text
+        .split(|letter: char| !letter.is_ascii_alphanumeric())
+        .filter(|word| !word.is_empty() && !word.bytes().any(|byte| byte.is_ascii_lowercase()))
+        .collect();
+    let pairs = words
+        .windows(2)
+        .filter(|pair| pair[0].len() == 2 && pair[1].len() == 3);
+    let joined = pairs.map(|pair| format!("{}{}", pair[0], pair[1]));
+    let single = words
+        .iter()
+        .filter(|word| word.len() == 5)
+        .map(|word| (*word).to_owned());
+    single
+        .chain(joined)
+        .filter_map(|code| PortCode::parse(&code).ok())
+        .find(|code| ports::find(*code).is_some())
+}
+
+fn instant(line: &Line, zones: &BTreeMap<String, Zone>) -> Result<Instant, FileError> {
+    let wrong = |what: String| FileError::new(line.number, &line.name, what);
+    let (text, utc) = match line.value.strip_suffix('Z') {
+        Some(text) => (text, true),
+        None => (line.value.as_str(), false),
+    };
+    if text.len() == 8 && text.bytes().all(|byte| byte.is_ascii_digit()) {
+        return Err(wrong(format!(
+            "{text:?} is a whole day; a call needs the time of day"
+        )));
+    }
+    let naive = NaiveDateTime::parse_from_str(text, "%Y%m%dT%H%M%S").map_err(|_| {
+        wrong(format!(
+            "{:?} is not a time as 20261201T080000Z",
+            line.value
+        ))
+    })?;
+    let zone = match line.parameter("TZID") {
+        _ if utc => Zone::fixed(0),
+        Some(name) => match zones.get(name) {
+            Some(zone) => zone.clone(),
+            None if ["UTC", "Etc/UTC", "GMT", "Etc/GMT"].contains(&name) => Zone::fixed(0),
+            None => {
+                return Err(wrong(format!(
+                    "time zone {name:?} has no VTIMEZONE in the file"
+                )));
+            }
+        },
+        None => {
+            return Err(wrong(format!(
+                "{:?} says no time zone; write Z for UTC",
+                line.value
+            )));
+        }
+    };
+    let utc = naive - chrono::Duration::seconds(zone.offset_s(naive));
+    Ok(Instant::from(Utc.from_utc_datetime(&utc).fixed_offset()))
+}

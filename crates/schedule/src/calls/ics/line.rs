@@ -1,0 +1,105 @@
+//! The lines of a calendar: unfolded, with name, parameters and value.
+
+use crate::calls::csv::FileError;
+
+/// No line is longer when unfolded, in bytes.
+const LONGEST: usize = 16_384;
+
+/// A content line, and where it begins.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Line {
+    pub(super) number: usize,
+    /// In capitals.
+    pub(super) name: String,
+    parameters: Vec<(String, String)>,
+    /// Without the escapes of text.
+    pub(super) value: String,
+}
+
+impl Line {
+    pub(super) fn is(&self, name: &str, value: &str) -> bool {
+        self.name == name && self.value.eq_ignore_ascii_case(value)
+    }
+
+    pub(super) fn parameter(&self, name: &str) -> Option<&str> {
+        let found = self.parameters.iter().find(|(own, _)| own == name)?;
+        Some(&found.1)
+    }
+}
+
+/// All lines. A line that begins with a blank goes on with the one before (RFC 5545, 3.1).
+pub(super) fn lines(text: &str) -> Result<Vec<Line>, FileError> {
+    let mut whole: Vec<(usize, String)> = Vec::new();
+    for (at, line) in text.trim_start_matches('\u{feff}').lines().enumerate() {
+        match (line.strip_prefix([' ', '\t']), whole.last_mut()) {
+            (Some(more), Some((_, begun))) => begun.push_str(more),
+            _ => whole.push((at + 1, line.to_owned())),
+        }
+        if whole.last().is_some_and(|(_, line)| line.len() > LONGEST) {
+            return Err(FileError::new(
+                at + 1,
+                "line",
+                format!("is longer than {LONGEST} bytes"),
+            ));
+        }
+    }
+    whole.retain(|(_, line)| !line.trim().is_empty());
+    whole
+        .into_iter()
+        .map(|(number, line)| read(number, &line))
+        .collect()
+}
+
+fn read(number: usize, line: &str) -> Result<Line, FileError> {
+    let Some(colon) = outside_quotes(line, ':').next() else {
+        let what = format!(
+            "{:?} is no line of a calendar",
+            line.chars().take(40).collect::<String>()
+        );
+        return Err(FileError::new(number, "line", what));
+    };
+    let (head, value) = (&line[..colon], &line[colon + 1..]);
+    let mut begins = 0;
+    let mut parts = Vec::new();
+    for ends in outside_quotes(head, ';').chain([head.len()]) {
+        parts.push(&head[begins..ends]);
+        begins = ends + 1;
+    }
+    let parameters = parts[1..].iter().filter_map(|part| {
+        let (name, value) = part.split_once('=')?;
+        Some((
+            name.to_ascii_uppercase(),
+            value.trim_matches('"').to_owned(),
+        ))
+    });
+    Ok(Line {
+        number,
+        name: parts[0].trim().to_ascii_uppercase(),
+        parameters: parameters.collect(),
+        value: unescaped(value.trim()),
+    })
+}
+
+fn outside_quotes(text: &str, wanted: char) -> impl Iterator<Item = usize> {
+    let mut quoted = false;
+    text.char_indices().filter_map(move |(at, letter)| {
+        quoted ^= letter == '"';
+        (letter == wanted && !quoted).then_some(at)
+    })
+}
+
+fn unescaped(value: &str) -> String {
+    let mut text = String::with_capacity(value.len());
+    let mut letters = value.chars();
+    while let Some(letter) = letters.next() {
+        match letter {
+            '\\' => match letters.next() {
+                Some('n' | 'N') => text.push('\n'),
+                Some(other) => text.push(other),
+                None => {}
+            },
+            _ => text.push(letter),
+        }
+    }
+    text
+}

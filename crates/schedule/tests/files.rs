@@ -1,0 +1,243 @@
+//! Port calls from CSV and iCalendar: what is read, and what is refused with its line.
+
+#![allow(clippy::unwrap_used)] // helpers of tests
+
+use binnacle_schedule::calls::{csv, ics};
+use binnacle_schedule::time::Instant;
+use std::io::{BufReader, Read};
+
+fn now() -> Instant {
+    Instant::parse("2026-11-21T00:00:00Z").unwrap()
+}
+
+fn csv_complaint(text: &str) -> String {
+    csv::read(text.as_bytes(), None, now())
+        .unwrap_err()
+        .to_string()
+}
+
+const HEADER: &str = "id,vessel,port,eta,etd,eta_uncertainty_h\n";
+
+#[test]
+fn calls_are_read_from_csv_and_written_back() {
+    let text = format!(
+        "\u{feff}{HEADER}c1,v1,nl rtm,2026-12-01T06:00:00+01:00,2026-12-02T18:00:00Z,6\r\n\n"
+    );
+    let calls = csv::read(text.as_bytes(), None, now()).unwrap();
+    assert_eq!(calls[0].port.to_string(), "NLRTM");
+    assert_eq!(calls[0].eta.to_string(), "2026-12-01T05:00:00Z");
+    let mut out = Vec::new();
+    csv::write(&calls, &mut out).unwrap();
+    assert_eq!(csv::read(&out[..], None, now()).unwrap(), calls);
+}
+
+#[test]
+fn each_fault_of_a_csv_is_named_with_line_and_column() {
+    let cases = [
+        (
+            "c,v,NLRTM,2026-12-01T06:00:00,2026-12-02T18:00:00Z,",
+            "line 2: eta: \"2026-12-01T06:00:00\" says no time zone",
+        ),
+        (
+            "c,v,NLRTM,2026-12-01T06:00:00Z,2026-11-20T18:00:00Z,",
+            "line 2: etd: 2026-11-20T18:00:00Z is not after eta",
+        ),
+        (
+            "c,v,NLRTM,2026-11-01T06:00:00Z,2026-11-20T18:00:00Z,",
+            "line 2: etd: 2026-11-20T18:00:00Z is in the past",
+        ),
+        (
+            "c,v,XXXXX,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,",
+            "line 2: port: XXXXX is no sea port",
+        ),
+        (
+            "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,six",
+            "line 2: eta_uncertainty_h: \"six\" is not a number",
+        ),
+        (
+            "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,NaN",
+            "line 2: eta_uncertainty_h: \"NaN\" is not a number",
+        ),
+        (
+            "c,v,NLRTM,2026-12-01T06:00:00Z",
+            "line 2: row: 4 fields, where the first line has 6",
+        ),
+        (
+            "c,,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,",
+            "line 2: vessel: is empty",
+        ),
+        (
+            "\"c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,",
+            "line 2: row: a quote is not closed",
+        ),
+    ];
+    for (row, expected) in cases {
+        let said = csv_complaint(&format!("{HEADER}{row}\n"));
+        assert!(said.starts_with(expected), "{said}\nis not\n{expected}");
+    }
+    assert_eq!(csv_complaint(""), "line 1: row: the file is empty");
+    assert_eq!(
+        csv_complaint("port,eta\n"),
+        "line 1: etd: the column is missing"
+    );
+    assert!(csv_complaint("port,eta,etd,colour\n").starts_with("line 1: colour: is no column"));
+}
+
+#[test]
+fn fifty_megabytes_without_a_line_end_are_refused_after_a_line() {
+    let mut read = 0_usize;
+    let endless = std::io::repeat(b'a').take(50_000_000);
+    let counted = Counted {
+        inner: endless,
+        read: &mut read,
+    };
+    let error = csv::read(BufReader::new(counted), None, now()).unwrap_err();
+    assert_eq!(error.detail, "is longer than 4096 bytes");
+    assert!(read <= 16_384, "{read}");
+}
+
+struct Counted<'a, R> {
+    inner: R,
+    read: &'a mut usize,
+}
+
+impl<R: Read> Read for Counted<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let got = self.inner.read(buffer)?;
+        *self.read += got;
+        Ok(got)
+    }
+}
+
+#[test]
+fn a_csv_of_too_many_calls_is_refused_at_the_first_too_many() {
+    let row = "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
+    let text = format!("{HEADER}{}", row.repeat(csv::MOST_CALLS + 5));
+    assert_eq!(
+        csv_complaint(&text),
+        "line 50002: row: more than 50000 calls"
+    );
+}
+
+#[test]
+fn what_is_exported_is_no_formula_and_reads_back() {
+    let text = format!("{HEADER}=1+1,@v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n");
+    let calls = csv::read(text.as_bytes(), None, now()).unwrap();
+    let mut out = Vec::new();
+    csv::write(&calls, &mut out).unwrap();
+    let written = String::from_utf8(out.clone()).unwrap();
+    assert!(written.contains("\n'=1+1,'@v,"), "{written}");
+    assert_eq!(csv::read(&out[..], None, now()).unwrap(), calls);
+    for harmless in ["", "c1", "'c1", "a=b"] {
+        assert_eq!(csv::harmless(harmless), harmless);
+    }
+    assert_eq!(csv::harmless("'=1"), "''=1");
+}
+
+/// Madrid as calendars define it.
+const MADRID: &str = "BEGIN:VTIMEZONE\r\nTZID:Europe/Madrid\r\n\
+    BEGIN:DAYLIGHT\r\nTZOFFSETFROM:+0100\r\nTZOFFSETTO:+0200\r\nDTSTART:19700329T020000\r\nRRULE:FREQ=YEARLY;BYMONTH=3;BYDAY=-1SU\r\nEND:DAYLIGHT\r\n\
+    BEGIN:STANDARD\r\nTZOFFSETFROM:+0200\r\nTZOFFSETTO:+0100\r\nDTSTART:19701025T030000\r\nRRULE:FREQ=YEARLY;BYMONTH=10;BYDAY=-1SU\r\nEND:STANDARD\r\n\
+    END:VTIMEZONE\r\n";
+
+fn calendar(start: &str, end: &str, more: &str) -> String {
+    format!(
+        "BEGIN:VCALENDAR\r\nVERSION:2.0\r\n{MADRID}BEGIN:VEVENT\r\nUID:c1@agent\r\n{start}\r\n{end}\r\n{more}\r\nEND:VEVENT\r\nEND:VCALENDAR\r\n"
+    )
+}
+
+const END: &str = "DTEND:20270802T180000Z";
+
+fn eta_of(start: &str) -> String {
+    let text = calendar(start, END, "LOCATION:Bilbao\\, ESBIO");
+    ics::read(&text, "v", now()).unwrap()[0].eta.to_string()
+}
+
+#[test]
+fn a_calendars_times_are_taken_in_their_zone_summer_and_winter() {
+    assert_eq!(eta_of("DTSTART:20270701T060000Z"), "2027-07-01T06:00:00Z");
+    assert_eq!(
+        eta_of("DTSTART;TZID=Europe/Madrid:20270701T060000"),
+        "2027-07-01T04:00:00Z"
+    );
+    assert_eq!(
+        eta_of("DTSTART;TZID=\"Europe/Madrid\":20270101T060000"),
+        "2027-01-01T05:00:00Z"
+    );
+    // The last Sunday of March 2027 is the 28th, that of October 2026 was the 25th.
+    assert_eq!(
+        eta_of("DTSTART;TZID=Europe/Madrid:20270328T013000"),
+        "2027-03-28T00:30:00Z"
+    );
+    assert_eq!(
+        eta_of("DTSTART;TZID=Europe/Madrid:20270328T033000"),
+        "2027-03-28T01:30:00Z"
+    );
+}
+
+#[test]
+fn a_port_is_found_by_code_or_by_a_name_that_only_one_has() {
+    let port_of = |more: &str| {
+        let text = calendar("DTSTART:20270701T060000Z", END, more);
+        ics::read(&text, "v", now())
+            .map(|calls| calls[0].port.to_string())
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!(
+        port_of("SUMMARY:Call at ES BIO\\, berth 3").unwrap(),
+        "ESBIO"
+    );
+    assert_eq!(
+        port_of("X-UNLOCODE:NLRTM\r\nLOCATION:somewhere").unwrap(),
+        "NLRTM"
+    );
+    assert_eq!(
+        port_of("LOCATION:Jebel Ali\\, terminal 2").unwrap(),
+        "AEJEA"
+    );
+    // A folded line goes on.
+    assert_eq!(port_of("LOCATION:Jebel\r\n  Ali").unwrap(), "AEJEA");
+    assert!(
+        port_of("LOCATION:Nowhere")
+            .unwrap_err()
+            .contains("LOCATION: \"Nowhere\" is no port")
+    );
+    assert!(
+        port_of("LOCATION:Newport")
+            .unwrap_err()
+            .contains("write the UN/LOCODE")
+    );
+}
+
+#[test]
+fn what_a_calendar_does_not_say_is_refused_with_its_line() {
+    let said = |start: &str, end: &str, more: &str| {
+        ics::read(&calendar(start, end, more), "v", now())
+            .unwrap_err()
+            .to_string()
+    };
+    let (start, port) = ("DTSTART:20270701T060000Z", "LOCATION:NLRTM");
+    assert_eq!(
+        said("DTSTART:20270701T060000", END, port),
+        "line 20: DTSTART: \"20270701T060000\" says no time zone; write Z for UTC"
+    );
+    assert!(said("DTSTART;VALUE=DATE:20270701", END, port).contains("is a whole day"));
+    assert!(
+        said("DTSTART;TZID=Mars/North:20270701T060000", END, port).contains("has no VTIMEZONE")
+    );
+    assert!(said(start, "DTEND:20270601T000000Z", port).starts_with("line 21: DTEND: 2027-06-01"));
+    assert!(said(start, "SUMMARY:x", port).contains("DTEND: is missing"));
+    assert!(said(start, END, "LOCATION:NLRTM\r\nRRULE:FREQ=DAILY").contains("does not repeat"));
+    assert!(ics::read("hello", "v", now()).is_err());
+    assert!(ics::read("", "v", now()).is_err());
+}
+
+#[test]
+fn a_cancelled_event_is_no_call() {
+    let text = calendar(
+        "DTSTART:20270701T060000Z",
+        END,
+        "LOCATION:NLRTM\r\nSTATUS:CANCELLED",
+    );
+    assert_eq!(ics::read(&text, "v", now()).unwrap(), []);
+}
