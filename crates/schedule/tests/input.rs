@@ -37,6 +37,7 @@ fn a_good_input_is_read() {
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "it is a table")]
 fn each_fault_is_named_with_its_path() {
     let cases = [
         (

@@ -29,6 +29,13 @@ pub(super) fn finish(
     let mut assignment = known;
     let mut optimal = true;
     for part in parts(problem, open) {
+        // With one choice for each need, and that one made, there is nothing to find.
+        if part
+            .iter()
+            .all(|index| assignment[problem.choices[*index].need] == Some(*index))
+        {
+            continue;
+        }
         let nodes = (effort / part.len().max(1)).max(1) as u64;
         match solve(problem, &part, &assignment, nodes) {
             Some((found, proven)) => {

@@ -2,20 +2,32 @@
 //!
 //! Search gives an assignment, the linear relaxation's prices give a bound; a choice
 //! whose reduced cost is beyond the gap between them is in no better assignment. What
-//! is left falls into small parts, which branch and bound finishes.
+//! is left falls into small parts, which branch and bound finishes; where one is too
+//! large for that, neighbourhoods of it are, each in turn, and the gap is stated.
 //!
 //! What always holds: the answer is feasible, the bound is below every assignment's
 //! cost, and both are the same for the same problem.
 
 mod bound;
 mod exact;
+mod near;
 mod problem;
 mod search;
 
+use bound::Bound;
+
 pub use problem::{Assignment, Choice, Problem, Visit};
 
-/// Nodes of branch and bound times choices that a part may take: some seconds.
-const EFFORT: usize = 1_000_000;
+/// Nodes of branch and bound times choices that a part may take: about a second.
+const EFFORT: usize = 300_000;
+/// The same for a neighbourhood.
+const EFFORT_NEAR: usize = 60_000;
+/// Needs of a neighbourhood.
+const NEIGHBOURS: usize = 60;
+/// Rounds over all neighbourhoods, at most.
+const ROUNDS: usize = 3;
+/// No further round where the gap is this part of the cost, or less: half a per cent.
+const SMALL_GAP: i64 = 200;
 
 /// An assignment, and what is known of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,31 +44,49 @@ pub struct Solved {
 pub fn solve(problem: &Problem) -> Solved {
     let order = problem.by_need();
     let begin = vec![None; problem.unmet.len()];
-    let found = search::improve(problem, begin, &order);
-    let mut cost = cost_of(problem, &found);
+    let mut found = search::improve(problem, begin, &order);
     let bound = bound::bound(problem);
-    if bound.cost >= cost {
-        return Solved {
-            assignment: found,
-            cost,
-            bound: cost,
-        };
+    for round in 0..=ROUNDS {
+        let cost = cost_of(problem, &found);
+        if bound.cost >= cost {
+            return Solved {
+                assignment: found,
+                cost,
+                bound: cost,
+            };
+        }
+        let open = open(problem, &bound, &found, cost);
+        let finished = exact::finish(problem, &open, found, EFFORT);
+        found = finished.assignment;
+        if finished.optimal {
+            let cost = cost_of(problem, &found);
+            return Solved {
+                assignment: found,
+                cost,
+                bound: cost,
+            };
+        }
+        let cost = cost_of(problem, &found);
+        if round == ROUNDS || (round > 0 && (cost - bound.cost) * SMALL_GAP <= cost) {
+            break;
+        }
+        found = near::improve(problem, &open, found);
     }
-    let gap = cost - bound.cost;
-    let open: Vec<bool> = bound
-        .reduced
-        .iter()
-        .enumerate()
-        .map(|(index, reduced)| *reduced < gap || found[problem.choices[index].need] == Some(index))
-        .collect();
-    let finished = exact::finish(problem, &open, found, EFFORT);
-    cost = cost_of(problem, &finished.assignment);
-    let proven = if finished.optimal { cost } else { bound.cost };
+    let cost = cost_of(problem, &found);
     Solved {
-        assignment: finished.assignment,
+        assignment: found,
         cost,
-        bound: proven,
+        bound: bound.cost,
     }
+}
+
+/// The choices that a better assignment may have, and those of this one.
+fn open(problem: &Problem, bound: &Bound, found: &[Option<usize>], cost: i64) -> Vec<bool> {
+    let gap = cost - bound.cost;
+    let choices = problem.choices.iter().zip(&bound.reduced).enumerate();
+    choices
+        .map(|(index, (choice, reduced))| *reduced < gap || found[choice.need] == Some(index))
+        .collect()
 }
 
 fn cost_of(problem: &Problem, assignment: &[Option<usize>]) -> i64 {

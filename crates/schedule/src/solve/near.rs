@@ -1,0 +1,69 @@
+//! Better assignments near one that is known: neighbourhoods of needs that compete for
+//! the same teams are solved anew, all others held.
+
+use super::problem::{Assignment, Problem};
+use super::{EFFORT_NEAR, NEIGHBOURS, exact};
+
+/// Goes through all neighbourhoods once.
+pub(super) fn improve(problem: &Problem, open: &[bool], known: Assignment) -> Assignment {
+    let wishes = wishes(problem, open);
+    let mut wanted_by: Vec<Vec<usize>> = vec![Vec::new(); problem.teams.len()];
+    for (need, days) in wishes.iter().enumerate() {
+        for day in days {
+            wanted_by[*day].push(need);
+        }
+    }
+    let mut found = known;
+    let mut done = vec![false; problem.unmet.len()];
+    for seed in 0..problem.unmet.len() {
+        // A need that was within an earlier neighbourhood is the middle of none.
+        if done[seed] || wishes[seed].len() < 2 {
+            continue;
+        }
+        let near = around(seed, &wishes, &wanted_by);
+        let mut free = vec![false; problem.unmet.len()];
+        for (at, need) in near.into_iter().enumerate() {
+            free[need] = true;
+            // Neighbourhoods overlap by half.
+            done[need] |= at < NEIGHBOURS / 2;
+        }
+        let choices = problem.choices.iter().enumerate();
+        let some: Vec<bool> = choices
+            .map(|(index, choice)| {
+                found[choice.need] == Some(index) || (open[index] && free[choice.need])
+            })
+            .collect();
+        found = exact::finish(problem, &some, found, EFFORT_NEAR).assignment;
+    }
+    found
+}
+
+/// The firms' days that each need has an open choice on.
+fn wishes(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
+    let mut wishes: Vec<Vec<usize>> = vec![Vec::new(); problem.unmet.len()];
+    for (choice, open) in problem.choices.iter().zip(open) {
+        let day = problem.visits[choice.visit].firm_day;
+        if *open && !wishes[choice.need].contains(&day) {
+            wishes[choice.need].push(day);
+        }
+    }
+    wishes
+}
+
+/// The needs nearest to one, itself first: those that want the same firms' days, then
+/// those that want the same as these.
+fn around(seed: usize, wishes: &[Vec<usize>], wanted_by: &[Vec<usize>]) -> Vec<usize> {
+    let mut near = vec![seed];
+    let mut at = 0;
+    while at < near.len() && near.len() < NEIGHBOURS {
+        for day in &wishes[near[at]] {
+            for need in &wanted_by[*day] {
+                if near.len() < NEIGHBOURS && !near.contains(need) {
+                    near.push(*need);
+                }
+            }
+        }
+        at += 1;
+    }
+    near
+}
