@@ -24,6 +24,8 @@ pub struct App {
     pub work: Arc<Notify>,
     /// Passwords being hashed at once: each takes 19 MB and a core.
     pub hashing: Arc<Semaphore>,
+    /// Plans being made at once: each takes a core for a second or two.
+    pub planning: Arc<Semaphore>,
     /// Cancelled when the server is to stop.
     pub stopping: CancellationToken,
     /// Where `/metrics` reads.
@@ -40,6 +42,7 @@ impl App {
             live: Live::new(),
             work: Arc::new(Notify::new()),
             hashing: Arc::new(Semaphore::new(2)),
+            planning: Arc::new(Semaphore::new(2)),
             stopping: CancellationToken::new(),
             metrics,
         }

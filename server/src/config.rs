@@ -38,8 +38,17 @@ pub enum Command {
     Deviation(Deviation),
     /// Analyse a CSV file as the server analyses a vessel's uploads
     Analyse(Analyse),
+    /// Check an archive of evidence of an adjustment
+    VerifyEvidence(VerifyEvidence),
     /// Print how to set a binnacle's correctors, from a reading at the berth
     Plan(Plan),
+}
+
+/// `verify-evidence`.
+#[derive(Debug, Args)]
+pub struct VerifyEvidence {
+    /// The archive
+    pub file: PathBuf,
 }
 
 /// Which database.

@@ -6,6 +6,7 @@ use crate::analysis::{LeftOut, RefusalSchema};
 use crate::card;
 use crate::models::NoModel;
 use crate::streams::CardWithdrawnSchema;
+use crate::work_orders::Refusal;
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
 use axum::http::{HeaderValue, StatusCode, header};
@@ -53,6 +54,12 @@ pub enum Error {
         "batch {0} of this stream is stored with other bytes; open a new stream and number anew"
     )]
     StreamForked(u64),
+    /// Not to be done to it as it stands.
+    #[error("{0}")]
+    WrongState(String),
+    /// There is no plan, or a reading is not taken, for the reasons given.
+    #[error("{}", in_words(.0))]
+    NotAdjustable(Vec<Refusal>),
     /// The server was not told how to.
     #[error("{0}")]
     NotSetUp(&'static str),
@@ -111,6 +118,10 @@ pub struct Problem {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
     pub card_withdrawn: Option<CardWithdrawn>,
+    /// What is wrong at the berth and what would cure it; only in `not-adjustable`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false)]
+    pub refusals: Option<Vec<Refusal>>,
 }
 
 impl Error {
@@ -141,6 +152,12 @@ impl Error {
                 StatusCode::CONFLICT,
                 "stream-forked",
                 "The stream has forked",
+            ),
+            Error::WrongState(_) => (StatusCode::CONFLICT, "wrong-state", "Not in this state"),
+            Error::NotAdjustable(_) => (
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "not-adjustable",
+                "No plan as it stands",
             ),
             Error::NotSetUp(_) => (StatusCode::CONFLICT, "not-set-up", "Not set up"),
             Error::KeyReused => (
@@ -174,6 +191,14 @@ impl Error {
     }
 }
 
+fn in_words(refusals: &[Refusal]) -> String {
+    let words: Vec<&str> = refusals
+        .iter()
+        .map(|refusal| refusal.words.as_str())
+        .collect();
+    words.join("; ")
+}
+
 impl IntoResponse for Error {
     fn into_response(self) -> Response {
         let (status, kind, title) = self.kind();
@@ -192,6 +217,10 @@ impl IntoResponse for Error {
             refusal: none.and_then(|none| none.refusal.clone()),
             left_out: none.map(|none| none.left_out).filter(LeftOut::any),
             card_withdrawn: none.and_then(|none| none.card_withdrawn.clone()),
+            refusals: match &self {
+                Error::NotAdjustable(refusals) => Some(refusals.clone()),
+                _ => None,
+            },
         };
         let mut response = (status, Json(problem)).into_response();
         let headers = response.headers_mut();

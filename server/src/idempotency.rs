@@ -4,7 +4,7 @@
 //! that either both exist or neither. A key is the operator's own and is forgotten
 //! after a day.
 
-use crate::db::{Tx, execute, row};
+use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Result};
 use crate::ids::OperatorId;
 use crate::secret;
@@ -73,6 +73,36 @@ impl Key {
             return Err(Error::KeyReused);
         }
         Ok(id)
+    }
+}
+
+impl Key {
+    /// What the same request created before under this key; none where it has not come yet.
+    ///
+    /// # Errors
+    /// When the key was used for another request.
+    pub async fn find(
+        &self,
+        db: &Db,
+        operator: OperatorId,
+        request_hash: &[u8],
+    ) -> Result<Option<Uuid>> {
+        let Some(key) = &self.0 else {
+            return Ok(None);
+        };
+        let found = row!(
+            db,
+            (Vec<u8>, Uuid),
+            "SELECT request_hash, resource_id FROM idempotency_keys
+             WHERE operator_id = $1 AND key_hash = $2
+             ORDER BY key_hash",
+            operator,
+            secret::hash(key).as_slice()
+        )?;
+        match found {
+            Some((made_for, _)) if made_for != request_hash => Err(Error::KeyReused),
+            found => Ok(found.map(|(_, id)| id)),
+        }
     }
 }
 

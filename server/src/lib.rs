@@ -44,6 +44,9 @@ pub mod events;
 pub mod models;
 pub mod samples;
 
+pub mod evidence;
+pub mod work_orders;
+
 pub mod card;
 pub mod deviation_book;
 pub mod sheet;

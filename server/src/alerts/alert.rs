@@ -33,6 +33,8 @@ pub enum Cause {
     BerthSteel,
     /// A change of which no cause is likely.
     UnknownChange,
+    /// Headings at sea do not agree with what an adjustment foretold.
+    AdjustmentNotConfirmed,
     /// The ship's agent says that compass and gyro have parted.
     ReportedAboard,
     /// Nothing has come from the vessel for too long.
@@ -283,6 +285,7 @@ impl Cause {
             Cause::MagneticStorm => "a magnetic storm",
             Cause::BerthSteel => "steel at the berth",
             Cause::UnknownChange => "a change of unknown cause",
+            Cause::AdjustmentNotConfirmed => "an adjustment that the sea does not confirm",
             Cause::ReportedAboard => "compass and gyro parted, says the ship",
             Cause::SilentAgent => "no word from the vessel",
             Cause::ClonedAgent => "two computers send as one agent",

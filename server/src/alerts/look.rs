@@ -20,7 +20,7 @@ use crate::events::{self, Event};
 use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
 use crate::outbox::Kind;
 use crate::time::Time;
-use crate::{mail, webhooks};
+use crate::{mail, webhooks, work_orders};
 use std::time::Duration;
 use tracing::{error, info};
 
@@ -65,7 +65,8 @@ pub async fn after_analysis(
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause.is_of_an_analysis());
     let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();
-    let wanted = alerts_of(&findings, limits, &open);
+    let mut wanted = alerts_of(&findings, limits, &open);
+    wanted.extend(work_orders::alert(tx, vessel, compass).await?);
     let news = bring_in_line(tx, vessel, compass, &known, &wanted, now).await?;
     tell(tx, vessel, &news, now).await
 }

@@ -24,7 +24,7 @@ mod store;
 mod wanted;
 
 pub use aboard::from_ship;
-pub use alert::{Alert, AlertWanted, Cause, Severity, State};
+pub use alert::{Alert, AlertWanted, Cause, Dated, Evidence, Severity, State};
 pub use cloned::{agent_revoked, from_batch};
 pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;

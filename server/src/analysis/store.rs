@@ -208,7 +208,16 @@ fn number_of(time: Time) -> i64 {
 pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option<Event>> {
     let analysis = &found.analysis;
     let withdrawn_before = models::withdrawn(tx, found.vessel_id, found.compass_id).await?;
-    let withdrawn = withdrawal(analysis)?;
+    // What an adjustment foretold holds from its moment on, and through its epoch.
+    let foretold = models::foretold(tx, found.vessel_id, found.compass_id).await?;
+    let foretold = foretold.filter(|model| {
+        let from = analysis.current_epoch().and_then(|epoch| epoch.from);
+        from.map(Time) <= model.epoch_from
+    });
+    let withdrawn = match foretold {
+        Some(_) => None,
+        None => withdrawal(analysis)?,
+    };
     execute!(
         &mut *tx,
         "INSERT INTO analyses (vessel_id, compass_id, input_hash, estimator, analysed_at, epochs,
@@ -236,7 +245,14 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
     save_diagnostics(tx, found).await?;
     let (vessel, compass) = (found.vessel_id, found.compass_id);
     changes::keep_disturbances(tx, vessel, compass, &found.findings, now).await?;
-    let Some(model) = next_model(found, now)? else {
+    let next = next_model(found, now)?;
+    let next = next.filter(|next| {
+        foretold.is_none_or(|known| {
+            // Of the ship as she was before the adjustment there is nothing to be told.
+            next.epoch_from >= known.epoch_from && next.knows_more_than(&known)
+        })
+    });
+    let Some(model) = next else {
         if withdrawn == withdrawn_before {
             return Ok(None);
         }
@@ -330,5 +346,6 @@ fn next_model(found: &Found, now: Time) -> Result<Option<StoredModel>> {
         h_nt: place.h_nt,
         z_nt: place.z_nt,
         model: ModelJson(model),
+        foretold_by: None,
     }))
 }

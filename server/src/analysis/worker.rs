@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::error::{Error, Result};
 use crate::events;
 use crate::ids::{CompassId, VesselId};
-use crate::{alerts, compasses, settings};
+use crate::{alerts, compasses, settings, work_orders};
 use binnacle_magnetics::advice::sail_next;
 use binnacle_magnetics::analyse::analyse;
 use metrics::{counter, histogram};
@@ -121,6 +121,9 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     }
     let mut events = Vec::new();
     for found in &news {
+        let (compass, samples) = (found.compass_id, &found.analysis.samples);
+        let held = work_orders::after_analysis(&mut tx, job.vessel_id, compass, samples, now);
+        events.extend(held.await?);
         events.extend(store::save(&mut tx, found, now).await?);
     }
     // Also where nothing new was found: the limits may be others.

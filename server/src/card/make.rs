@@ -222,6 +222,7 @@ fn notes(model: &StoredModel, alerts: &[OpenAlert], cargo: &[CargoAboard]) -> Ve
 fn bears_on_the_card(cause: Cause) -> bool {
     match cause {
         Cause::DeviationOverLimit
+        | Cause::AdjustmentNotConfirmed
         | Cause::ReferenceFault
         | Cause::LightningOrShock
         | Cause::MagneticCargo

@@ -15,6 +15,7 @@ mod logbook;
 mod operate;
 mod plan;
 mod table;
+mod verify_evidence;
 
 pub use admin::admin;
 pub use analyse::analyse;
@@ -24,6 +25,7 @@ pub use field::field;
 pub use fit::fit;
 pub use operate::{migrate, openapi, run, serve};
 pub use plan::plan;
+pub use verify_evidence::verify_evidence;
 
 use serde::Serialize;
 use std::fmt::Display;

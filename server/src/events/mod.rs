@@ -50,6 +50,8 @@ pub enum Kind {
     Logbook,
     /// An alert was raised, says something else, was acknowledged or cleared.
     Alert,
+    /// A work order has gone on.
+    WorkOrder,
 }
 
 /// An event, with those who may know of it.

@@ -5,7 +5,7 @@ use crate::app::App;
 use crate::{
     alerts, binnacles, card, changes, compasses, dashboard, deviation, deviation_book, enrolment,
     error, events, logbook, mail, models, operations, samples, session, settings, streams, tokens,
-    vessels, webhooks,
+    vessels, webhooks, work_orders,
 };
 use axum::Router;
 use axum::extract::DefaultBodyLimit;
@@ -81,6 +81,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(vessels::router())
         .merge(compasses::router())
         .merge(binnacles::router())
+        .merge(work_orders::router())
         .merge(enrolment::router())
         .merge(settings::router())
         .merge(logbook::router())

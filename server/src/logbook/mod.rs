@@ -17,7 +17,7 @@ mod store;
 
 pub use aboard::router as agent_router;
 pub use schema::KindSchema as LogbookKindSchema;
-pub use store::of_compass;
+pub use store::{Adjusted, of_compass, write_adjustment};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;

@@ -121,6 +121,48 @@ impl Author {
     }
 }
 
+/// An adjustment as a work order writes it.
+#[allow(missing_docs, reason = "they are an entry's parts")]
+pub struct Adjusted<'a> {
+    pub id: EntryId,
+    pub vessel: VesselId,
+    pub compass: CompassId,
+    pub at: Time,
+    pub port: &'a str,
+    pub note: &'a str,
+    pub author_id: Uuid,
+    pub author_name: &'a str,
+    pub now: Time,
+}
+
+/// Writes an adjustment at its moment, and has the vessel analysed anew.
+pub async fn write_adjustment(tx: &mut Tx, adjusted: &Adjusted<'_>) -> Result<()> {
+    let entry = NewEntry {
+        report: Report {
+            kind: analyse::LogbookKind::Adjustment,
+            from: adjusted.at.0,
+            to: None,
+            cargo: None,
+            hatch: None,
+            // A logbook's port is shorter than an order's.
+            port: Some(adjusted.port.chars().take(100).collect()),
+            note: adjusted.note.to_owned(),
+        },
+        compass_id: Some(adjusted.compass),
+    };
+    let entry = entry.checked(adjusted.now.0)?;
+    let author = Author {
+        kind: AuthorKind::User,
+        id: adjusted.author_id,
+        name: adjusted.author_name.to_owned(),
+        at: adjusted.now,
+        board_revision: None,
+    };
+    insert(tx, adjusted.vessel, adjusted.id, &entry, &author).await?;
+    analysis::enqueue(tx, adjusted.vessel, adjusted.now, 0.0).await?;
+    Ok(())
+}
+
 /// What happened last comes first.
 pub(super) async fn list(
     db: &Db,

@@ -9,8 +9,8 @@ mod store;
 pub use missing::NoModel;
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
 pub use store::{
-    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, in_force, insert,
-    lately, withdrawn,
+    StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
+    insert, lately, withdrawn,
 };
 
 use crate::access::Reader;
@@ -19,7 +19,7 @@ use crate::compasses::{self, WhichCompass};
 use crate::deviation::{HandbookSchema, Worst};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params};
-use crate::ids::{CompassId, ModelId, VesselId};
+use crate::ids::{CompassId, ModelId, OrderId, VesselId};
 use crate::time::Time;
 use crate::{analysis, vessels};
 use axum::extract::State;
@@ -83,6 +83,9 @@ pub struct ModelVersion {
     pub input_hash: String,
     /// The estimator that made it.
     pub estimator: String,
+    /// The work order that foretold it; none for a model that was fitted.
+    #[schema(required)]
+    pub foretold_by: Option<OrderId>,
     /// The place of the last sample, degrees north.
     pub lat: f64,
     /// The place of the last sample, degrees east.
@@ -212,6 +215,7 @@ impl StoredModel {
             created_at: self.created_at,
             input_hash: self.input_hash,
             estimator: self.estimator,
+            foretold_by: self.foretold_by,
             lat: self.lat,
             lon: self.lon,
             h_nt: self.h_nt,

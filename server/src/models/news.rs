@@ -30,6 +30,21 @@ impl StoredModel {
             })
     }
 
+    /// Whether it is more certain of the heading of which it is least certain.
+    pub fn knows_more_than(&self, known: &StoredModel) -> bool {
+        let widest = |model: &Model| {
+            let headings = (0..360 / STEP_DEG).filter_map(|index| {
+                let compass = CompassHeading::new(f64::from(index * STEP_DEG))?;
+                model.deviation(compass, self.earth()).ok()?.band95_deg
+            });
+            headings.reduce(f64::max)
+        };
+        match (widest(&self.model.0), widest(&known.model.0)) {
+            (Some(ours), Some(known)) => ours < known,
+            (ours, known) => ours.is_some() || known.is_none(),
+        }
+    }
+
     fn differs(&self, known: &Model, compass: CompassHeading) -> bool {
         let ours = self.model.0.deviation(compass, self.earth());
         let (Ok(ours), Ok(known)) = (ours, known.deviation(compass, self.earth())) else {
@@ -82,6 +97,7 @@ mod tests {
             lat: 48.0,
             lon: -6.0,
             variation_deg: -2.0,
+            foretold_by: None,
             h_nt: 20_000.0,
             z_nt: 43_000.0,
             model: ModelJson(serde_json::from_value(model).unwrap()),

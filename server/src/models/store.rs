@@ -2,7 +2,7 @@
 
 use super::ModelJson;
 use crate::db::{Db, Result, Tx, execute, row, rows};
-use crate::ids::{CompassId, ModelId, OperatorId, VesselId};
+use crate::ids::{CompassId, ModelId, OperatorId, OrderId, VesselId};
 use crate::time::Time;
 use binnacle_wire::messages::CardWithdrawn;
 
@@ -30,6 +30,7 @@ pub struct StoredModel {
     pub z_nt: f64,
     #[sqlx(try_from = "String")]
     pub model: ModelJson,
+    pub foretold_by: Option<OrderId>,
 }
 
 /// The current model of a compass; none while its card is withdrawn.
@@ -187,6 +188,27 @@ fn read_withdrawn((since, reason): (Option<Time>, Option<String>)) -> Option<Car
     })
 }
 
+/// The compass's highest model, where an adjustment foretold it and no heading at sea has
+/// spoken against it.
+pub async fn foretold(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<StoredModel>> {
+    row!(
+        in tx,
+        StoredModel,
+        "SELECT m.* FROM models m
+         JOIN work_orders o ON o.vessel_id = m.vessel_id AND o.id = m.foretold_by
+         WHERE m.vessel_id = $1 AND m.compass_id = $2 AND o.state <> 'failed'
+           AND m.version = (SELECT MAX(n.version) FROM models n
+                            WHERE n.vessel_id = m.vessel_id AND n.compass_id = m.compass_id)
+         ORDER BY m.version",
+        vessel,
+        compass
+    )
+}
+
 /// Stores a model as the compass's next version, whatever its `version` says.
 pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
     let text = serde_json::to_string(&model.model)
@@ -195,9 +217,10 @@ pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
         tx,
         "INSERT INTO models (vessel_id, id, compass_id, version, created_at, input_hash, estimator,
                              epoch_from, epoch_to, epoch_begun_by, data_from, data_until,
-                             place_at, lat, lon, variation_deg, h_nt, z_nt, model)
+                             place_at, lat, lon, variation_deg, h_nt, z_nt, model,
+                             foretold_by)
          SELECT $1, $2, $3, COALESCE(MAX(version), 0) + 1, $4, $5, $6, $7, $8, $9, $10, $11,
-                $12, $13, $14, $15, $16, $17, $18
+                $12, $13, $14, $15, $16, $17, $18, $19
          FROM models WHERE vessel_id = $1 AND compass_id = $3",
         model.vessel_id,
         model.id,
@@ -216,7 +239,8 @@ pub async fn insert(tx: &mut Tx, model: &StoredModel) -> Result<()> {
         model.variation_deg,
         model.h_nt,
         model.z_nt,
-        text
+        text,
+        model.foretold_by
     )?;
     Ok(())
 }

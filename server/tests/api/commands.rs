@@ -228,6 +228,7 @@ fn a_reader_who_has_seen_enough_is_no_error() {
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "a table of cases")]
 fn bad_input_is_refused_by_file_line_and_field() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();

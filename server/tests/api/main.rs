@@ -35,6 +35,7 @@ mod ship_alerts;
 mod tenants;
 mod tls;
 mod webhooks;
+mod work_orders;
 
 /// Runs each test on SQLite and on PostgreSQL.
 macro_rules! on_both {

@@ -1085,6 +1085,323 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List work orders */
+        get: operations["list_work_orders"];
+        put?: never;
+        /**
+         * Order a compass to be adjusted
+         * @description A compass has one order under way at a time.
+         */
+        post: operations["create_work_order"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See a work order
+         * @description With all that the next thing to do depends on: the page at the binnacle asks for
+         *     nothing else.
+         */
+        get: operations["find_work_order"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/berth-reading": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send what was read at the berth
+         * @description The unit is named, never guessed. What cannot be true is kept in the log and refused,
+         *     with the mistakes that would explain it.
+         */
+        post: operations["read_berth"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/cancel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Cancel a work order
+         * @description Correctors that were moved stay as they stand: the binnacle's next revision says so,
+         *     and the logbook has the moment.
+         */
+        post: operations["cancel_work_order"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/close": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Close a work order */
+        post: operations["close_work_order"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/complete": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Complete an adjustment
+         * @description By the adjuster's name, licence and typed signature. From that moment on the vessel's
+         *     logbook has the adjustment, the ship gets the model that is foretold, and the card is
+         *     a prediction until headings at sea agree.
+         */
+        post: operations["complete_work_order"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/corrector-settings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Say how the correctors stand
+         * @description When they stand otherwise than the plan has it, there has to be another plan.
+         */
+        post: operations["set_correctors"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/entries": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Read a work order's log */
+        get: operations["list_entries"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/evidence.zip": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Get the evidence of an adjustment
+         * @description One archive that `binnacle-server verify-evidence` checks, and that says how to check
+         *     it by hand. A prediction, not a certificate.
+         */
+        get: operations["find_evidence"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/photos": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Add a photograph
+         * @description The body is the file as it is: JPEG, PNG or WebP, 10 MiB at most.
+         */
+        post: operations["add_photo"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/photos/{photo}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See a photograph */
+        get: operations["find_photo"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/plan": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See what the planner offers
+         * @description From the last reading, and from how the correctors stand now. Nothing is kept.
+         */
+        get: operations["find_plan"];
+        put?: never;
+        /** Choose a plan */
+        post: operations["choose_plan"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/record.json": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See the adjustment record
+         * @description The very octets that a firm's key signs the hash of.
+         */
+        get: operations["find_record"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/remarks": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Say something of a work order */
+        post: operations["remark"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/signatures": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Sign the record with a firm's key
+         * @description An Ed25519 signature over the 32 octets of `record_sha256`. Whose key it is the firm
+         *     has to say.
+         */
+        post: operations["sign_record"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/steps/{n}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send what the compass reads after a step
+         * @description The step is confirmed, or there is a new plan from what was read.
+         */
+        post: operations["read_step"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/healthz": {
         parameters: {
             query?: never;
@@ -1147,6 +1464,25 @@ export interface components {
              * @example Master informed; azimuth taken
              */
             note?: string | null;
+        };
+        /**
+         * @description What would cure a refusal.
+         * @enum {string}
+         */
+        AdjustmentCure: "read_again" | "headings_at_sea" | "other_waters" | "after_discharge" | "better_magnetometer" | "another_berth" | "other_correctors" | "swing";
+        /** @description Why there is no plan, or a reading is not taken. */
+        AdjustmentRefusal: {
+            /** @description Mistakes each of which alone would explain it. */
+            could_be: string[];
+            /** @description What would cure it, the easiest first. */
+            cures: components["schemas"]["AdjustmentCure"][];
+            /**
+             * @description In a word.
+             * @example inconsistent_berth
+             */
+            refusal: string;
+            /** @description What is wrong. */
+            words: string;
         };
         /**
          * Format: uuid
@@ -1291,7 +1627,7 @@ export interface components {
          * @description What an alert is about: one compass has at most one open alert of each.
          * @enum {string}
          */
-        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
+        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
          * @description Something that people must know of.
@@ -1363,6 +1699,123 @@ export interface components {
              * @description Degrees clockwise from there, seen from above.
              */
             slew_deg?: number;
+        };
+        /** @description What a reading told. */
+        BerthCheck: {
+            /**
+             * Format: double
+             * @description Between the field read and the field expected, degrees.
+             */
+            consistency_deg: number;
+            /**
+             * Format: double
+             * @description The standard error of that, degrees.
+             */
+            consistency_sd_deg: number | null;
+            /**
+             * Format: double
+             * @description λ, the mean share of the earth's horizontal field that reaches the compass; every
+             *     heading tells it equally well.
+             */
+            lambda: number;
+            /**
+             * Format: double
+             * @description Its standard error.
+             */
+            lambda_sd: number | null;
+            /**
+             * Format: double
+             * @description Magnetic heading at the berth, degrees.
+             */
+            magnetic_deg: number;
+            /** @description What to make of it: `consistent`, or `loose` where wide errors explain it. */
+            verdict: string;
+        };
+        /**
+         * @description What was read at the berth.
+         * @example {
+         *       "at": "2026-11-22T08:20:00Z",
+         *       "compass_deg": 310.5,
+         *       "forward": 17.2,
+         *       "heading_from": "model_reference",
+         *       "heading_true_deg": 312,
+         *       "lat": 43.35,
+         *       "lon": -3.04,
+         *       "magnetometer": "fluxgate",
+         *       "starboard": 14.9,
+         *       "unit": "microtesla"
+         *     }
+         */
+        BerthReading: {
+            /** @description When it was read. */
+            at: components["schemas"]["Time"];
+            /** @description Whether magnetic cargo is on board. */
+            cargo_on_board?: boolean;
+            /**
+             * Format: double
+             * @description What the compass read before the bowl was taken out, degrees.
+             */
+            compass_deg?: number | null;
+            /**
+             * Format: double
+             * @description Vertical field there, down positive; without it the heeling magnets stay.
+             */
+            down?: number | null;
+            /**
+             * Format: double
+             * @description Its standard deviation, nT; its kind's where it is not said.
+             */
+            field_sd_nt?: number | null;
+            /**
+             * Format: double
+             * @description Horizontal field at the card's centre, bowl out, forward positive.
+             */
+            forward: number;
+            /** @description What that heading is from. */
+            heading_from: components["schemas"]["HeadingFrom"];
+            /**
+             * Format: double
+             * @description Its standard deviation, degrees; 0.5 where it is not said.
+             */
+            heading_sd_deg?: number | null;
+            /**
+             * Format: double
+             * @description The ship's true heading at the berth.
+             */
+            heading_true_deg: number;
+            /**
+             * Format: double
+             * @description The ship's heel, degrees to starboard.
+             */
+            heel_deg?: number;
+            /**
+             * Format: double
+             * @description The berth, degrees north.
+             */
+            lat: number;
+            /**
+             * Format: double
+             * @description The berth, degrees east.
+             */
+            lon: number;
+            /** @description What they were read with. */
+            magnetometer: components["schemas"]["Magnetometer"];
+            /** @description Its maker, type and number. */
+            magnetometer_serial?: string | null;
+            /**
+             * Format: double
+             * @description Relative standard deviation of its scale; its kind's where it is not said.
+             */
+            scale_sd?: number | null;
+            /**
+             * Format: double
+             * @description The same, starboard positive.
+             */
+            starboard: number;
+            /** @description Whether there is steel near: a crane, a ship alongside, a quay of steel piles. */
+            steel_nearby?: boolean;
+            /** @description What all three are in. */
+            unit: components["schemas"]["FieldUnit"];
         };
         /** @description A binnacle on board; docs/binnacle.md has every field. */
         Binnacle: {
@@ -1811,6 +2264,19 @@ export interface components {
             /** @description Of alerts as bad as this or worse. */
             severity: components["schemas"]["Severity"];
         };
+        /** @description A plan that was chosen. */
+        ChosenPlan: {
+            /** @description Which of those that were offered, from 1. */
+            chosen: number;
+            /** @description What the adjuster should know. */
+            notes: string[];
+            /** @description All that were offered, in short. */
+            offered: components["schemas"]["PlanInShort"][];
+            /** @description How well the search knows that nothing is better. */
+            optimality?: Record<string, never> | null;
+            /** @description The plan. */
+            plan: components["schemas"]["CorrectorPlan"];
+        };
         /** @description That an alert is over. */
         Clearing: {
             /**
@@ -1876,6 +2342,82 @@ export interface components {
          * @enum {string}
          */
         CompassRole: "standard" | "steering" | "transmitting";
+        /**
+         * @description The adjuster's word that it is done.
+         * @example {
+         *       "adjuster_licence": "ES-CA-114",
+         *       "adjuster_name": "M. Etxeberria",
+         *       "firm": "Nervión Compass",
+         *       "signature": "M. Etxeberria"
+         *     }
+         */
+        Completion: {
+            /** @description The number of their licence. */
+            adjuster_licence: string;
+            /** @description The adjuster. */
+            adjuster_name: string;
+            at?: components["schemas"]["Time"] | null;
+            /** @description Their firm. */
+            firm?: string | null;
+            /** @description Their name once more, typed as a signature. */
+            signature: string;
+        };
+        /** @description A completion as the log has it. */
+        CompletionMade: {
+            /** @description The number of their licence. */
+            adjuster_licence: string;
+            /** @description The adjuster. */
+            adjuster_name: string;
+            /** @description The moment of the adjustment. */
+            at: components["schemas"]["Time"];
+            /** @description Their firm. */
+            firm: string | null;
+            /** @description The logbook's entry of the adjustment. */
+            logbook_entry: components["schemas"]["EntryId"];
+            /** @description The same, whole. */
+            model: components["schemas"]["Model"];
+            /** @description The model that holds from then on, foretold. */
+            model_id: components["schemas"]["ModelId"];
+            /** @description SHA-256 of the record, hexadecimal: what a firm's key signs. */
+            record_sha256: string;
+            /** @description Their name, typed as a signature. */
+            signature: string;
+        };
+        /** @description One way to set the correctors. */
+        CorrectorPlan: {
+            /** @description Residuals as they will be. */
+            after: components["schemas"]["PredictedTable"][];
+            /** @description Deviations as they are, at the berth and in the waters. */
+            before: components["schemas"]["PredictedTable"][];
+            /** @description What becomes of the heeling magnets. */
+            heeling: Record<string, never>;
+            /**
+             * Format: double
+             * @description λ with this setting.
+             */
+            lambda: number;
+            /** @description The model that holds from the last step on. */
+            model_after: components["schemas"]["Model"];
+            /**
+             * Format: int32
+             * @description Movements of hand that it takes.
+             */
+            moves: number;
+            /** @description How they will stand. */
+            setting: components["schemas"]["CorrectorSetting"];
+            /** @description What to do, in order. */
+            steps: components["schemas"]["PlanStep"][];
+            /**
+             * Format: double
+             * @description The widest 95 % band, degrees.
+             */
+            widest_band_deg: number;
+            /**
+             * Format: double
+             * @description Worst foretold residual on any heading, weighted over the waters, degrees.
+             */
+            worst_residual_deg: number;
+        };
         /** @description How every corrector stands; an empty list or null is none. */
         CorrectorSetting: {
             /** @description Athwartship magnets, a hole each. */
@@ -1885,6 +2427,18 @@ export interface components {
             fore_and_aft?: components["schemas"]["MagnetsInHole"][];
             heeling?: components["schemas"]["HeelingSetting"] | null;
             quadrantal?: components["schemas"]["PairSetting"] | null;
+        };
+        /** @description How the correctors stand, as someone found or set them. */
+        CorrectorSettings: {
+            /**
+             * Format: double
+             * @description What the compass reads then, degrees.
+             */
+            compass_deg?: number | null;
+            /** @description Why they do not stand as planned. */
+            note?: string | null;
+            /** @description How each stands. */
+            setting: components["schemas"]["CorrectorSetting"];
         };
         /** @description Correctors on board, those in use included. */
         CorrectorsAboard: {
@@ -2280,12 +2834,17 @@ export interface components {
          * @description What happened to a vessel.
          * @enum {string}
          */
-        EventKind: "batch" | "model" | "logbook" | "alert";
+        EventKind: "batch" | "model" | "logbook" | "alert" | "work_order";
         /**
          * @description The model of the earth's field.
          * @enum {string}
          */
         FieldModel: "igrf14" | "wmm2025";
+        /**
+         * @description A unit of the magnetic field.
+         * @enum {string}
+         */
+        FieldUnit: "nanotesla" | "microtesla" | "gauss" | "milligauss";
         /** @description For each parameter and the constant: 0 rests on ships at large, 1 on the data. */
         FromData: {
             /** Format: double */
@@ -2352,6 +2911,11 @@ export interface components {
             /** @description The best first; empty where nothing narrows it noticeably. */
             suggestions: components["schemas"]["HeadingSuggestion"][];
         };
+        /**
+         * @description What a heading at the berth is from.
+         * @enum {string}
+         */
+        HeadingFrom: "model_reference" | "ashore";
         /**
          * @description Compass headings clockwise from one to the other: the range may pass north,
          *     and 0 to 360 is any heading.
@@ -2545,6 +3109,11 @@ export interface components {
              */
             secret: string;
         };
+        /**
+         * @description Kinds of magnetometer, by how well they read.
+         * @enum {string}
+         */
+        Magnetometer: "fluxgate" | "magnetoresistive" | "phone" | "other";
         /** @description Magnets in one hole or tray. */
         MagnetsInHole: {
             /**
@@ -2711,6 +3280,7 @@ export interface components {
             epoch_to: components["schemas"]["Time"] | null;
             /** @description The estimator that made it. */
             estimator: string;
+            foretold_by: components["schemas"]["OrderId"] | null;
             /**
              * Format: double
              * @description Horizontal field there, nT.
@@ -2829,6 +3399,37 @@ export interface components {
              */
             url: string;
         };
+        /**
+         * @description An order to be written.
+         * @example {
+         *       "adjuster_licence": "ES-CA-114",
+         *       "adjuster_name": "M. Etxeberria",
+         *       "berth": "A5",
+         *       "compass_id": "0199aa00-0000-7000-8000-000000000002",
+         *       "firm": "Nervión Compass",
+         *       "planned_at": "2026-11-22T08:00:00Z",
+         *       "port": "Bilbao",
+         *       "vessel_id": "0199aa00-0000-7000-8000-000000000001"
+         *     }
+         */
+        NewWorkOrder: {
+            /** @description The number of their licence. */
+            adjuster_licence?: string | null;
+            /** @description Who is to do it. */
+            adjuster_name?: string | null;
+            /** @description The berth. */
+            berth?: string | null;
+            /** @description One of her compasses. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Their firm. */
+            firm?: string | null;
+            /** @description When it is to be done. */
+            planned_at: components["schemas"]["Time"];
+            /** @description The port. */
+            port: string;
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+        };
         /** @description A stream just opened. */
         OpenStreamAnswer: {
             /** Format: uuid */
@@ -2839,6 +3440,45 @@ export interface components {
          * @description A company with a fleet.
          */
         OperatorId: string;
+        /**
+         * Format: uuid
+         * @description An order to adjust a compass.
+         */
+        OrderId: string;
+        /** @description A photograph as the log has it. */
+        OrderPhoto: {
+            /** @description How large it is. */
+            bytes: number;
+            /** @description What it shows. */
+            caption: string | null;
+            /** @description `image/jpeg`, `image/png` or `image/webp`. */
+            media_type: string;
+            /** @description Its id. */
+            photo: components["schemas"]["PhotoId"];
+            /** @description SHA-256, hexadecimal. */
+            sha256: string;
+        };
+        /**
+         * @description Something to be said of an order.
+         * @example {
+         *       "text": "Crane alongside until noon."
+         *     }
+         */
+        OrderRemark: {
+            /** @description In words. */
+            text: string;
+        };
+        /** @description What the headings at sea say. */
+        OrderVerification: {
+            /** @description How many samples it rests on. */
+            samples: number;
+            /** @description The time of the last of them. */
+            until: components["schemas"]["Time"];
+            /** @description The verdict with its figures: `passed`, `more_needed` or `alarm`. */
+            verification: Record<string, never>;
+            /** @description The same in words. */
+            words: string;
+        };
         /** @description A pair of spheres, boxes or plates. */
         PairSetting: {
             /**
@@ -2889,6 +3529,142 @@ export interface components {
              */
             chi23: number;
         };
+        /**
+         * Format: uuid
+         * @description A photograph in an order.
+         */
+        PhotoId: string;
+        /**
+         * @description Which plan.
+         * @example {
+         *       "plan": 1
+         *     }
+         */
+        PlanChoice: {
+            /** @description Which of those that are offered, from 1: the recommended one where it is not said. */
+            plan?: number | null;
+        };
+        /** @description A plan in short. */
+        PlanInShort: {
+            /**
+             * Format: int32
+             * @description Movements of hand that it takes.
+             */
+            moves: number;
+            /**
+             * Format: double
+             * @description The widest 95 % band, degrees.
+             */
+            widest_band_deg: number;
+            /**
+             * Format: double
+             * @description Worst foretold residual, weighted over the waters, degrees.
+             */
+            worst_residual_deg: number;
+        };
+        /** @description What the planner offers. */
+        PlanOffer: {
+            /** @description What the berth told, and how well each coefficient shows on this heading. */
+            berth?: Record<string, never> | null;
+            /** @description What the adjuster should know. */
+            notes: string[];
+            /** @description How well the search knows that nothing is better. */
+            optimality?: Record<string, never> | null;
+            /** @description The recommended plan first, then others that cost more or less. */
+            plans: components["schemas"]["CorrectorPlan"][];
+            /** @description Empty: a refusal is a problem document. */
+            refusals: Record<string, never>[];
+        };
+        /** @description One movement, to be checked on the spot. */
+        PlanStep: {
+            /** @description `fit`, `take_out`, `move` or `change`. */
+            action: string;
+            /**
+             * Format: double
+             * @description By how much it will have turned, degrees, clockwise positive.
+             */
+            change_deg: number;
+            /** @description What to see to before. */
+            check: string | null;
+            /** @description `flinders`, `quadrantal`, `heeling`, `fore_and_aft` or `athwartship`. */
+            corrector: string;
+            /**
+             * Format: double
+             * @description What the compass will then read at the berth, degrees.
+             */
+            expected_compass_deg: number;
+            /** @description Where it was; none when it comes in. */
+            from?: Record<string, never> | null;
+            /**
+             * Format: int32
+             * @description From 1.
+             */
+            number: number;
+            /** @description Whether on this heading the compass shows the step at all. */
+            seen: boolean;
+            /** @description How they stand then. */
+            setting_after: components["schemas"]["CorrectorSetting"];
+            /** @description How the correctors stood before. */
+            setting_before: components["schemas"]["CorrectorSetting"];
+            /** @description Where it will be; none when it comes out. */
+            to?: Record<string, never> | null;
+            /**
+             * Format: double
+             * @description How far off it may be, degrees.
+             */
+            tolerance_deg: number;
+            /** @description All of it in a sentence. */
+            words: string;
+        };
+        /** @description One compass heading. */
+        PredictedRow: {
+            /** Format: double */
+            band95_deg: number | null;
+            /** Format: double */
+            compass_deg: number;
+            /**
+             * Format: double
+             * @description East positive.
+             */
+            deviation_deg: number;
+        };
+        /** @description Deviations foretold at one place. */
+        PredictedTable: {
+            /**
+             * Format: double
+             * @description Horizontal field, nT.
+             */
+            h_nt: number;
+            /** @description `berth`, or the name of a water. */
+            place: string;
+            /**
+             * Format: double
+             * @description The greatest deviation with its band, degrees.
+             */
+            reach_deg: number | null;
+            /** @description Every 15° of compass heading; empty where headings are ambiguous. */
+            rows: components["schemas"]["PredictedRow"][];
+            /**
+             * Format: double
+             * @description The widest band, degrees.
+             */
+            widest_band_deg: number | null;
+            /**
+             * Format: double
+             * @description The compass heading of that.
+             */
+            worst_compass_deg: number | null;
+            /**
+             * Format: double
+             * @description The greatest deviation on any heading, degrees.
+             */
+            worst_deg: number | null;
+            /**
+             * Format: double
+             * @description Vertical field, nT, down positive.
+             */
+            z_nt: number;
+        };
         /** @description An error as it is sent (RFC 9457). */
         Problem: {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
@@ -2896,6 +3672,8 @@ export interface components {
             detail: string;
             left_out?: components["schemas"]["LeftOut"] | null;
             refusal?: components["schemas"]["Refusal"] | null;
+            /** @description What is wrong at the berth and what would cure it; only in `not-adjustable`. */
+            refusals?: components["schemas"]["AdjustmentRefusal"][] | null;
             /**
              * Format: int32
              * @description The HTTP status.
@@ -2942,6 +3720,13 @@ export interface components {
          * @description Someone who gets mail.
          */
         RecipientId: string;
+        /** @description A signature by a firm's key. */
+        RecordSignature: {
+            /** @description The Ed25519 public key (RFC 8032), 64 hexadecimal digits. */
+            public_key: string;
+            /** @description Its signature over the 32 octets of the record's SHA-256, 128 hexadecimal digits. */
+            signature: string;
+        };
         /**
          * @description Where a red, north-seeking end points.
          * @enum {string}
@@ -3297,6 +4082,55 @@ export interface components {
             by_se_nt: number;
         };
         /**
+         * @description What the compass read after a step.
+         * @example {
+         *       "after_deg": 308.5
+         *     }
+         */
+        StepReading: {
+            /**
+             * Format: double
+             * @description What it reads now.
+             */
+            after_deg: number;
+            /**
+             * Format: double
+             * @description What it read before; the last reading where it is not said.
+             */
+            before_deg?: number | null;
+        };
+        /** @description What became of a step. */
+        StepSaid: {
+            /** Format: double */
+            after_deg: number;
+            /** Format: double */
+            before_deg: number;
+            /**
+             * Format: double
+             * @description By how much the compass should have turned.
+             */
+            expected_change_deg: number;
+            /**
+             * Format: int32
+             * @description The step's number in its plan.
+             */
+            number: number;
+            /**
+             * Format: double
+             * @description How far off that may be.
+             */
+            tolerance_deg: number;
+            /** @description In a word. */
+            verdict: components["schemas"]["StepVerdict"];
+            /** @description In words. */
+            words: string;
+        };
+        /**
+         * @description What became of a step, in a word.
+         * @enum {string}
+         */
+        StepVerdict: "confirmed" | "not_seen" | "wrong_end" | "other_strength" | "unexplained";
+        /**
          * Format: date-time
          * @description BIGINT microseconds in the database, RFC 3339 in JSON.
          * @example 2026-11-21T07:00:00Z
@@ -3500,6 +4334,101 @@ export interface components {
         Withdrawal: {
             /** @description In a few words. */
             reason?: string | null;
+        };
+        /** @description An order, and all that the next thing to do depends on. */
+        WorkOrder: components["schemas"]["WorkOrderSummary"] & {
+            berth: components["schemas"]["BerthCheck"] | null;
+            /**
+             * Format: double
+             * @description What the compass read last at the berth, degrees.
+             */
+            compass_deg: number | null;
+            completion: components["schemas"]["CompletionMade"] | null;
+            last_step: components["schemas"]["StepSaid"] | null;
+            next_step: components["schemas"]["PlanStep"] | null;
+            /** @description Photographs, in order. */
+            photos: components["schemas"]["OrderPhoto"][];
+            plan: components["schemas"]["ChosenPlan"] | null;
+            reading: components["schemas"]["BerthReading"] | null;
+            setting: components["schemas"]["CorrectorSetting"] | null;
+            /**
+             * @description What its figures are: predictions, until headings at sea agree.
+             * @example predicted, not a certificate
+             */
+            standing: string;
+            /** @description How many of its steps are done. */
+            steps_done: number;
+            verification: components["schemas"]["OrderVerification"] | null;
+        };
+        /** @description An entry of an order's log: a line of canonical JSON with its hash. */
+        WorkOrderEntry: {
+            /** @description What happened: `kind`, `at`, `author`, `previous_sha256` and `content`. */
+            entry: Record<string, never>;
+            /**
+             * Format: int64
+             * @description Counts from 1.
+             */
+            seq: number;
+            /** @description SHA-256 of the line as it stands in the archive, hexadecimal. */
+            sha256: string;
+        };
+        /** @description A page of an order's log. */
+        WorkOrderEntryList: {
+            /** @description In order. */
+            items: components["schemas"]["WorkOrderEntry"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A page of orders. */
+        WorkOrderList: {
+            /** @description The newest first. */
+            items: components["schemas"]["WorkOrderSummary"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /**
+         * @description How far an order has come.
+         * @enum {string}
+         */
+        WorkOrderState: "planned" | "measured" | "adjusting" | "adjusted" | "verified" | "failed" | "closed" | "cancelled";
+        /** @description An order in a line. */
+        WorkOrderSummary: {
+            /** @description The number of their licence. */
+            adjuster_licence: string | null;
+            /** @description Who is to do it, or did. */
+            adjuster_name: string | null;
+            /** @description The berth. */
+            berth: string | null;
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Its name. */
+            compass_name: string;
+            completed_at: components["schemas"]["Time"] | null;
+            /** @description When it was written. */
+            created_at: components["schemas"]["Time"];
+            /** @description Who wrote it. */
+            created_by: string;
+            /** @description Their firm. */
+            firm: string | null;
+            /** @description The order's id. */
+            id: components["schemas"]["OrderId"];
+            /**
+             * Format: int64
+             * @description Entries in its log.
+             */
+            last_seq: number;
+            /** @description SHA-256 of the last of them. */
+            last_sha256: string;
+            /** @description When it is to be done. */
+            planned_at: components["schemas"]["Time"];
+            /** @description The port. */
+            port: string;
+            /** @description How far it has come. */
+            state: components["schemas"]["WorkOrderState"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
         };
         /** @description The heading with the greatest deviation. */
         WorstHeading: {
@@ -8357,6 +9286,1511 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_work_orders: {
+        parameters: {
+            query?: {
+                /** @description Of this vessel only. */
+                vessel?: components["schemas"]["VesselId"];
+                /** @description In this state only. */
+                state?: components["schemas"]["WorkOrderState"];
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrderList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_work_order: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewWorkOrder"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Another order of this compass is under way */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_work_order: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_berth: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BerthReading"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when the compass has no model yet */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when the compass has no binnacle yet */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when the reading is refused */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    cancel_work_order: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OrderRemark"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    close_work_order: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OrderRemark"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not before headings at sea have spoken */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    complete_work_order: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Completion"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A step is not done */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_correctors: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CorrectorSettings"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not before the berth was read */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_entries: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrderEntryList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_evidence: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/zip": number[];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no record yet */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    add_photo: {
+        parameters: {
+            query?: {
+                /** @description In a few words. */
+                caption?: string;
+            };
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/octet-stream": number[];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Conflict */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_photo: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+                photo: components["schemas"]["PhotoId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/*": number[];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_plan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlanOffer"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no reading to plan from */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no plan, and what would cure that */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    choose_plan: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PlanChoice"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no reading to plan from */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no plan, and what would cure that */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_record: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no record yet */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remark: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OrderRemark"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sign_record: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RecordSignature"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no record yet */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not this key's */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_step: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+                n: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StepReading"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not the step to do now */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };

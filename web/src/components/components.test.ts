@@ -34,6 +34,7 @@ function words(rendered: { body: string }): string {
 
 const version: ModelVersion = {
   id: 'm',
+  foretold_by: null,
   version: 3,
   compass_id: 'c',
   epoch_from: null,

@@ -29,6 +29,7 @@ export const alerts = {
       unknown_change: 'Magnetism changed: cause unknown',
       reported_aboard: 'Compass and gyro parted, says the ship',
       silent_agent: 'No word from the vessel',
+      adjustment_not_confirmed: 'The sea does not confirm an adjustment',
       cloned_agent: 'Two computers send as one agent',
       no_model: 'No model of the compass yet',
       wide_band: 'The model is too uncertain',

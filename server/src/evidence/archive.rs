@@ -1,0 +1,98 @@
+//! Writing the archive.
+
+use crate::work_orders::entry::sha256_hex;
+use anyhow::Context;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io::{Cursor, Write};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, ZipWriter};
+
+/// A file in the archive.
+#[derive(Clone, Debug)]
+pub struct File {
+    /// Its name.
+    pub name: String,
+    /// What is in it.
+    pub bytes: Vec<u8>,
+}
+
+/// What an archive is made from.
+#[derive(Clone, Debug)]
+pub struct Evidence {
+    /// The order's id.
+    pub order: String,
+    /// Lines of its log.
+    pub lines: Vec<String>,
+    /// Everything but readme, log and manifest.
+    pub files: Vec<File>,
+}
+
+/// What `manifest.json` says.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Manifest {
+    pub(super) version: u32,
+    pub(super) order: String,
+    /// SHA-256 by name.
+    pub(super) files: BTreeMap<String, String>,
+    pub(super) log: Head,
+}
+
+/// How far the log went.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Head {
+    pub(super) entries: i64,
+    pub(super) last_sha256: String,
+}
+
+/// The archive as it is given out.
+///
+/// # Errors
+/// When it cannot be written, which memory alone could bring about.
+pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
+    let mut log = evidence.lines.join("\n");
+    log.push('\n');
+    let last = evidence.lines.last().context("an order without a log")?;
+    let head = Head {
+        entries: evidence.lines.len() as i64,
+        last_sha256: sha256_hex(last.as_bytes()),
+    };
+    let mut files = evidence.files;
+    let file = |name: &str, text: &str| File {
+        name: name.to_owned(),
+        bytes: text.as_bytes().to_vec(),
+    };
+    files.push(file("README.txt", super::README));
+    files.push(file("entries.ndjson", &log));
+    files.sort_by(|a, b| a.name.cmp(&b.name));
+    let manifest = Manifest {
+        version: 1,
+        order: evidence.order,
+        files: files
+            .iter()
+            .map(|file| (file.name.clone(), sha256_hex(&file.bytes)))
+            .collect(),
+        log: head,
+    };
+    files.push(file(
+        "manifest.json",
+        &serde_json::to_string_pretty(&manifest)?,
+    ));
+    write(&files)
+}
+
+fn write(files: &[File]) -> anyhow::Result<Vec<u8>> {
+    // Photographs are packed already; the rest is small. No file has a time of its own.
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .last_modified_time(DateTime::default())
+        .unix_permissions(0o644);
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for file in files {
+        writer.start_file(file.name.as_str(), options)?;
+        writer.write_all(&file.bytes)?;
+    }
+    Ok(writer.finish()?.into_inner())
+}

@@ -1,0 +1,17 @@
+//! The evidence of an adjustment: one archive that anyone can check.
+//!
+//! What always holds: the same state of an order makes the same octets; the archive's
+//! manifest names the SHA-256 of every other file in it, the log's entries name each
+//! other's, and the completion names the record's. [`verify`] needs nothing but the
+//! archive itself.
+
+mod archive;
+mod sheets;
+mod verify;
+
+pub use archive::{Evidence, File, archive};
+pub use sheets::record_pdf;
+pub use verify::{Found, verify};
+
+/// What says how to check it, in every archive.
+const README: &str = include_str!("README.txt");

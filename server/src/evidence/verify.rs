@@ -1,0 +1,230 @@
+//! Checking an archive with nothing but what is in it.
+
+use super::archive::{Head, Manifest};
+use crate::work_orders::completion::{Completed, Signed};
+use crate::work_orders::entry::sha256_hex;
+use crate::work_orders::photos::PhotoTaken;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read};
+use zip::ZipArchive;
+
+/// More than this is no evidence of one adjustment.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// What was found.
+#[derive(Clone, Debug, Default)]
+pub struct Found {
+    /// What is wrong, a sentence each; empty when all is well.
+    pub problems: Vec<String>,
+    /// What it is and says, a sentence each.
+    pub facts: Vec<String>,
+}
+
+impl Found {
+    fn wrong(&mut self, problem: impl Into<String>) {
+        self.problems.push(problem.into());
+    }
+}
+
+/// Checks an archive.
+pub fn verify(bytes: &[u8]) -> Found {
+    let mut found = Found::default();
+    let files = match unpack(bytes, &mut found) {
+        Ok(files) => files,
+        Err(problem) => {
+            found.wrong(problem);
+            return found;
+        }
+    };
+    let manifest: Option<Manifest> = match files
+        .get("manifest.json")
+        .map(|b| serde_json::from_slice(b))
+    {
+        None => {
+            found.wrong("manifest.json is missing");
+            None
+        }
+        Some(Err(error)) => {
+            found.wrong(format!("manifest.json: {error}"));
+            None
+        }
+        Some(Ok(manifest)) => Some(manifest),
+    };
+    if let Some(manifest) = &manifest {
+        hashes(manifest, &files, &mut found);
+    }
+    log(manifest.as_ref(), &files, &mut found);
+    found
+}
+
+fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, String> {
+    let mut archive =
+        ZipArchive::new(Cursor::new(bytes)).map_err(|error| format!("no archive: {error}"))?;
+    let mut files = BTreeMap::new();
+    for index in 0..archive.len() {
+        let file = archive.by_index(index);
+        let mut file = file.map_err(|error| format!("file {}: {error}", index + 1))?;
+        let name = file.name().map(std::borrow::Cow::into_owned);
+        let name = name.map_err(|error| format!("file {}: {error}", index + 1))?;
+        let mut content = Vec::new();
+        // A file that says it is small and is not comes to its end here.
+        let read = file.by_ref().take(MOST_BYTES).read_to_end(&mut content);
+        if let Err(error) = read {
+            found.wrong(format!("{name}: {error}"));
+        }
+        if files.insert(name.clone(), content).is_some() {
+            found.wrong(format!("{name} stands there twice"));
+        }
+    }
+    Ok(files)
+}
+
+fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+    for (name, sha256) in &manifest.files {
+        match files.get(name) {
+            None => found.wrong(format!("{name} is missing")),
+            Some(content) if sha256_hex(content) != *sha256 => {
+                found.wrong(format!("{name} is not what the manifest says"));
+            }
+            Some(_) => {}
+        }
+    }
+    for name in files.keys() {
+        if name != "manifest.json" && !manifest.files.contains_key(name) {
+            found.wrong(format!("{name} is not in the manifest"));
+        }
+    }
+}
+
+fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+    let Some(text) = files.get("entries.ndjson") else {
+        found.wrong("entries.ndjson is missing");
+        return;
+    };
+    let Ok(text) = std::str::from_utf8(text) else {
+        found.wrong("entries.ndjson is no text");
+        return;
+    };
+    let mut previous: Option<String> = None;
+    let mut signed = 0;
+    let mut completed: Option<Completed> = None;
+    let mut entries: i64 = 0;
+    for line in text.lines() {
+        entries += 1;
+        let at = format!("entries.ndjson, line {entries}");
+        let Ok(entry) = serde_json::from_str::<Value>(line) else {
+            found.wrong(format!("{at} is no JSON"));
+            previous = Some(sha256_hex(line.as_bytes()));
+            continue;
+        };
+        if entry["previous_sha256"].as_str() != previous.as_deref() {
+            found.wrong(format!("{at} does not follow the line before it"));
+        }
+        if entry["seq"] != entries {
+            found.wrong(format!("{at} is not the entry of that number"));
+        }
+        if let Some(manifest) = manifest
+            && entry["order"] != manifest.order.as_str()
+        {
+            found.wrong(format!("{at} is of another order"));
+        }
+        match entry["kind"].as_str() {
+            Some("completion") => {
+                completed = content(&entry, &at, found);
+                record(completed.as_ref(), files, found);
+            }
+            Some("photo") => photo(&entry, entries, &at, files, found),
+            Some("signature") => {
+                signed += signature(&entry, completed.as_ref(), &at, found);
+            }
+            Some("verification") => {
+                let words = entry["content"]["words"].as_str().unwrap_or_default();
+                found.facts.push(format!("at sea: {words}"));
+            }
+            _ => {}
+        }
+        previous = Some(sha256_hex(line.as_bytes()));
+    }
+    if completed.is_none() {
+        found.wrong("the log has no completion");
+    }
+    let head = Head {
+        entries,
+        last_sha256: previous.unwrap_or_default(),
+    };
+    if manifest.is_some_and(|manifest| manifest.log != head) {
+        found.wrong("the log does not end where the manifest says");
+    }
+    found.facts.push(format!(
+        "the log has {entries} entries, the last with SHA-256 {}",
+        head.last_sha256
+    ));
+    if signed == 0 {
+        found
+            .facts
+            .push("no firm's key has signed the record".to_owned());
+    }
+}
+
+fn content<T: DeserializeOwned>(entry: &Value, at: &str, found: &mut Found) -> Option<T> {
+    let read = serde_json::from_value(entry["content"].clone());
+    read.map_err(|error| found.wrong(format!("{at}: {error}")))
+        .ok()
+}
+
+fn record(completed: Option<&Completed>, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+    let Some(completed) = completed else {
+        return;
+    };
+    match files.get("record.json") {
+        None => found.wrong("record.json is missing"),
+        Some(text) if sha256_hex(text) != completed.record_sha256 => {
+            found.wrong("record.json is not the one that the adjuster signed");
+        }
+        Some(_) => found.facts.push(format!(
+            "{}, licence {}, completed it; record SHA-256 {}",
+            completed.adjuster_name, completed.adjuster_licence, completed.record_sha256
+        )),
+    }
+}
+
+fn photo(
+    entry: &Value,
+    number: i64,
+    at: &str,
+    files: &BTreeMap<String, Vec<u8>>,
+    found: &mut Found,
+) {
+    let Some(photo) = content::<PhotoTaken>(entry, at, found) else {
+        return;
+    };
+    let name = photo.file(number);
+    match files.get(&name) {
+        None => found.wrong(format!("{name} is missing")),
+        Some(bytes) if sha256_hex(bytes) != photo.sha256 => {
+            found.wrong(format!("{name} is not the photograph that was taken"));
+        }
+        Some(_) => {}
+    }
+}
+
+/// How many signatures hold: one or none.
+fn signature(entry: &Value, completed: Option<&Completed>, at: &str, found: &mut Found) -> usize {
+    let Some(signed) = content::<Signed>(entry, at, found) else {
+        return 0;
+    };
+    let Some(completed) = completed else {
+        found.wrong(format!("{at}: a signature before the completion"));
+        return 0;
+    };
+    if let Err(error) = signed.checked(&completed.record_sha256) {
+        found.wrong(format!("{at}: {error}"));
+        return 0;
+    }
+    found
+        .facts
+        .push(format!("signed by the key {}", signed.public_key));
+    1
+}

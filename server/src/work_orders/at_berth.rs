@@ -1,0 +1,249 @@
+//! What is done at the berth: the reading, the plan, its steps.
+
+use super::basis::Basis;
+use super::entry::Content;
+use super::order::{Order, State};
+use super::plan::{Choice, Planned, calculate, offer};
+use super::reading::{Given, Read};
+use super::schema::OfferSchema;
+use super::steps::{Moved, Stand, StepRead, judge};
+use super::store::{self, Whole};
+use super::{request, shown};
+use crate::access::{Reader, Writer};
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Valid, ValidOrNone, degrees, optional_text};
+use crate::idempotency::Key;
+use crate::ids::OrderId;
+use axum::extract::State as Shared;
+use binnacle_magnetics::adjust::Outcome;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+pub(super) fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(read_berth))
+        .routes(routes!(find_plan, choose_plan))
+        .routes(routes!(read_step))
+        .routes(routes!(set_correctors))
+}
+
+/// Send what was read at the berth
+///
+/// The unit is named, never guessed. What cannot be true is kept in the log and refused,
+/// with the mistakes that would explain it.
+#[utoipa::path(post, path = "/work-orders/{id}/berth-reading", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Given,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem),
+              (status = 404, description = "Also when the compass has no model yet", body = Problem),
+              (status = 409, description = "Also when the compass has no binnacle yet", body = Problem),
+              (status = 422, description = "Also when the reading is refused", body = Problem)))]
+async fn read_berth(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(given): Valid<Given>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "berth reading", &given)?;
+    let (whole, done) = request.look().await?;
+    if let Some(entry) = done {
+        must_not_be_refused(&whole, entry)?;
+        return shown(&app, writer.operator, id).await;
+    }
+    must_not_be_moved(&whole)?;
+    given.must_be_numbers(app.clock.now().into())?;
+    let (vessel, compass) = (whole.summary.vessel_id, whole.summary.compass_id);
+    let basis = Basis::load(&app, vessel, compass, &given).await?;
+    let (checked, refusal) = match given.check(&basis) {
+        Ok(checked) => (Some(checked), None),
+        Err(refusal) => (None, Some(refusal)),
+    };
+    let read = Read {
+        given,
+        basis: Some(basis),
+        checked,
+        refusal: refusal.clone(),
+    };
+    if let Some(mut change) = request.begin(&whole).await? {
+        change.append(Content::BerthReading(Box::new(read))).await?;
+        change.commit().await?;
+    }
+    match refusal {
+        Some(refusal) => Err(Error::NotAdjustable(vec![refusal])),
+        None => shown(&app, writer.operator, id).await,
+    }
+}
+
+/// A reading that was sent again is refused again.
+fn must_not_be_refused(whole: &Whole, entry: Uuid) -> Result<()> {
+    let mut found = whole.log.iter().filter(|known| known.id == entry);
+    let refusal = found.find_map(|known| match &known.content {
+        Content::BerthReading(read) => read.refusal.clone(),
+        _ => None,
+    });
+    refusal.map_or(Ok(()), |refusal| Err(Error::NotAdjustable(vec![refusal])))
+}
+
+/// The model knows the correctors as they stood: what was moved since spoils a reading.
+fn must_not_be_moved(whole: &Whole) -> Result<()> {
+    let allowed = [State::Planned, State::Measured, State::Adjusting];
+    whole.must_be(&allowed, "the berth is not read any more")?;
+    if whole.standing().was_moved() {
+        return Err(Error::WrongState(
+            "correctors were moved since the reading: the model does not know them so".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+/// See what the planner offers
+///
+/// From the last reading, and from how the correctors stand now. Nothing is kept.
+#[utoipa::path(get, path = "/work-orders/{id}/plan", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, body = OfferSchema), (status = 401, body = Problem),
+              (status = 404, body = Problem),
+              (status = 409, description = "There is no reading to plan from", body = Problem),
+              (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
+async fn find_plan(
+    Shared(app): Shared<App>,
+    reader: Reader,
+    Id(id): Id<OrderId>,
+) -> Result<Json<Outcome>> {
+    let whole = store::whole(&app.db, reader.operator, id).await?;
+    let allowed = [State::Planned, State::Measured, State::Adjusting];
+    whole.must_be(&allowed, "there is nothing to plan any more")?;
+    let prepared = whole.standing().prepared()?;
+    Ok(Json(offer(&app, prepared).await?))
+}
+
+/// Choose a plan
+#[utoipa::path(post, path = "/work-orders/{id}/plan", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Choice,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no reading to plan from", body = Problem),
+              (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
+async fn choose_plan(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(choice): ValidOrNone<Choice>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "plan", &choice)?;
+    let (whole, done) = request.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    let allowed = [State::Planned, State::Measured, State::Adjusting];
+    whole.must_be(&allowed, "there is nothing to plan any more")?;
+    let outcome = offer(&app, whole.standing().prepared()?).await?;
+    let offered = outcome.plans.len();
+    let planned = Planned::of(outcome, choice.plan.unwrap_or(1));
+    let planned = planned.ok_or_else(|| Error::Invalid {
+        field: "plan",
+        detail: format!("there are plans 1 to {offered}"),
+    })?;
+    if let Some(mut change) = request.begin(&whole).await? {
+        change.append(Content::Plan(Box::new(planned))).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+/// Send what the compass reads after a step
+///
+/// The step is confirmed, or there is a new plan from what was read.
+#[utoipa::path(post, path = "/work-orders/{id}/steps/{n}", tag = "adjusting",
+    params(("id" = OrderId, Path), ("n" = u32, Path), Key), request_body = StepRead,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "It is not the step to do now", body = Problem),
+              (status = 422, body = Problem)))]
+async fn read_step(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id((id, number)): Id<(OrderId, u32)>,
+    key: Key,
+    Valid(read): Valid<StepRead>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, &format!("step {number}"), &read)?;
+    let (whole, done) = request.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    let standing = whole.standing();
+    let wrong = |detail: String| Error::WrongState(detail);
+    let next = standing.next_step().cloned();
+    let step = next.ok_or_else(|| wrong("there is no step to do now".to_owned()))?;
+    if step.number != number {
+        return Err(wrong(format!("the step to do now is {}", step.number)));
+    }
+    let after_deg = degrees("after_deg", read.after_deg, 0.0, 360.0)?;
+    let before_deg = read.before_deg.or(standing.compass_deg);
+    let before_deg = before_deg.ok_or_else(|| Error::Invalid {
+        field: "before_deg",
+        detail: "the compass has not been read before".to_owned(),
+    })?;
+    degrees("before_deg", before_deg, 0.0, 360.0)?;
+    let prepared = standing.prepared()?;
+    let judged = calculate(&app, move || judge(&prepared, step, before_deg, after_deg)).await?;
+    if let Some(mut change) = request.begin(&whole).await? {
+        change.append(Content::Step(Box::new(judged))).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+/// Say how the correctors stand
+///
+/// When they stand otherwise than the plan has it, there has to be another plan.
+#[utoipa::path(post, path = "/work-orders/{id}/corrector-settings", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Stand,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Not before the berth was read", body = Problem),
+              (status = 422, body = Problem)))]
+async fn set_correctors(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(stand): Valid<Stand>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "corrector settings", &stand)?;
+    let (whole, done) = request.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    let what = "correctors are set between the reading and the completion";
+    whole.must_be(&[State::Measured, State::Adjusting], what)?;
+    let moved = moved(&whole, stand, app.clock.now().into())?;
+    if let Some(mut change) = request.begin(&whole).await? {
+        let content = Content::CorrectorSettings(Box::new(moved));
+        change.append(content).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+fn moved(whole: &Whole, stand: Stand, now: crate::time::Time) -> Result<Moved> {
+    let standing = whole.standing();
+    let wrong = || Error::WrongState("the berth has not been read yet".to_owned());
+    let binnacle = standing.binnacle.as_ref().ok_or_else(wrong)?;
+    binnacle.with_setting(stand.setting.clone())?;
+    let compass_deg = stand.compass_deg;
+    Ok(Moved {
+        before: standing.setting().ok_or_else(wrong)?.clone(),
+        after: stand.setting,
+        compass_deg: compass_deg
+            .map(|deg| degrees("compass_deg", deg, 0.0, 360.0))
+            .transpose()?,
+        note: optional_text("note", stand.note.as_deref())?,
+        at: now,
+    })
+}

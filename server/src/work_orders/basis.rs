@@ -1,0 +1,246 @@
+//! What a reading is held against and a plan rests on: model, field, binnacle and
+//! waters, as they were when the magnetometer was read.
+
+use super::reading::Given;
+use crate::analysis;
+use crate::app::App;
+use crate::binnacles;
+use crate::error::{Error, Result};
+use crate::ids::{CompassId, ModelId, VesselId};
+use crate::logbook;
+use crate::models::{self, StoredModel};
+use crate::time::Time;
+use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, VerticalReading, Water};
+use binnacle_magnetics::analyse::{LogbookKind, SampleDiagnostic};
+use binnacle_magnetics::angle::Variation;
+use binnacle_magnetics::berth::BerthReading;
+use binnacle_magnetics::binnacle::{Binnacle, Setting};
+use binnacle_magnetics::field::{FieldModel, field};
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::ship::EarthField;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a plan rests on.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Basis {
+    /// The ship's model.
+    pub model: ModelUsed,
+    /// The earth's field at the berth: variation, degrees, east positive.
+    pub variation_deg: f64,
+    /// Its horizontal part, nT.
+    pub h_nt: f64,
+    /// Its vertical part, nT, down positive.
+    pub z_nt: f64,
+    /// Which model of the earth's field says so.
+    pub field_model: String,
+    /// The binnacle's revision.
+    pub binnacle_revision: i64,
+    /// The binnacle, with its correctors as they stood.
+    pub binnacle: Binnacle,
+    /// Where the vessel trades, from her own track.
+    pub waters: Vec<Water>,
+    /// Whether magnetic cargo is on board, by the logbook or the reading.
+    pub cargo_on_board: bool,
+}
+
+/// The model that a plan rests on.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct ModelUsed {
+    /// Its id.
+    pub id: ModelId,
+    /// Counts the compass's models from 1.
+    pub version: i64,
+    /// SHA-256 of everything that it was made from.
+    pub input_hash: String,
+    /// The estimator that made it.
+    pub estimator: String,
+    /// The time of its last sample.
+    pub data_until: Time,
+    /// The model with its covariance.
+    pub model: Model,
+}
+
+/// A plan's argument with all that it borrows.
+pub(super) struct Prepared {
+    /// What it rests on.
+    pub basis: Basis,
+    /// The reading as the science takes it.
+    pub reading: BerthReading,
+    /// The reading as it was given.
+    pub given: Given,
+    /// The binnacle, its correctors as strong as they were found to be.
+    pub binnacle: Binnacle,
+    /// How they stand now, where they were moved since.
+    pub moved_to: Option<Setting>,
+}
+
+impl Basis {
+    /// What there is to hold a reading against.
+    pub async fn load(
+        app: &App,
+        vessel: VesselId,
+        compass: CompassId,
+        given: &Given,
+    ) -> Result<Basis> {
+        let model = models::must_have(app, vessel, compass).await?;
+        let binnacle = binnacles::current(&app.db, vessel, compass).await?;
+        let binnacle = binnacle.ok_or(Error::WrongState(
+            "the compass has no binnacle yet: write it first".to_owned(),
+        ))?;
+        let position = Position::new(given.lat, given.lon).map_err(|error| Error::Invalid {
+            field: "lat, lon",
+            detail: error.to_string(),
+        })?;
+        let earth = field(FieldModel::Igrf14, position, 0.0, given.at.0).map_err(|error| {
+            Error::Invalid {
+                field: "at",
+                detail: error.to_string(),
+            }
+        })?;
+        let logbook = logbook::of_compass(&app.db, vessel, compass).await?;
+        let cargo = logbook.iter().any(|entry| {
+            entry.kind == LogbookKind::MagneticCargo
+                && entry.from <= given.at.0
+                && entry.to.is_none_or(|to| to > given.at.0)
+        });
+        Ok(Basis {
+            variation_deg: earth.declination().degrees_east(),
+            h_nt: earth.h_nt(),
+            z_nt: earth.for_ship().z_nt,
+            field_model: FieldModel::Igrf14.name().to_owned(),
+            binnacle_revision: binnacle.revision,
+            binnacle: binnacle.binnacle.0,
+            waters: waters(app, vessel, compass, earth.for_ship()).await?,
+            cargo_on_board: cargo || given.cargo_on_board,
+            model: ModelUsed::from(model),
+        })
+    }
+
+    /// The earth's field at the berth.
+    pub fn earth(&self) -> EarthField {
+        EarthField {
+            h_nt: self.h_nt,
+            z_nt: self.z_nt,
+        }
+    }
+
+    /// Variation at the berth.
+    pub fn variation(&self) -> Option<Variation> {
+        Variation::new(self.variation_deg)
+    }
+}
+
+impl From<StoredModel> for ModelUsed {
+    fn from(stored: StoredModel) -> ModelUsed {
+        ModelUsed {
+            id: stored.id,
+            version: stored.version,
+            input_hash: stored.input_hash,
+            estimator: stored.estimator,
+            data_until: stored.data_until,
+            model: stored.model.0,
+        }
+    }
+}
+
+impl Prepared {
+    /// What the planner is asked.
+    pub(super) fn adjustment(&self) -> Adjustment<'_> {
+        let age_s = self.given.at.0.seconds_since(self.basis.model.data_until.0);
+        Adjustment {
+            model: &self.basis.model.model,
+            earth: self.basis.earth(),
+            reading: &self.reading,
+            scale_sd: self.given.scale_sd(),
+            compass_deg: self.given.compass_deg,
+            vertical: self
+                .given
+                .down_nt()
+                .map(|down_nt| VerticalReading { down_nt }),
+            binnacle: &self.binnacle,
+            now: self.moved_to.as_ref(),
+            waters: &self.basis.waters,
+            circumstances: Circumstances {
+                model_age_days: Some((age_s / 86_400.0).max(0.0)),
+                cargo_on_board: self.basis.cargo_on_board,
+            },
+            limits: Limits::default(),
+        }
+    }
+}
+
+/// Cells of the horizontal and the vertical field, nT: within one a compass feels the same.
+const CELL_NT: (f64, f64) = (3_000.0, 6_000.0);
+/// So many waters at most, those where she was most.
+const MOST_WATERS: usize = 5;
+
+/// Where the vessel was, as a compass feels it; the berth where nothing is known.
+async fn waters(
+    app: &App,
+    vessel: VesselId,
+    compass: CompassId,
+    berth: EarthField,
+) -> Result<Vec<Water>> {
+    let chunks = analysis::chunks(&app.db, vessel, compass, None, None).await?;
+    let read = tokio::task::spawn_blocking(move || {
+        let mut cells: BTreeMap<(i64, i64), Vec<SampleDiagnostic>> = BTreeMap::new();
+        for chunk in &chunks {
+            for sample in serde_json::from_str::<Vec<SampleDiagnostic>>(chunk)? {
+                if let (Some(h_nt), Some(z_nt)) = (sample.h_nt, sample.z_nt) {
+                    let cell = |value: f64, size: f64| (value / size).round() as i64;
+                    let key = (cell(h_nt, CELL_NT.0), cell(z_nt, CELL_NT.1));
+                    cells.entry(key).or_default().push(sample);
+                }
+            }
+        }
+        Ok::<_, serde_json::Error>(cells.values().filter_map(|found| water(found)).collect())
+    });
+    let mut waters: Vec<Water> = read.await??;
+    waters.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    waters.truncate(MOST_WATERS);
+    if waters.is_empty() {
+        waters.push(Water {
+            name: "the berth's waters".to_owned(),
+            h_nt: berth.h_nt,
+            z_nt: berth.z_nt,
+            weight: 1.0,
+        });
+    }
+    let whole: f64 = waters.iter().map(|water| water.weight).sum();
+    for water in &mut waters {
+        water.weight = (1000.0 * water.weight / whole).round() / 1000.0;
+    }
+    Ok(waters)
+}
+
+/// The means of a cell's samples, each counted by its windows.
+fn water(samples: &[SampleDiagnostic]) -> Option<Water> {
+    let weight = |found: &SampleDiagnostic| f64::from(found.sample.windows.max(1));
+    let whole: f64 = samples.iter().map(weight).sum();
+    let mean = |value: fn(&SampleDiagnostic) -> Option<f64>| {
+        let sum = samples
+            .iter()
+            .filter_map(|found| Some(weight(found) * value(found)?));
+        (whole > 0.0).then(|| sum.sum::<f64>() / whole)
+    };
+    let middle = &samples[samples.len() / 2].sample.position;
+    Some(Water {
+        name: place(middle.lat_deg(), middle.lon_deg()),
+        h_nt: mean(|found| found.h_nt)?,
+        z_nt: mean(|found| found.z_nt)?,
+        weight: whole,
+    })
+}
+
+fn place(lat: f64, lon: f64) -> String {
+    let side = |value: f64, positive, negative| if value < 0.0 { negative } else { positive };
+    format!(
+        "about {:.0}°{} {:.0}°{}",
+        lat.abs(),
+        side(lat, 'N', 'S'),
+        lon.abs(),
+        side(lon, 'E', 'W')
+    )
+}

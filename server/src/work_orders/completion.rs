@@ -1,0 +1,296 @@
+//! The end of an adjustment: the adjuster's word, the record that it stands in, and
+//! what follows ashore and on board.
+//!
+//! What always holds: completion is one transaction. The record, the binnacle as it
+//! stands now, the logbook's entry at the moment of the adjustment and the model that
+//! is foretold from then on all come about, or none of them.
+
+use super::change::Change;
+use super::entry::{Content, sha256_hex};
+use super::record::{self, Aboard};
+use super::standing::Standing;
+use super::store;
+use crate::binnacles;
+use crate::error::{Error, Result};
+use crate::events::Kind;
+use crate::http::text;
+use crate::ids::{BinnacleId, EntryId, ModelId};
+use crate::logbook;
+use crate::models::{self, ModelJson, StoredModel};
+use crate::time::Time;
+use binnacle_magnetics::binnacle::Setting;
+use binnacle_magnetics::model::Model;
+use ring::signature::{ED25519, UnparsedPublicKey};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// The name under which foretold models are stored.
+pub const FORETOLD: &str = "adjustment-plan-1";
+
+/// The adjuster's word that it is done.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = Completion, example = json!({
+    "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114",
+    "firm": "Nervión Compass", "signature": "M. Etxeberria"
+}))]
+pub struct Word {
+    /// The moment of the adjustment; now where it is not said.
+    #[serde(default)]
+    pub at: Option<Time>,
+    /// The adjuster.
+    #[schema(min_length = 1, max_length = 200)]
+    pub adjuster_name: String,
+    /// The number of their licence.
+    #[schema(min_length = 1, max_length = 200)]
+    pub adjuster_licence: String,
+    /// Their firm.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    pub firm: Option<String>,
+    /// Their name once more, typed as a signature.
+    #[schema(min_length = 1, max_length = 200)]
+    pub signature: String,
+}
+
+/// A completion as the log has it.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = CompletionMade)]
+pub struct Completed {
+    /// The moment of the adjustment.
+    pub at: Time,
+    /// The adjuster.
+    pub adjuster_name: String,
+    /// The number of their licence.
+    pub adjuster_licence: String,
+    /// Their firm.
+    #[schema(required)]
+    pub firm: Option<String>,
+    /// Their name, typed as a signature.
+    pub signature: String,
+    /// SHA-256 of the record, hexadecimal: what a firm's key signs.
+    pub record_sha256: String,
+    /// The logbook's entry of the adjustment.
+    pub logbook_entry: EntryId,
+    /// The model that holds from then on, foretold.
+    pub model_id: ModelId,
+    /// The same, whole.
+    #[serde(rename = "model")]
+    #[schema(value_type = crate::models::ModelSchema)]
+    pub model_after: Model,
+}
+
+/// A signature by a firm's key.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = RecordSignature)]
+pub struct Signed {
+    /// The Ed25519 public key (RFC 8032), 64 hexadecimal digits.
+    #[schema(min_length = 64, max_length = 64)]
+    pub public_key: String,
+    /// Its signature over the 32 octets of the record's SHA-256, 128 hexadecimal digits.
+    #[schema(min_length = 128, max_length = 128)]
+    pub signature: String,
+}
+
+impl Word {
+    /// The word, its words trimmed, at a moment that can be.
+    pub(super) fn checked(self, standing: &Standing, now: Time) -> Result<(Word, Time)> {
+        let at = self.at.unwrap_or(now);
+        let read_at = standing.read.as_ref().map(|read| read.given.at);
+        if at > now || read_at.is_some_and(|read_at| at < read_at) {
+            return Err(Error::Invalid {
+                field: "at",
+                detail: "lies in the future, or before the reading at the berth".to_owned(),
+            });
+        }
+        let word = Word {
+            at: Some(at),
+            adjuster_name: text("adjuster_name", &self.adjuster_name)?,
+            adjuster_licence: text("adjuster_licence", &self.adjuster_licence)?,
+            firm: crate::http::optional_text("firm", self.firm.as_deref())?,
+            signature: text("signature", &self.signature)?,
+        };
+        if word.signature.to_lowercase() != word.adjuster_name.to_lowercase() {
+            return Err(Error::Invalid {
+                field: "signature",
+                detail: "is not the adjuster's name".to_owned(),
+            });
+        }
+        Ok((word, at))
+    }
+}
+
+/// The plan's setting, if it stands so.
+fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
+    let wrong = |detail: String| Err(Error::WrongState(detail));
+    let Some(plan) = &standing.plan else {
+        return wrong("there is no plan for how the correctors stand: choose one".to_owned());
+    };
+    if let Some(step) = standing.next_step() {
+        let number = step.number;
+        return wrong(format!(
+            "step {number} is not done: do it, or plan from how they stand"
+        ));
+    }
+    Ok(&plan.plan.setting)
+}
+
+/// Completes an order.
+pub(super) async fn complete(
+    change: &mut Change<'_>,
+    aboard: &Aboard,
+    word: Word,
+    at: Time,
+) -> Result<()> {
+    let standing = change.whole.standing();
+    let setting = must_stand_as_planned(&standing)?.clone();
+    let (Some(plan), Some(basis), Some(binnacle)) = (
+        standing.plan.as_ref(),
+        standing.read.as_ref().and_then(|read| read.basis.as_ref()),
+        standing.binnacle.as_ref(),
+    ) else {
+        return Err(Error::WrongState("there is no plan".to_owned()));
+    };
+    let after = binnacle.with_setting(setting)?;
+    let record = record::text(aboard, &change.whole, &standing, &word, &after)?;
+    let (vessel, compass) = (
+        change.whole.summary.vessel_id,
+        change.whole.summary.compass_id,
+    );
+    let completed = Completed {
+        at,
+        adjuster_name: word.adjuster_name.clone(),
+        adjuster_licence: word.adjuster_licence.clone(),
+        firm: word.firm.clone(),
+        signature: word.signature.clone(),
+        record_sha256: sha256_hex(record.as_bytes()),
+        logbook_entry: EntryId::new(),
+        model_id: ModelId::new(),
+        model_after: plan.plan.model_after.clone(),
+    };
+    change.whole.summary.adjuster_name = Some(word.adjuster_name);
+    change.whole.summary.adjuster_licence = Some(word.adjuster_licence);
+    change.whole.summary.firm = word.firm;
+    change.whole.summary.completed_at = Some(at);
+    let read_at = standing.read.as_ref().map_or(at, |read| read.given.at);
+    let place = standing
+        .read
+        .as_ref()
+        .map(|read| (read.given.lat, read.given.lon));
+    let (lat, lon) = place.unwrap_or_default();
+    let model = StoredModel {
+        vessel_id: vessel,
+        id: completed.model_id,
+        compass_id: compass,
+        version: 0,
+        created_at: change.now,
+        input_hash: completed.record_sha256.clone(),
+        estimator: FORETOLD.to_owned(),
+        epoch_from: Some(at),
+        epoch_to: None,
+        epoch_begun_by: Some("adjustment".to_owned()),
+        data_from: read_at,
+        data_until: at,
+        place_at: at,
+        lat,
+        lon,
+        variation_deg: basis.variation_deg,
+        h_nt: basis.h_nt,
+        z_nt: basis.z_nt,
+        model: ModelJson(completed.model_after.clone()),
+        foretold_by: Some(change.whole.summary.id),
+    };
+    models::insert(&mut change.tx, &model).await?;
+    write_binnacle(change, &after, "adjusted").await?;
+    let port = change.whole.summary.port.clone();
+    write_logbook(change, completed.logbook_entry, at, &port).await?;
+    let summary = change.whole.summary.clone();
+    store::complete(&mut change.tx, &summary, at, &record).await?;
+    change
+        .append(Content::Completion(Box::new(completed)))
+        .await?;
+    change.tell(Kind::Model).await?;
+    change.tell(Kind::Logbook).await
+}
+
+/// Writes how the binnacle's correctors stand now.
+pub(super) async fn write_binnacle(
+    change: &mut Change<'_>,
+    binnacle: &binnacle_magnetics::binnacle::Binnacle,
+    what: &str,
+) -> Result<()> {
+    let author = binnacles::Author {
+        id: change.author.id.unwrap_or_default(),
+        name: change.author.name.clone(),
+        at: change.now,
+    };
+    let summary = &change.whole.summary;
+    let reason = format!("{what} by work order {}", summary.id);
+    binnacles::insert(
+        &mut change.tx,
+        summary.vessel_id,
+        summary.compass_id,
+        BinnacleId::new(),
+        binnacle,
+        Some(&reason),
+        &author,
+    )
+    .await
+}
+
+/// Writes the adjustment into the vessel's logbook, and has her analysed anew.
+pub(super) async fn write_logbook(
+    change: &mut Change<'_>,
+    id: EntryId,
+    at: Time,
+    port: &str,
+) -> Result<()> {
+    let summary = &change.whole.summary;
+    let note = format!("work order {}", summary.id);
+    let written = logbook::Adjusted {
+        id,
+        vessel: summary.vessel_id,
+        compass: summary.compass_id,
+        at,
+        port,
+        note: &note,
+        author_id: change.author.id.unwrap_or_default(),
+        author_name: &change.author.name,
+        now: change.now,
+    };
+    logbook::write_adjustment(&mut change.tx, &written).await
+}
+
+impl Signed {
+    /// Whether the key signed this record.
+    ///
+    /// # Errors
+    /// Names what is no key or no signature, or does not fit.
+    pub fn checked(&self, record_sha256: &str) -> Result<()> {
+        let wrong = |field, detail: &str| Error::Invalid {
+            field,
+            detail: detail.to_owned(),
+        };
+        let key = from_hex(&self.public_key).filter(|key| key.len() == 32);
+        let key = key.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
+        let signature = from_hex(&self.signature).filter(|octets| octets.len() == 64);
+        let signature =
+            signature.ok_or_else(|| wrong("signature", "is not 128 hexadecimal digits"))?;
+        let record = from_hex(record_sha256).unwrap_or_default();
+        UnparsedPublicKey::new(&ED25519, key)
+            .verify(&record, &signature)
+            .map_err(|_| wrong("signature", "is not this key's over the record's SHA-256"))
+    }
+}
+
+fn from_hex(text: &str) -> Option<Vec<u8>> {
+    let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();
+    let digits = digits.filter(|digits| digits.len() % 2 == 0)?;
+    Some(
+        digits
+            .chunks(2)
+            .map(|pair| (16 * pair[0] + pair[1]) as u8)
+            .collect(),
+    )
+}

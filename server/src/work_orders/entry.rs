@@ -1,0 +1,131 @@
+//! The log of an order: what happened, each entry chained to the one before.
+//!
+//! What always holds: an entry is one line of JSON with its keys in order and no blanks,
+//! and is kept as that text; its hash is the SHA-256 of the text, and the next entry
+//! names it. So a log can be checked with nothing but SHA-256.
+
+use super::completion::{Completed, Signed};
+use super::order::Opened;
+use super::photos::PhotoTaken;
+use super::plan::Planned;
+use super::reading::Read;
+use super::steps::{Moved, StepDone};
+use super::verification::Verified;
+use crate::error::Result;
+use crate::ids::OrderId;
+use crate::time::Time;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+use uuid::Uuid;
+
+/// An entry of an order's log.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Entry {
+    /// Of this form: 1.
+    pub version: u32,
+    /// The order.
+    pub order: OrderId,
+    /// Counts from 1.
+    pub seq: i64,
+    /// The entry's id.
+    pub id: Uuid,
+    /// SHA-256 of the line before; none for the first.
+    pub previous_sha256: Option<String>,
+    /// When it was written.
+    pub at: Time,
+    /// Who wrote it.
+    pub author: Author,
+    /// What happened.
+    #[serde(flatten)]
+    pub content: Content,
+}
+
+/// Who wrote an entry.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Author {
+    /// Their id; none for the server itself.
+    pub id: Option<Uuid>,
+    /// Their name.
+    pub name: String,
+}
+
+/// What happened to an order.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(tag = "kind", content = "content", rename_all = "snake_case")]
+pub enum Content {
+    /// The order was written.
+    Opened(Box<Opened>),
+    /// The magnetometer was read at the berth.
+    BerthReading(Box<Read>),
+    /// A plan was chosen.
+    Plan(Box<Planned>),
+    /// A step was done, and the compass read.
+    Step(Box<StepDone>),
+    /// How the correctors stand, as they were found.
+    CorrectorSettings(Box<Moved>),
+    /// A photograph.
+    Photo(PhotoTaken),
+    /// Something said.
+    Remark(Said),
+    /// The adjuster has finished and signed.
+    Completion(Box<Completed>),
+    /// The firm's key signed the record.
+    Signature(Signed),
+    /// Headings at sea were held against the prediction.
+    Verification(Box<Verified>),
+    /// It is done with.
+    Closed(Said),
+    /// It is not to be done, or no further.
+    Cancelled(Said),
+}
+
+/// Something said.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Said {
+    /// In words.
+    pub text: String,
+}
+
+/// A value as canonical JSON: keys in order, no blanks.
+///
+/// # Errors
+/// When it cannot be written as JSON.
+pub fn canonical(value: &impl Serialize) -> Result<String> {
+    // serde_json's map is sorted; a test below holds it to that.
+    Ok(serde_json::to_string(&serde_json::to_value(value)?)?)
+}
+
+/// SHA-256 as hexadecimal.
+pub fn sha256_hex(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(64);
+    for byte in Sha256::digest(bytes) {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn canonical_json_has_its_keys_in_order() {
+        let value = json!({ "b": 1, "a": { "d": [1.5], "c": null } });
+        assert_eq!(
+            canonical(&value).unwrap(),
+            r#"{"a":{"c":null,"d":[1.5]},"b":1}"#
+        );
+    }
+
+    #[test]
+    fn a_hash_is_that_of_the_standard() {
+        // FIPS 180-4, example B.1.
+        assert_eq!(
+            sha256_hex(b"abc"),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+    }
+}

@@ -1,0 +1,290 @@
+//! Photographs, completion, signatures, and the archive of evidence.
+
+use super::completion::{self, Signed, Word};
+use super::entry::Content;
+use super::order::{Order, State};
+use super::photos::{Caption, MAX_BYTES, MOST, PhotoTaken};
+use super::record::Aboard;
+use super::store::{self, Whole};
+use super::{request, shown};
+use crate::access::{Reader, Writer};
+use crate::app::App;
+use crate::compasses;
+use crate::error::{Error, Problem, Result};
+use crate::evidence::{Evidence, File, archive, record_pdf};
+use crate::http::{Id, Json, Params, Valid};
+use crate::idempotency::Key;
+use crate::ids::{OperatorId, OrderId, PhotoId};
+use crate::vessels;
+use axum::body::Bytes;
+use axum::extract::rejection::BytesRejection;
+use axum::extract::{DefaultBodyLimit, State as Shared};
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE};
+use axum::response::{IntoResponse, Response};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(super) fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(add_photo))
+        .layer(DefaultBodyLimit::max(MAX_BYTES))
+        .routes(routes!(find_photo))
+        .routes(routes!(complete_work_order))
+        .routes(routes!(sign_record))
+        .routes(routes!(find_record))
+        .routes(routes!(find_evidence))
+}
+
+/// Add a photograph
+///
+/// The body is the file as it is: JPEG, PNG or WebP, 10 MiB at most.
+#[utoipa::path(post, path = "/work-orders/{id}/photos", tag = "adjusting",
+    params(("id" = OrderId, Path), Caption, Key),
+    request_body(content = Vec<u8>, content_type = "application/octet-stream"),
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, body = Problem), (status = 413, body = Problem),
+              (status = 415, body = Problem)))]
+async fn add_photo(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    Params(caption): Params<Caption>,
+    key: Key,
+    body: std::result::Result<Bytes, BytesRejection>,
+) -> Result<Json<Order>> {
+    let bytes = body.map_err(|_| Error::TooLarge(MAX_BYTES))?;
+    let taken = PhotoTaken::new(PhotoId::new(), &bytes, &caption)?;
+    let request = request(&app, writer, id, key, "photo", &taken.sha256)?;
+    let (whole, done) = request.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    if matches!(whole.summary.state, State::Closed | State::Cancelled) {
+        whole.must_be(&[], "nothing is added any more")?;
+    }
+    if photos(&whole).count() >= MOST {
+        return Err(Error::WrongState(format!("there are {MOST} photographs")));
+    }
+    if let Some(mut change) = request.begin(&whole).await? {
+        let (sha256, kind) = (taken.sha256.as_str(), taken.media_type.as_str());
+        store::insert_photo(
+            &mut change.tx,
+            &whole.summary,
+            taken.photo,
+            kind,
+            sha256,
+            &bytes,
+        )
+        .await?;
+        change.append(Content::Photo(taken)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+fn photos(whole: &Whole) -> impl Iterator<Item = (i64, &PhotoTaken)> {
+    whole.log.iter().filter_map(|entry| match &entry.content {
+        Content::Photo(photo) => Some((entry.seq, photo)),
+        _ => None,
+    })
+}
+
+/// See a photograph
+#[utoipa::path(get, path = "/work-orders/{id}/photos/{photo}", tag = "adjusting",
+    params(("id" = OrderId, Path), ("photo" = PhotoId, Path)),
+    responses((status = 200, content_type = "image/*", body = Vec<u8>),
+              (status = 401, body = Problem), (status = 404, body = Problem)))]
+async fn find_photo(
+    Shared(app): Shared<App>,
+    reader: Reader,
+    Id((id, photo)): Id<(OrderId, PhotoId)>,
+) -> Result<Response> {
+    let summary = store::summary(&app.db, reader.operator, id).await?;
+    let found = store::photo(&app.db, summary.vessel_id, id, photo).await?;
+    let (media_type, bytes) = found.ok_or(Error::NotFound("photograph"))?;
+    let headers = [
+        (CONTENT_TYPE, media_type.as_str()),
+        (CONTENT_SECURITY_POLICY, "default-src 'none'; sandbox"),
+        (CONTENT_DISPOSITION, "attachment"),
+    ];
+    Ok((headers, bytes).into_response())
+}
+
+/// Complete an adjustment
+///
+/// By the adjuster's name, licence and typed signature. From that moment on the vessel's
+/// logbook has the adjustment, the ship gets the model that is foretold, and the card is
+/// a prediction until headings at sea agree.
+#[utoipa::path(post, path = "/work-orders/{id}/complete", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Word,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "A step is not done", body = Problem),
+              (status = 422, body = Problem)))]
+async fn complete_work_order(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(word): Valid<Word>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "completion", &word)?;
+    let (whole, done) = request.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
+    let (word, at) = word.checked(&whole.standing(), app.clock.now().into())?;
+    let aboard = aboard(&app, writer.operator, &whole).await?;
+    if let Some(mut change) = request.begin(&whole).await? {
+        completion::complete(&mut change, &aboard, word, at).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+async fn aboard(app: &App, operator: OperatorId, whole: &Whole) -> Result<Aboard> {
+    let summary = &whole.summary;
+    let vessel = vessels::find_row(&app.db, operator, summary.vessel_id).await?;
+    let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
+    Ok(Aboard {
+        vessel_name: vessel.name,
+        imo_number: vessel.imo_number,
+        call_sign: vessel.call_sign,
+        flag: vessel.flag,
+        compass: compasses::find(&app.db, summary.vessel_id, Some(summary.compass_id)).await?,
+    })
+}
+
+/// Sign the record with a firm's key
+///
+/// An Ed25519 signature over the 32 octets of `record_sha256`. Whose key it is the firm
+/// has to say.
+#[utoipa::path(post, path = "/work-orders/{id}/signatures", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Signed,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem),
+              (status = 422, description = "It is not this key's", body = Problem)))]
+async fn sign_record(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(signed): Valid<Signed>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "signature", &signed)?;
+    let (whole, done) = request.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    let completed = whole.standing().completed;
+    let completed = completed.ok_or_else(no_record)?;
+    signed.checked(&completed.record_sha256)?;
+    if let Some(mut change) = request.begin(&whole).await? {
+        change.append(Content::Signature(signed)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+fn no_record() -> Error {
+    Error::WrongState("there is no record before the adjustment is completed".to_owned())
+}
+
+/// See the adjustment record
+///
+/// The very octets that a firm's key signs the hash of.
+#[utoipa::path(get, path = "/work-orders/{id}/record.json", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "application/json", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn find_record(
+    Shared(app): Shared<App>,
+    reader: Reader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let summary = store::summary(&app.db, reader.operator, id).await?;
+    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let headers = [(CONTENT_TYPE, "application/json")];
+    Ok((headers, record.ok_or_else(no_record)?).into_response())
+}
+
+/// Get the evidence of an adjustment
+///
+/// One archive that `binnacle-server verify-evidence` checks, and that says how to check
+/// it by hand. A prediction, not a certificate.
+#[utoipa::path(get, path = "/work-orders/{id}/evidence.zip", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "application/zip", body = Vec<u8>),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn find_evidence(
+    Shared(app): Shared<App>,
+    reader: Reader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let whole = store::whole(&app.db, reader.operator, id).await?;
+    let vessel = whole.summary.vessel_id;
+    let record = store::record(&app.db, vessel, id).await?;
+    let record = record.ok_or_else(no_record)?;
+    let mut files = vec![File {
+        name: "predicted.csv".to_owned(),
+        bytes: predicted(&whole).into_bytes(),
+    }];
+    for (seq, photo) in photos(&whole) {
+        let found = store::photo(&app.db, vessel, id, photo.photo).await?;
+        let (_, bytes) = found.ok_or_else(|| anyhow::anyhow!("a photograph is gone"))?;
+        let name = photo.file(seq);
+        files.push(File { name, bytes });
+    }
+    files.push(File {
+        name: "record.json".to_owned(),
+        bytes: record.clone().into_bytes(),
+    });
+    let lines = store::lines(&app.db, vessel, id, None, i64::MAX).await?;
+    // As many as were looked at: one that came meanwhile is in the next archive.
+    let lines = lines.into_iter().take(whole.log.len());
+    let mut evidence = Evidence {
+        order: id.to_string(),
+        lines: lines.map(|(_, line, _)| line).collect(),
+        files,
+    };
+    let written = tokio::task::spawn_blocking(move || {
+        evidence.files.push(File {
+            name: "record.pdf".to_owned(),
+            bytes: record_pdf(&record)?,
+        });
+        archive(evidence)
+    });
+    let bytes = written.await??;
+    let name = format!("attachment; filename=\"evidence-{id}.zip\"");
+    let headers = [
+        (CONTENT_TYPE, "application/zip"),
+        (CONTENT_DISPOSITION, name.as_str()),
+    ];
+    Ok((headers, bytes).into_response())
+}
+
+/// The residuals foretold, a row to a place and heading.
+fn predicted(whole: &Whole) -> String {
+    let standing = whole.standing();
+    let tables = standing.plan.iter().flat_map(|plan| &plan.plan.after);
+    let mut lines = vec!["place,compass_deg,predicted_deviation_deg,band95_deg".to_owned()];
+    for table in tables {
+        for row in &table.rows {
+            let band = row.band95_deg.map(|band| format!("{band:.2}"));
+            lines.push(format!(
+                "{},{:.0},{:.2},{}",
+                table.place,
+                row.compass_deg,
+                row.deviation_deg,
+                band.unwrap_or_default()
+            ));
+        }
+    }
+    lines.push(String::new());
+    lines.join("\n")
+}

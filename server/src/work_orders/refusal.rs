@@ -1,0 +1,71 @@
+//! Why there is no plan, or a reading is not taken, and what would cure it.
+
+use binnacle_magnetics::adjust::{Cure as Cured, Refused};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Why there is no plan, or a reading is not taken.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
+#[schema(as = AdjustmentRefusal)]
+pub struct Refusal {
+    /// In a word.
+    #[schema(example = "inconsistent_berth")]
+    pub refusal: String,
+    /// What is wrong.
+    pub words: String,
+    /// Mistakes each of which alone would explain it.
+    pub could_be: Vec<String>,
+    /// What would cure it, the easiest first.
+    pub cures: Vec<Cure>,
+}
+
+/// What would cure a refusal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = AdjustmentCure)]
+pub enum Cure {
+    /// Read again: heading, axes, unit, away from steel.
+    ReadAgain,
+    /// A few settled headings at sea, so that the model is of today.
+    HeadingsAtSea,
+    /// Headings in waters with another dip.
+    OtherWaters,
+    /// Wait until the cargo is ashore.
+    AfterDischarge,
+    /// A magnetometer with less error.
+    BetterMagnetometer,
+    /// Another berth, or farther from steel.
+    AnotherBerth,
+    /// Magnets, spheres or pieces of bar that are not on board.
+    OtherCorrectors,
+    /// Swing the ship.
+    Swing,
+}
+
+impl From<&Refused> for Refusal {
+    fn from(refused: &Refused) -> Refusal {
+        let word = serde_json::to_value(&refused.refusal).ok();
+        let word = word.and_then(|value| Some(value.get("refusal")?.as_str()?.to_owned()));
+        Refusal {
+            refusal: word.unwrap_or_else(|| "refused".to_owned()),
+            words: refused.words.clone(),
+            could_be: Vec::new(),
+            cures: refused.cures.iter().copied().map(Cure::from).collect(),
+        }
+    }
+}
+
+impl From<Cured> for Cure {
+    fn from(cure: Cured) -> Cure {
+        match cure {
+            Cured::ReadAgain => Cure::ReadAgain,
+            Cured::HeadingsAtSea => Cure::HeadingsAtSea,
+            Cured::OtherWaters => Cure::OtherWaters,
+            Cured::AfterDischarge => Cure::AfterDischarge,
+            Cured::BetterMagnetometer => Cure::BetterMagnetometer,
+            Cured::AnotherBerth => Cure::AnotherBerth,
+            Cured::OtherCorrectors => Cure::OtherCorrectors,
+            Cured::Swing => Cure::Swing,
+        }
+    }
+}

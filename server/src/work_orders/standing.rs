@@ -1,0 +1,176 @@
+//! How an order stands: what follows from the entries of its log, one after the other.
+//!
+//! What always holds: it is a function of the log alone, so that the state in the
+//! database can be derived again.
+
+use super::completion::Completed;
+use super::entry::Content;
+use super::order::State;
+use super::photos::PhotoTaken;
+use super::plan::Planned;
+use super::reading::Read;
+use super::steps::{StepSaid, Verdict};
+use super::verification::Verified;
+use binnacle_magnetics::adjust::{Step, Verification};
+use binnacle_magnetics::binnacle::{Binnacle, Setting};
+
+/// How an order stands.
+#[derive(Clone, Debug)]
+pub(super) struct Standing {
+    /// How far it has come.
+    pub state: State,
+    /// The last reading that was taken.
+    pub read: Option<Read>,
+    /// The binnacle, its correctors as strong as they were found to be, standing as they
+    /// stood when the magnetometer was read.
+    pub binnacle: Option<Binnacle>,
+    /// How they stand now, where they were moved since.
+    pub moved_to: Option<Setting>,
+    /// The plan that is followed.
+    pub plan: Option<Planned>,
+    /// How many of its steps are done.
+    pub steps_done: usize,
+    /// What became of the last step.
+    pub last_step: Option<StepSaid>,
+    /// What the compass read last at the berth, degrees.
+    pub compass_deg: Option<f64>,
+    /// How it was completed.
+    pub completed: Option<Completed>,
+    /// What the headings at sea say.
+    pub verified: Option<Verified>,
+    /// Photographs, in order.
+    pub photos: Vec<PhotoTaken>,
+}
+
+impl Standing {
+    /// How an order stands whose log says this.
+    pub(super) fn of<'a>(log: impl Iterator<Item = &'a Content>) -> Standing {
+        let mut standing = Standing {
+            state: State::Planned,
+            read: None,
+            binnacle: None,
+            moved_to: None,
+            plan: None,
+            steps_done: 0,
+            last_step: None,
+            compass_deg: None,
+            completed: None,
+            verified: None,
+            photos: Vec::new(),
+        };
+        for content in log {
+            standing.take(content);
+        }
+        standing
+    }
+
+    /// Goes on by an entry.
+    pub(super) fn take(&mut self, content: &Content) {
+        match content {
+            Content::Photo(photo) => self.photos.push(photo.clone()),
+            Content::Opened(_) | Content::Remark(_) | Content::Signature(_) => {}
+            Content::BerthReading(read) => self.take_reading(read),
+            Content::Plan(planned) => self.follow(planned.as_ref().clone()),
+            Content::Step(done) => {
+                // What nothing explains is read again, from where it was.
+                if done.said.verdict != Verdict::Unexplained {
+                    self.compass_deg = Some(done.said.after_deg);
+                }
+                self.last_step = Some(done.said.clone());
+                if let Some(binnacle) = &done.binnacle {
+                    self.binnacle = Some(binnacle.clone());
+                }
+                if let Some(setting) = &done.setting {
+                    self.moved_to = Some(setting.clone());
+                }
+                if done.said.is_confirmed() {
+                    self.steps_done += 1;
+                } else if done.setting.is_some() {
+                    self.plan = None;
+                    self.state = State::Measured;
+                }
+                if let Some(plan) = &done.replanned {
+                    self.follow(plan.as_ref().clone());
+                }
+            }
+            Content::CorrectorSettings(moved) => {
+                self.moved_to = Some(moved.after.clone());
+                self.compass_deg = moved.compass_deg.or(self.compass_deg);
+                match &self.plan {
+                    Some(plan) if plan.plan.setting == moved.after => {
+                        self.steps_done = plan.plan.steps.len();
+                    }
+                    // Another way than the plan's: there has to be another plan.
+                    _ => {
+                        self.plan = None;
+                        self.state = State::Measured;
+                    }
+                }
+            }
+            Content::Completion(completed) => {
+                self.completed = Some(completed.as_ref().clone());
+                self.state = State::Adjusted;
+            }
+            Content::Verification(verified) => {
+                self.state = match verified.verification {
+                    Verification::Passed { .. } => State::Verified,
+                    Verification::MoreNeeded { .. } => State::Adjusted,
+                    Verification::Alarm { .. } => State::Failed,
+                };
+                self.verified = Some(verified.as_ref().clone());
+            }
+            Content::Closed(_) => self.state = State::Closed,
+            Content::Cancelled(_) => self.state = State::Cancelled,
+        }
+    }
+
+    fn take_reading(&mut self, read: &Read) {
+        let Some(basis) = &read.basis else {
+            return;
+        };
+        if read.refusal.is_some() {
+            return;
+        }
+        self.binnacle = Some(basis.binnacle.clone());
+        self.moved_to = None;
+        self.plan = None;
+        self.steps_done = 0;
+        self.last_step = None;
+        self.compass_deg = read.given.compass_deg;
+        self.read = Some(read.clone());
+        self.state = State::Measured;
+    }
+
+    fn follow(&mut self, planned: Planned) {
+        self.plan = Some(planned);
+        self.steps_done = 0;
+        self.state = State::Adjusting;
+    }
+
+    /// The step to do now.
+    pub(super) fn next_step(&self) -> Option<&Step> {
+        if self.state != State::Adjusting {
+            return None;
+        }
+        self.plan.as_ref()?.plan.steps.get(self.steps_done)
+    }
+
+    /// How the correctors stand now.
+    pub(super) fn setting(&self) -> Option<&Setting> {
+        let as_read = self.binnacle.as_ref().map(|binnacle| &binnacle.setting);
+        self.moved_to.as_ref().or(as_read)
+    }
+
+    /// Whether a corrector was moved.
+    pub(super) fn was_moved(&self) -> bool {
+        let as_read = self.binnacle.as_ref().map(|binnacle| &binnacle.setting);
+        self.moved_to.is_some() && self.moved_to.as_ref() != as_read
+    }
+
+    /// Whether the sea has confirmed it.
+    pub(super) fn is_verified(&self) -> bool {
+        self.verified
+            .as_ref()
+            .is_some_and(|verified| matches!(verified.verification, Verification::Passed { .. }))
+    }
+}

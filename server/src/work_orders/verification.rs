@@ -1,0 +1,183 @@
+//! The proof at sea: settled headings since an adjustment, held against what was
+//! foretold.
+//!
+//! What always holds: a verdict is an entry of the order's log, in the transaction that
+//! stores the analysis whose samples it rests on; an alarm is an alert as long as the
+//! order stands failed.
+
+use super::entry::{Author, Content};
+use super::order::State;
+use super::store;
+use crate::alerts::{AlertWanted, Cause, Dated, Evidence, Severity};
+use crate::db::Tx;
+use crate::error::Result;
+use crate::events::{self, Event, Kind};
+use crate::ids::{CompassId, OrderId, VesselId};
+use crate::time::Time;
+use binnacle_magnetics::adjust::{Settled, Verification, verify};
+use binnacle_magnetics::analyse::{SampleDiagnostic, SampleReason};
+use binnacle_magnetics::ship::EarthField;
+use serde::{Deserialize, Serialize};
+use tracing::warn;
+use utoipa::ToSchema;
+use uuid::Uuid;
+
+/// Of one heading at sea: reference, card and sea together, degrees.
+const HEADING_SD_DEG: f64 = 0.7;
+
+/// What the headings at sea say.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[schema(as = OrderVerification)]
+pub struct Verified {
+    /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
+    #[schema(value_type = Object)]
+    pub verification: Verification,
+    /// The same in words.
+    pub words: String,
+    /// How many samples it rests on.
+    pub samples: usize,
+    /// The time of the last of them.
+    pub until: Time,
+}
+
+impl Verified {
+    fn new(verification: Verification, samples: usize, until: Time) -> Verified {
+        let words = match &verification {
+            Verification::Passed {
+                headings,
+                band95_deg,
+                rms_deg,
+            } => format!(
+                "{headings} headings agree with what was foretold, to {rms_deg:.1} degrees; the \
+                 band is now {band95_deg:.1} degrees"
+            ),
+            Verification::MoreNeeded { headings, needed } => format!(
+                "{headings} headings agree so far; {} more are needed",
+                needed.count
+            ),
+            Verification::Alarm {
+                compass_deg,
+                off_deg,
+                standard_error_deg,
+            } => format!(
+                "on compass heading {compass_deg:03.0} the deviation is {off_deg:.1} degrees off \
+                 what was foretold (standard error {standard_error_deg:.1})"
+            ),
+        };
+        Verified {
+            verification,
+            words,
+            samples,
+            until,
+        }
+    }
+
+    /// Whether it says something that this does not.
+    fn is_news_after(&self, last: Option<&Verified>) -> bool {
+        let headings = |verified: &Verified| match verified.verification {
+            Verification::MoreNeeded { headings, .. } => Some(headings),
+            Verification::Passed { .. } | Verification::Alarm { .. } => None,
+        };
+        last.is_none_or(|last| {
+            headings(last) != headings(self)
+                || std::mem::discriminant(&last.verification)
+                    != std::mem::discriminant(&self.verification)
+        })
+    }
+}
+
+/// Holds a compass's samples against what its last adjustment foretold.
+pub async fn after_analysis(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+    samples: &[SampleDiagnostic],
+    now: Time,
+) -> Result<Option<Event>> {
+    let last = store::last_completed(tx, vessel, compass).await?;
+    let Some((order, State::Adjusted, _)) = last else {
+        return Ok(None);
+    };
+    let mut whole = store::lock(tx, vessel, order).await?;
+    let standing = whole.standing();
+    let Some(completed) = standing.completed else {
+        return Ok(None);
+    };
+    let counts = |found: &&SampleDiagnostic| {
+        Time(found.sample.time) > completed.at
+            && matches!(found.reason, None | Some(SampleReason::NoModel))
+    };
+    let counted: Vec<&SampleDiagnostic> = samples.iter().filter(counts).collect();
+    let settled: Vec<Settled> = counted.iter().filter_map(|found| settled(found)).collect();
+    let (Some(last), Some(here)) = (counted.last(), settled.last().map(|last| last.earth)) else {
+        return Ok(None);
+    };
+    let verification = match verify(&completed.model_after, &settled, here) {
+        Ok(verification) => verification,
+        Err(error) => {
+            warn!(%vessel, %error, "an adjustment cannot be verified");
+            return Ok(None);
+        }
+    };
+    let verified = Verified::new(verification, settled.len(), Time(last.sample.time));
+    if !verified.is_news_after(standing.verified.as_ref()) {
+        return Ok(None);
+    }
+    let author = Author {
+        id: None,
+        name: "Binnacle".to_owned(),
+    };
+    let content = Content::Verification(Box::new(verified));
+    store::append(tx, &mut whole, Uuid::now_v7(), &author, now, content).await?;
+    let event = events::insert(tx, vessel, Kind::WorkOrder, now).await?;
+    Ok(Some(event))
+}
+
+fn settled(found: &SampleDiagnostic) -> Option<Settled> {
+    Some(Settled {
+        compass: found.sample.compass,
+        deviation_deg: found.deviation_deg?,
+        sd_deg: HEADING_SD_DEG,
+        earth: EarthField {
+            h_nt: found.h_nt?,
+            z_nt: found.z_nt?,
+        },
+    })
+}
+
+/// The alert that a compass's last adjustment calls for.
+pub async fn alert(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<AlertWanted>> {
+    let last = store::last_completed(tx, vessel, compass).await?;
+    let Some((order, State::Failed, at)) = last else {
+        return Ok(None);
+    };
+    let whole = store::lock(tx, vessel, order).await?;
+    let Some(verified) = whole.standing().verified else {
+        return Ok(None);
+    };
+    Ok(Some(wanted(order, at, &verified)))
+}
+
+fn wanted(order: OrderId, at: Time, verified: &Verified) -> AlertWanted {
+    AlertWanted {
+        cause: Cause::AdjustmentNotConfirmed,
+        severity: Severity::Critical,
+        since: at,
+        dated: Dated::exactly(at),
+        summary: format!(
+            "Headings at sea do not agree with what the adjustment foretold: {}.",
+            verified.words
+        ),
+        advice: "Do not use the predicted card. Take azimuths on all headings, look whether the \
+                 correctors stand as the record says, and have the ship swung or adjusted again.",
+        evidence: Evidence(vec![format!(
+            "Work order {order}, adjusted at {}; {} samples since.",
+            at.to_the_minute(),
+            verified.samples
+        )]),
+    }
+}
