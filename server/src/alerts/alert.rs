@@ -25,6 +25,8 @@ pub enum Cause {
     MagneticCargo,
     /// The ship's magnetism wandered off.
     Drift,
+    /// The compass's zero moved: its lubber line, its seat, or its sensor.
+    Alignment,
     /// The earth's crust, at a place.
     LocalAnomaly,
     /// The sun, for hours.
@@ -265,6 +267,7 @@ impl Cause {
             Cause::LightningOrShock
                 | Cause::MagneticCargo
                 | Cause::Drift
+                | Cause::Alignment
                 | Cause::UnknownChange
                 | Cause::LocalAnomaly
                 | Cause::MagneticStorm
@@ -281,6 +284,7 @@ impl Cause {
             Cause::LightningOrShock => "lightning or a shock",
             Cause::MagneticCargo => "magnetic cargo",
             Cause::Drift => "drift of the ship's magnetism",
+            Cause::Alignment => "the compass's zero moved",
             Cause::LocalAnomaly => "a local anomaly",
             Cause::MagneticStorm => "a magnetic storm",
             Cause::BerthSteel => "steel at the berth",

@@ -62,6 +62,7 @@ fn cause_of(cause: change::Cause) -> Cause {
         change::Cause::Drift => Cause::Drift,
         change::Cause::CompassFault => Cause::CompassFault,
         change::Cause::ReferenceFault => Cause::ReferenceFault,
+        change::Cause::Alignment => Cause::Alignment,
         change::Cause::LocalAnomaly => Cause::LocalAnomaly,
         change::Cause::MagneticStorm => Cause::MagneticStorm,
         change::Cause::BerthSteel => Cause::BerthSteel,
@@ -107,16 +108,13 @@ fn holds(found: &FoundChange, stage: Stage, findings: &Findings) -> bool {
 
 /// Later samples date a change better, by days if they fill a gap, and may name
 /// another cause: an alert was about the change that is nearest to its date, among
-/// those of the ship or among the others.
+/// those of the ship, those of her references, or the others.
 fn dated(found: &FoundChange, findings: &Findings) -> Dated {
-    // It is also said of what goes on throughout, which has no date.
-    if found.change.cause == change::Cause::ReferenceFault {
-        return Dated::default();
-    }
     let at = found.change.from;
-    let of_the_ship = found.change.cause.is_the_ships();
+    let kind =
+        |cause: change::Cause| (cause.is_the_ships(), cause == change::Cause::ReferenceFault);
     let others = findings.changes.iter().map(|other| &other.change);
-    let others = others.filter(|other| other.cause.is_the_ships() == of_the_ship);
+    let others = others.filter(|other| kind(other.cause) == kind(found.change.cause));
     let (before, after): (Vec<Timestamp>, Vec<Timestamp>) = others
         .map(|other| other.from)
         .filter(|other| *other != at)
@@ -234,6 +232,12 @@ fn advice(cause: change::Cause, stage: Stage) -> &'static str {
         (change::Cause::ReferenceFault, _) => {
             "Check gyro and satellite compass against an azimuth. The magnetic compass itself is \
              not suspected."
+        }
+        (change::Cause::Alignment, _) => {
+            "Use no card from before: the compass is off by the same on every heading. Steer by \
+             the gyro or the corrected heading and take an azimuth. Look whether the bowl, the \
+             lubber line or the sensor has shifted against the ship's head; put it back, and \
+             report that in the logbook. No corrector needs to be moved."
         }
         (_, Stage::Doubtful) => {
             "Take an azimuth now and once a watch, and report in the logbook what may have \

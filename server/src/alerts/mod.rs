@@ -89,7 +89,7 @@ async fn find_alert(
 ///
 /// Someone knows and sees to it. Acknowledging it again changes nothing.
 #[utoipa::path(post, path = "/alerts/{id}/acknowledge", tag = "alerts",
-    params(("id" = AlertId, Path)), request_body = Acknowledgement,
+    params(("id" = AlertId, Path)), request_body = Option<Acknowledgement>,
     responses((status = 200, body = Alert), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 410, description = "The alert is cleared", body = Problem)))]

@@ -19,6 +19,9 @@ pub(super) enum CauseSchema {
     Drift,
     /// The magnetic compass sticks or repeats itself.
     CompassFault,
+    /// The compass's zero moved: its lubber line, its seat, or the element that sends its
+    /// heading on.
+    Alignment,
     /// Gyro or satellite compass errs: the magnetic compass is well.
     ReferenceFault,
     /// The earth's crust, at a place.

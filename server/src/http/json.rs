@@ -34,8 +34,8 @@ impl<S: Send + Sync, T: DeserializeOwned + Default> FromRequest<S> for ValidOrNo
             return Ok(ValidOrNone(T::default()));
         }
         let again = Request::from_parts(parts, Body::from(bytes));
-        let Valid(value) = Valid::from_request(again, state).await?;
-        Ok(ValidOrNone(value))
+        let Valid(value) = Valid::<Option<T>>::from_request(again, state).await?;
+        Ok(ValidOrNone(value.unwrap_or_default()))
     }
 }
 

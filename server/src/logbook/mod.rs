@@ -153,7 +153,7 @@ async fn amend_entry(
 /// It stays in the logbook, marked, and counts no more. Withdrawing it again
 /// changes nothing.
 #[utoipa::path(post, path = "/vessels/{id}/logbook/{entry}/withdraw", tag = "fleet",
-    params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = Withdrawal,
+    params(("id" = VesselId, Path), ("entry" = EntryId, Path)), request_body = Option<Withdrawal>,
     responses((status = 200, body = LogbookEntry), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 422, body = Problem)))]

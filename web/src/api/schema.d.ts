@@ -1627,7 +1627,7 @@ export interface components {
          * @description What an alert is about: one compass has at most one open alert of each.
          * @enum {string}
          */
-        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
+        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
          * @description Something that people must know of.
@@ -2258,7 +2258,7 @@ export interface components {
          * @description What changes what a compass shows.
          * @enum {string}
          */
-        ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
+        ChangeCause: "lightning_or_shock" | "magnetic_cargo" | "adjustment_or_repair" | "drift" | "compass_fault" | "alignment" | "reference_fault" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown";
         /** @description From when on someone gets mail. */
         ChangedMailRecipient: {
             /** @description Of alerts as bad as this or worse. */
@@ -4830,9 +4830,9 @@ export interface operations {
             };
             cookie?: never;
         };
-        requestBody: {
+        requestBody?: {
             content: {
-                "application/json": components["schemas"]["Acknowledgement"];
+                "application/json": components["schemas"]["Acknowledgement"] | null;
             };
         };
         responses: {
@@ -8243,9 +8243,9 @@ export interface operations {
             };
             cookie?: never;
         };
-        requestBody: {
+        requestBody?: {
             content: {
-                "application/json": components["schemas"]["Withdrawal"];
+                "application/json": components["schemas"]["Withdrawal"] | null;
             };
         };
         responses: {

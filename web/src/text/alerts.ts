@@ -23,6 +23,7 @@ export const alerts = {
       lightning_or_shock: 'Magnetism changed: lightning or a shock',
       magnetic_cargo: 'Magnetism changed: magnetic cargo',
       drift: 'Magnetism drifts',
+      alignment: 'The compass’s zero moved',
       local_anomaly: 'Local anomaly',
       magnetic_storm: 'Magnetic storm',
       berth_steel: 'Steel at the berth',

@@ -14,6 +14,7 @@ export const changes = {
       magnetic_cargo: 'Magnetic cargo',
       adjustment_or_repair: 'Adjustment or repair',
       drift: 'Slow drift',
+      alignment: 'The compass’s zero moved',
       compass_fault: 'The compass sticks',
       reference_fault: 'Gyro or satellite compass at fault',
       local_anomaly: 'Local anomaly',

@@ -4,14 +4,19 @@ use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
 use super::reading::heading_reading;
 use super::{Epoch, SampleReason};
+use crate::change::Cause;
 use crate::estimate::Prior;
 use crate::fit::{
     FitError, HeadingReading, Observation, REJECTED_BELOW, ReferenceCheck, RobustFit,
     RobustOptions, fit_known_ship, fit_robust, refer,
 };
 use crate::model::Model;
+use crate::ship::PARAMETERS;
 use crate::time::Timestamp;
 use std::ops::Range;
+
+/// By how much a compass's zero may have moved, standard deviation in degrees.
+const ZERO_MOVED_DEG: f64 = 5.0;
 
 /// The epochs that the logbook tells of, in order of time and without gaps.
 pub(super) fn epochs(logbook: &[LogbookEntry]) -> Vec<Epoch> {
@@ -63,7 +68,15 @@ pub(super) fn prior(
         .filter(|_| leaves_the_iron)
         .and_then(|before| {
             let stood_in_it = before.references.as_ref()?.constant_sd_deg;
-            Prior::after_upset(before.model.as_ref()?, stood_in_it)
+            let model = before.model.as_ref()?;
+            let mut upset = Prior::after_upset(model, stood_in_it)?;
+            if epoch.begun_by_change == Some(Cause::Alignment) {
+                // The ship is the magnet that she was.
+                let constant = upset.covariance[PARAMETERS][PARAMETERS];
+                upset.covariance = model.covariance?;
+                upset.covariance[PARAMETERS][PARAMETERS] = constant + ZERO_MOVED_DEG.powi(2);
+            }
+            Some(upset)
         })
         .unwrap_or_else(|| Prior::population(reference_constant_sd_deg))
 }

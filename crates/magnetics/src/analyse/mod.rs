@@ -26,7 +26,7 @@ use crate::model::Model;
 use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
-use changes::{Ended, Found, find, sharpen};
+use changes::{Ended, Found, Known, find, sharpen};
 use either::either;
 use epoch::{Reference, Stretch, empty_epoch, epochs, fit_epoch, prior, reference, refuse};
 use reading::{Reading, readings};
@@ -36,7 +36,7 @@ use stuck::mark_stuck;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-11";
+pub const ESTIMATOR: &str = "state-space-12";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -179,8 +179,10 @@ pub fn analyse(
         changes: mark_stuck(&mut readings),
         ..Course::default()
     };
+    let mut begun = None;
     for epoch in epochs(logbook) {
-        course.follow(epoch, &mut readings, logbook, settings);
+        let from = begun.or(epoch.from);
+        begun = course.follow(Epoch { from, ..epoch }, &mut readings, logbook, settings);
     }
     let Course {
         epochs,
@@ -216,14 +218,15 @@ struct Course {
 }
 
 impl Course {
-    /// One epoch of the logbook, with the changes that its samples show.
+    /// One epoch of the logbook, with the changes that its samples show. Where the samples
+    /// show that it ended earlier than the logbook says, that time.
     fn follow(
         &mut self,
         epoch: Epoch,
         readings: &mut [Reading],
         logbook: &[LogbookEntry],
         settings: &AnalysisSettings,
-    ) {
+    ) -> Option<Timestamp> {
         let place = |time: Timestamp| readings.partition_point(|r| r.sample().time < time);
         let begin = epoch.from.map_or(0, place);
         let end = epoch.to.map_or(readings.len(), place);
@@ -233,8 +236,18 @@ impl Course {
         let own = &mut readings[begin..end];
         match reference(own, one_sd_deg) {
             Ok(reference) => {
-                let known = prior(&epoch, self.epochs.last(), one_sd_deg);
+                let before = self.epochs.last();
+                let known = Known {
+                    prior: &prior(&epoch, before, one_sd_deg),
+                    levels: before.and_then(|before| before.noise.as_ref()),
+                };
                 let found = find(own, &reference, logbook, &known);
+                let late = epoch.to.and_then(|said| found.reported_late(said));
+                if let Some(at) = late.filter(|at| epoch.from.is_none_or(|from| from < *at)) {
+                    let to = Some(at);
+                    let earlier = self.follow(Epoch { to, ..epoch }, readings, logbook, settings);
+                    return earlier.or(late);
+                }
                 self.split(epoch, found, own, &reference);
             }
             Err(refusal) => {
@@ -250,6 +263,7 @@ impl Course {
             }
             self.changes.push(change);
         }
+        None
     }
 
     /// Fits the parts into which changes divide an epoch of the logbook.

@@ -172,6 +172,12 @@ impl Calls {
         })
     }
 
+    /// The step of `event` was none of the ship's, or none that is over at once.
+    pub(super) fn forget(&mut self, event: usize) {
+        self.bases.retain(|base| base.event != event);
+        self.calls.clear();
+    }
+
     /// The ship is as she was before `event`: later ones are of the past.
     pub(super) fn returned(&mut self, event: usize) {
         self.bases.retain(|base| base.event < event);

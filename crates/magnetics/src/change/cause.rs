@@ -25,6 +25,8 @@ pub(crate) struct Circumstances {
     pub(crate) at_port: Option<bool>,
     /// Whether the ship became herself again, and whether at a port call.
     pub(crate) ended_at_port: Option<bool>,
+    /// By how much what was first taken for a step is likelier than that, nats.
+    pub(crate) over_step: f64,
     /// How long a burst lasted.
     pub(crate) burst_s: Option<f64>,
     /// Whether another step at sea, weeks before or after, went the same way.
@@ -71,6 +73,9 @@ const LASTING: [Kind; 5] = [
     kind(Cause::Unknown, [0.02, 0.3, 0.1, 0.1, 0.2, 0.1]),
 ];
 
+/// A vessel-year.
+const ALIGNMENT_RATE: f64 = 0.05;
+
 /// The odds that a lead stands for.
 pub(crate) fn odds(nats: f64) -> f64 {
     (TEMPER * nats).exp()
@@ -79,10 +84,19 @@ pub(crate) fn odds(nats: f64) -> f64 {
 /// The causes of an event, the likeliest first.
 pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability> {
     let [step, reference, burst, _] = known.leads.map(|lead| TEMPER * lead);
-    let most = step.max(reference).max(burst);
+    let rival = step + TEMPER * known.over_step;
+    let most = rival.max(reference).max(burst);
     let mut weights: Vec<(Cause, f64)> = Vec::new();
     for kind in &LASTING {
-        weights.push((kind.cause, kind.weight(known) * (step - most).exp()));
+        let lead = if what == What::Drift && kind.cause == Cause::Drift {
+            rival
+        } else {
+            step
+        };
+        weights.push((kind.cause, kind.weight(known) * (lead - most).exp()));
+    }
+    if what == What::Alignment {
+        weights.push((Cause::Alignment, ALIGNMENT_RATE * (rival - most).exp()));
     }
     weights.push((Cause::ReferenceFault, 0.5 * (reference - most).exp()));
     let passing = (burst - most).exp();
@@ -144,6 +158,8 @@ impl Kind {
 fn possible(what: What, cause: Cause) -> f64 {
     let agrees = match what {
         What::Step | What::Return(_) => cause.is_the_ships(),
+        What::Alignment => cause == Cause::Alignment,
+        What::Drift => cause == Cause::Drift,
         What::Reference => cause == Cause::ReferenceFault,
         What::Burst => !cause.is_the_ships() && cause != Cause::ReferenceFault,
     };

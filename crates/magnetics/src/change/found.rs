@@ -59,6 +59,9 @@ pub enum Cause {
     Drift,
     /// The magnetic compass sticks or repeats itself.
     CompassFault,
+    /// The compass's zero moved: its lubber line, its seat, or the element that sends its
+    /// heading on.
+    Alignment,
     /// Gyro or satellite compass errs: the magnetic compass is well.
     ReferenceFault,
     /// The earth's crust, at a place.
@@ -72,7 +75,8 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// Whether the ship herself is another magnet after it.
+    /// Whether the deviation is another after it: the ship is another magnet, or her
+    /// compass has another zero.
     pub fn is_the_ships(self) -> bool {
         matches!(
             self,
@@ -80,6 +84,7 @@ impl Cause {
                 | Cause::MagneticCargo
                 | Cause::AdjustmentOrRepair
                 | Cause::Drift
+                | Cause::Alignment
                 | Cause::Unknown
         )
     }

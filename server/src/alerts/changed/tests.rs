@@ -163,3 +163,24 @@ fn an_alert_was_about_the_change_nearest_to_its_date() {
         assert!(struck.dated.includes(after_first(80_000.0)));
     }
 }
+
+#[test]
+fn a_second_fault_of_a_reference_is_another_alert() {
+    let mut first = found(Found::ReferenceFault, 0.0);
+    first.change.ended = Some(at("2026-11-19T12:00:00Z"));
+    let mut second = found(Found::ReferenceFault, 0.0);
+    second.change.from = at("2026-11-21T12:00:00Z");
+    let wanted = sailed(vec![first, second], 0.1, Some(1.0));
+    assert_eq!(wanted.len(), 1);
+    assert!(!wanted[0].dated.includes(at("2026-11-18T12:00:00Z").into()));
+    assert!(wanted[0].dated.includes(at("2026-11-21T12:00:00Z").into()));
+}
+
+#[test]
+fn a_zero_that_moved_is_told_with_what_to_do() {
+    let wanted = sailed(vec![found(Found::Alignment, 3.0)], 0.1, Some(1.0));
+    assert_eq!(wanted[0].cause, Cause::Alignment);
+    assert!(wanted[0].summary.contains("the compass's zero moved"));
+    assert!(wanted[0].advice.contains("lubber line"));
+    assert!(wanted[0].advice.contains("No corrector"));
+}

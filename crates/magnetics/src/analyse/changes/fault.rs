@@ -6,10 +6,11 @@ use crate::change::{Cause, CauseProbability, Change};
 use crate::fit::Observation;
 use crate::time::Timestamp;
 
-/// So many readings with a dropped reference in a row are a fault, and gaps
-/// shorter than this do not end it.
+/// So many readings with a dropped reference among as many and one more are a fault. Wild
+/// readings come singly.
 const FAULT_ROWS: usize = 3;
-const FAULT_GAP_S: f64 = 1.5 * 3600.0;
+/// It is over when so many in a row are sound: in port nothing shows that it is.
+const SOUND_ROWS: usize = 9;
 const DAY_S: f64 = 86_400.0;
 
 /// What a reading tells of its references.
@@ -45,11 +46,11 @@ pub(super) fn faults(all: &[Seen], changes: &mut Vec<Change>) {
         };
         dropped.push((index, seen.time, which));
     }
-    let spells = dropped.chunk_by(|a, b| b.1.seconds_since(a.1) < FAULT_GAP_S);
-    for spell in spells.filter(|spell| spell.len() >= FAULT_ROWS) {
+    let spells = dropped.chunk_by(|a, b| b.0 - a.0 <= SOUND_ROWS);
+    for spell in spells.filter_map(since_it_was_dense) {
         let (first, last) = (&spell[0], &spell[spell.len() - 1]);
         let before = first.0.checked_sub(1).map(|i| all[i].time);
-        let goes_on = last.0 + 1 == all.len();
+        let goes_on = last.0 + SOUND_ROWS >= all.len();
         changes.push(Change {
             from: first.1,
             from_earliest: before.unwrap_or(first.1),
@@ -72,6 +73,16 @@ pub(super) fn faults(all: &[Seen], changes: &mut Vec<Change>) {
             ended: (!goes_on).then_some(last.1),
         });
     }
+}
+
+/// The spell from where readings were dropped in a row, if they ever were.
+fn since_it_was_dense<T>(spell: &[(usize, Timestamp, T)]) -> Option<&[(usize, Timestamp, T)]> {
+    let in_a_row = |those: &[(usize, Timestamp, T)]| {
+        let between = those.last().map(|last| last.0 - those[0].0);
+        between.is_some_and(|rows| rows <= FAULT_ROWS)
+    };
+    let first = spell.windows(FAULT_ROWS).position(in_a_row)?;
+    Some(&spell[first..])
 }
 
 /// Puts reference faults that follow closely on each other, or are found in two

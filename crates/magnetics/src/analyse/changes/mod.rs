@@ -12,11 +12,14 @@ use super::epoch::Reference;
 use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
 use crate::change::{Cause, Change, Given, What, detect};
-use crate::estimate::Prior;
+use crate::estimate::{NoiseLevels, Prior};
 use crate::fit::Observation;
 use crate::time::Timestamp;
 use fault::{Seen, faults, merge_faults};
 use teller::Teller;
+
+/// Work may have been done so long before the logbook says so, seconds.
+const LATE_S: f64 = 86_400.0;
 
 /// What was found in one epoch of the logbook.
 pub(super) struct Found {
@@ -25,6 +28,16 @@ pub(super) struct Found {
     pub(super) boundaries: Vec<Boundary>,
     /// The end that a change may have had, if that is open.
     pub(super) perhaps: Option<Ended>,
+}
+
+impl Found {
+    /// When the work was done of which the logbook says that it was done at a time soon
+    /// after: people write down when they noticed.
+    pub(super) fn reported_late(&self, said: Timestamp) -> Option<Timestamp> {
+        let last = self.boundaries.last().filter(|last| !last.resumes)?;
+        let is_work = self.changes[last.change].cause == Cause::AdjustmentOrRepair;
+        (is_work && said.seconds_since(last.at) < LATE_S).then_some(last.at)
+    }
 }
 
 /// A change that may be over.
@@ -45,13 +58,19 @@ pub(super) struct Boundary {
     pub(super) resumes: bool,
 }
 
+/// What is known beforehand of the ship and of her instruments' noise.
+pub(super) struct Known<'a> {
+    pub(super) prior: &'a Prior,
+    pub(super) levels: Option<&'a NoiseLevels>,
+}
+
 /// Searches the readings of one epoch of the logbook and marks those that a
 /// passing disturbance or a failed reference spoilt.
 pub(super) fn find(
     readings: &mut [Reading],
     reference: &Reference,
     logbook: &[LogbookEntry],
-    prior: &Prior,
+    known: &Known<'_>,
 ) -> Found {
     let mut found = Found {
         changes: Vec::new(),
@@ -85,7 +104,8 @@ pub(super) fn find(
     let told = detect(
         &observations,
         &Given {
-            prior,
+            prior: known.prior,
+            levels: known.levels,
             reported: &reported,
         },
     );
@@ -102,7 +122,7 @@ pub(super) fn find(
             if let Some(place) = place {
                 let at = teller.date(event.first);
                 found.changes[place].ended = Some(at);
-                if events[of].what == What::Step {
+                if events[of].what.is_lasting() {
                     found.boundaries.push(Boundary {
                         at,
                         change: place,
@@ -114,7 +134,7 @@ pub(super) fn find(
         }
         place_of[index] = Some(found.changes.len());
         let change = teller.tell(index);
-        if event.what == What::Step && event.confirmed {
+        if event.what.is_lasting() && event.confirmed {
             found.boundaries.push(Boundary {
                 at: change.from,
                 change: found.changes.len(),

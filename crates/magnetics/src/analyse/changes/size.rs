@@ -2,7 +2,7 @@
 
 use crate::analyse::Epoch;
 use crate::analyse::reading::Reading;
-use crate::change::{Change, Event, Snapshot, Step};
+use crate::change::{Cause, Change, Event, Snapshot, Step};
 use crate::model::{Model, Parameters};
 use crate::ship::EarthField;
 
@@ -21,6 +21,11 @@ pub(super) fn worst_change(before: &Parameters, after: &Parameters, earth: Earth
         })
         .fold(0.0, f64::max)
         .to_degrees()
+}
+
+/// By how much the compass's zero moved, degrees.
+pub(super) fn zero_change(before: &Snapshot, after: &Snapshot) -> f64 {
+    (after.constant_deg - before.constant_deg).abs()
 }
 
 pub(super) fn step(before: &Snapshot, after: &Snapshot) -> Step {
@@ -71,6 +76,10 @@ pub(in crate::analyse) fn sharpen(
     let (Some(old), Some(new)) = (of_model(old), of_model(new)) else {
         return;
     };
+    if change.cause == Cause::Alignment {
+        change.deviation_change_deg = Some(zero_change(&old, &new));
+        return;
+    }
     change.step = Some(step(&old, &new));
     change.deviation_change_deg = Some(worst_change(&old.parameters, &new.parameters, earth));
 }
@@ -78,6 +87,7 @@ pub(in crate::analyse) fn sharpen(
 fn of_model(model: &Model) -> Option<Snapshot> {
     Some(Snapshot {
         parameters: model.parameters_over_lambda,
+        constant_deg: model.constant_deg,
         covariance: model.covariance?,
     })
 }

@@ -10,6 +10,8 @@ use crate::time::Timestamp;
 /// People write down when they noticed, not when it happened; cargo is not on board
 /// before it is loaded, but for the clerk's haste.
 const REPORT_S: f64 = 2.0 * 86_400.0;
+/// What happens after work has ended was hardly the work, but for a clock that is wrong.
+const WORKED_BEFORE_S: f64 = 6.0 * 3600.0;
 const LOADED_BEFORE_S: f64 = 6.0 * 3600.0;
 /// Steps at sea that follow each other within this, in directions whose cosine is more
 /// than that, are of one drift.
@@ -107,16 +109,20 @@ impl Teller<'_> {
                 .last
                 .map(|last| self.time(last).seconds_since(self.time(event.first))),
             creeps: self.creeps(index),
+            over_step: event.over_step,
             told_after_s: self.time(event.told).seconds_since(from),
             reported: self.reported(from_earliest, from_latest),
         };
         let causes = causes(event.what, &known);
-        let is_step = event.what == What::Step;
-        let worst = size::worst_change(
-            &event.before.parameters,
-            &event.after.parameters,
-            self.earth(event.told),
-        );
+        let has_step = matches!(event.what, What::Step | What::Drift);
+        let worst = match event.what {
+            What::Alignment => size::zero_change(&event.before, &event.after),
+            _ => size::worst_change(
+                &event.before.parameters,
+                &event.after.parameters,
+                self.earth(event.told),
+            ),
+        };
         Change {
             from,
             from_earliest: from_earliest.min(from),
@@ -126,8 +132,8 @@ impl Teller<'_> {
             cause: causes.first().map_or(Cause::Unknown, |c| c.cause),
             evidence: evidence(event, &known, worst),
             causes,
-            deviation_change_deg: is_step.then_some(worst),
-            step: is_step.then(|| size::step(&event.before, &event.after)),
+            deviation_change_deg: event.what.is_lasting().then_some(worst),
+            step: has_step.then(|| size::step(&event.before, &event.after)),
             ended: ended_row.map(|row| self.time(row)),
         }
     }
@@ -177,15 +183,18 @@ impl Teller<'_> {
     fn reported(&self, earliest: Timestamp, latest: Timestamp) -> Vec<Cause> {
         // What happens from one time to another may change the ship all the while, but
         // cargo does so when it comes on board and when it goes.
-        let near = |from: Timestamp, to: Timestamp, before_s: f64| {
-            earliest.seconds_since(to) < REPORT_S && latest.seconds_since(from) > -before_s
+        let near = |from: Timestamp, to: Timestamp, before_s: f64, after_s: f64| {
+            earliest.seconds_since(to) < after_s && latest.seconds_since(from) > -before_s
         };
         let is_near = |entry: &&LogbookEntry| {
             let to = entry.to.unwrap_or(entry.from);
             if cause_of(entry.kind) == Some(Cause::MagneticCargo) {
-                near(entry.from, entry.from, LOADED_BEFORE_S) || near(to, to, LOADED_BEFORE_S)
+                near(entry.from, entry.from, LOADED_BEFORE_S, REPORT_S)
+                    || near(to, to, LOADED_BEFORE_S, REPORT_S)
+            } else if entry.kind.ends_an_epoch() {
+                near(entry.from, to, REPORT_S, WORKED_BEFORE_S)
             } else {
-                near(entry.from, to, REPORT_S)
+                near(entry.from, to, REPORT_S, REPORT_S)
             }
         };
         let entries = self.logbook.iter().filter(is_near);
@@ -210,6 +219,17 @@ fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String>
             likelier(step),
             likelier(step - burst),
             likelier(step - reference)
+        ),
+        What::Alignment => format!(
+            "what changed is the same on every heading, and gyro and satellite compass agree: \
+             that the compass's own zero moved, by {worst_deg:.1} degrees, is {} a change of the \
+             ship's magnetism",
+            likelier(event.over_step)
+        ),
+        What::Drift => format!(
+            "the deviation goes on changing, by up to {worst_deg:.1} degrees so far: a drift is \
+             {} one sudden change",
+            likelier(event.over_step)
         ),
         What::Reference => format!(
             "what changed is the same on every heading: a fault of the reference is {} none and {} \

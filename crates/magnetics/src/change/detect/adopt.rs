@@ -52,7 +52,11 @@ impl Search<'_> {
             leads,
             Some((&before, &dated.filter)),
         );
+        let mut rivals = Vec::new();
         if kind == Kind::Step {
+            rivals = self.rivals_of(k, &dated, &before);
+            // It may be that several steps were the same.
+            rivals.append(&mut self.rivals);
             if !self.began_at_call(&dated) {
                 self.unsettled = Unsettled::after(dated.first, &before, &dated.filter);
             }
@@ -61,6 +65,7 @@ impl Search<'_> {
             self.misled = Some((self.events.len() - 1, before));
         }
         self.take_over(k, dated.filter, dated.first);
+        self.rivals = rivals;
         if what == What::Reference {
             // Its noise may be another, too.
             self.lesson = Lesson::next(self.observations, dated.first, dated.first, 0.0);
@@ -208,6 +213,7 @@ impl Search<'_> {
         self.null = filter;
         self.bank.clear();
         self.faint = None;
+        self.rivals.clear();
         self.spawned = k;
         self.learn_from = first;
         // Neither seas nor instruments changed: of fewer days there is less to learn.
@@ -228,13 +234,14 @@ impl Search<'_> {
             what,
             first,
             between,
-            told: k.max(self.start_until.saturating_sub(1)),
+            told: k,
             leads: leads.map(|lead| lead.map_or(0.0, |lead| lead.nats)),
             before: snapshot(before),
             after: snapshot(after),
             last: None,
             confirmed: true,
             was_step: false,
+            over_step: 0.0,
         };
         self.events.push(event);
     }

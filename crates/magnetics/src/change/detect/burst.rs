@@ -42,6 +42,7 @@ impl Search<'_> {
             self.events[event].last = Some(self.last_astray(first, until));
         }
         if let Some((_, filter)) = knew {
+            self.credit_rivals(Kind::Over);
             self.null = filter;
             self.bank.clear();
             self.spawned = k;

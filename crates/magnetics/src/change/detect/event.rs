@@ -1,7 +1,7 @@
 //! What the search is told, and what it tells.
 
-use crate::change::filter::Filter;
-use crate::estimate::{POPULATION_SD, Prior};
+use crate::change::filter::{CONSTANT_STATE, Filter};
+use crate::estimate::{NoiseLevels, POPULATION_SD, Prior};
 use crate::model::{Covariance, Parameters};
 use crate::ship::PARAMETERS;
 use crate::time::Timestamp;
@@ -9,6 +9,8 @@ use crate::time::Timestamp;
 /// What the search is told beside the rows.
 pub(crate) struct Given<'a> {
     pub(crate) prior: &'a Prior,
+    /// The sizes of noise as they were before the rows, where that is known.
+    pub(crate) levels: Option<&'a NoiseLevels>,
     /// Times at which people say that something happened.
     pub(crate) reported: &'a [Timestamp],
 }
@@ -17,6 +19,7 @@ pub(crate) struct Given<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Snapshot {
     pub(crate) parameters: Parameters,
+    pub(crate) constant_deg: f64,
     /// Of the parameters and the constant.
     pub(crate) covariance: Covariance,
 }
@@ -25,10 +28,21 @@ pub(crate) struct Snapshot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum What {
     Step,
+    /// The compass's own zero moved.
+    Alignment,
+    /// The ship's magnetism drifts.
+    Drift,
     Reference,
     Burst,
     /// The ship is again as she was before the event of this place in the list.
     Return(usize),
+}
+
+impl What {
+    /// Whether the deviation is another after it, so that an epoch begins.
+    pub(crate) fn is_lasting(self) -> bool {
+        matches!(self, What::Step | What::Alignment | What::Drift)
+    }
 }
 
 /// Something that happened, found among the rows.
@@ -51,6 +65,8 @@ pub(crate) struct Event {
     pub(crate) confirmed: bool,
     /// Whether a burst was at first told as a step.
     pub(crate) was_step: bool,
+    /// By how much it is likelier than the step for which it was first taken, nats.
+    pub(crate) over_step: f64,
 }
 
 impl Event {
@@ -98,6 +114,7 @@ pub(super) fn snapshot(filter: &Filter) -> Snapshot {
     }
     Snapshot {
         parameters: Parameters::from_array(parameters),
+        constant_deg: filter.mean[CONSTANT_STATE],
         covariance,
     }
 }

@@ -7,7 +7,7 @@ use crate::fit::Observation;
 
 /// A step must be likelier by this than a burst, nats; or by that, when its lead
 /// over nothing is large.
-const STEP_NATS: f64 = 10.0;
+const STEP_NATS: f64 = 10.5;
 const STEP_AT_LEAST: f64 = 3.0;
 const LARGE_NATS: f64 = 40.0;
 /// And it must have lasted for so many rows: the flank of an anomaly is as steep.
@@ -43,8 +43,13 @@ const LATELY: usize = 36;
 const MENDED_NATS: f64 = 8.0;
 const MENDED_BELOW: f64 = 3.0;
 /// A burst must be likelier by this than nothing, and by this than a change.
-const BURST_NATS: f64 = 11.0;
+const BURST_NATS: f64 = 12.5;
 pub(super) const BURST_OVER_STEP: f64 = 3.0;
+/// In the first weeks, when the sizes of noise are of few days, either must be likelier
+/// by so much more.
+const NEW_S: f64 = 20.0 * 86_400.0;
+const NEW_NATS: f64 = 3.0;
+const CREEPING_NATS: f64 = 10.0;
 
 impl Search<'_> {
     pub(super) fn judge(&mut self, k: usize) {
@@ -56,6 +61,9 @@ impl Search<'_> {
             && candidate.probability > RETURNED
         {
             return self.adopt_call(k, candidate, leads);
+        }
+        if self.misled.is_none() && self.settle_rivals(k, &leads) {
+            return;
         }
         let rival = nats(Kind::Step).max(nats(Kind::Reference));
         if self.misled.is_some() && back - burst > MENDED_NATS && back > rival - MENDED_BELOW {
@@ -97,7 +105,10 @@ impl Search<'_> {
             }
             return self.adopt(k, kind, leads);
         }
-        if self.burst.is_none() && burst > BURST_NATS && burst - lasting > BURST_OVER_STEP {
+        if self.burst.is_none()
+            && burst > BURST_NATS + self.unlearnt_nats(k)
+            && burst - lasting > BURST_OVER_STEP
+        {
             let Some(lead) = leads[Kind::Burst as usize] else {
                 return;
             };
@@ -113,6 +124,26 @@ impl Search<'_> {
             self.push(k, What::Burst, first, (first, first), leads, None);
         } else {
             self.note_faint(k, leads, burst - lasting);
+        }
+    }
+
+    /// And while she drifts, for a drift goes on.
+    fn creeping_nats(&self, k: usize) -> f64 {
+        if self.unsettled.creeps(self.observations, k) {
+            CREEPING_NATS
+        } else {
+            0.0
+        }
+    }
+
+    /// What is asked beyond the usual while little is known of this ship's noise.
+    fn unlearnt_nats(&self, k: usize) -> f64 {
+        let since = self.observations[0].time.zip(self.observations[k].time);
+        let is_new = since.is_some_and(|(first, now)| now.seconds_since(first) < NEW_S);
+        if is_new && !self.is_known {
+            NEW_NATS
+        } else {
+            0.0
         }
     }
 
@@ -134,7 +165,10 @@ impl Search<'_> {
     }
 
     pub(super) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
-        if over_burst <= STEP_AT_LEAST || (over_burst <= STEP_NATS && lead <= LARGE_NATS) {
+        if over_burst <= STEP_AT_LEAST
+            || (over_burst <= STEP_NATS + self.unlearnt_nats(k) + self.creeping_nats(k)
+                && lead <= LARGE_NATS)
+        {
             return false;
         }
         let since = leads[Kind::Step as usize].map_or(k, |lead| self.bank.spawns[lead.spawn].at);

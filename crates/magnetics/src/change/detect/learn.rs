@@ -19,12 +19,30 @@ pub(super) struct Learnt {
 }
 
 impl Learnt {
-    /// From the first days that suffice.
-    pub(super) fn first(observations: &[Observation], prior: &Prior) -> Option<Learnt> {
+    /// What was known `before`, or else from the first days that suffice: what happened in
+    /// them would be learnt with them.
+    pub(super) fn first(
+        observations: &[Observation],
+        prior: &Prior,
+        before: Option<&NoiseLevels>,
+    ) -> Option<Learnt> {
+        if let Some(levels) = before {
+            return Some(Learnt::beforehand(levels, prior));
+        }
         LEARN_DAYS.iter().find_map(|days| {
             let until = rows_within(observations, 0, *days);
             Learnt::of(observations, 0..until, prior, None)
         })
+    }
+
+    fn beforehand(levels: &NoiseLevels, prior: &Prior) -> Learnt {
+        let noise = noise(levels);
+        Learnt {
+            levels: *levels,
+            noise,
+            unknowns: Filter::new(prior, &noise).unknowns(),
+            until: 0,
+        }
     }
 
     /// From `rows`, beginning with the levels learnt before.
@@ -36,10 +54,7 @@ impl Learnt {
     ) -> Option<Learnt> {
         let until = rows.end;
         let rough = learn(&observations[rows], prior, before)?;
-        let noise = Noise::new(&NoiseLevels {
-            drift_nt: rough.levels.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
-            ..rough.levels
-        });
+        let noise = noise(&rough.levels);
         let mut mean = [rough.constant_deg; PARAMETERS + 1];
         mean[..PARAMETERS].copy_from_slice(&rough.parameters.to_array());
         let known = Prior {
@@ -53,6 +68,14 @@ impl Learnt {
             until,
         })
     }
+}
+
+/// A ship may drift more than she has yet.
+fn noise(levels: &NoiseLevels) -> Noise {
+    Noise::new(&NoiseLevels {
+        drift_nt: levels.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
+        ..*levels
+    })
 }
 
 /// When levels are learnt again.

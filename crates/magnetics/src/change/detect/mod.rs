@@ -12,6 +12,7 @@ mod faint;
 mod judge;
 mod learn;
 mod port;
+mod rival;
 mod unsettled;
 
 pub(crate) use event::{Event, Given, Perhaps, Snapshot, Told, What};
@@ -27,6 +28,7 @@ use crate::fit::Observation;
 use crate::time::Timestamp;
 use faint::Faint;
 use learn::{Learnt, Lesson};
+use rival::Rival;
 use unsettled::Unsettled;
 
 /// Rows between times that are tried: about an hour of sailing.
@@ -38,10 +40,13 @@ const ASTRAY_SD: f64 = 3.0;
 const ASTRAY_ROWS: usize = 2;
 /// After a gap of this the next row is a time to be tried, whatever the count.
 const GAP_S: f64 = 2.0 * 3600.0;
-/// Before so many rows no change is told from learning.
+/// Before so many rows no change is told from learning; so many where the sizes of noise
+/// are known from before.
 const YOUNG: usize = 300;
+const YOUNG_KNOWN: usize = 72;
 /// A change that is dated among the first rows of all is none.
 const FIRST: usize = 100;
+const FIRST_KNOWN: usize = 36;
 /// Something is up when a lead is beyond this, though not yet what.
 const SUSPECTED_NATS: f64 = 8.0;
 
@@ -51,7 +56,7 @@ pub(crate) fn detect(observations: &[Observation], given: &Given<'_>) -> Told {
     if !are_times_believed(observations) {
         return Told::default();
     }
-    let Some(learnt) = Learnt::first(observations, given.prior) else {
+    let Some(learnt) = Learnt::first(observations, given.prior, given.levels) else {
         return Told::default();
     };
     let mut search = Search::new(observations, given, learnt);
@@ -66,6 +71,8 @@ struct Search<'a> {
     stations: Vec<Station>,
     reported: &'a [Timestamp],
     prior: &'a Prior,
+    /// Whether the sizes of noise were known before the rows.
+    is_known: bool,
     levels: NoiseLevels,
     noise: Noise,
     /// What rows are linearised at until the filter itself knows.
@@ -85,6 +92,8 @@ struct Search<'a> {
     /// events, and the filter before.
     misled: Option<(usize, Filter)>,
     unsettled: Unsettled,
+    /// What else the last step may have been.
+    rivals: Vec<Rival>,
     /// The burst that goes on, if one does.
     burst: Option<usize>,
     /// A disturbance that leads by too little to be told.
@@ -99,6 +108,7 @@ impl<'a> Search<'a> {
             stations: stations(observations),
             reported: given.reported,
             prior: given.prior,
+            is_known: given.levels.is_some(),
             null: Filter::new(given.prior, &learnt.noise),
             levels: learnt.levels,
             noise: learnt.noise,
@@ -112,6 +122,7 @@ impl<'a> Search<'a> {
             calls: Calls::default(),
             misled: None,
             unsettled: Unsettled::default(),
+            rivals: Vec::new(),
             burst: None,
             faint: None,
             events: Vec::new(),
@@ -122,13 +133,13 @@ impl<'a> Search<'a> {
         if k >= self.lesson.at {
             self.learn(k);
         }
-        let is_due = k >= FIRST && self.is_due(k);
+        let is_due = k >= self.first() && self.is_due(k);
         if is_due {
             self.settle_burst(k);
         }
         let at = self.point(k);
         let m = self.measure(k, &at);
-        if is_due || (k >= FIRST && self.is_astray(k, &m)) {
+        if is_due || (k >= self.first() && self.is_astray(k, &m)) {
             let earlier = earlier(self.misled.as_ref(), &self.calls);
             self.bank.spawn(k, &self.null, earlier);
             self.spawned = k;
@@ -140,13 +151,22 @@ impl<'a> Search<'a> {
         let mut calls = std::mem::take(&mut self.calls);
         calls.take(|at| self.measure(k, at), &self.noise, &self.null);
         self.calls = calls;
+        self.take_in_rivals(k);
         let earlier = earlier(self.misled.as_ref(), &self.calls);
         let null = (&self.null, surprise);
         self.bank.take(k, m, &self.noise, null, earlier);
-        if k >= YOUNG {
+        if k >= self.young() {
             self.judge(k);
             self.settle_faint(k, false);
         }
+    }
+
+    fn first(&self) -> usize {
+        if self.is_known { FIRST_KNOWN } else { FIRST }
+    }
+
+    fn young(&self) -> usize {
+        if self.is_known { YOUNG_KNOWN } else { YOUNG }
     }
 
     /// Steps', references', bursts' (those that are over, too) and returns' best.
@@ -169,9 +189,15 @@ impl<'a> Search<'a> {
     }
 
     fn measure(&self, k: usize, at: &Unknowns) -> Measurement {
+        self.measure_drifting(k, at, 0.0)
+    }
+
+    /// The same for a ship that drifts by so much more in thirty days, variance in
+    /// population units.
+    fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
         let row = row(o, station, &Point::at(at, USUAL_FUSION));
-        let unsettled = self.unsettled.variance(self.observations, k);
+        let unsettled = self.unsettled.variance(self.observations, k).max(drift);
         measurement(station, &row, at, self.seconds(k), &self.noise, unsettled)
     }
 
@@ -263,7 +289,7 @@ impl<'a> Search<'a> {
         else {
             return;
         };
-        if k < YOUNG || (kind == Kind::Burst && !is_news(lead)) {
+        if k < self.young() || (kind == Kind::Burst && !is_news(lead)) {
             return;
         }
         let what = match kind {

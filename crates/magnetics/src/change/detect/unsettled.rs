@@ -15,6 +15,8 @@ pub(super) struct Unsettled {
     since: usize,
     /// Variance of bx's and by's drift in thirty days, population units.
     variance: f64,
+    /// Whether it is a drift rather than what fades.
+    is_drift: bool,
 }
 
 impl Unsettled {
@@ -24,7 +26,22 @@ impl Unsettled {
         Unsettled {
             since,
             variance: (FADES * size).powi(2),
+            is_drift: false,
         }
+    }
+
+    /// A ship that drifts on from row `since`.
+    pub(super) fn creeping(since: usize, variance: f64) -> Unsettled {
+        Unsettled {
+            since,
+            variance,
+            is_drift: true,
+        }
+    }
+
+    /// Whether the ship drifts when row `k` is read.
+    pub(super) fn creeps(&self, observations: &[Observation], k: usize) -> bool {
+        self.is_drift && self.variance(observations, k) > 0.0
     }
 
     /// Beside the usual drift, when row `k` is read.

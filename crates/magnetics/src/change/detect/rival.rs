@@ -1,0 +1,215 @@
+//! What else the last change may have been: the zero of the compass that moved, or a
+//! drift that goes on.
+//!
+//! What always holds: on one heading either looks like a step, so that a step is told
+//! first; what explains the rows since far better takes its place, once, and it stays
+//! one change.
+
+use super::date::Dated;
+use super::event::{Event, snapshot};
+use super::unsettled::Unsettled;
+use super::{Leads, Search, What};
+use crate::change::bank::Kind;
+use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
+
+/// Standard deviation of the zero's step, degrees, unless the first reading after it is
+/// further off.
+const ZERO_DEG: f64 = 5.0;
+/// What bx and by each drift by in thirty days, variance in population units (1500 nT):
+/// a ship that creeps, and one that drifts fast.
+const CREEPS: [f64; 2] = [0.5, 4.0];
+/// A rival must be likelier by this than the step.
+const RIVAL_NATS: f64 = 8.0;
+/// But by this, where it takes the place of several: one change is likelier than more.
+const RIVAL_OF_SEVERAL_NATS: f64 = 3.0;
+const SPARED_NATS: f64 = 6.0;
+/// And no less likely by this than another step would be: two in a row are seldom.
+const BELOW_STEP: f64 = 3.0;
+/// One that trails by this is given up, nats, and any after so many rows.
+const HOPELESS_NATS: f64 = 20.0;
+const OLDEST: usize = 8640;
+
+/// Another reading of a step.
+pub(super) struct Rival {
+    what: What,
+    /// The step's place in the list of events.
+    event: usize,
+    /// What bx and by drift by beyond their usual.
+    drift: f64,
+    first: usize,
+    between: (usize, usize),
+    filter: Filter,
+}
+
+impl Search<'_> {
+    /// The rivals of a step that was dated just now; `before` is the filter before it.
+    pub(super) fn rivals_of(&self, k: usize, dated: &Dated, before: &Filter) -> Vec<Rival> {
+        let creeping = CREEPS
+            .iter()
+            .filter_map(|drift| self.creeping(k, dated, *drift));
+        let misaligned = self.has_both(k).then(|| self.misaligned(k, dated, before));
+        creeping.chain(misaligned).collect()
+    }
+
+    /// The zero moved when the step is dated.
+    fn misaligned(&self, k: usize, dated: &Dated, before: &Filter) -> Rival {
+        let mut at = before.unknowns();
+        let mut filter = before.clone();
+        // Twice, for the rows are to be linearised at where it ends.
+        for _ in 0..2 {
+            let next = self.measure(dated.first, &at);
+            let size = before.astray_deg(&next).max(ZERO_DEG);
+            filter = before.clone();
+            filter
+                .covariance
+                .add(CONSTANT_STATE, CONSTANT_STATE, size * size);
+            filter = self.run(filter, dated.first..k + 1, &at);
+            at = filter.unknowns();
+        }
+        Rival {
+            what: What::Alignment,
+            event: self.events.len() - 1,
+            drift: 0.0,
+            first: dated.first,
+            between: dated.between,
+            filter,
+        }
+    }
+
+    /// The ship has drifted since the likeliest of the times that the bank keeps.
+    fn creeping(&self, k: usize, dated: &Dated, drift: f64) -> Option<Rival> {
+        let spawns = &self.bank.spawns;
+        let oldest = spawns.first()?.at;
+        let at = dated.filter.unknowns();
+        let rows = oldest..k + 1;
+        let measured: Vec<Measurement> = rows
+            .map(|row| self.measure_drifting(row, &at, drift))
+            .collect();
+        let run = |(place, spawn): (usize, &crate::change::bank::Spawn)| {
+            let mut filter = spawn.origin().clone();
+            for m in &measured[spawn.at - oldest..] {
+                filter.take(m, &self.noise, None);
+            }
+            (place, filter)
+        };
+        let runs = spawns.iter().enumerate().map(run);
+        let (place, filter) =
+            runs.max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))?;
+        let row = |place: usize| spawns[place].at;
+        let first = row(place).max(1);
+        Some(Rival {
+            what: What::Drift,
+            event: self.events.len() - 1,
+            drift,
+            first,
+            between: (
+                row(place.saturating_sub(1)).clamp(1, first),
+                row((place + 1).min(spawns.len() - 1)).max(first),
+            ),
+            filter,
+        })
+    }
+
+    /// They read the row that the filter has read.
+    pub(super) fn take_in_rivals(&mut self, k: usize) {
+        let mut rivals = std::mem::take(&mut self.rivals);
+        for rival in &mut rivals {
+            let at = rival.filter.unknowns();
+            let m = self.measure_drifting(k, &at, rival.drift);
+            rival.filter.take(&m, &self.noise, None);
+        }
+        let hopeless = self.null.log_likelihood - HOPELESS_NATS;
+        rivals.retain(|r| r.filter.log_likelihood > hopeless && k < r.first + OLDEST);
+        self.rivals = rivals;
+    }
+
+    /// Puts the likeliest rival in the place of the last step, if it explains the rows
+    /// far better and no less well than another step would.
+    pub(super) fn settle_rivals(&mut self, k: usize, leads: &Leads) -> bool {
+        let of_kind = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let (step, burst) = (of_kind(Kind::Step), of_kind(Kind::Burst));
+        // What drifts may well have come back: that she did is simpler.
+        let back = self.candidate(leads).map_or(0.0, |back| back.nats);
+        let back = back.max(of_kind(Kind::Return));
+        let lead = |rival: &Rival| rival.filter.log_likelihood - self.null.log_likelihood;
+        let later = |rival: &Rival| {
+            let later = self.events[rival.event + 1..].iter();
+            later.filter(|event| event.what == What::Step).count()
+        };
+        let worth = |place: usize| {
+            let rival = &self.rivals[place];
+            lead(rival) + SPARED_NATS * later(rival) as f64
+        };
+        let likeliest = (0..self.rivals.len()).max_by(|&a, &b| worth(a).total_cmp(&worth(b)));
+        let Some(place) = likeliest else {
+            return false;
+        };
+        let (nats, of) = (lead(&self.rivals[place]), self.rivals[place].event);
+        // What came on board in port is cargo, and no drift.
+        let mut steps = (of..self.events.len()).filter(|&e| self.events[e].what == What::Step);
+        let is_drift = self.rivals[place].what == What::Drift;
+        if is_drift && steps.all(|event| self.began_in_port(event)) {
+            return false;
+        }
+        let enough = if later(&self.rivals[place]) > 0 {
+            RIVAL_OF_SEVERAL_NATS
+        } else {
+            RIVAL_NATS
+        };
+        if nats < enough || nats < step - BELOW_STEP || nats < burst || nats < back {
+            return false;
+        }
+        let rival = self.rivals.swap_remove(place);
+        self.rivals.clear();
+        self.calls.forget(of);
+        self.forget_later_steps(of);
+        let event = &mut self.events[of];
+        event.what = rival.what;
+        event.over_step = nats;
+        event.after = snapshot(&rival.filter);
+        (event.first, event.between) = (rival.first, rival.between);
+        self.unsettled = match rival.what {
+            What::Drift => Unsettled::creeping(k, rival.drift),
+            _ => Unsettled::default(),
+        };
+        self.take_over(k, rival.filter, rival.first);
+        true
+    }
+
+    /// What had been taken for further steps was the same.
+    fn forget_later_steps(&mut self, of: usize) {
+        let is_gone = |place: usize, event: &Event| match event.what {
+            What::Step => place > of,
+            What::Return(step) => step >= of && self.events[step].what == What::Step,
+            _ => false,
+        };
+        let gone: Vec<bool> = self
+            .events
+            .iter()
+            .enumerate()
+            .map(|(p, e)| is_gone(p, e))
+            .collect();
+        let moved = |place: usize| place - gone[..place].iter().filter(|gone| **gone).count();
+        for event in &mut self.events {
+            if let What::Return(step) = &mut event.what {
+                *step = moved(*step);
+            }
+        }
+        self.burst = self.burst.map(moved);
+        let mut gone = gone.iter();
+        self.events.retain(|_| gone.next() == Some(&false));
+    }
+
+    fn began_in_port(&self, event: usize) -> bool {
+        let (earliest, latest) = self.events[event].between;
+        (earliest..=latest).any(|row| self.is_call(row))
+    }
+
+    /// What the filter gained by being told of a burst, its rivals would have gained, too.
+    pub(super) fn credit_rivals(&mut self, kind: Kind) {
+        let gained = self.bank.lead(kind, &self.null).map_or(0.0, |l| l.nats);
+        for rival in &mut self.rivals {
+            rival.filter.log_likelihood += gained;
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Instruments that fail: none of it is the ship's magnetism.
+
+use crate::voyages::fleet::{Event, Log, sail_log};
+use crate::{HOUR_S, calm, is_sound, of_the_ship, run};
+use binnacle_magnetics::analyse::{Analysis, SampleReason};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::change::{Cause, Change};
+use binnacle_magnetics::sample::Sample;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+fn day(log: &Log, sample: &Sample) -> f64 {
+    sample.time.seconds_since(log.start) / 86_400.0
+}
+
+fn certain(analysis: &Analysis) -> Vec<&Change> {
+    analysis.changes.iter().filter(|c| c.confirmed).collect()
+}
+
+fn turned(heading: TrueHeading, degrees: f64) -> TrueHeading {
+    TrueHeading::new(heading.degrees() + degrees).unwrap()
+}
+
+#[test]
+fn a_jammed_card_that_trembles_is_a_stuck_compass() {
+    for (seed, trembles_deg) in [(61, 0.1), (62, 0.3), (64, 0.3)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let first = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 25.0)
+            .unwrap();
+        let last = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 30.0)
+            .unwrap();
+        let jammed = log.samples[first].compass.degrees();
+        for sample in &mut log.samples[first..last] {
+            let off = trembles_deg * (2.0 * rng.random::<f64>() - 1.0);
+            sample.compass = CompassHeading::new(jammed + off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        assert_eq!(told, [Cause::CompassFault], "seed {seed}");
+        let fault = certain(&analysis)[0];
+        let jammed_at = log.samples[first].time;
+        let late_h = fault.from.seconds_since(jammed_at) / HOUR_S;
+        assert!((-1.0..36.0).contains(&late_h), "seed {seed}: {late_h} h");
+        let is_stuck = |s: &binnacle_magnetics::analyse::SampleDiagnostic| {
+            s.reason == Some(SampleReason::CompassStuck)
+        };
+        let stuck = analysis.samples.iter().filter(|s| is_stuck(s)).count();
+        assert!(stuck > (last - first) / 2, "seed {seed}: {stuck}");
+        let before = analysis.samples[..first].iter().filter(|s| is_stuck(s));
+        assert!(before.count() < 3, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_gyro_that_is_wild_now_and_then_makes_no_stuck_compass_of_a_steady_one() {
+    let mut plan = calm(Event::Nothing);
+    plan.faults.satellite = false;
+    let mut log = sail_log(63, &plan);
+    for sample in log.samples.iter_mut().step_by(9) {
+        sample.gyro = sample.gyro.map(|gyro| turned(gyro, 12.0));
+    }
+    let analysis = run(&log.samples);
+    let mut causes = analysis.changes.iter().map(|c| c.cause);
+    assert!(causes.all(|cause| cause != Cause::CompassFault));
+}
+
+#[test]
+fn a_compass_whose_zero_moved_is_no_struck_ship() {
+    for (seed, moved_deg) in [(60, 3.0), (61, -4.0), (62, 3.0)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let moved = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 25.0)
+            .unwrap();
+        for sample in &mut log.samples[moved..] {
+            let compass = sample.compass.degrees() + moved_deg;
+            sample.compass = CompassHeading::new(compass).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = of_the_ship(&analysis);
+        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        assert_eq!(told[0].cause, Cause::Alignment);
+        assert!(told[0].evidence[0].contains("the compass's own zero moved"));
+        assert!(told[0].step.is_none());
+        let off_h = told[0].from.seconds_since(log.samples[moved].time) / HOUR_S;
+        assert!(off_h.abs() < 36.0, "seed {seed}: {off_h} h");
+        let size_deg = told[0].deviation_change_deg.unwrap();
+        assert!((size_deg - moved_deg.abs()).abs() < 0.7, "{size_deg}");
+        let constant = |i: usize| analysis.epochs[i].model.as_ref().unwrap().constant_deg;
+        let learnt = constant(1) - constant(0);
+        assert!((learnt + moved_deg).abs() < 0.7, "seed {seed}: {learnt}");
+    }
+}
+
+#[test]
+fn a_gyro_that_sticks_is_one_fault_that_goes_on_through_ports() {
+    for seed in [60, 61] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let first = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 25.0)
+            .unwrap();
+        let stuck = log.samples[first].gyro;
+        for sample in &mut log.samples[first..] {
+            sample.gyro = stuck;
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = certain(&analysis);
+        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        assert_eq!(told[0].cause, Cause::ReferenceFault);
+        assert_eq!(told[0].ended, None, "seed {seed}");
+    }
+}
+
+#[test]
+fn wild_readings_hours_apart_are_no_fault_of_the_gyro() {
+    let mut log = sail_log(10, &calm(Event::Nothing));
+    let middle = log.samples.len() / 2;
+    for row in [middle, middle + 5, middle + 10] {
+        let sample = &mut log.samples[row];
+        sample.gyro = sample.gyro.map(|gyro| turned(gyro, 12.0));
+    }
+    let analysis = run(&log.samples);
+    assert!(certain(&analysis).is_empty(), "{:?}", analysis.changes);
+}
