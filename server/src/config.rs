@@ -42,6 +42,8 @@ pub enum Command {
     VerifyEvidence(VerifyEvidence),
     /// Print how to set a binnacle's correctors, from a reading at the berth
     Plan(Plan),
+    /// Plan who adjusts which compass, where and when
+    Schedule(Schedule),
 }
 
 /// `verify-evidence`.
@@ -368,6 +370,14 @@ pub struct Bursts {
     /// a batch is whole
     #[arg(required = true)]
     pub messages: Vec<PathBuf>,
+}
+
+/// `schedule`.
+#[derive(Debug, Args)]
+pub struct Schedule {
+    /// Ships, needs, port calls and firms (docs/schedule.md)
+    #[arg(long)]
+    pub input: PathBuf,
 }
 
 /// `plan`.

@@ -22,5 +22,6 @@ fn main() -> Result<ExitCode> {
         Command::Analyse(arguments) => command::analyse(&arguments),
         Command::VerifyEvidence(arguments) => command::verify_evidence(&arguments),
         Command::Plan(arguments) => command::plan(&arguments),
+        Command::Schedule(arguments) => command::schedule(&arguments),
     }
 }

@@ -14,6 +14,7 @@ mod input;
 mod logbook;
 mod operate;
 mod plan;
+mod schedule;
 mod table;
 mod verify_evidence;
 
@@ -25,6 +26,7 @@ pub use field::field;
 pub use fit::fit;
 pub use operate::{migrate, openapi, run, serve};
 pub use plan::plan;
+pub use schedule::schedule;
 pub use verify_evidence::verify_evidence;
 
 use serde::Serialize;

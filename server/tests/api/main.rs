@@ -30,6 +30,7 @@ mod mail;
 mod mail_tls;
 mod mail_tries;
 mod plan;
+mod schedule;
 mod sessions;
 mod ship_alerts;
 mod tenants;

@@ -1,0 +1,22 @@
+//! `schedule`: from ships, needs, port calls and firms, who does what where and when.
+
+use super::{BadInput, answer, input, json};
+use crate::config::Schedule;
+use binnacle_schedule::input::read;
+use binnacle_schedule::plan::plan;
+use std::process::ExitCode;
+
+/// Prints the schedule as JSON.
+///
+/// # Errors
+/// When standard output cannot be written.
+pub fn schedule(arguments: &Schedule) -> anyhow::Result<ExitCode> {
+    answer(find(arguments))
+}
+
+fn find(arguments: &Schedule) -> Result<String, BadInput> {
+    let text = input::text_file(&arguments.input)?;
+    let checked =
+        read(&text).map_err(|error| BadInput(format!("{}: {error}", arguments.input.display())))?;
+    Ok(json(&plan(&checked)))
+}
