@@ -227,6 +227,7 @@ fn bears_on_the_card(cause: Cause) -> bool {
         | Cause::LightningOrShock
         | Cause::MagneticCargo
         | Cause::Drift
+        | Cause::Alignment
         | Cause::UnknownChange => true,
         // Refused before, or of the samples' way rather than of the ship.
         Cause::CompassFault
