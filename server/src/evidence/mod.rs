@@ -2,7 +2,7 @@
 //!
 //! What always holds: the same state of an order makes the same octets; the archive's
 //! manifest names the SHA-256 of every other file in it, the log's entries name each
-//! other's, and the completion names the record's. [`verify`] needs nothing but the
+//! other's, and the completion names the record's. [`verify()`] needs nothing but the
 //! archive itself.
 
 mod archive;
