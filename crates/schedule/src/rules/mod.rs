@@ -2,7 +2,7 @@
 //!
 //! What always holds: a [`Rule`] is one that can be applied: its numbers are positive
 //! and within reason, its flags are two capital letters, and a transit's rule names the
-//! canal. [`shipped`] are those of `data/rules.json`, which tests read whole.
+//! canal. [`shipped()`] are those of `data/rules.json`, which tests read whole.
 
 mod shipped;
 mod words;

@@ -1,8 +1,8 @@
 //! The assignment as numbers only: who is who does not matter here.
 //!
-//! What always holds: a [`Problem`] that [`Problem::checked`] gave back has every
-//! index within its list, no negative cost, and for each visit room for at least
-//! one job. Costs are whole cents, so that sums are exact and a bound can be rounded.
+//! A [`Problem`] has every index within its list, no negative cost, and for each visit
+//! room for at least one job: whoever makes it sees to that. Costs are whole cents, so
+//! that sums are exact and a bound can be rounded.
 
 use std::collections::BTreeMap;
 
