@@ -346,9 +346,9 @@ async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(shore: S
     shore.finish().await;
 }
 
-/// Twenty days at sea, the needle astray for some hours so long before the end.
+/// Thirty days at sea, the needle astray for some hours so long before the end.
 fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: fn(f64) -> f64) -> Vec<Sample> {
-    let mut samples = days_in(place, &truth(), "2026-10-31T00:00:00Z", 20.0);
+    let mut samples = days_in(place, &truth(), "2026-10-21T00:00:00Z", 30.0);
     let place = |hours| samples.len() - 6 * hours;
     let (from, to) = (place(from_h), place(to_h));
     for (i, sample) in samples[from..to].iter_mut().enumerate() {
@@ -363,9 +363,9 @@ fn passed(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
     astray(place, hours_ago + 2, hours_ago, |_| 3.0)
 }
 
-/// To and fro, for the last two hours.
+/// To and fro, for the last six hours.
 fn passing(place: (f64, f64)) -> Vec<Sample> {
-    astray(place, 2, 0, |i| 6.0 * (0.7 * i).sin())
+    astray(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
 }
 
 async fn last_change(person: &Person, ship: &Ship) -> Value {
