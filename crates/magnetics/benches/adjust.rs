@@ -43,11 +43,11 @@ fn bench(bencher: Bencher<'_, '_>, seed: u64, slews_deg: &[f64]) {
     let mut exact = FLUXGATE;
     // A berth that is turned away would be quick.
     exact.heading_sd_deg = 0.1;
-    let reading = reading(&mut rng, &truth, (berth.h_nt, berth.z_nt), exact);
+    let found = reading(&mut rng, &truth, (berth.h_nt, berth.z_nt), exact);
     let adjustment = Adjustment {
         model: &model,
         earth: berth,
-        reading: &reading,
+        reading: &found.reading,
         scale_sd: 0.003,
         compass_deg: None,
         vertical: None,

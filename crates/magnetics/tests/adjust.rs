@@ -12,6 +12,7 @@ mod tally;
 
 use adjusting::knowledge::FLUXGATE;
 use adjusting::random::Random;
+use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, plan};
 use binnacle_magnetics::corrector::effect;
 use tally::Tally;
 
@@ -21,20 +22,7 @@ fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
     for seed in 0..20 {
         let mut rng = Random::new(seed);
         let binnacle = adjusting::binnacle(&mut rng, 0);
-        let mut form: binnacle_magnetics::binnacle::BinnacleForm = binnacle.into();
-        let mut design: binnacle_magnetics::binnacle::DesignForm = form.design.into();
-        for kind in &mut design.magnets {
-            kind.moment_tolerance = 0.0;
-        }
-        for rack in [&mut design.fore_and_aft, &mut design.athwartship] {
-            rack.position_sd_mm = 0.0;
-        }
-        for size in &mut design.quadrantal.as_mut().unwrap().sizes {
-            size.tolerance = 0.0;
-        }
-        design.flinders.as_mut().unwrap().tolerance = 0.0;
-        form.design = design.try_into().unwrap();
-        let binnacle = binnacle_magnetics::binnacle::Binnacle::try_from(form).unwrap();
+        let binnacle = adjusting::without_tolerances(binnacle);
         let iron = adjusting::iron::Fitted::new(&mut rng, &binnacle);
         let setting = &binnacle.setting;
         let found = effect(&binnacle, setting);
@@ -62,12 +50,58 @@ fn the_formulas_are_those_of_iron_that_knows_nothing_of_them() {
                 );
             }
         }
-        for card in [[1.0, 0.0], [0.0, 1.0]] {
-            let truth = iron.of_needles(setting, card);
-            // The part along the needles, a third, turns nothing.
-            let along = if card[1] > 0.5 { 0.75 * truth[1] } else { 0.0 };
-            let formula = card[0] * found.needle_nt[1][0] + card[1] * found.needle_nt[1][1];
-            assert!((formula - along).abs() < 1e-6 * truth[1].abs() + 1e-9);
+        // What turns the card, wherever it points; what lies along it turns nothing.
+        for step in 0..12 {
+            let (east, north) = (f64::from(step) * 30.0).to_radians().sin_cos();
+            let across = |[x, y]: [f64; 2]| north * y - east * x;
+            let truth = across(iron.of_needles(setting, [north, east]));
+            let [[a, b], [c, d]] = found.needle_nt;
+            let formula = across([a * north + b * east, c * north + d * east]);
+            assert!((formula - truth).abs() < 1e-6 * truth.abs() + 1e-9);
+        }
+    }
+}
+
+/// Needles turn the card on D and E; were they counted into λ, as soft iron would be, a
+/// tenth of B and C would be left on a binnacle with thick plates close by.
+#[test]
+fn with_strong_needles_and_no_errors_the_compass_is_left_as_foretold() {
+    for seed in 0..12 {
+        let mut rng = Random::new(seed);
+        let binnacle = adjusting::binnacle(&mut rng, (seed % 2) as usize);
+        let binnacle = adjusting::without_tolerances(binnacle);
+        let mut truth = adjusting::ship(&mut rng, &binnacle);
+        truth.fitted.needle_am2 = binnacle.design.needle_moment_am2;
+        let standing = truth.with(&binnacle.setting);
+        let waters = adjusting::knowledge::waters(&mut rng, 0.1);
+        let model = adjusting::knowledge::exactly(&standing, &waters);
+        let berth = waters[0].earth();
+        let place = (berth.h_nt, berth.z_nt);
+        let [x, y, _] = standing.field(place, 40.0);
+        let adjustment = Adjustment {
+            model: &model,
+            earth: berth,
+            reading: &adjusting::knowledge::read([x, y], 40.0, FLUXGATE),
+            scale_sd: FLUXGATE.scale_sd,
+            compass_deg: None,
+            vertical: None,
+            binnacle: &binnacle,
+            now: None,
+            waters: &waters,
+            circumstances: Circumstances::default(),
+            limits: Limits {
+                residual_deg: 60.0,
+                band_deg: 60.0,
+                ..Limits::default()
+            },
+        };
+        let plan = plan(&adjustment).unwrap().plans.remove(0);
+        let adjusted = truth.with(&plan.setting);
+        for row in &plan.after[0].rows {
+            let residual = adjusted.deviation_deg(place, row.compass_deg);
+            let off = adjusting::wrap(residual - row.deviation_deg);
+            let before = standing.worst_deg(place);
+            assert!(off.abs() < 0.03 * before + 0.1, "{seed}: {off} of {before}");
         }
     }
 }
@@ -109,19 +143,24 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
     let there = page.read().unwrap();
     let place = (there.earth.h_nt, there.earth.z_nt);
     let [x, y, z] = truth.field(place, there.reading.magnetic().degrees());
-    form["forward_nt"] = serde_json::json!(x);
-    form["starboard_nt"] = serde_json::json!(y);
-    form["down_nt"] = serde_json::json!(z);
-    form["limits"] = serde_json::json!({ "residual_deg": 60, "band_deg": 60 });
+    let reading = &mut form["reading"];
+    for (name, part) in [("forward", x), ("starboard", y), ("down", z)] {
+        reading[name] = serde_json::json!(part / 1000.0);
+    }
     let strange = [
         0.0, -0.0, 1e-300, -1.0, 1.0, 89.9, 180.0, 359.9, 4e3, -7e4, 1e9, -1e308,
     ];
-    let fields: Vec<String> = form.as_object().unwrap().keys().cloned().collect();
+    let names = |of: &serde_json::Value, before: &str| -> Vec<String> {
+        let keys = of.as_object().unwrap().keys();
+        keys.map(|name| format!("{before}/{name}")).collect()
+    };
+    let mut fields = names(&form, "");
+    fields.extend(names(&form["reading"], "/reading"));
     let mut planned = 0;
     for field in &fields {
         for value in strange {
             let mut form = form.clone();
-            form[field] = serde_json::json!(value);
+            *form.pointer_mut(field).unwrap() = serde_json::json!(value);
             let form = serde_json::from_value::<binnacle_magnetics::adjust::BerthForm>(form);
             let Ok(berth) = form
                 .map_err(drop)
@@ -129,7 +168,9 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
             else {
                 continue;
             };
-            let adjustment = berth.adjustment(&model, &binnacle);
+            let mut adjustment = berth.adjustment(&model, &binnacle);
+            // Wider than anyone may ask for.
+            (adjustment.limits.residual_deg, adjustment.limits.band_deg) = (60.0, 60.0);
             let Ok(outcome) = binnacle_magnetics::adjust::plan(&adjustment) else {
                 continue;
             };

@@ -2,12 +2,17 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use binnacle_schedule::calls::{csv, ics};
+use binnacle_schedule::calls::{PortCall, csv, ics};
 use binnacle_schedule::time::Instant;
 use std::io::{BufReader, Read};
 
 fn now() -> Instant {
     Instant::parse("2026-11-21T00:00:00Z").unwrap()
+}
+
+fn csv_calls(text: &str) -> Vec<PortCall> {
+    let read = csv::read(text.as_bytes(), None, now()).unwrap();
+    read.into_iter().map(|located| located.call).collect()
 }
 
 fn csv_complaint(text: &str) -> String {
@@ -23,12 +28,12 @@ fn calls_are_read_from_csv_and_written_back() {
     let text = format!(
         "\u{feff}{HEADER}c1,v1,nl rtm,2026-12-01T06:00:00+01:00,2026-12-02T18:00:00Z,6\r\n\n"
     );
-    let calls = csv::read(text.as_bytes(), None, now()).unwrap();
+    let calls = csv_calls(&text);
     assert_eq!(calls[0].port.to_string(), "NLRTM");
     assert_eq!(calls[0].eta.to_string(), "2026-12-01T05:00:00Z");
     let mut out = Vec::new();
     csv::write(&calls, &mut out).unwrap();
-    assert_eq!(csv::read(&out[..], None, now()).unwrap(), calls);
+    assert_eq!(csv_calls(std::str::from_utf8(&out).unwrap()), calls);
 }
 
 #[test]
@@ -111,8 +116,9 @@ impl<R: Read> Read for Counted<'_, R> {
 
 #[test]
 fn a_csv_of_too_many_calls_is_refused_at_the_first_too_many() {
-    let row = "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
-    let text = format!("{HEADER}{}", row.repeat(csv::MOST_CALLS + 5));
+    let row = |at: usize| format!("{at},v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n");
+    let rows: String = (0..csv::MOST_CALLS + 5).map(row).collect();
+    let text = format!("{HEADER}{rows}");
     assert_eq!(
         csv_complaint(&text),
         "line 50002: row: more than 50000 calls"
@@ -122,12 +128,12 @@ fn a_csv_of_too_many_calls_is_refused_at_the_first_too_many() {
 #[test]
 fn what_is_exported_is_no_formula_and_reads_back() {
     let text = format!("{HEADER}=1+1,@v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n");
-    let calls = csv::read(text.as_bytes(), None, now()).unwrap();
+    let calls = csv_calls(&text);
     let mut out = Vec::new();
     csv::write(&calls, &mut out).unwrap();
     let written = String::from_utf8(out.clone()).unwrap();
     assert!(written.contains("\n'=1+1,'@v,"), "{written}");
-    assert_eq!(csv::read(&out[..], None, now()).unwrap(), calls);
+    assert_eq!(csv_calls(std::str::from_utf8(&out).unwrap()), calls);
     for harmless in ["", "c1", "'c1", "a=b"] {
         assert_eq!(csv::harmless(harmless), harmless);
     }
@@ -149,8 +155,13 @@ fn calendar(start: &str, end: &str, more: &str) -> String {
 const END: &str = "DTEND:20270802T180000Z";
 
 fn eta_of(start: &str) -> String {
-    let text = calendar(start, END, "LOCATION:Bilbao\\, ESBIO");
-    ics::read(&text, "v", now()).unwrap()[0].eta.to_string()
+    let month = &start.rsplit_once(':').unwrap().1[..6];
+    let end = format!("DTEND:{month}30T180000Z");
+    let text = calendar(start, &end, "LOCATION:Bilbao\\, ESBIO");
+    ics::read(&text, "v", now()).unwrap().calls[0]
+        .call
+        .eta
+        .to_string()
 }
 
 #[test]
@@ -180,7 +191,7 @@ fn a_port_is_found_by_code_or_by_a_name_that_only_one_has() {
     let port_of = |more: &str| {
         let text = calendar("DTSTART:20270701T060000Z", END, more);
         ics::read(&text, "v", now())
-            .map(|calls| calls[0].port.to_string())
+            .map(|calendar| calendar.calls[0].call.port.to_string())
             .map_err(|error| error.to_string())
     };
     assert_eq!(
@@ -239,5 +250,26 @@ fn a_cancelled_event_is_no_call() {
         END,
         "LOCATION:NLRTM\r\nSTATUS:CANCELLED",
     );
-    assert_eq!(ics::read(&text, "v", now()).unwrap(), []);
+    let read = ics::read(&text, "v", now()).unwrap();
+    assert_eq!((read.calls.len(), read.over), (0, 0));
+    assert_eq!(read.cancelled, ["c1@agent"]);
+}
+
+#[test]
+fn what_is_over_is_counted_and_no_call() {
+    let past = calendar(
+        "DTSTART:20260701T060000Z",
+        "DTEND:20260702T060000Z",
+        "LOCATION:NLRTM",
+    );
+    let read = ics::read(&past, "v", now()).unwrap();
+    assert_eq!((read.calls.len(), read.over), (0, 1));
+}
+
+#[test]
+fn a_call_that_stands_in_a_file_twice_is_refused_with_both_lines() {
+    let row = "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
+    let other = row.replacen(",v,", ",w,", 1);
+    let said = csv_complaint(&format!("{HEADER}{row}{other}{row}"));
+    assert_eq!(said, "line 4: id: \"c\" stands on line 2 already");
 }

@@ -50,6 +50,22 @@ fn a_panama_ship_that_keeps_no_record_is_due_after_one_year() {
 }
 
 #[test]
+fn a_ship_of_no_known_flag_is_bound_by_every_flags_rules() {
+    let due = due_of(json!({}), json!({"adjusted_on": "2026-01-15"}));
+    assert_eq!(due.on, day("2027-01-15"));
+}
+
+#[test]
+fn a_ship_of_the_marshall_islands_is_adjusted_after_a_new_compass_is_installed() {
+    let compass = json!({"adjusted_on": "2026-01-15",
+        "events": [{"kind": "installation", "on": "2026-11-01"}]});
+    let theirs = due_of(json!({"flag": "MH"}), compass.clone());
+    assert_eq!(theirs.on, day("2026-12-01"));
+    assert!(theirs.reason.contains("MN 2-011-32, 2.1.1"));
+    assert_eq!(due_of(json!({"flag": "NO"}), compass).on, day("2028-01-15"));
+}
+
+#[test]
 fn a_compass_without_a_record_is_due_today() {
     let due = due_of(json!({"flag": "NO"}), json!({}));
     assert_eq!((due.on, due.urgency), (day("2026-11-21"), Urgency::Urgent));

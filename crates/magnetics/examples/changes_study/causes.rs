@@ -3,7 +3,7 @@
 use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, sail_log};
 use crate::{HOUR_S, alarms, each, planned, run, seeds, share, telling, variety, was_withdrawn};
 use binnacle_magnetics::analyse::Analysis;
-use binnacle_magnetics::change::{Change, Elsewhere, in_fleet};
+use binnacle_magnetics::change::{Cause, Change, Elsewhere, in_fleet};
 use binnacle_magnetics::time::Timestamp;
 use std::collections::BTreeMap;
 
@@ -164,6 +164,35 @@ pub(crate) fn brief(ships: u64) {
         println!(
             "    of which for a change of the ship at first {:.0} %",
             share(&found, |f| f.1)
+        );
+    }
+}
+
+/// What grows for weeks: one drift, and nothing else.
+pub(crate) fn ramps(ships: u64) {
+    println!("what grows for weeks, taken for:");
+    for (nt, days) in [(2000.0, 20.0), (3000.0, 30.0), (4000.0, 30.0)] {
+        let found = each(seeds(320_000, ships), |seed| {
+            let plan = Plan::of(Event::Ramp(nt, days), variety(seed));
+            let log = sail_log(seed, &plan);
+            let began = planned(&log, Name::Ramp)?.from;
+            let analysis = run(&log.samples);
+            let told: Vec<&Change> = alarms(&analysis)
+                .filter(|c| c.detected_at > began)
+                .collect();
+            let drifts = told.iter().filter(|c| c.cause == Cause::Drift).count();
+            Some((told.len(), drifts))
+        });
+        let found: Vec<_> = found.into_iter().flatten().collect();
+        let told = found.iter().map(|f| f.0).sum::<usize>() as f64;
+        println!(
+            "  {nt} nT in {days} days, {} ships: a drift {:.0} %, one drift and nothing else {:.0} %, \
+             nothing {:.0} %; changes told {:.1} a ship",
+            found.len(),
+            share(&found, |f| f.1 > 0),
+            share(&found, |f| *f == (1, 1)),
+            share(&found, |f| f.0 == 0),
+            told / found.len() as f64,
         );
     }
 }

@@ -62,6 +62,9 @@ fn main() {
     if wanted("lightning") {
         returns::lightning(ships);
     }
+    if wanted("ramps") {
+        causes::ramps(ships);
+    }
     if wanted("gyro") {
         steps::gyro_alone(ships);
     }

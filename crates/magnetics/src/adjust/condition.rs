@@ -19,7 +19,6 @@ pub(super) struct Condition<'a> {
     model: &'a Model,
     pub(super) estimate: BerthEstimate,
     joint: JointCovariance,
-    /// λ with the needles' part, as headings have it.
     lambda: f64,
     base: ShipMagnetism,
     /// What the correctors did while the ship was measured.
@@ -37,12 +36,12 @@ impl<'a> Condition<'a> {
         let reference_h_nt = harmonic_mean_h(adjustment);
         let model = adjustment.model;
         let needle = needle_only(&then, reference_h_nt);
-        let needle_lambda = needle.lambda() - 1.0;
         let p = &model.parameters_over_lambda;
         let mut lambda = 0.9;
         let mut estimate;
         let mut rounds = 0;
-        // The magnetometer meets no needles; what they take off D is known but for λ.
+        // The magnetometer meets no needles; what they take off D is known but for λ,
+        // to which they add nothing.
         loop {
             let without = minus(&ShipMagnetism::from_parameters(p, lambda), &needle);
             let parameters = without.parameters_over_lambda();
@@ -52,7 +51,7 @@ impl<'a> Condition<'a> {
                 ..model.clone()
             };
             estimate = lambda_at_berth(&without, adjustment.earth, adjustment.reading)?;
-            lambda = estimate.lambda.value + needle_lambda;
+            lambda = estimate.lambda.value;
             rounds += 1;
             if rounds == 4 {
                 break;

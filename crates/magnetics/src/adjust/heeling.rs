@@ -3,8 +3,9 @@
 //! The card does not err in heel while the vertical force aboard is λ(1 − D) Z: what
 //! the athwartship force would be in a field as strong (docs/science.md, eq. 23).
 
+use super::Adjustment;
 use super::condition::Condition;
-use super::{AdjustError, Adjustment};
+use crate::berth::BerthError;
 use crate::binnacle::{HeelingSetting, Red, Setting};
 use crate::corrector::{Effect, Iron, effect, heeling_effect};
 use serde::{Deserialize, Serialize};
@@ -32,12 +33,12 @@ pub struct HeelingPlan {
 }
 
 impl VerticalReading {
-    pub(super) fn check(self) -> Result<(), AdjustError> {
+    pub(super) fn must_be_a_field(self) -> Result<(), BerthError> {
         if (-200_000.0..=200_000.0).contains(&self.down_nt) {
             return Ok(());
         }
-        Err(AdjustError::Value {
-            field: "down_nt",
+        Err(BerthError::Reading {
+            name: "down_nt",
             value: self.down_nt,
             least: -200_000.0,
             greatest: 200_000.0,

@@ -19,6 +19,9 @@ use std::fmt;
 
 /// How well two readings of a card tell its turn, degrees.
 const READING_SD_DEG: f64 = 0.3;
+/// Two-sided 99 % of a normal distribution: of a hundred right steps one is looked at
+/// again.
+pub(super) const NORMAL_99: f64 = 2.575_829;
 /// No step is held to less, degrees.
 const LEAST_TOLERANCE_DEG: f64 = 0.5;
 
@@ -170,7 +173,7 @@ fn step(
 ) -> Step {
     let (corrector, from, to) = moved;
     let (change_deg, sd_deg) = change_deg(adjustment, condition, &before, &after);
-    let tolerance_deg = 1.96 * sd_deg.hypot(READING_SD_DEG);
+    let tolerance_deg = NORMAL_99 * sd_deg.hypot(READING_SD_DEG);
     let tolerance_deg = tolerance_deg.max(LEAST_TOLERANCE_DEG);
     let action = action(from.as_ref(), to.as_ref());
     Step {
@@ -351,8 +354,18 @@ fn said(condition: &Condition<'_>, corrector: Corrector, place: &Place) -> Strin
                 Side::Forward => "forward of",
                 Side::Aft => "abaft",
             };
+            // Clockwise from abaft is to port.
+            let to_starboard = match bar.side {
+                Side::Forward => bar.slew_deg,
+                Side::Aft => -bar.slew_deg,
+            };
+            let slew = match to_starboard {
+                none if none.abs() < 1e-6 => String::new(),
+                slew if slew > 0.0 => format!(", {slew} degrees to starboard"),
+                slew => format!(", {} degrees to port", -slew),
+            };
             format!(
-                "{} mm ({} mm, the longest on top) {side} the card",
+                "{} mm ({} mm, the longest on top) {side} the card{slew}",
                 bar.length_mm,
                 pieces.join(" + ")
             )

@@ -1,5 +1,6 @@
 //! Mistakes at the berth that would explain a reading that does not fit.
 
+use super::read::Unit;
 use crate::angle::MagneticHeading;
 use crate::berth::{Alignment, BerthReading, ReadingErrors, lambda_at_berth};
 use crate::model::Model;
@@ -14,12 +15,14 @@ const USUAL_LAMBDA: std::ops::RangeInclusive<f64> = 0.5..=1.25;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mistake {
-    /// Numbers in gauss where nT are asked.
-    Gauss,
-    /// Numbers in milligauss.
-    Milligauss,
-    /// Numbers in µT.
+    /// Figures in nT where another unit was named.
+    Nanotesla,
+    /// Figures in µT.
     Microtesla,
+    /// Figures in gauss.
+    Gauss,
+    /// Figures in milligauss.
+    Milligauss,
     /// Forward and starboard have changed places.
     SwappedAxes,
     /// Port was taken for positive.
@@ -31,47 +34,65 @@ pub enum Mistake {
 }
 
 impl Mistake {
-    const ALL: [Mistake; 7] = [
+    const ALL: [Mistake; 8] = [
+        Mistake::Nanotesla,
+        Mistake::Microtesla,
         Mistake::Gauss,
         Mistake::Milligauss,
-        Mistake::Microtesla,
         Mistake::SwappedAxes,
         Mistake::StarboardReversed,
         Mistake::ForwardReversed,
         Mistake::HeadingReversed,
     ];
 
-    /// The field that it stands in.
+    /// The field of the form that it stands in.
     pub fn field(self) -> &'static str {
         match self {
-            Mistake::Gauss | Mistake::Milligauss | Mistake::Microtesla | Mistake::SwappedAxes => {
-                "forward_nt, starboard_nt"
-            }
-            Mistake::StarboardReversed => "starboard_nt",
-            Mistake::ForwardReversed => "forward_nt",
-            Mistake::HeadingReversed => "heading",
+            Mistake::Nanotesla
+            | Mistake::Microtesla
+            | Mistake::Gauss
+            | Mistake::Milligauss
+            | Mistake::SwappedAxes => "forward, starboard",
+            Mistake::StarboardReversed => "starboard",
+            Mistake::ForwardReversed => "forward",
+            Mistake::HeadingReversed => "heading_true_deg",
         }
     }
 
-    fn undone(self, degrees: f64, [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+    /// The unit that the figures are in, if that is the mistake.
+    fn unit(self) -> Option<Unit> {
         match self {
-            Mistake::Gauss => (degrees, [1e5 * x, 1e5 * y]),
-            Mistake::Milligauss => (degrees, [100.0 * x, 100.0 * y]),
-            Mistake::Microtesla => (degrees, [1e3 * x, 1e3 * y]),
+            Mistake::Nanotesla => Some(Unit::Nanotesla),
+            Mistake::Microtesla => Some(Unit::Microtesla),
+            Mistake::Gauss => Some(Unit::Gauss),
+            Mistake::Milligauss => Some(Unit::Milligauss),
+            _ => None,
+        }
+    }
+
+    /// What was read if this was done wrong, `named` being the unit that was named.
+    fn undone(self, degrees: f64, [x, y]: [f64; 2], named: Unit) -> (f64, [f64; 2]) {
+        match self {
             Mistake::SwappedAxes => (degrees, [y, x]),
             Mistake::StarboardReversed => (degrees, [x, -y]),
             Mistake::ForwardReversed => (degrees, [-x, y]),
             Mistake::HeadingReversed => (degrees + 180.0, [x, y]),
+            _ => {
+                let times = self.unit().map_or(1.0, |unit| unit.nt() / named.nt());
+                (degrees, [x * times, y * times])
+            }
         }
     }
 }
 
-/// The mistakes each of which alone explains this reading; none where it fits as it is.
+/// The mistakes each of which alone explains this reading, whose figures were said to be
+/// in a unit; none where it fits as it is.
 pub fn mistakes(
     model: &Model,
     earth: EarthField,
     magnetic: MagneticHeading,
     field_nt: [f64; 2],
+    named: Unit,
     errors: ReadingErrors,
     alignment: Alignment,
 ) -> Vec<Mistake> {
@@ -87,7 +108,7 @@ pub fn mistakes(
         return Vec::new();
     }
     let explains = |mistake: &Mistake| {
-        let (degrees, field_nt) = mistake.undone(magnetic.degrees(), field_nt);
+        let (degrees, field_nt) = mistake.undone(magnetic.degrees(), field_nt, named);
         fits(degrees, field_nt)
     };
     Mistake::ALL.into_iter().filter(explains).collect()
@@ -96,9 +117,10 @@ pub fn mistakes(
 impl fmt::Display for Mistake {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Mistake::Gauss => "the reading is in gauss (1 gauss is 100000 nT)",
-            Mistake::Milligauss => "the reading is in milligauss (1 milligauss is 100 nT)",
-            Mistake::Microtesla => "the reading is in microtesla (1 microtesla is 1000 nT)",
+            Mistake::Nanotesla => "the figures are in nanotesla",
+            Mistake::Microtesla => "the figures are in microtesla (1 microtesla is 1000 nT)",
+            Mistake::Gauss => "the figures are in gauss (1 gauss is 100000 nT)",
+            Mistake::Milligauss => "the figures are in milligauss (1 milligauss is 100 nT)",
             Mistake::SwappedAxes => "the magnetometer's axes are swapped",
             Mistake::StarboardReversed => "the magnetometer's athwartship axis points to port",
             Mistake::ForwardReversed => "the magnetometer's fore-and-aft axis points aft",

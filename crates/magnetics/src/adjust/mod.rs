@@ -17,6 +17,7 @@ mod mistakes;
 mod moves;
 mod objective;
 mod predicted;
+mod read;
 mod recheck;
 mod refusal;
 mod search;
@@ -24,13 +25,12 @@ mod tolerance;
 mod verify;
 
 pub use berth::{BerthCheck, Seen};
-pub use form::{
-    Berth, BerthForm, FormError, HeadingFrom, Magnetometer, MagnetometerKind, WaterForm,
-};
+pub use form::{Berth, BerthForm, FieldForm, FormError, WaterForm};
 pub use heeling::{HeelingPlan, VerticalReading};
 pub use instructions::{Action, Corrector, Place, Step};
 pub use mistakes::{Mistake, mistakes};
 pub use predicted::{PredictedRow, PredictedTable};
+pub use read::{HeadingFrom, Magnetometer, NumberError, ReadingForm, Unit};
 pub use recheck::{Recheck, recheck};
 pub use refusal::{Coefficient, Cure, Refusal};
 pub use verify::{Needed, Settled, Verification, verify};
@@ -119,6 +119,31 @@ impl Default for Limits {
             model_age_days: 60.0,
             lambda_sd: 0.03,
         }
+    }
+}
+
+impl Limits {
+    /// Whether somebody who answers for a compass may ask for this: no residual that flags
+    /// want adjusted again (5°), no band that tells nothing, no model of last season.
+    ///
+    /// # Errors
+    /// Names the limit.
+    pub fn must_be_sane(&self) -> Result<(), NumberError> {
+        for (field, value, least, greatest) in [
+            ("residual_deg", self.residual_deg, 0.5, 5.0),
+            ("band_deg", self.band_deg, 0.2, 4.0),
+            ("near_equal_deg", self.near_equal_deg, 0.0, 1.0),
+            ("model_age_days", self.model_age_days, 1.0, 90.0),
+            ("lambda_sd", self.lambda_sd, 0.005, 0.1),
+        ] {
+            if !(least..=greatest).contains(&value) {
+                return Err(NumberError {
+                    field,
+                    what: format!("{value} is not between {least} and {greatest}"),
+                });
+            }
+        }
+        Ok(())
     }
 }
 
@@ -378,7 +403,7 @@ fn check(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
         }
     }
     if let Some(vertical) = &adjustment.vertical {
-        vertical.check()?;
+        vertical.must_be_a_field()?;
     }
     let waters = adjustment.waters.len();
     if waters > MOST_WATERS {

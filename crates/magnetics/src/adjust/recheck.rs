@@ -2,7 +2,7 @@
 //! plan from there where it was otherwise.
 
 use super::condition::Condition;
-use super::instructions::{Place, Step, change_deg};
+use super::instructions::{NORMAL_99, Place, Step, change_deg};
 use super::{AdjustError, Adjustment, Outcome, plan};
 use crate::angle::wrap_180;
 use crate::binnacle::{Axis, Binnacle, BinnacleForm, Calibrated, Setting, Soft};
@@ -144,7 +144,7 @@ fn wrong_end(
         }
     }
     let (change, sd) = change_deg(adjustment, condition, &step.setting_before, &setting);
-    let tolerance = (1.96 * sd).max(step.tolerance_deg);
+    let tolerance = (NORMAL_99 * sd).max(step.tolerance_deg);
     (wrap_180(turned_deg - change).abs() <= tolerance).then_some(setting)
 }
 

@@ -2,6 +2,7 @@
 
 use super::condition::Condition;
 use super::mistakes::{Mistake, mistakes};
+use super::read::Unit;
 use super::{AdjustError, Adjustment, Plan, PredictedTable, Refused};
 use crate::berth::{BerthError, Consistency};
 use crate::deviation::Coefficients;
@@ -37,6 +38,18 @@ pub enum Refusal {
         lambda: f64,
         /// Mistakes that alone would explain it.
         mistakes: Vec<Mistake>,
+    },
+    /// What was read is no field that a ship lies in.
+    NoSuchField {
+        /// What it would be.
+        what: String,
+        /// Mistakes that alone would explain it.
+        mistakes: Vec<Mistake>,
+    },
+    /// The earth's field at the berth is too weak to steer by.
+    FieldTooWeak {
+        /// Its horizontal part, nT.
+        h_nt: f64,
     },
     /// As she is, some compass headings stand for several magnetic ones.
     AmbiguousHeadings {
@@ -113,6 +126,48 @@ pub enum Cure {
 }
 
 impl Refusal {
+    /// Why a reading is not taken, and what alone would explain it.
+    pub(super) fn of_reading(error: &BerthError, mistakes: Vec<Mistake>) -> Refusal {
+        let what = error.to_string();
+        match error {
+            BerthError::Inconsistent(consistency) => Refusal::InconsistentBerth {
+                consistency: *consistency,
+                mistakes,
+            },
+            BerthError::Implausible(lambda) => Refusal::ImplausibleLambda {
+                lambda: *lambda,
+                mistakes,
+            },
+            BerthError::Reading { .. } | BerthError::NothingRead => {
+                Refusal::NoSuchField { what, mistakes }
+            }
+            BerthError::NoDirectiveForce { .. } | BerthError::Model(_) | BerthError::Field(_) => {
+                Refusal::AmbiguousHeadings { what }
+            }
+        }
+    }
+
+    /// The mistakes each of which alone would explain it.
+    pub fn mistakes(&self) -> &[Mistake] {
+        match self {
+            Refusal::InconsistentBerth { mistakes, .. }
+            | Refusal::ImplausibleLambda { mistakes, .. }
+            | Refusal::NoSuchField { mistakes, .. } => mistakes,
+            _ => &[],
+        }
+    }
+
+    /// What alone would explain it, in words, mistakes first.
+    pub fn could_be(&self) -> Vec<String> {
+        let mistakes = self.mistakes().iter().map(ToString::to_string);
+        let suspects = match self {
+            Refusal::InconsistentBerth { consistency, .. } => consistency.suspects().to_vec(),
+            _ => Vec::new(),
+        };
+        let suspects = suspects.iter().map(ToString::to_string);
+        mistakes.chain(suspects).collect()
+    }
+
     pub(super) fn with_cures(self) -> Refused {
         let cures = match &self {
             Refusal::NoCovariance | Refusal::ModelTooOld { .. } => {
@@ -122,7 +177,10 @@ impl Refusal {
             Refusal::InconsistentBerth { .. } => {
                 vec![Cure::ReadAgain, Cure::AnotherBerth, Cure::HeadingsAtSea]
             }
-            Refusal::ImplausibleLambda { .. } => vec![Cure::ReadAgain, Cure::BetterMagnetometer],
+            Refusal::ImplausibleLambda { .. } | Refusal::NoSuchField { .. } => {
+                vec![Cure::ReadAgain, Cure::BetterMagnetometer]
+            }
+            Refusal::FieldTooWeak { .. } => vec![Cure::AnotherBerth],
             Refusal::AmbiguousHeadings { .. } => vec![Cure::Swing],
             Refusal::BandTooWide { .. } => {
                 vec![
@@ -175,22 +233,16 @@ pub(super) fn of_berth(
             adjustment.earth,
             reading.magnetic(),
             reading.field_nt(),
+            Unit::Nanotesla,
             reading.errors(),
             reading.alignment(),
         )
     };
     match error {
-        BerthError::Inconsistent(consistency) => Ok(Refusal::InconsistentBerth {
-            consistency,
-            mistakes: mistakes(),
-        }),
-        BerthError::Implausible(lambda) => Ok(Refusal::ImplausibleLambda {
-            lambda,
-            mistakes: mistakes(),
-        }),
-        BerthError::NoDirectiveForce { .. } => Ok(Refusal::AmbiguousHeadings {
-            what: error.to_string(),
-        }),
+        BerthError::Inconsistent(_) | BerthError::Implausible(_) => {
+            Ok(Refusal::of_reading(&error, mistakes()))
+        }
+        BerthError::NoDirectiveForce { .. } => Ok(Refusal::of_reading(&error, Vec::new())),
         error => Err(error.into()),
     }
 }
@@ -314,6 +366,14 @@ impl fmt::Display for Refusal {
                 write!(f, "the field read would make lambda {lambda:.4}")?;
                 explained(f, mistakes)
             }
+            Refusal::NoSuchField { what, mistakes } => {
+                write!(f, "no ship lies in such a field: {what}")?;
+                explained(f, mistakes)
+            }
+            Refusal::FieldTooWeak { h_nt } => write!(
+                f,
+                "the earth's horizontal field at the berth, {h_nt:.0} nT, is too weak for a compass"
+            ),
             Refusal::AmbiguousHeadings { what } => f.write_str(what),
             Refusal::BandTooWide {
                 place,

@@ -9,6 +9,9 @@ use super::moves::matched;
 use crate::binnacle::{Axis, Binnacle, Setting, Soft, Tray};
 use crate::corrector::{Effect, Iron, heeling_effect, tray_effect};
 
+/// Of the needles' moment, relative: no catalogue says it.
+const NEEDLE_SD: f64 = 0.1;
+
 /// The errors of going from the binnacle's own setting to another.
 pub(super) fn errors_of(binnacle: &Binnacle, to: &Setting) -> Vec<Effect> {
     errors_between(binnacle, &binnacle.setting, to)
@@ -111,9 +114,21 @@ fn pair(binnacle: &Binnacle, from: &Setting, to: &Setting) -> Vec<Effect> {
         let measured = binnacle.calibrated_pair(&set.size, set.mark_mm);
         let sd = measured.map_or(size.tolerance, |measured| measured.sd);
         let effect = Iron::new(binnacle, &soft).effect(binnacle.design.needle_moment_am2);
-        Some((set.size.clone(), effect.times(sd)))
+        let of_needles = Effect {
+            needle_nt: effect.needle_nt,
+            ..Effect::default()
+        };
+        let name = set.size.clone();
+        Some((name, effect.times(sd), of_needles.times(NEEDLE_SD)))
     };
-    differing(one(from), one(to))
+    let (old, new) = (one(from), one(to));
+    let own = |of: &Option<(String, Effect, Effect)>| of.clone().map(|(name, own, _)| (name, own));
+    // The needles are the same ones, whatever iron stands beside them.
+    let needles = [&new, &old].map(|of| of.as_ref().map(|(_, _, needles)| *needles));
+    let [new_needles, old_needles] = needles.map(Option::unwrap_or_default);
+    let mut errors = differing(own(&old), own(&new));
+    errors.push(new_needles.less(&old_needles));
+    errors
 }
 
 fn bar(binnacle: &Binnacle, from: &Setting, to: &Setting) -> Vec<Effect> {

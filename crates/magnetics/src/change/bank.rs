@@ -36,16 +36,19 @@ const WORTH: f64 = 3.0;
 /// population units.
 const SLACK: f64 = 0.06;
 
-/// Rivals are awake from when a step leads by this, or surprises have added up to
-/// as much, until nothing leads by that, nats; they know of so many measurements at
-/// most.
+/// Rivals are awake from when a step leads by this until nothing leads by that, nats;
+/// they know of so many measurements at most.
 const WAKE_NATS: f64 = 7.0;
 const SLEEP_NATS: f64 = 6.0;
+const REMEMBERED: usize = 432;
+/// And for so many rows from when surprises have added up to this: a storm goes to and
+/// fro, and no step follows it.
+const SURPRISED_NATS: f64 = 4.0;
+const SURPRISED_ROWS: usize = 18;
 /// A surprise counts for so much at most, lest one wild reading wakes them, and so
 /// much a row is forgotten.
 const SURPRISE_NATS: f64 = 2.5;
 const FORGOTTEN_NATS: f64 = 0.75;
-const REMEMBERED: usize = 432;
 /// A step that trails by this, after so many rows, is given up.
 const COLD_NATS: f64 = 2.0;
 const COLD_AFTER: usize = 48;
@@ -179,11 +182,23 @@ pub(super) struct Bank {
     memory: VecDeque<Measurement>,
     latest: usize,
     are_rivals_awake: bool,
-    /// What surprises have added up to since the rivals woke, nats.
+    /// At least until this row.
+    awake_until: usize,
+    /// What surprises have added up to since they last woke the rivals, nats.
     surprise: f64,
 }
 
 impl Bank {
+    /// Forgets all that may have happened for good.
+    pub(super) fn forget_lasting(&mut self) {
+        let lasting = [Kind::Step, Kind::Reference, Kind::Satellite];
+        for spawn in &mut self.spawns {
+            for kind in lasting {
+                spawn.copies[kind as usize] = None;
+            }
+        }
+    }
+
     /// Forgets all that may have happened.
     pub(super) fn clear(&mut self) {
         self.spawns.clear();
@@ -235,7 +250,12 @@ impl Bank {
         let counted = surprise.min(SURPRISE_NATS) - FORGOTTEN_NATS;
         self.surprise = (self.surprise + counted).max(0.0);
         let step = self.lead(Kind::Step, null).map_or(0.0, |lead| lead.nats);
-        if step.max(self.surprise) > WAKE_NATS && !self.are_rivals_awake {
+        let is_surprised = self.surprise > SURPRISED_NATS;
+        if is_surprised {
+            self.surprise = 0.0;
+            self.awake_until = at + SURPRISED_ROWS;
+        }
+        if (is_surprised || step > WAKE_NATS) && !self.are_rivals_awake {
             self.wake(noise, earlier);
         }
     }
@@ -243,7 +263,6 @@ impl Bank {
     /// Makes the rivals, as if they had run all along.
     fn wake(&mut self, noise: &Noise, earlier: Option<Earlier<'_>>) {
         self.are_rivals_awake = true;
-        self.surprise = 0.0;
         let known_from = self.latest + 1 - self.memory.len();
         for spawn in self.spawns.iter_mut().filter(|s| s.at >= known_from) {
             spawn.wake(earlier);
@@ -257,7 +276,7 @@ impl Bank {
     /// Gives up rivals when nothing leads, and steps that trail for good.
     fn rest(&mut self, at: usize, null: &Filter) {
         let leads = KINDS.map(|kind| self.lead(kind, null).map_or(0.0, |lead| lead.nats));
-        if leads.iter().all(|nats| *nats < SLEEP_NATS) {
+        if at >= self.awake_until && leads.iter().all(|nats| *nats < SLEEP_NATS) {
             self.are_rivals_awake = false;
             for spawn in &mut self.spawns {
                 for kind in RIVALS {

@@ -28,7 +28,8 @@ pub struct Effect {
     /// Δb, nT.
     pub b_nt: Vector,
     /// N, nT: what the needles magnetise in the spheres turns with the card, so that
-    /// it acts as soft iron that is stronger the weaker H is.
+    /// it acts as soft iron that is stronger the weaker H is; on D and E alone, its
+    /// trace being nil: it turns the card, and adds nothing to the directive force.
     pub needle_nt: [[f64; 2]; 2],
 }
 

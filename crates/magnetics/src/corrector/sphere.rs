@@ -49,12 +49,13 @@ impl Pair {
                 effect.chi[row][column] = self.q * (6.0 * n[row] * n[column] - unit);
             }
         }
-        // What the needles induce along themselves does not turn them: 3nn + 1 has
-        // only its first part here.
+        // What the needles induce along themselves does not turn them: of 3nn + 1 only
+        // 3nn − 3/2 does, which is quadrantal and leaves λ as it is.
         let needle_nt = 6.0 * self.q * MAGNETIC * needle_am2 / self.distance_m.powi(3);
         for row in 0..2 {
             for column in 0..2 {
-                effect.needle_nt[row][column] = needle_nt * n[row] * n[column];
+                let half = if row == column { 0.5 } else { 0.0 };
+                effect.needle_nt[row][column] = needle_nt * (n[row] * n[column] - half);
             }
         }
         effect

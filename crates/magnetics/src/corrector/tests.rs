@@ -51,8 +51,13 @@ fn seven_inch_spheres_take_off_what_the_handbook_says() {
         let effect = Pair::new(3.5 * 0.0254, 12.0 * 0.0254, 0.0).effect(needle);
         let lambda = 0.9 + f64::midpoint(effect.chi[0][0], effect.chi[1][1]);
         let at = |h_nt: f64| {
-            let more = effect.chi_at(h_nt)[1][1] - effect.chi[1][1];
-            (-more / 2.0 / lambda).to_degrees()
+            let (with, without) = (effect.chi_at(h_nt), effect.chi);
+            let more = |axis: usize| with[axis][axis] - without[axis][axis];
+            assert!(
+                (more(0) + more(1)).abs() < 1e-12,
+                "needles add nothing to λ"
+            );
+            ((more(0) - more(1)) / 2.0 / lambda).to_degrees()
         };
         assert!((at(18_600.0) - d_deg).abs() < 0.06, "{}", at(18_600.0));
         assert!((at(37_200.0) * 2.0 - at(18_600.0)).abs() < 1e-9);

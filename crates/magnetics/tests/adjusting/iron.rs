@@ -22,6 +22,8 @@ pub(crate) struct Fitted {
     pairs: Vec<f64>,
     bar: f64,
     pub(crate) needle_am2: f64,
+    /// What all magnets but the heeling ones have of the moment that they are said to have.
+    pub(crate) lot_share: f64,
 }
 
 impl Fitted {
@@ -55,6 +57,7 @@ impl Fitted {
                 .collect(),
             bar: bar_sd * rng.gaussian(),
             needle_am2: binnacle.design.needle_moment_am2,
+            lot_share: 1.0,
         }
     }
 
@@ -139,7 +142,8 @@ impl Fitted {
         let hole = rack.hole(tray.hole).unwrap();
         let height = hole.below_card_mm + self.heights_mm[index][usize::from(tray.hole) - 1];
         let off = rack.off_centre_mm / 1e3 * if side.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let size = tray.red.sign() * kind.moment_am2 * (1.0 + self.moments[index][magnet % 16]);
+        let own = self.lot_share * (1.0 + self.moments[index][magnet % 16]);
+        let size = tray.red.sign() * kind.moment_am2 * own;
         let (middle, moment) = match axis {
             Axis::ForeAndAft => ([0.0, off, height / 1e3], [size, 0.0, 0.0]),
             Axis::Athwartship => ([off, 0.0, height / 1e3], [0.0, size, 0.0]),

@@ -15,18 +15,24 @@ pub(crate) struct Instruments {
     pub(crate) field_sd_nt: f64,
     pub(crate) scale_sd: f64,
     pub(crate) heading_sd_deg: f64,
+    /// Of its alignment, and of its tilt in roll and in pitch, degrees.
+    pub(crate) turned_sd_deg: f64,
 }
 
+/// As docs/plan.md takes one, with a quay of usual steel.
 pub(crate) const FLUXGATE: Instruments = Instruments {
-    field_sd_nt: 150.0,
+    field_sd_nt: 141.0,
     scale_sd: 0.003,
     heading_sd_deg: 0.5,
+    turned_sd_deg: 0.3,
 };
 
+/// The same.
 pub(crate) const PHONE: Instruments = Instruments {
-    field_sd_nt: 1_000.0,
-    scale_sd: 0.02,
-    heading_sd_deg: 1.0,
+    field_sd_nt: 1_005.0,
+    scale_sd: 0.03,
+    heading_sd_deg: 0.5,
+    turned_sd_deg: 1.0,
 };
 
 /// The waters of a ship, the berth's first: over this share of what there is.
@@ -47,38 +53,86 @@ pub(crate) fn waters(rng: &mut Random, share: f64) -> Vec<Water> {
         .collect()
 }
 
+/// What a reference is off all the time, degrees: no heading tells it.
+pub(crate) const REFERENCE_SD_DEG: f64 = 0.35;
+/// Standard deviations over ships, as an estimator takes them.
+const PRIOR: [f64; 8] = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008, 0.5];
+
 /// A model with the errors that headings in these waters would leave, and their
 /// covariance.
 pub(crate) fn model(rng: &mut Random, truth: &Standing, waters: &[Water]) -> Model {
+    let reference_deg = REFERENCE_SD_DEG * rng.gaussian();
+    model_by(rng, truth, waters, reference_deg)
+}
+
+/// The same by a reference that is off so much.
+pub(crate) fn model_by(
+    rng: &mut Random,
+    truth: &Standing,
+    waters: &[Water],
+    reference_deg: f64,
+) -> Model {
+    let mut model = exactly(truth, waters);
+    let mut covariance = SMatrix::<f64, 8, 8>::from(model.covariance.unwrap());
+    covariance[(7, 7)] -= REFERENCE_SD_DEG.powi(2);
+    let error =
+        covariance.cholesky().unwrap().l() * SVector::<f64, 8>::from_fn(|_, _| rng.gaussian());
+    let mut parameters = model.parameters_over_lambda.to_array();
+    for (parameter, error) in parameters.iter_mut().zip(&error) {
+        *parameter += error;
+    }
+    model.parameters_over_lambda = Parameters::from_array(parameters);
+    model.constant_deg += error[7] + reference_deg;
+    model
+}
+
+/// The model that headings without any error would give, and the covariance that they
+/// leave: one heading of each 15° in a water, twice, good to 0.7°, weighted by the time
+/// there.
+pub(crate) fn exactly(truth: &Standing, waters: &[Water]) -> Model {
     let weights: f64 = waters.iter().map(|w| w.weight).sum();
     let mean_h = weights / waters.iter().map(|w| w.weight / w.h_nt).sum::<f64>();
     let ratios = truth.ratios(mean_h);
-    let prior = [1500.0, 0.012, 1500.0, 0.006, 0.02, 0.008, 0.008, 0.5];
-    let mut information = SMatrix::<f64, 8, 8>::zeros();
-    for (index, sd) in prior.iter().enumerate() {
-        information[(index, index)] = 1.0 / f64::powi(*sd, 2);
-    }
-    for water in waters {
-        for heading in 0..24 {
-            let row = slopes(&ratios, (water.h_nt, water.z_nt), f64::from(heading) * 15.0);
-            // One heading of each 15° in a water, good to 0.7°, weighted by the time there.
+    let rows = |of: &[f64; 7]| -> Vec<Row> {
+        let each = waters.iter().flat_map(|water| {
             let weight = 2.0 * water.weight / weights / f64::powi(0.7, 2);
-            information += weight * row * row.transpose();
-        }
+            (0..24).map(move |i| ((water.h_nt, water.z_nt), f64::from(i) * 15.0, weight))
+        });
+        each.map(|(place, magnetic_deg, weight)| Row {
+            slope: slopes(of, place, magnetic_deg),
+            off_deg: {
+                let shown = magnetic_deg - truth.compass_deg(place, magnetic_deg);
+                super::wrap(shown - deviation(of, place, magnetic_deg))
+            },
+            weight,
+        })
+        .collect()
+    };
+    let mut information = SMatrix::<f64, 8, 8>::zeros();
+    for (index, sd) in PRIOR.iter().enumerate() {
+        information[(index, index)] = sd.powi(-2);
     }
-    let mut covariance = information.try_inverse().unwrap();
-    // The reference's own constant, which no heading tells.
-    covariance[(7, 7)] += 0.35 * 0.35;
-    covariance = (covariance + covariance.transpose()) / 2.0;
-    let error =
-        covariance.cholesky().unwrap().l() * SVector::<f64, 8>::from_fn(|_, _| rng.gaussian());
-    let parameters: [f64; 7] = std::array::from_fn(|i| ratios[i] + error[i]);
+    for row in rows(&ratios) {
+        information += row.weight * row.slope * row.slope.transpose();
+    }
+    let inverse = information.try_inverse().unwrap();
+    // A card that is turned by what its own needles induce is not quite one of seven
+    // parameters: what is nearest is fitted to its headings.
+    let mut fitted = SVector::<f64, 8>::from_fn(|i, _| ratios.get(i).copied().unwrap_or(0.0));
+    let start = fitted;
+    for _ in 0..12 {
+        let mut step = (start - fitted).zip_map(&SVector::from(PRIOR), |off, sd| off / (sd * sd));
+        for row in rows(&std::array::from_fn(|i| fitted[i])) {
+            step += row.weight * (row.off_deg - fitted[7]) * row.slope;
+        }
+        fitted += inverse * step;
+    }
+    let mut covariance = (inverse + inverse.transpose()) / 2.0;
+    covariance[(7, 7)] += REFERENCE_SD_DEG.powi(2);
     Model {
-        parameters_over_lambda: Parameters::from_array(parameters),
-        constant_deg: truth.alignment_deg + error[7],
-        covariance: Some(std::array::from_fn(|r| {
-            std::array::from_fn(|c| covariance[(r, c)])
-        })),
+        parameters_over_lambda: Parameters::from_array(std::array::from_fn(|i| fitted[i])),
+        constant_deg: fitted[7],
+        covariance: Some(covariance.transpose().into()),
         identifiable: Some(Identifiable {
             bx_nt: true,
             chi13: true,
@@ -96,15 +150,25 @@ pub(crate) fn model(rng: &mut Random, truth: &Standing, waters: &[Water]) -> Mod
     }
 }
 
+/// One heading: slopes of its deviation, and how far it is from a model's.
+struct Row {
+    slope: SVector<f64, 8>,
+    off_deg: f64,
+    weight: f64,
+}
+
+/// Deviation, degrees, on a magnetic heading.
+fn deviation(p: &[f64; 7], place: Place, magnetic_deg: f64) -> f64 {
+    let (sin, cos) = magnetic_deg.to_radians().sin_cos();
+    let (hx, hy, z) = (place.0 * cos, -place.0 * sin, place.1);
+    let x = hx * (1.0 + p[4] / 2.0) + p[5] * hy + p[1] * z + p[0];
+    let y = hy * (1.0 - p[4] / 2.0) + p[6] * hx + p[3] * z + p[2];
+    super::wrap(magnetic_deg - (-y).atan2(x).to_degrees())
+}
+
 /// Slopes of the deviation, degrees, on a magnetic heading, by small differences.
 fn slopes(ratios: &[f64; 7], place: Place, magnetic_deg: f64) -> SVector<f64, 8> {
-    let deviation = |p: &[f64; 7]| {
-        let (sin, cos) = magnetic_deg.to_radians().sin_cos();
-        let (hx, hy, z) = (place.0 * cos, -place.0 * sin, place.1);
-        let x = hx * (1.0 + p[4] / 2.0) + p[5] * hy + p[1] * z + p[0];
-        let y = hy * (1.0 - p[4] / 2.0) + p[6] * hx + p[3] * z + p[2];
-        super::wrap(magnetic_deg - (-y).atan2(x).to_degrees())
-    };
+    let deviation = |p: &[f64; 7]| deviation(p, place, magnetic_deg);
     let steps = [1.0, 1e-5, 1.0, 1e-5, 1e-5, 1e-5, 1e-5];
     SVector::from_fn(|i, _| {
         let Some(step) = steps.get(i) else { return 1.0 };
@@ -114,19 +178,21 @@ fn slopes(ratios: &[f64; 7], place: Place, magnetic_deg: f64) -> SVector<f64, 8>
     })
 }
 
+/// What was read at a berth, and how she truly lay.
+pub(crate) struct Berthed {
+    pub(crate) reading: BerthReading,
+    pub(crate) down_nt: f64,
+    pub(crate) magnetic_deg: f64,
+}
+
 /// A reading at the berth on a heading from ashore.
 pub(crate) fn reading(
     rng: &mut Random,
     truth: &Standing,
     place: Place,
     instruments: Instruments,
-) -> BerthReading {
-    let errors = ReadingErrors {
-        field_sd_nt: instruments.field_sd_nt,
-        heading_sd_deg: instruments.heading_sd_deg,
-        alignment_sd_deg: 0.3,
-        tilt_sd_deg: 0.3,
-    };
+) -> Berthed {
+    let errors = errors(instruments);
     let heading = rng.between(0.0, 360.0);
     let [x, y, z] = truth.field(place, heading);
     let tilt = [0, 1].map(|_| (errors.tilt_sd_deg * rng.gaussian()).to_radians());
@@ -135,9 +201,33 @@ pub(crate) fn reading(
         .sin_cos();
     let scale = 1.0 + instruments.scale_sd * rng.gaussian();
     let turned = [x * cos + y * sin, y * cos - x * sin];
-    let read = [0, 1]
-        .map(|axis| scale * (turned[axis] + tilt[axis] * z) + errors.field_sd_nt * rng.gaussian());
+    let noise = |rng: &mut Random| errors.field_sd_nt * rng.gaussian();
+    let read_nt = [0, 1].map(|axis| scale * (turned[axis] + tilt[axis] * z) + noise(rng));
     let told = heading + errors.heading_sd_deg * rng.gaussian();
-    let magnetic = MagneticHeading::new(told).unwrap();
-    BerthReading::new(magnetic, read, errors, Alignment::Keel).unwrap()
+    let upright = z - tilt[0] * x - tilt[1] * y;
+    Berthed {
+        reading: read(read_nt, told, instruments),
+        down_nt: scale * upright + noise(rng),
+        magnetic_deg: heading,
+    }
+}
+
+/// A reading that says this.
+pub(crate) fn read(
+    field_nt: [f64; 2],
+    magnetic_deg: f64,
+    instruments: Instruments,
+) -> BerthReading {
+    let errors = errors(instruments);
+    let magnetic = MagneticHeading::new(magnetic_deg).unwrap();
+    BerthReading::new(magnetic, field_nt, errors, Alignment::Keel).unwrap()
+}
+
+fn errors(instruments: Instruments) -> ReadingErrors {
+    ReadingErrors {
+        field_sd_nt: instruments.field_sd_nt,
+        heading_sd_deg: instruments.heading_sd_deg,
+        alignment_sd_deg: instruments.turned_sd_deg,
+        tilt_sd_deg: instruments.turned_sd_deg,
+    }
 }

@@ -8,10 +8,11 @@
 pub(crate) mod iron;
 pub(crate) mod knowledge;
 pub(crate) mod random;
+pub(crate) mod scene;
 
 use binnacle_magnetics::binnacle::{
-    Aboard, BarSetting, Binnacle, BinnacleForm, Design, HeelingSetting, Lot, PairSetting, Red,
-    SHIPPED, Setting, Side, Tray, VERSION,
+    Aboard, BarSetting, Binnacle, BinnacleForm, Design, DesignForm, HeelingSetting, Lot,
+    PairSetting, Red, SHIPPED, Setting, Side, Tray, VERSION,
 };
 use iron::Fitted;
 use random::Random;
@@ -99,10 +100,19 @@ impl Standing {
         wrap(f64::midpoint(low, high) - compass_deg)
     }
 
+    /// Degrees of deviation for each degree of heel to starboard, on north: the field
+    /// across the ship that heel brings in, over the mean directive force.
+    pub(crate) fn heeling_error(&self, place: Place) -> f64 {
+        let lambda = 1.0 + f64::midpoint(self.chi[0][0], self.chi[1][1]);
+        let across = (self.chi[1][1] - self.chi[2][2]) * place.1 - self.b_nt[2];
+        across / (lambda * place.0)
+    }
+
     /// The seven ratios to λ, as headings in a mean field have them.
     pub(crate) fn ratios(&self, h_nt: f64) -> [f64; 7] {
-        // What the needles get back along themselves, a fifth of the trace, turns nothing.
-        let along = (self.needle_nt[0][0] + self.needle_nt[1][1]) / 5.0;
+        // What the needles get back along themselves turns nothing, and what turns them
+        // does so by the same force whatever the directive force is.
+        let along = f64::midpoint(self.needle_nt[0][0], self.needle_nt[1][1]);
         let whole = |row: usize, column: usize| {
             let unit = if row == column { along } else { 0.0 };
             self.chi[row][column] + (self.needle_nt[row][column] - unit) / h_nt
@@ -203,6 +213,30 @@ pub(crate) fn binnacle(rng: &mut Random, which: usize) -> Binnacle {
         calibration: Vec::new(),
     })
     .unwrap()
+}
+
+/// The same binnacle with correctors that do what is said of them.
+pub(crate) fn without_tolerances(binnacle: Binnacle) -> Binnacle {
+    let mut form: BinnacleForm = binnacle.into();
+    let mut design: DesignForm = form.design.into();
+    for kind in &mut design.magnets {
+        kind.moment_tolerance = 0.0;
+    }
+    for rack in [&mut design.fore_and_aft, &mut design.athwartship] {
+        rack.position_sd_mm = 0.0;
+    }
+    for iron in design
+        .quadrantal
+        .iter_mut()
+        .flat_map(|iron| &mut iron.sizes)
+    {
+        iron.tolerance = 0.0;
+    }
+    if let Some(bar) = &mut design.flinders {
+        bar.tolerance = 0.0;
+    }
+    form.design = design.try_into().unwrap();
+    Binnacle::try_from(form).unwrap()
 }
 
 /// A ship for such a binnacle.

@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used)] // a study
 
-use super::adjusting::knowledge::{Instruments, model, reading, waters};
-use super::adjusting::random::Random;
-use super::adjusting::{binnacle, ship};
-use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, plan};
+use super::adjusting::knowledge::Instruments;
+use super::adjusting::scene::Scene;
+use super::adjusting::wrap;
+use binnacle_magnetics::adjust::plan;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -16,12 +16,18 @@ pub(crate) struct Tally {
     pub(crate) planned: u64,
     /// Refusals by their first words.
     pub(crate) refused: BTreeMap<String, u64>,
-    pub(crate) headings: u64,
-    pub(crate) held: u64,
+    /// Share of headings on which the band held, of each plan.
+    pub(crate) held: Vec<f64>,
+    /// Mean half-width of the band, of each plan, degrees.
+    pub(crate) half_width_deg: Vec<f64>,
     /// Worst true residual of each plan, degrees.
     pub(crate) worst_deg: Vec<f64>,
     pub(crate) before_deg: Vec<f64>,
-    pub(crate) band_deg: Vec<f64>,
+    /// Heeling error at the berth as it was, as it is, and what is foretold less that,
+    /// degrees for each degree.
+    pub(crate) heel_before: Vec<f64>,
+    pub(crate) heel_after: Vec<f64>,
+    pub(crate) heel_off: Vec<f64>,
     pub(crate) moves: Vec<f64>,
     pub(crate) nodes: Vec<f64>,
     pub(crate) unproven: u64,
@@ -31,40 +37,18 @@ impl Tally {
     pub(crate) fn of(seeds: std::ops::Range<u64>, which: usize, instruments: Instruments) -> Tally {
         let mut tally = Tally::default();
         for seed in seeds {
-            tally.add(seed, which, instruments);
+            tally.add(&Scene::new(seed, which, instruments));
         }
         tally
     }
 
-    fn add(&mut self, seed: u64, which: usize, instruments: Instruments) {
+    fn add(&mut self, scene: &Scene) {
         self.ships += 1;
-        let mut rng = Random::new(seed);
-        let binnacle = binnacle(&mut rng, which);
-        let truth = ship(&mut rng, &binnacle);
-        // Small binnacles, which have no Flinders bar, keep to one sea.
-        let waters = waters(&mut rng, if which == 0 { 1.0 } else { 0.15 });
-        let standing = truth.with(&binnacle.setting);
-        let model = model(&mut rng, &standing, &waters);
-        let berth = waters[0].earth();
-        let place = (berth.h_nt, berth.z_nt);
-        let reading = reading(&mut rng, &standing, place, instruments);
-        let outcome = plan(&Adjustment {
-            model: &model,
-            earth: berth,
-            reading: &reading,
-            scale_sd: instruments.scale_sd,
-            compass_deg: None,
-            vertical: None,
-            binnacle: &binnacle,
-            now: None,
-            waters: &waters,
-            circumstances: Circumstances::default(),
-            limits: Limits::default(),
-        })
-        .unwrap();
+        let outcome = plan(&scene.adjustment()).unwrap();
         if let Some(refused) = outcome.refusals.first() {
             let why = serde_json::to_value(&refused.refusal).unwrap();
-            *self.refused.entry(why["refusal"].to_string()).or_default() += 1;
+            let why = why["refusal"].as_str().unwrap().to_owned();
+            *self.refused.entry(why).or_default() += 1;
             return;
         }
         let best = &outcome.plans[0];
@@ -73,26 +57,42 @@ impl Tally {
         let optimality = outcome.optimality.unwrap();
         self.nodes.push(optimality.nodes as f64);
         self.unproven += u64::from(!optimality.proven);
-        self.before_deg.push(standing.worst_deg(place));
-        let mut worst: f64 = 0.0;
-        let adjusted = truth.with(&best.setting);
+        let berth = scene.place();
+        self.before_deg.push(scene.standing.worst_deg(berth));
+        let adjusted = scene.truth.with(&best.setting);
+        let (mut worst, mut held, mut widths, mut headings) = (0.0_f64, 0_u32, 0.0, 0_u32);
         for table in &best.after {
             let place = (table.h_nt, table.z_nt);
             worst = worst.max(adjusted.worst_deg(place));
-            self.band_deg.push(table.widest_band_deg.unwrap());
             for row in &table.rows {
                 let residual = adjusted.deviation_deg(place, row.compass_deg);
-                self.headings += 1;
-                let off = super::adjusting::wrap(residual - row.deviation_deg);
-                self.held += u64::from(off.abs() <= row.band95_deg.unwrap());
+                let band = row.band95_deg.unwrap();
+                headings += 1;
+                held += u32::from(wrap(residual - row.deviation_deg).abs() <= band);
+                widths += band;
             }
         }
         self.worst_deg.push(worst);
+        self.held.push(f64::from(held) / f64::from(headings));
+        self.half_width_deg.push(widths / f64::from(headings));
+        let after = adjusted.heeling_error(berth);
+        let foretold = best.heeling.after_deg_per_deg.unwrap();
+        let before = scene.standing.heeling_error(berth);
+        self.heel_before.push(before.abs());
+        self.heel_after.push(after.abs());
+        self.heel_off.push((foretold - after).abs());
     }
 
-    /// Share of headings on which the band held.
+    /// Share of headings on which the band held, of an average plan.
     pub(crate) fn coverage(&self) -> f64 {
-        self.held as f64 / self.headings as f64
+        mean(&self.held)
+    }
+
+    /// Standard error of that: headings of one plan err together.
+    pub(crate) fn coverage_sd(&self) -> f64 {
+        let average = self.coverage();
+        let squares: f64 = self.held.iter().map(|held| (held - average).powi(2)).sum();
+        squares.sqrt() / self.held.len() as f64
     }
 
     /// Share of plans whose worst true residual is 3° at most.
@@ -102,7 +102,11 @@ impl Tally {
     }
 }
 
-fn quantile(values: &[f64], share: f64) -> f64 {
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let index = (share * (sorted.len() as f64 - 1.0)).round() as usize;
@@ -120,17 +124,22 @@ impl fmt::Display for Tally {
         };
         write!(
             f,
-            "{} ships, {} planned, refused {:?}; band held {:.1} %; worst true residual \
-             median / 95 % {} (before {}), within 3 degrees {:.1} %; band {}; moves {}; nodes {}; \
-             not proven {}",
+            "{} ships, {} planned, refused {:?}; band held {:.1} % (standard error {:.1}), mean \
+             half-width {:.2}; worst true residual median / 95 % {} (before {}), within 3 degrees \
+             {:.1} %; heeling error median / 95 % {} (before {}), off what was foretold {}; \
+             moves {}; nodes {}; not proven {}",
             self.ships,
             self.planned,
             self.refused,
             100.0 * self.coverage(),
+            100.0 * self.coverage_sd(),
+            mean(&self.half_width_deg),
             two(&self.worst_deg),
             two(&self.before_deg),
             100.0 * self.within_3_deg(),
-            two(&self.band_deg),
+            two(&self.heel_after),
+            two(&self.heel_before),
+            two(&self.heel_off),
             two(&self.moves),
             two(&self.nodes),
             self.unproven,

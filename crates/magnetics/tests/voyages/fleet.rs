@@ -37,6 +37,8 @@ pub(crate) enum Event {
     Magnet(f64),
     /// The variation is off by so many degrees for as long.
     Astray(f64),
+    /// (bx, by) grow by so many nT in any direction, evenly over so many days.
+    Ramp(f64, f64),
 }
 
 /// What sails.
@@ -90,6 +92,7 @@ pub(crate) enum Name {
     Refit,
     GyroFault,
     Brief,
+    Ramp,
     Storm,
     Anomaly,
 }
@@ -153,6 +156,8 @@ struct World {
     changed: Option<[Parameters; 2]>,
     /// What lightning left that will fade.
     fading: [f64; 2],
+    /// What a ramp adds a minute, and until when.
+    growing: ([f64; 2], i64),
     state: Stage,
 }
 
@@ -268,7 +273,19 @@ impl World {
                 self.note(Name::Brief, minute);
                 self.state = Stage::Over;
             }
+            (Stage::ToCome, Event::Ramp(nt, days)) if due => {
+                let (sin, cos) = (TAU * rng.random::<f64>()).sin_cos();
+                let minutes = days * 1440.0;
+                let each = [nt * cos / minutes, nt * sin / minutes];
+                self.growing = (each, minute + minutes as i64);
+                self.note(Name::Ramp, minute);
+                self.state = Stage::Over;
+            }
             _ => {}
+        }
+        if minute < self.growing.1 {
+            truth.parameters.bx_nt += self.growing.0[0];
+            truth.parameters.by_nt += self.growing.0[1];
         }
         // Half of what fades is gone in a fortnight.
         for (fading, b) in self
@@ -387,6 +404,7 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         base: [0.0; 7],
         changed: None,
         fading: [0.0; 2],
+        growing: ([0.0; 2], 0),
         state: Stage::ToCome,
     };
     let mut field = FieldAt::time(FieldModel::Igrf14, start).unwrap();

@@ -8,9 +8,10 @@
 //! however large the file; what is wrong is said with its line and column; what is
 //! written opens in a spreadsheet without being taken for a formula, and reads back.
 
-use super::PortCall;
+use super::{Located, PortCall};
 use crate::ports::{self, PortCode};
 use crate::time::Instant;
+use std::collections::BTreeMap;
 use std::io::{BufRead, Read, Write};
 
 /// No line is longer, in bytes.
@@ -60,8 +61,9 @@ pub fn read(
     mut file: impl BufRead,
     vessel: Option<&str>,
     now: Instant,
-) -> Result<Vec<PortCall>, FileError> {
+) -> Result<Vec<Located>, FileError> {
     let (mut header, mut calls, mut line) = (None, Vec::new(), 0);
+    let mut ids = BTreeMap::new();
     while let Some(text) = next_line(&mut file, line + 1)? {
         line += 1;
         if text.trim().is_empty() {
@@ -79,12 +81,29 @@ pub fn read(
                 format!("more than {MOST_CALLS} calls"),
             ));
         }
-        calls.push(row(header, &cells, vessel, now, line)?);
+        let call = row(header, &cells, vessel, now, line)?;
+        must_be_new(&mut ids, &call, line)?;
+        calls.push(Located { line, call });
     }
     if header.is_none() {
         return Err(FileError::new(1, "row", "the file is empty"));
     }
     Ok(calls)
+}
+
+/// Whether this is the first call of its ship that has its id.
+pub(super) fn must_be_new(
+    ids: &mut BTreeMap<(String, String), usize>,
+    call: &PortCall,
+    line: usize,
+) -> Result<(), FileError> {
+    match ids.insert((call.vessel.clone(), call.id.clone()), line) {
+        None => Ok(()),
+        Some(first) => {
+            let what = format!("{:?} stands on line {first} already", call.id);
+            Err(FileError::new(line, "id", what))
+        }
+    }
 }
 
 /// Writes calls, with the line of columns.
@@ -244,6 +263,7 @@ fn row(
     let vessel = cell("vessel").or(vessel);
     let call = PortCall {
         id: cell("id").map_or_else(|| format!("{port} {eta}"), str::to_owned),
+        name: None,
         vessel: vessel
             .ok_or_else(|| FileError::new(line, "vessel", "is empty"))?
             .to_owned(),

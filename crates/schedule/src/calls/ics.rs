@@ -2,7 +2,8 @@
 //!
 //! A `VEVENT` is a call: `UID` its name, `DTSTART` the ETA, `DTEND` the ETD, and its port
 //! the first UN/LOCODE in `X-UNLOCODE`, `LOCATION` or `SUMMARY`, or the one port whose
-//! name is `LOCATION`'s up to a comma. Cancelled events are passed over.
+//! name is `LOCATION`'s up to a comma. Such programs export what is over and what is
+//! cancelled as well: neither is a call, and both are told.
 //!
 //! What always holds: a time is taken only where the file says in which zone it is:
 //! UTC, or a `VTIMEZONE` of one offset or of yearly rules; floating times, whole days and
@@ -11,8 +12,8 @@
 mod line;
 mod zone;
 
-use super::PortCall;
-use super::csv::{FileError, MOST_CALLS};
+use super::csv::{FileError, MOST_CALLS, must_be_new};
+use super::{Located, PortCall};
 use crate::ports::{self, PortCode};
 use crate::time::Instant;
 use chrono::{NaiveDateTime, TimeZone, Utc};
@@ -20,11 +21,22 @@ use line::{Line, lines};
 use std::collections::BTreeMap;
 use zone::Zone;
 
+/// What a calendar says of a ship.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Calendar {
+    /// Her calls that are not over.
+    pub calls: Vec<Located>,
+    /// The names of calls that are cancelled.
+    pub cancelled: Vec<String>,
+    /// Calls that are over.
+    pub over: usize,
+}
+
 /// Reads the calls of one ship.
 ///
 /// # Errors
 /// [`FileError`] with the first thing that is wrong: nothing is kept of a bad file.
-pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Vec<PortCall>, FileError> {
+pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Calendar, FileError> {
     let lines = lines(text)?;
     if lines
         .first()
@@ -37,7 +49,7 @@ pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Vec<PortCall>, Fil
         ));
     }
     let zones = zone::zones(&lines)?;
-    let mut calls = Vec::new();
+    let (mut calendar, mut ids) = (Calendar::default(), BTreeMap::new());
     let mut event: Option<(usize, Vec<&Line>)> = None;
     // An alarm within an event has lines of its own.
     let mut inner = 0;
@@ -45,14 +57,22 @@ pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Vec<PortCall>, Fil
         match &mut event {
             None if line.is("BEGIN", "VEVENT") => event = Some((line.number, Vec::new())),
             Some((begins, own)) if line.is("END", "VEVENT") => {
-                if calls.len() == MOST_CALLS {
+                if calendar.calls.len() == MOST_CALLS {
                     return Err(FileError::new(
                         *begins,
                         "VEVENT",
                         format!("more than {MOST_CALLS} calls"),
                     ));
                 }
-                calls.extend(call(*begins, own, &zones, vessel, now)?);
+                match read_event(*begins, own, &zones, vessel, now)? {
+                    Event::Call(call) => {
+                        must_be_new(&mut ids, &call, *begins)?;
+                        let line = *begins;
+                        calendar.calls.push(Located { line, call });
+                    }
+                    Event::Cancelled(id) => calendar.cancelled.push(id),
+                    Event::Over => calendar.over += 1,
+                }
                 (event, inner) = (None, 0);
             }
             Some(_) if line.name == "BEGIN" => inner += 1,
@@ -63,20 +83,27 @@ pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Vec<PortCall>, Fil
     }
     match event {
         Some((begins, _)) => Err(FileError::new(begins, "VEVENT", "has no end")),
-        None => Ok(calls),
+        None => Ok(calendar),
     }
 }
 
-fn call(
+enum Event {
+    Call(PortCall),
+    Cancelled(String),
+    Over,
+}
+
+fn read_event(
     begins: usize,
     own: &[&Line],
     zones: &BTreeMap<String, Zone>,
     vessel: &str,
     now: Instant,
-) -> Result<Option<PortCall>, FileError> {
+) -> Result<Event, FileError> {
     let find = |name: &str| own.iter().find(|line| line.name == name).copied();
     if find("STATUS").is_some_and(|line| line.value.eq_ignore_ascii_case("CANCELLED")) {
-        return Ok(None);
+        let id = find("UID").map_or_else(String::new, |line| line.value.clone());
+        return Ok(Event::Cancelled(id));
     }
     if let Some(line) = own
         .iter()
@@ -92,14 +119,19 @@ fn call(
         find(name).ok_or_else(|| FileError::new(begins, name, "is missing in the event"))
     };
     let (eta, etd) = (needed("DTSTART")?, needed("DTEND")?);
+    let (arrives, leaves) = (instant(eta, zones)?, instant(etd, zones)?);
+    if arrives < leaves && leaves <= now {
+        return Ok(Event::Over);
+    }
     let call = PortCall {
         id: needed("UID")?.value.clone(),
+        name: None,
         vessel: vessel.to_owned(),
         port: port(begins, &find)?,
         berth: None,
-        eta: instant(eta, zones)?,
+        eta: arrives,
         eta_uncertainty_h: 0.0,
-        etd: instant(etd, zones)?,
+        etd: leaves,
         etd_uncertainty_h: 0.0,
         berth_heading_deg: None,
     };
@@ -107,7 +139,7 @@ fn call(
         let line = if error.field == "eta" { eta } else { etd };
         FileError::new(line.number, &line.name, error.detail)
     })?;
-    Ok(Some(call))
+    Ok(Event::Call(call))
 }
 
 fn port<'a>(

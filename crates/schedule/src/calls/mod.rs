@@ -1,7 +1,8 @@
 //! Port calls: when a ship is where, and how sure that is.
 //!
-//! What always holds: a call that [`PortCall::checked`] let pass ends after it begins
-//! and is not over; its uncertainties are hours within reason.
+//! What always holds: a call that [`PortCall::checked`] let pass ends after it begins,
+//! within [`LONGEST_STAY_DAYS`], and is not over; its uncertainties are hours within
+//! reason.
 
 mod berth;
 pub mod csv;
@@ -13,12 +14,18 @@ use crate::ports::PortCode;
 use crate::time::Instant;
 use serde::{Deserialize, Serialize};
 
+/// A ship that stays longer is laid up, and her call is not one.
+pub const LONGEST_STAY_DAYS: f64 = 120.0;
+
 /// A ship's call at a port.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PortCall {
     /// Its name.
     pub id: String,
+    /// What people call it, if not that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// The ship.
     pub vessel: String,
     /// The port.
@@ -39,6 +46,15 @@ pub struct PortCall {
     /// Her heading alongside, where it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub berth_heading_deg: Option<f64>,
+}
+
+/// A call that was read from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Located {
+    /// The line on which it begins, from 1.
+    pub line: usize,
+    /// The call.
+    pub call: PortCall,
 }
 
 /// What is wrong with a call.
@@ -64,6 +80,15 @@ impl PortCall {
                 format!("{} is not after eta, {}", self.etd, self.eta),
             );
         }
+        if self.etd.hours_since(self.eta) > LONGEST_STAY_DAYS * 24.0 {
+            return wrong(
+                "etd",
+                format!(
+                    "{} is more than {LONGEST_STAY_DAYS} days after eta",
+                    self.etd
+                ),
+            );
+        }
         if self.etd <= now {
             return wrong("etd", format!("{} is in the past: it is {now}", self.etd));
         }
@@ -84,6 +109,11 @@ impl PortCall {
         }
     }
 
+    /// Its name for people.
+    pub fn called(&self) -> &str {
+        self.name.as_deref().unwrap_or(&self.id)
+    }
+
     /// The chance that she is not alongside for `job_h` hours between two instants.
     ///
     /// Arrival and departure are taken as normal and independent, and the three ways to
@@ -98,6 +128,18 @@ impl PortCall {
         );
         1.0 - in_time * long_enough * stays
     }
+}
+
+/// The first two calls of one ship that overlap, by their places: the one that begins
+/// later, and the one that has not ended then.
+pub fn overlap(calls: &[PortCall]) -> Option<(usize, usize)> {
+    let mut order: Vec<usize> = (0..calls.len()).collect();
+    order.sort_by_key(|at| (&calls[*at].vessel, calls[*at].eta, *at));
+    let pairs = order.windows(2).map(|pair| (pair[1], pair[0]));
+    let mut overlapping = pairs.filter(|(next, first)| {
+        calls[*next].vessel == calls[*first].vessel && calls[*next].eta < calls[*first].etd
+    });
+    overlapping.next()
 }
 
 /// The chance that a normal error of this size is below a margin; at no error at all,
@@ -131,6 +173,7 @@ mod tests {
     fn call(eta_uncertainty_h: f64) -> PortCall {
         PortCall {
             id: "c".to_owned(),
+            name: None,
             vessel: "v".to_owned(),
             port: PortCode::parse("NLRTM").unwrap(),
             berth: None,
@@ -151,6 +194,17 @@ mod tests {
         assert!(call(0.0).chance_of_missing(begins, ends, 3.0).abs() < 1e-12);
         let noon = at("2026-12-01T08:30:00Z");
         assert!((call(0.0).chance_of_missing(begins, noon, 3.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn calls_of_one_ship_that_overlap_are_found_whatever_their_order() {
+        let (first, mut next, mut other) = (call(0.0), call(0.0), call(0.0));
+        (next.eta, next.etd) = (first.etd, at("2026-12-05T06:00:00Z"));
+        other.vessel = "w".to_owned();
+        let calls = [next.clone(), other.clone(), first.clone()];
+        assert_eq!(overlap(&calls), None);
+        next.eta = at("2026-12-03T05:59:59Z");
+        assert_eq!(overlap(&[next, other, first]), Some((0, 2)));
     }
 
     #[test]

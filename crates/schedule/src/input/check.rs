@@ -1,14 +1,12 @@
 //! Whether an input hangs together.
 
-use super::{Checked, Firm, Input, InputError};
-use crate::calls::PortCall;
+use super::{Checked, Input, InputError, firm_is_sound};
+use crate::calls::overlap;
 use crate::ports;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// No list is longer.
 const MOST: usize = 50_000;
-/// A ship that stays longer is laid up, and her call is not one.
-const LONGEST_STAY_DAYS: f64 = 120.0;
 
 type Result<T> = std::result::Result<T, InputError>;
 
@@ -46,7 +44,9 @@ pub(super) fn check(input: Input) -> Result<Checked> {
     calls_of(&input, &vessels)?;
     let firms = names("firms", input.firms.iter().map(|firm| firm.id.as_str()))?;
     for (at, firm) in input.firms.iter().enumerate() {
-        firm_is_sound(firm, &format!("firms[{at}]"))?;
+        firm_is_sound(firm).map_err(|error| {
+            InputError::new(format!("firms[{at}].{}", error.field), error.detail)
+        })?;
     }
     let mut met: BTreeSet<&str> = BTreeSet::new();
     for (at, job) in input.former.iter().enumerate() {
@@ -181,7 +181,6 @@ fn facts(path: &str, compass: &crate::needs::Compass) -> Result<()> {
 }
 
 fn calls_of(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
-    let mut of: BTreeMap<&str, Vec<(usize, &PortCall)>> = BTreeMap::new();
     for (at, call) in input.port_calls.iter().enumerate() {
         let path = format!("port_calls[{at}]");
         known(vessels, format!("{path}.vessel"), &call.vessel, "vessel")?;
@@ -195,71 +194,14 @@ fn calls_of(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
                 error.detail,
             ));
         }
-        if call.etd.hours_since(call.eta) > LONGEST_STAY_DAYS * 24.0 {
-            let what = format!(
-                "{} is more than {LONGEST_STAY_DAYS} days after eta",
-                call.etd
-            );
-            return Err(InputError::new(format!("{path}.etd"), what));
-        }
-        of.entry(&call.vessel).or_default().push((at, call));
     }
-    for calls in of.values_mut() {
-        calls.sort_by_key(|(at, call)| (call.eta, *at));
-        for pair in calls.windows(2) {
-            let ((_, first), (at, next)) = (pair[0], pair[1]);
-            if next.eta < first.etd {
-                let what = format!(
-                    "{} overlaps call {:?} of the same ship, which ends {}",
-                    next.eta, first.id, first.etd
-                );
-                return Err(InputError::new(format!("port_calls[{at}].eta"), what));
-            }
-        }
-    }
-    Ok(())
-}
-
-fn firm_is_sound(firm: &Firm, path: &str) -> Result<()> {
-    let wrong = |field: &str, detail: &str| Err(InputError::new(format!("{path}.{field}"), detail));
-    if firm.working_days.is_empty() {
-        return wrong(
-            "working_days",
-            "a firm that works on no day of the week serves nobody",
-        );
-    }
-    if firm.ports.is_empty() {
-        return wrong("ports", "a firm without ports serves nobody");
-    }
-    if firm.teams > 1000 {
-        return wrong("teams", "more than 1000");
-    }
-    if !(1..=20).contains(&firm.jobs_a_team_day) {
-        return wrong("jobs_a_team_day", "is not within 1 to 20");
-    }
-    let hours = 0.0..=24.0;
-    if !hours.contains(&firm.first_hour) {
-        return wrong("first_hour", "is not within 0 to 24");
-    }
-    if !hours.contains(&firm.last_hour) || firm.last_hour <= firm.first_hour {
-        return wrong("last_hour", "is not after first_hour and up to 24");
-    }
-    if !(0.0..=8760.0).contains(&firm.lead_time_h) {
-        return wrong("lead_time_h", "is not within 0 to 8760");
-    }
-    let mut served = BTreeSet::new();
-    for (at, port) in firm.ports.iter().enumerate() {
-        let path = format!("{path}.ports[{at}].port");
-        if ports::find(port.port).is_none() {
-            let what = format!("{} is no sea port of the UN/LOCODE table", port.port);
-            return Err(InputError::new(path, what));
-        }
-        if !served.insert(port.port) {
-            return Err(InputError::new(
-                path,
-                format!("{} stands there twice", port.port),
-            ));
-        }
-    }
-    Ok(())
+    let Some((at, of)) = overlap(&input.port_calls) else {
+        return Ok(());
+    };
+    let (next, first) = (&input.port_calls[at], &input.port_calls[of]);
+    let what = format!(
+        "{} overlaps call {:?} of the same ship, which ends {}",
+        next.eta, first.id, first.etd
+    );
+    Err(InputError::new(format!("port_calls[{at}].eta"), what))
 }

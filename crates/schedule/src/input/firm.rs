@@ -68,6 +68,11 @@ impl Firm {
         self.working_days.contains(&day.weekday()) && !self.closed.contains(&day)
     }
 
+    /// Whether a flag accepts its adjusters; one that is not known may not.
+    pub fn is_accepted_by(&self, flag: Option<Flag>) -> bool {
+        self.flags.is_empty() || flag.is_some_and(|flag| self.flags.contains(&flag))
+    }
+
     /// What a team's day in a port costs, if the firm serves it.
     pub fn travel(&self, port: PortCode) -> Option<Eur> {
         let served = self.ports.iter().find(|served| served.port == port)?;

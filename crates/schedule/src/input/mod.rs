@@ -7,10 +7,12 @@
 mod check;
 mod firm;
 mod read;
+mod sound;
 mod weights;
 
 pub use firm::{Firm, ServedPort};
 pub use read::{InputError, read};
+pub use sound::{FirmError, firm_is_sound};
 pub use weights::Weights;
 
 use crate::calls::PortCall;
@@ -71,8 +73,9 @@ pub struct Vessel {
     /// A licence that her operator asks of an adjuster.
     #[serde(default)]
     pub licence: Option<String>,
-    /// Her flag.
-    pub flag: Flag,
+    /// Her flag; every flag's rules bind her when it is not known.
+    #[serde(default)]
+    pub flag: Option<Flag>,
     /// Her gross tonnage.
     #[serde(default)]
     pub gross_tonnage: Option<u32>,
@@ -88,6 +91,19 @@ pub struct Vessel {
 }
 
 impl Vessel {
+    /// Her name for people.
+    pub fn called(&self) -> &str {
+        self.name.as_deref().unwrap_or(&self.id)
+    }
+
+    /// Her flag for people.
+    pub(crate) fn flag_in_words(&self) -> String {
+        match self.flag {
+            Some(flag) => format!("flag {}", flag.letters()),
+            None => "a flag that is not known".to_owned(),
+        }
+    }
+
     /// What rules ask about.
     pub fn ship(&self) -> Ship {
         Ship {

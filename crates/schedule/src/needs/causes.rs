@@ -73,7 +73,7 @@ pub(super) fn find(
 /// it: to adjust too early costs a fee, to adjust too late a detention.
 fn binds(applies: &Applies, ship: &Ship) -> bool {
     let kept = ship.deviation_record.unwrap_or(DeviationRecord::NotKept);
-    (applies.flags.is_empty() || applies.flags.contains(&ship.flag))
+    (applies.flags.is_empty() || ship.flag.is_none_or(|flag| applies.flags.contains(&flag)))
         && (applies.trades.is_empty()
             || ship
                 .trade

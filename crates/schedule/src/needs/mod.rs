@@ -14,8 +14,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ship {
-    /// Her flag.
-    pub flag: Flag,
+    /// Her flag; every flag's rules bind her when it is not known.
+    #[serde(default)]
+    pub flag: Option<Flag>,
     /// Her gross tonnage; a rule for large ships binds her when it is not known.
     #[serde(default)]
     pub gross_tonnage: Option<u32>,

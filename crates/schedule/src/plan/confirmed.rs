@@ -72,7 +72,8 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
     if firm.travel(call.port).is_none() {
         return loose(format!(
             "call {} is at {}, which {name} does not serve",
-            call.id, call.port
+            call.called(),
+            call.port
         ));
     }
     match quote::quote(input, job, call, firm, day) {
@@ -87,7 +88,7 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
             quote,
         },
         Err(obstacles) => loose(match obstacles[0] {
-            Obstacle::Flag => format!("flag {} does not accept {name}", job.vessel.flag.letters()),
+            Obstacle::Flag => format!("{} does not accept {name}", job.vessel.flag_in_words()),
             Obstacle::Licence => format!("{name} lacks the licence that the operator asks for"),
             Obstacle::NotWorking => format!("{name} does not work on {day}"),
             Obstacle::LeadTime => format!("too little is left of {day}"),

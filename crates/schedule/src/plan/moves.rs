@@ -40,7 +40,7 @@ pub(super) fn changes(
                 };
                 (
                     what,
-                    cause(input, job, &standing[at], options, former, at, way, made),
+                    cause(input, jobs, &standing[at], options, former, at, way, made),
                 )
             }
         };
@@ -90,7 +90,7 @@ fn kept(standing: &Standing<'_>) -> String {
 )]
 fn cause(
     input: &Input,
-    job: &Job<'_>,
+    jobs: &[Job<'_>],
     standing: &Standing<'_>,
     options: &Options<'_>,
     former: &FormerJob,
@@ -101,6 +101,7 @@ fn cause(
     if let Standing::Loose { cause } = standing {
         return cause.clone();
     }
+    let job = &jobs[at];
     let Some(call) = job.calls.iter().find(|call| call.id == former.call) else {
         return format!("call {} is cancelled", former.call);
     };
@@ -121,7 +122,8 @@ fn cause(
             let port = quote::port_of(call).name;
             format!(
                 "{name} on {} is no longer possible: call {} is at {port}, {stay}",
-                former.day, call.id
+                former.day,
+                call.called()
             )
         };
     };
@@ -129,7 +131,9 @@ fn cause(
         .iter()
         .flatten()
         .filter(|other| other.firm == old.firm && other.day == old.day);
-    let names: Vec<&str> = others.map(|other| other.call.vessel.as_str()).collect();
+    let names: Vec<&str> = others
+        .map(|other| jobs[other.job].vessel.called())
+        .collect();
     let teams =
         input.firms[old.firm].teams as usize * input.firms[old.firm].jobs_a_team_day as usize;
     if names.len() >= teams {

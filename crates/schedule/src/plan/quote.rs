@@ -99,10 +99,7 @@ pub(super) fn quote(
             against.push(obstacle);
         }
     };
-    unless(
-        firm.flags.is_empty() || firm.flags.contains(&job.vessel.flag),
-        Obstacle::Flag,
-    );
+    unless(firm.is_accepted_by(job.vessel.flag), Obstacle::Flag);
     let licence = job.vessel.licence.as_ref();
     unless(
         licence.is_none_or(|asked| firm.licences.contains(asked)),

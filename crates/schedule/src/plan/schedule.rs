@@ -6,7 +6,7 @@ use crate::needs::Urgency;
 use crate::ports::PortCode;
 use crate::time::Instant;
 use chrono::NaiveDate;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Who does what where and when, how good that is, and what could not be done.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -75,7 +75,7 @@ pub struct PlannedJob {
 }
 
 /// What a job was weighed by beside what is paid, in euros.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weighed {
     /// The chance of missing the ship.
     pub risk_eur: f64,
@@ -126,7 +126,7 @@ pub struct Change {
 }
 
 /// What became of a job.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ChangeKind {
     /// It stands as it was.

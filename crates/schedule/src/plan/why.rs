@@ -27,7 +27,7 @@ pub(super) fn unscheduled(
         taken
             .entry((firm, way.day))
             .or_default()
-            .push(&jobs[way.job].vessel.id);
+            .push(jobs[way.job].vessel.called());
     }
     let overdue = |job: &Job<'_>| job.due() < input.now.date(0);
     let open = jobs.iter().zip(made).filter(|(job, way)| match way {
@@ -87,16 +87,20 @@ impl Found {
             let served: BTreeSet<String> = input
                 .firms
                 .iter()
-                .filter(|firm| firm.flags.is_empty() || firm.flags.contains(&job.vessel.flag))
+                .filter(|firm| firm.is_accepted_by(job.vessel.flag))
                 .flat_map(|firm| firm.ports.iter().map(|served| served.port.to_string()))
                 .take(200)
                 .collect();
             let ports: Vec<String> = served.into_iter().take(12).collect();
-            let help = format!(
-                "a call by {} at a port that a firm serves: {}",
-                job.due(),
-                ports.join(", ")
-            );
+            let help = if ports.is_empty() {
+                "a firm that the flag accepts: there is none".to_owned()
+            } else {
+                format!(
+                    "a call by {} at a port that a firm serves: {}",
+                    job.due(),
+                    ports.join(", ")
+                )
+            };
             self.near.insert((3, job.due(), help));
         }
         for call in &job.calls {
@@ -120,7 +124,9 @@ impl Found {
         if serving.is_empty() {
             self.say(format!(
                 "no firm serves {} ({}), call {}",
-                port.name, call.port, call.id
+                port.name,
+                call.port,
+                call.called()
             ));
             let day = call.eta.date(port.zone_h());
             if day <= job.due() {
@@ -177,14 +183,14 @@ impl Found {
         obstacles: &[Obstacle],
     ) {
         let (name, port, due) = (firm.called(), quote::port_of(call).name, job.due());
-        let flag = job.vessel.flag.letters();
         let only = |help: String| (obstacles.len() == 1).then_some((1, day, help));
         let licence = job.vessel.licence.as_deref().unwrap_or_default();
+        let flag = job.vessel.flag_in_words();
         for obstacle in obstacles {
             let (because, help) = match obstacle {
                 Obstacle::Flag => (
-                    format!("flag {flag} does not accept {name}, which serves {port}"),
-                    format!("flag {flag} accepting {name}, at {port} on {day}"),
+                    format!("{flag} does not accept {name}, which serves {port}"),
+                    format!("{flag} accepting {name}, at {port} on {day}"),
                 ),
                 Obstacle::Licence => (
                     format!("{name} at {port} lacks licence {licence}"),
@@ -204,14 +210,14 @@ impl Found {
                 Obstacle::Stay => (
                     format!(
                         "call {} leaves {name} too few working hours on {day} at {port}",
-                        call.id
+                        call.called()
                     ),
                     format!("a longer stay at {port} on {day}, for {name}"),
                 ),
                 Obstacle::AfterDue => (
                     format!(
                         "call {} at {port} on {day} is after the due date, {due}",
-                        call.id
+                        call.called()
                     ),
                     format!("a due date of {day} or later: {name} could come to {port}"),
                 ),

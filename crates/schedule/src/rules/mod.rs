@@ -95,9 +95,9 @@ pub struct Citation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Read {
-    /// The document itself was read.
+    /// The document itself was read, from its issuer.
     FirstHand,
-    /// Another document was read that tells of it.
+    /// A copy elsewhere was read, or a document that tells of it.
     SecondHand,
 }
 

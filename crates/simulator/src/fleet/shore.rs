@@ -83,7 +83,8 @@ impl Shore {
         let cookie = cookies
             .filter_map(|cookie| cookie.to_str().ok())
             .filter_map(|cookie| cookie.split(';').next())
-            .find(|cookie| cookie.starts_with("binnacle_session="))
+            // For https alone its name begins with `__Host-`.
+            .find(|cookie| cookie.contains("binnacle_session="))
             .map(str::to_owned);
         read::<Value>(answer).await.context("signing in")?;
         let cookie = cookie.context("signing in: the server gave no session cookie")?;

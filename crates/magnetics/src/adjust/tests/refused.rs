@@ -107,6 +107,7 @@ fn mistakes_at_the_berth_are_named() {
             BISCAY,
             MagneticHeading::new(heading).unwrap(),
             field,
+            Unit::Nanotesla,
             case.reading.errors(),
             Alignment::Keel,
         );
@@ -117,6 +118,7 @@ fn mistakes_at_the_berth_are_named() {
         BISCAY,
         case.reading.magnetic(),
         [x, y],
+        Unit::Nanotesla,
         case.reading.errors(),
         Alignment::Keel,
     );

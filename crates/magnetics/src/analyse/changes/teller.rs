@@ -101,9 +101,14 @@ impl Teller<'_> {
             What::Burst => event.last,
             _ => back.map(|later| later.first),
         };
+        // A drift has no date: it is taken from one of the times that were tried.
+        let at_port = match event.what {
+            What::Drift => None,
+            _ => self.began_at_port(event),
+        };
         let known = Circumstances {
             leads: event.leads,
-            at_port: self.began_at_port(event),
+            at_port,
             ended_at_port: back.and_then(|later| self.began_at_port(later)),
             burst_s: event
                 .last

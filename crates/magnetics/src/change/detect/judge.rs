@@ -55,6 +55,9 @@ impl Search<'_> {
     pub(super) fn judge(&mut self, k: usize) {
         let leads = self.leads();
         let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        if k < self.young() {
+            return self.judge_passing(k, leads);
+        }
         let burst = nats(Kind::Burst).max(0.0);
         let back = nats(Kind::Return);
         if let Some(candidate) = self.candidate(&leads)
@@ -105,6 +108,14 @@ impl Search<'_> {
             }
             return self.adopt(k, kind, leads);
         }
+        self.judge_passing(k, leads);
+    }
+
+    /// Whether the field is astray, for what lasts has not been told.
+    fn judge_passing(&mut self, k: usize, leads: Leads) {
+        let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        let burst = nats(Kind::Burst);
+        let lasting = nats(Kind::Step).max(nats(Kind::Reference));
         if self.burst.is_none()
             && burst > BURST_NATS + self.unlearnt_nats(k)
             && burst - lasting > BURST_OVER_STEP

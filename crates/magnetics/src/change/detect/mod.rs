@@ -47,6 +47,8 @@ const YOUNG_KNOWN: usize = 72;
 /// A change that is dated among the first rows of all is none.
 const FIRST: usize = 100;
 const FIRST_KNOWN: usize = 36;
+/// But what passes may begin with this row: it comes and goes faster than learning does.
+const FIRST_PASSING: usize = 12;
 /// Something is up when a lead is beyond this, though not yet what.
 const SUSPECTED_NATS: f64 = 8.0;
 
@@ -133,13 +135,16 @@ impl<'a> Search<'a> {
         if k >= self.lesson.at {
             self.learn(k);
         }
-        let is_due = k >= self.first() && self.is_due(k);
+        if k == self.first() {
+            self.bank.forget_lasting();
+        }
+        let is_due = k >= FIRST_PASSING && self.is_due(k);
         if is_due {
             self.settle_burst(k);
         }
         let at = self.point(k);
         let m = self.measure(k, &at);
-        if is_due || (k >= self.first() && self.is_astray(k, &m)) {
+        if is_due || (k >= FIRST_PASSING && self.is_astray(k, &m)) {
             let earlier = earlier(self.misled.as_ref(), &self.calls);
             self.bank.spawn(k, &self.null, earlier);
             self.spawned = k;
@@ -155,7 +160,7 @@ impl<'a> Search<'a> {
         let earlier = earlier(self.misled.as_ref(), &self.calls);
         let null = (&self.null, surprise);
         self.bank.take(k, m, &self.noise, null, earlier);
-        if k >= self.young() {
+        if k >= FIRST_PASSING {
             self.judge(k);
             self.settle_faint(k, false);
         }

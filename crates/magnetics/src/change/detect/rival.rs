@@ -23,6 +23,10 @@ const RIVAL_NATS: f64 = 8.0;
 /// But by this, where it takes the place of several: one change is likelier than more.
 const RIVAL_OF_SEVERAL_NATS: f64 = 3.0;
 const SPARED_NATS: f64 = 6.0;
+/// And by so much more for a drift where all steps were dated in port, for that is cargo as
+/// a rule; it must have begun so many rows before the first.
+const DRIFT_IN_PORT_NATS: f64 = 16.0;
+const BEFORE_PORT_ROWS: usize = 72;
 /// And no less likely by this than another step would be: two in a row are seldom.
 const BELOW_STEP: f64 = 3.0;
 /// One that trails by this is given up, nats, and any after so many rows.
@@ -145,17 +149,21 @@ impl Search<'_> {
             return false;
         };
         let (nats, of) = (lead(&self.rivals[place]), self.rivals[place].event);
-        // What came on board in port is cargo, and no drift.
         let mut steps = (of..self.events.len()).filter(|&e| self.events[e].what == What::Step);
         let is_drift = self.rivals[place].what == What::Drift;
-        if is_drift && steps.all(|event| self.began_in_port(event)) {
-            return false;
-        }
-        let enough = if later(&self.rivals[place]) > 0 {
+        let in_port = is_drift && steps.all(|event| self.began_in_port(event));
+        let mut enough = if later(&self.rivals[place]) > 0 {
             RIVAL_OF_SEVERAL_NATS
         } else {
             RIVAL_NATS
         };
+        if in_port {
+            // Cargo comes on board at once: nothing went before it.
+            if self.rivals[place].first + BEFORE_PORT_ROWS > self.events[of].between.0 {
+                return false;
+            }
+            enough += DRIFT_IN_PORT_NATS;
+        }
         if nats < enough || nats < step - BELOW_STEP || nats < burst || nats < back {
             return false;
         }

@@ -1,0 +1,80 @@
+//! One ship at one berth, with all that is known of her.
+
+use super::knowledge::{Berthed, Instruments, REFERENCE_SD_DEG, model_by, reading, waters};
+use super::random::Random;
+use super::{Place, Standing, Truth};
+use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, VerticalReading, Water};
+use binnacle_magnetics::binnacle::Binnacle;
+use binnacle_magnetics::model::Model;
+
+/// As chance made them.
+pub(crate) struct Scene {
+    pub(crate) rng: Random,
+    pub(crate) binnacle: Binnacle,
+    pub(crate) truth: Truth,
+    /// She as she came to the berth.
+    pub(crate) standing: Standing,
+    pub(crate) waters: Vec<Water>,
+    pub(crate) model: Model,
+    /// What the reference of the model is off.
+    pub(crate) reference_deg: f64,
+    pub(crate) berthed: Berthed,
+    scale_sd: f64,
+}
+
+impl Scene {
+    /// A ship with a binnacle of one of the designs shipped.
+    pub(crate) fn new(seed: u64, which: usize, instruments: Instruments) -> Scene {
+        Scene::with_lot(seed, which, instruments, 1.0)
+    }
+
+    /// The same whose magnets all have this share of the moment that they are said to have.
+    pub(crate) fn with_lot(seed: u64, which: usize, instruments: Instruments, share: f64) -> Scene {
+        let mut rng = Random::new(seed);
+        let binnacle = super::binnacle(&mut rng, which);
+        let mut truth = super::ship(&mut rng, &binnacle);
+        truth.fitted.lot_share = share;
+        // Small binnacles, which have no Flinders bar, keep to one sea.
+        let waters = waters(&mut rng, if which == 0 { 1.0 } else { 0.15 });
+        let standing = truth.with(&binnacle.setting);
+        let reference_deg = REFERENCE_SD_DEG * rng.gaussian();
+        let model = model_by(&mut rng, &standing, &waters, reference_deg);
+        let place = (waters[0].h_nt, waters[0].z_nt);
+        let berthed = reading(&mut rng, &standing, place, instruments);
+        Scene {
+            rng,
+            binnacle,
+            truth,
+            standing,
+            waters,
+            model,
+            reference_deg,
+            berthed,
+            scale_sd: instruments.scale_sd,
+        }
+    }
+
+    /// The field at the berth.
+    pub(crate) fn place(&self) -> Place {
+        (self.waters[0].h_nt, self.waters[0].z_nt)
+    }
+
+    /// What a planner is given.
+    pub(crate) fn adjustment(&self) -> Adjustment<'_> {
+        Adjustment {
+            model: &self.model,
+            earth: self.waters[0].earth(),
+            reading: &self.berthed.reading,
+            scale_sd: self.scale_sd,
+            compass_deg: None,
+            vertical: Some(VerticalReading {
+                down_nt: self.berthed.down_nt,
+            }),
+            binnacle: &self.binnacle,
+            now: None,
+            waters: &self.waters,
+            circumstances: Circumstances::default(),
+            limits: Limits::default(),
+        }
+    }
+}
