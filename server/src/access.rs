@@ -1,17 +1,19 @@
 //! Who is asking: extractors that a handler names in its arguments.
 //!
 //! What always holds: a [`Reader`] and a [`Writer`] belong to one operator, and
-//! every query about a fleet takes that operator's id; an [`Agent`] belongs to one
-//! vessel. A request that a cookie vouches for may change something only with the
+//! every query about a fleet takes that operator's id; a [`PartyReader`] and a
+//! [`PartyWriter`] belong to an operator or a firm, and find nothing of another's; an
+//! [`Agent`] belongs to one vessel. A request that a cookie vouches for may change something only with the
 //! header `X-Binnacle-Request`, which another site's form cannot send.
 
 use crate::app::App;
 use crate::error::{Error, Result};
-use crate::ids::{AgentId, CompassId, OperatorId, UserId, VesselId};
-use crate::session::{self, COOKIE, User};
+use crate::ids::{AgentId, CompassId, OperatorId, SessionId, TokenId, UserId, VesselId};
+use crate::session::{self, Role, User, cookie};
+use crate::tenants::Tenant;
 use crate::{enrolment, secret, tokens};
 use axum::extract::FromRequestParts;
-use axum::http::header::{AUTHORIZATION, COOKIE as COOKIE_HEADER};
+use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
 
 /// The header that a page of our own sends with every change.
@@ -24,8 +26,10 @@ pub struct Caller {
     pub user: User,
     /// Whether a token limits the person to reading.
     pub read_only: bool,
-    /// The session's token, when a cookie brought it.
-    pub session: Option<String>,
+    /// The session, when a cookie brought it.
+    pub session: Option<SessionId>,
+    /// The API token, when one was sent.
+    pub token: Option<TokenId>,
 }
 
 /// Someone who may see an operator's fleet.
@@ -46,6 +50,49 @@ pub struct Writer {
     pub user: UserId,
 }
 
+/// An operator's admin, who may see what is for admins only.
+#[derive(Clone, Copy, Debug)]
+pub struct Overseer {
+    /// Whose people.
+    pub operator: OperatorId,
+    /// Who.
+    pub user: UserId,
+}
+
+/// Someone of an operator's or a firm's who may see the work orders between them.
+#[derive(Clone, Copy, Debug)]
+pub struct PartyReader {
+    /// Whose side.
+    pub tenant: Tenant,
+    /// Who.
+    pub user: UserId,
+}
+
+/// Someone of an operator's or a firm's who may bring the work orders between them on.
+#[derive(Clone, Copy, Debug)]
+pub struct PartyWriter {
+    /// Whose side.
+    pub tenant: Tenant,
+    /// Who.
+    pub user: UserId,
+}
+
+impl From<Writer> for PartyWriter {
+    fn from(writer: Writer) -> PartyWriter {
+        PartyWriter {
+            tenant: Tenant::Operator(writer.operator),
+            user: writer.user,
+        }
+    }
+}
+
+/// Someone who manages operators and firms.
+#[derive(Clone, Copy, Debug)]
+pub struct Platform {
+    user: UserId,
+    read_only: bool,
+}
+
 /// A ship's agent.
 #[derive(Clone, Copy, Debug, sqlx::FromRow)]
 pub struct Agent {
@@ -55,6 +102,68 @@ pub struct Agent {
     pub agent_id: AgentId,
     /// The compass whose streams it may feed.
     pub compass_id: CompassId,
+}
+
+impl Caller {
+    /// The session: what follows is for a person at a screen.
+    ///
+    /// # Errors
+    /// When a token stands for the person.
+    pub fn must_be_signed_in(&self) -> Result<SessionId> {
+        self.session
+            .ok_or(Error::Forbidden("a token cannot do this; sign in"))
+    }
+
+    /// Whose side the caller is on; none for a platform admin.
+    pub fn tenant(&self) -> Option<Tenant> {
+        let operator = self.user.operator_id.map(Tenant::Operator);
+        operator.or(self.user.firm_id.map(Tenant::Firm))
+    }
+
+    fn operator(&self) -> Result<OperatorId> {
+        if self.user.lacks_second_factor() {
+            return Err(Error::SecondFactorRequired);
+        }
+        let operator = self.user.operator_id;
+        operator.ok_or(Error::Forbidden("only an operator's people have a fleet"))
+    }
+
+    fn party(&self) -> Result<Tenant> {
+        if self.user.lacks_second_factor() {
+            return Err(Error::SecondFactorRequired);
+        }
+        let none = "a platform admin has neither a fleet nor orders";
+        self.tenant().ok_or(Error::Forbidden(none))
+    }
+
+    fn must_be_admin(&self) -> Result<()> {
+        if !self.user.role.may_change_fleet() {
+            return Err(Error::Forbidden("only an admin may do this"));
+        }
+        Ok(())
+    }
+
+    /// Refuses a token that may only read.
+    ///
+    /// # Errors
+    /// When it is one.
+    pub fn must_not_only_read(&self) -> Result<()> {
+        if self.read_only {
+            return Err(Error::Forbidden("this token may only read"));
+        }
+        Ok(())
+    }
+}
+
+impl Platform {
+    /// The admin, unless a token limits them to reading: what keys of theirs belong to.
+    pub fn who_may_write(&self) -> Result<Tenant> {
+        if self.read_only {
+            return Err(Error::Forbidden("this token may only read"));
+        }
+        // Nobody else has this id: keys are told apart by it alone.
+        Ok(Tenant::Operator(OperatorId(self.user.0)))
+    }
 }
 
 impl FromRequestParts<App> for Caller {
@@ -67,8 +176,8 @@ impl FromRequestParts<App> for Caller {
                 .await?
                 .ok_or(Error::Unauthenticated);
         }
-        let token = session_cookie(parts).ok_or(Error::Unauthenticated)?;
-        let user = session::find_user(&app.db, &secret::hash(token), now)
+        let token = cookie::token(parts, &app.config).ok_or(Error::Unauthenticated)?;
+        let (user, session) = session::find_user(&app.db, &secret::hash(token), now, app.idle_s())
             .await?
             .ok_or(Error::Unauthenticated)?;
         if !parts.method.is_safe() && !parts.headers.contains_key(REQUEST_HEADER) {
@@ -79,7 +188,8 @@ impl FromRequestParts<App> for Caller {
         Ok(Caller {
             user,
             read_only: false,
-            session: Some(token.to_owned()),
+            session: Some(session),
+            token: None,
         })
     }
 }
@@ -89,10 +199,7 @@ impl FromRequestParts<App> for Reader {
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Reader> {
         let caller = Caller::from_request_parts(parts, app).await?;
-        let operator = caller
-            .user
-            .operator_id
-            .ok_or(Error::Forbidden("a platform admin has no fleet"))?;
+        let operator = caller.operator()?;
         Ok(Reader {
             operator,
             user: caller.user.user_id,
@@ -105,19 +212,72 @@ impl FromRequestParts<App> for Writer {
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Writer> {
         let caller = Caller::from_request_parts(parts, app).await?;
-        let operator = caller
-            .user
-            .operator_id
-            .ok_or(Error::Forbidden("a platform admin has no fleet"))?;
-        if !caller.user.role.may_change_fleet() {
-            return Err(Error::Forbidden("only an admin may change this"));
-        }
-        if caller.read_only {
-            return Err(Error::Forbidden("this token may only read"));
-        }
+        let operator = caller.operator()?;
+        caller.must_be_admin()?;
+        caller.must_not_only_read()?;
         Ok(Writer {
             operator,
             user: caller.user.user_id,
+        })
+    }
+}
+
+impl FromRequestParts<App> for Overseer {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Overseer> {
+        let caller = Caller::from_request_parts(parts, app).await?;
+        let operator = caller.operator()?;
+        caller.must_be_admin()?;
+        Ok(Overseer {
+            operator,
+            user: caller.user.user_id,
+        })
+    }
+}
+
+impl FromRequestParts<App> for PartyReader {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<PartyReader> {
+        let caller = Caller::from_request_parts(parts, app).await?;
+        Ok(PartyReader {
+            tenant: caller.party()?,
+            user: caller.user.user_id,
+        })
+    }
+}
+
+impl FromRequestParts<App> for PartyWriter {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<PartyWriter> {
+        let caller = Caller::from_request_parts(parts, app).await?;
+        let tenant = caller.party()?;
+        if !caller.user.role.may_bring_orders_on() {
+            return Err(Error::Forbidden(
+                "only an admin or an adjuster may change this",
+            ));
+        }
+        caller.must_not_only_read()?;
+        Ok(PartyWriter {
+            tenant,
+            user: caller.user.user_id,
+        })
+    }
+}
+
+impl FromRequestParts<App> for Platform {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Platform> {
+        let caller = Caller::from_request_parts(parts, app).await?;
+        if caller.user.role != Role::PlatformAdmin {
+            return Err(Error::Forbidden("only a platform admin may do this"));
+        }
+        Ok(Platform {
+            user: caller.user.user_id,
+            read_only: caller.read_only,
         })
     }
 }
@@ -140,15 +300,4 @@ fn bearer(parts: &Parts) -> Option<&str> {
     scheme
         .eq_ignore_ascii_case("bearer")
         .then_some(token.trim())
-}
-
-fn session_cookie(parts: &Parts) -> Option<&str> {
-    parts
-        .headers
-        .get_all(COOKIE_HEADER)
-        .iter()
-        .filter_map(|value| value.to_str().ok())
-        .flat_map(|value| value.split(';'))
-        .filter_map(|pair| pair.trim().split_once('='))
-        .find_map(|(name, value)| (name == COOKIE).then_some(value))
 }

@@ -47,4 +47,9 @@ impl App {
             metrics,
         }
     }
+
+    /// After so long without a request a session ends.
+    pub fn idle_s(&self) -> f64 {
+        f64::from(self.config.session_idle_hours) * 3600.0
+    }
 }

@@ -90,6 +90,15 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_SESSION_HOURS", default_value_t = 72,
           value_parser = clap::value_parser!(u32).range(1..=8760))]
     pub session_hours: u32,
+    /// Hours without a request after which a sign-in ends
+    #[arg(long, env = "BINNACLE_SESSION_IDLE_HOURS", default_value_t = 24,
+          value_parser = clap::value_parser!(u32).range(1..=8760))]
+    pub session_idle_hours: u32,
+    /// Proxies of one's own in front: who asks is read from the X-Forwarded-For that the
+    /// outermost of them wrote
+    #[arg(long, env = "BINNACLE_PROXIES", default_value_t = 0,
+          value_parser = clap::value_parser!(u8).range(0..=8))]
+    pub proxies: u8,
     /// Seconds to wait for more batches before a vessel is analysed
     #[arg(long, env = "BINNACLE_ANALYSIS_DELAY_S", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(0..=86_400))]
@@ -111,6 +120,11 @@ pub struct Serve {
 }
 
 impl Serve {
+    /// Whether cookies are for https alone.
+    pub fn has_secure_cookies(&self) -> bool {
+        self.secure_cookies || self.tls_cert.is_some()
+    }
+
     /// Where the certificate is kept, if https is spoken.
     pub fn certificate(&self) -> Option<Certificate> {
         let (chain, key) = (self.tls_cert.clone()?, self.tls_key.clone()?);
@@ -185,6 +199,13 @@ pub enum AdminCommand {
         #[command(subcommand)]
         what: Create,
     },
+    /// Give someone who lost password or telephone a one-time code to begin anew with:
+    /// password, second factor and sessions are gone
+    ResetUser {
+        /// What the person signs in with
+        #[arg(long)]
+        email: String,
+    },
     /// Revoke an agent's token: it is known no more until the agent is enrolled again
     RevokeAgent {
         /// The vessel's id
@@ -217,7 +238,25 @@ pub enum Create {
         #[arg(long, value_enum)]
         role: FleetRole,
     },
-    /// Someone who manages operators
+    /// A company that adjusts compasses
+    Firm {
+        /// Its name
+        #[arg(long)]
+        name: String,
+        /// The id of an operator that works with it, as often as there are such
+        #[arg(long = "operator")]
+        operators: Vec<Uuid>,
+    },
+    /// Someone who adjusts compasses for a firm
+    Adjuster {
+        /// The firm's id
+        #[arg(long)]
+        firm: Uuid,
+        /// Who.
+        #[command(flatten)]
+        person: Person,
+    },
+    /// Someone who manages operators and firms
     PlatformAdmin {
         /// Who.
         #[command(flatten)]

@@ -35,6 +35,15 @@ pub enum Error {
     /// E-mail and password do not belong together.
     #[error("e-mail or password is wrong")]
     WrongPassword,
+    /// The password is right, and a code is wanted besides.
+    #[error("enter the code of your authenticator app, or a recovery code")]
+    SecondFactorNeeded,
+    /// The password is right and the code is not.
+    #[error("the code is wrong, or was used before")]
+    WrongCode,
+    /// The operator wants a second factor, and this person has none yet.
+    #[error("your company wants a second factor: set one up first")]
+    SecondFactorRequired,
     /// The caller may see it, but not do this.
     #[error("{0}")]
     Forbidden(&'static str),
@@ -140,6 +149,17 @@ impl Error {
                 StatusCode::UNAUTHORIZED,
                 "wrong-password",
                 "E-mail or password is wrong",
+            ),
+            Error::SecondFactorNeeded => (
+                StatusCode::UNAUTHORIZED,
+                "second-factor-needed",
+                "A code is needed",
+            ),
+            Error::WrongCode => (StatusCode::UNAUTHORIZED, "wrong-code", "The code is wrong"),
+            Error::SecondFactorRequired => (
+                StatusCode::FORBIDDEN,
+                "second-factor-required",
+                "A second factor must be set up",
             ),
             Error::Forbidden(_) => (StatusCode::FORBIDDEN, "forbidden", "Not allowed"),
             Error::BadRequest(_) => (StatusCode::BAD_REQUEST, "bad-request", "Cannot be read"),

@@ -1,13 +1,13 @@
 //! `Idempotency-Key`: a create request that is sent again creates nothing more.
 //!
 //! What always holds: the key and what it made are stored in one transaction, so
-//! that either both exist or neither. A key is the operator's own and is forgotten
-//! after a day.
+//! that either both exist or neither. A key is the operator's or the firm's own and is
+//! forgotten after a day.
 
 use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Result};
-use crate::ids::OperatorId;
 use crate::secret;
+use crate::tenants::Tenant;
 use crate::time::Time;
 use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
@@ -32,7 +32,7 @@ impl Key {
     pub async fn once(
         &self,
         tx: &mut Tx,
-        operator: OperatorId,
+        tenant: impl Into<Tenant>,
         request_hash: &[u8],
         wanted: Uuid,
         now: Time,
@@ -40,20 +40,21 @@ impl Key {
         let Some(key) = &self.0 else {
             return Ok(wanted);
         };
+        let tenant = tenant.into().id();
         let key_hash = secret::hash(key);
         let outdated = Time(now.0.plus_seconds(-KEPT_FOR_S));
         execute!(
             &mut *tx,
-            "DELETE FROM idempotency_keys WHERE operator_id = $1 AND created_at < $2",
-            operator,
+            "DELETE FROM idempotency_keys WHERE tenant_id = $1 AND created_at < $2",
+            tenant,
             outdated
         )?;
         execute!(
             &mut *tx,
-            "INSERT INTO idempotency_keys (operator_id, key_hash, request_hash, resource_id, created_at)
+            "INSERT INTO idempotency_keys (tenant_id, key_hash, request_hash, resource_id, created_at)
              VALUES ($1, $2, $3, $4, $5)
-             ON CONFLICT (operator_id, key_hash) DO NOTHING",
-            operator,
+             ON CONFLICT (tenant_id, key_hash) DO NOTHING",
+            tenant,
             key_hash.as_slice(),
             request_hash,
             wanted,
@@ -63,9 +64,9 @@ impl Key {
             in &mut *tx,
             (Vec<u8>, Uuid),
             "SELECT request_hash, resource_id FROM idempotency_keys
-             WHERE operator_id = $1 AND key_hash = $2
+             WHERE tenant_id = $1 AND key_hash = $2
              ORDER BY key_hash",
-            operator,
+            tenant,
             key_hash.as_slice()
         )?
         .ok_or_else(|| anyhow::anyhow!("an idempotency key vanished"))?;
@@ -84,7 +85,7 @@ impl Key {
     pub async fn find(
         &self,
         db: &Db,
-        operator: OperatorId,
+        tenant: impl Into<Tenant>,
         request_hash: &[u8],
     ) -> Result<Option<Uuid>> {
         let Some(key) = &self.0 else {
@@ -94,9 +95,9 @@ impl Key {
             db,
             (Vec<u8>, Uuid),
             "SELECT request_hash, resource_id FROM idempotency_keys
-             WHERE operator_id = $1 AND key_hash = $2
+             WHERE tenant_id = $1 AND key_hash = $2
              ORDER BY key_hash",
-            operator,
+            tenant.into().id(),
             secret::hash(key).as_slice()
         )?;
         match found {

@@ -48,7 +48,9 @@ macro_rules! id {
 }
 
 id!(OperatorId, "A company with a fleet.");
+id!(FirmId, "A company that adjusts compasses.");
 id!(UserId, "A person who signs in.");
+id!(SessionId, "A time that a person is signed in for.");
 id!(TokenId, "An API token.");
 id!(VesselId, "A ship.");
 id!(CompassId, "A magnetic element aboard.");
@@ -63,4 +65,7 @@ id!(DeliveryId, "What a receiver is told: the id of the event.");
 id!(BinnacleId, "A revision of a binnacle.");
 id!(OrderId, "An order to adjust a compass.");
 id!(PhotoId, "A photograph in an order.");
+id!(CallId, "A vessel's call at a port.");
+id!(KeyId, "A public key that a firm signs with.");
+id!(FeedId, "A calendar that is read by its secret address.");
 id!(EventId, "Something a dashboard is told.");

@@ -21,14 +21,21 @@ pub mod ids;
 pub mod time;
 
 pub mod access;
+pub mod firms;
 pub mod idempotency;
 pub mod operators;
+pub mod password;
+pub mod peer;
+pub mod second_factor;
 pub mod secret;
 pub mod session;
+pub mod tenants;
 pub mod tokens;
+pub mod users;
 
 pub mod binnacles;
 pub mod compasses;
+pub mod fleet;
 pub mod logbook;
 pub mod settings;
 pub mod vessels;
@@ -44,6 +51,11 @@ pub mod events;
 pub mod models;
 pub mod samples;
 
+pub mod needs;
+pub mod port_calls;
+pub mod schedule;
+
+pub mod calendar;
 pub mod evidence;
 pub mod work_orders;
 

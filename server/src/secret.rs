@@ -15,9 +15,14 @@ pub fn hash(secret: &str) -> Vec<u8> {
     Sha256::digest(secret.as_bytes()).to_vec()
 }
 
+/// So many random octets.
+pub fn random<const N: usize>() -> [u8; N] {
+    rng().random()
+}
+
 /// A new token of 256 random bits.
 pub fn new_token() -> String {
-    base64url(&rng().random::<[u8; 32]>())
+    base64url(&random::<32>())
 }
 
 /// A new token that names the vessel it belongs to: 128 bits of the vessel's id
@@ -86,7 +91,8 @@ pub fn hash_password(password: &str) -> anyhow::Result<String> {
 /// Whether a password belongs to a stored hash; takes as long when there is no
 /// hash to compare with, so that timing does not tell which e-mails exist.
 pub fn password_matches(password: &str, stored: Option<&str>) -> bool {
-    let Some(stored) = stored else {
+    // Who was invited and has not answered yet has none either.
+    let Some(stored) = stored.filter(|stored| !stored.is_empty()) else {
         let _ = Argon2::default().hash_password(password.as_bytes());
         return false;
     };

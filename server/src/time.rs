@@ -20,6 +20,11 @@ impl From<Timestamp> for Time {
 }
 
 impl Time {
+    /// For people, the day in UTC: `2026-11-21`.
+    pub fn day(self) -> String {
+        self.0.to_string().chars().take(10).collect()
+    }
+
     /// For people, to the minute: `2026-11-21 07:00 UTC`.
     pub fn to_the_minute(self) -> String {
         let text = self.0.to_string();

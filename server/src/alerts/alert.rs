@@ -37,6 +37,8 @@ pub enum Cause {
     UnknownChange,
     /// Headings at sea do not agree with what an adjustment foretold.
     AdjustmentNotConfirmed,
+    /// An adjustment that was agreed with a firm does not fit any more.
+    AgreedJobAtRisk,
     /// The ship's agent says that compass and gyro have parted.
     ReportedAboard,
     /// Nothing has come from the vessel for too long.
@@ -251,7 +253,10 @@ impl Cause {
     pub fn is_of_an_analysis(self) -> bool {
         !matches!(
             self,
-            Cause::SilentAgent | Cause::ReportedAboard | Cause::ClonedAgent
+            Cause::SilentAgent
+                | Cause::ReportedAboard
+                | Cause::ClonedAgent
+                | Cause::AgreedJobAtRisk
         )
     }
 
@@ -290,6 +295,7 @@ impl Cause {
             Cause::BerthSteel => "steel at the berth",
             Cause::UnknownChange => "a change of unknown cause",
             Cause::AdjustmentNotConfirmed => "an adjustment that the sea does not confirm",
+            Cause::AgreedJobAtRisk => "an agreed adjustment that does not fit any more",
             Cause::ReportedAboard => "compass and gyro parted, says the ship",
             Cause::SilentAgent => "no word from the vessel",
             Cause::ClonedAgent => "two computers send as one agent",

@@ -14,6 +14,7 @@
 //! - Every change is stored together with what tells people of it.
 
 mod aboard;
+mod agreed;
 mod alert;
 mod changed;
 mod cloned;
@@ -24,6 +25,7 @@ mod store;
 mod wanted;
 
 pub use aboard::from_ship;
+pub use agreed::of_schedule;
 pub use alert::{Alert, AlertWanted, Cause, Dated, Evidence, Severity, State};
 pub use cloned::{agent_revoked, from_batch};
 pub use findings::{Findings, FoundChange, findings_of};

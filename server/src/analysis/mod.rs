@@ -16,6 +16,7 @@ mod left_out;
 mod queue;
 mod refusal;
 mod store;
+mod track;
 mod worker;
 
 pub use input::{Input, input_hash};
@@ -23,4 +24,5 @@ pub use left_out::LeftOut;
 pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, renew};
 pub use refusal::RefusalSchema;
 pub use store::{Chunk, Covered, chunk, chunks, chunks_between, coverage, refusal};
+pub use track::Track;
 pub use worker::{Worked, run, step};

@@ -1,6 +1,7 @@
 //! What an analysis leaves in the database.
 
 use super::LeftOut;
+use super::track::track;
 use crate::alerts::Findings;
 use crate::changes;
 use crate::db::{Db, Tx, execute, row, rows};
@@ -221,14 +222,14 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
     execute!(
         &mut *tx,
         "INSERT INTO analyses (vessel_id, compass_id, input_hash, estimator, analysed_at, epochs,
-                               coverage, findings, card_withdrawn_at, card_withdrawn_by)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10)
+                               coverage, findings, card_withdrawn_at, card_withdrawn_by, track)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11)
          ON CONFLICT (vessel_id, compass_id) DO UPDATE
          SET input_hash = excluded.input_hash, estimator = excluded.estimator,
              analysed_at = excluded.analysed_at,
              epochs = excluded.epochs, coverage = excluded.coverage,
              findings = excluded.findings, card_withdrawn_at = excluded.card_withdrawn_at,
-             card_withdrawn_by = excluded.card_withdrawn_by",
+             card_withdrawn_by = excluded.card_withdrawn_by, track = excluded.track",
         found.vessel_id,
         found.compass_id,
         found.input_hash.as_str(),
@@ -240,7 +241,8 @@ pub(super) async fn save(tx: &mut Tx, found: &Found, now: Time) -> Result<Option
         withdrawn.as_ref().map(|withdrawn| Time(withdrawn.since)),
         withdrawn
             .as_ref()
-            .map(|withdrawn| withdrawn.reason.as_str())
+            .map(|withdrawn| withdrawn.reason.as_str()),
+        serde_json::to_string(&track(&analysis.samples))?
     )?;
     save_diagnostics(tx, found).await?;
     let (vessel, compass) = (found.vessel_id, found.compass_id);

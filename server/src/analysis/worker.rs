@@ -123,6 +123,7 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     for found in &news {
         let (compass, samples) = (found.compass_id, &found.analysis.samples);
         let held = work_orders::after_analysis(&mut tx, job.vessel_id, compass, samples, now);
+        let held = Box::pin(held);
         events.extend(held.await?);
         events.extend(store::save(&mut tx, found, now).await?);
     }

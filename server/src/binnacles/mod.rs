@@ -5,12 +5,15 @@
 //! one is ever changed or lost. What is sent in and what is given out are the same form
 //! (docs/binnacle.md), which `plan --binnacle` reads too.
 
+mod design_schema;
 mod schema;
 mod shipped;
 mod store;
+mod words;
 
-pub use schema::{BinnacleSchema, SettingSchema};
+pub use schema::{BarSchema, BinnacleSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
 pub use store::{Author, Revised, current, insert};
+pub use words::in_words;
 
 use crate::access::{Reader, Writer};
 use crate::app::App;

@@ -1,6 +1,10 @@
 //! How the OpenAPI document describes binnacles; they themselves are the science
 //! crate's, and docs/binnacle.md says what each field means.
 
+use super::design_schema::{
+    CompassKindSchema, FlindersSchema, HeelingHolderSchema, MagnetKindSchema, QuadrantalSchema,
+    RackSchema, SideSchema,
+};
 use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
@@ -45,28 +49,25 @@ pub(super) struct DesignSchema {
     model: String,
     /// Where its figures come from.
     provenance: String,
-    /// `class_a`, `class_b` or `other`.
-    compass: String,
+    /// Class A or B of ISO 25862, or neither.
+    compass: CompassKindSchema,
     /// Magnetic moment of the needles, A·m².
     needle_moment_am2: f64,
     /// Kinds of magnets that fit somewhere in it.
-    #[schema(value_type = Vec<Object>)]
-    magnets: Vec<Value>,
+    magnets: Vec<MagnetKindSchema>,
     /// Trays or holes of the fore-and-aft magnets.
-    #[schema(value_type = Object)]
-    fore_and_aft: Value,
+    fore_and_aft: RackSchema,
     /// Trays or holes of the athwartship magnets.
-    #[schema(value_type = Object)]
-    athwartship: Value,
+    athwartship: RackSchema,
     /// Spheres, boxes or plates.
-    #[schema(value_type = Option<Object>)]
-    quadrantal: Option<Value>,
+    #[schema(required = false)]
+    quadrantal: Option<QuadrantalSchema>,
     /// Holder of the Flinders bar.
-    #[schema(value_type = Option<Object>)]
-    flinders: Option<Value>,
+    #[schema(required = false)]
+    flinders: Option<FlindersSchema>,
     /// Bucket of the vertical magnets.
-    #[schema(value_type = Option<Object>)]
-    heeling: Option<Value>,
+    #[schema(required = false)]
+    heeling: Option<HeelingHolderSchema>,
 }
 
 /// Correctors on board, those in use included.
@@ -74,15 +75,32 @@ pub(super) struct DesignSchema {
 #[schema(as = CorrectorsAboard)]
 #[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Aboard")]
 struct AboardSchema {
-    /// Magnets by their kind: `magnet`, `count`, `tested_moment_am2`, `tested_sd`.
-    #[schema(value_type = Vec<Object>)]
-    magnets: Vec<Value>,
+    /// Magnets by their kind.
+    magnets: Vec<LotSchema>,
     /// Sizes of which there is a pair.
     #[schema(required = false)]
     quadrantal: Vec<String>,
     /// Lengths of the Flinders bar's pieces, mm.
     #[schema(required = false)]
     flinders_pieces_mm: Vec<f64>,
+}
+
+/// Magnets of one kind on board.
+#[derive(ToSchema)]
+#[schema(as = MagnetLot)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Lot")]
+struct LotSchema {
+    /// Their kind.
+    #[schema(example = "200 mm")]
+    magnet: String,
+    /// How many there are, those in use included.
+    count: u16,
+    /// Their moment as it was tested, A·m²; the nominal one counts otherwise.
+    #[schema(required = false)]
+    tested_moment_am2: Option<f64>,
+    /// Relative standard deviation of that; 0.02 where it is not said.
+    #[schema(required = false)]
+    tested_sd: Option<f64>,
 }
 
 /// How every corrector stands; an empty list or null is none.
@@ -108,10 +126,10 @@ pub struct SettingSchema {
 }
 
 /// Magnets in one hole or tray.
-#[derive(ToSchema)]
+#[derive(Serialize, ToSchema)]
 #[schema(as = MagnetsInHole)]
 #[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Tray")]
-struct TraySchema {
+pub struct TraySchema {
     /// Number of the hole, from the bottom.
     hole: u16,
     /// Their kind.
@@ -128,7 +146,7 @@ struct TraySchema {
 #[serde(rename_all = "snake_case")]
 #[schema(as = RedEnd)]
 #[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Red")]
-enum RedSchema {
+pub(super) enum RedSchema {
     Forward,
     Aft,
     Starboard,
@@ -138,13 +156,13 @@ enum RedSchema {
 }
 
 /// A pair of spheres, boxes or plates.
-#[derive(ToSchema)]
+#[derive(Serialize, ToSchema)]
 #[schema(as = PairSetting)]
 #[allow(
     dead_code,
     reason = "describes binnacle_magnetics::binnacle::PairSetting"
 )]
-struct PairSchema {
+pub struct PairSchema {
     /// Name of the size.
     #[schema(example = "7 inch")]
     size: String,
@@ -156,30 +174,30 @@ struct PairSchema {
 }
 
 /// A Flinders bar.
-#[derive(ToSchema)]
+#[derive(Serialize, ToSchema)]
 #[schema(as = BarSetting)]
 #[allow(
     dead_code,
     reason = "describes binnacle_magnetics::binnacle::BarSetting"
 )]
-struct BarSchema {
+pub struct BarSchema {
     /// Length of all its pieces, mm.
     length_mm: f64,
-    /// `forward` or `aft` of the card.
-    side: String,
+    /// Before or abaft the card.
+    side: SideSchema,
     /// Degrees clockwise from there, seen from above.
     #[schema(required = false)]
     slew_deg: f64,
 }
 
 /// Magnets in the bucket.
-#[derive(ToSchema)]
+#[derive(Serialize, ToSchema)]
 #[schema(as = HeelingSetting)]
 #[allow(
     dead_code,
     reason = "describes binnacle_magnetics::binnacle::HeelingSetting"
 )]
-struct BucketSchema {
+pub struct BucketSchema {
     /// Number of its position, from the bottom.
     position: u16,
     /// How many magnets.

@@ -1,9 +1,12 @@
 //! What a deviation card says; its form as JSON.
+//!
+//! What always holds: a card is predicted until headings at sea have verified the
+//! adjustment that its model comes from, and a certificate never.
 
 use crate::binnacles::SettingSchema;
 use crate::compasses::Compass;
 use crate::deviation::{HandbookSchema, Row, Worst};
-use crate::ids::{ModelId, VesselId};
+use crate::ids::{ModelId, OrderId, VesselId};
 use crate::streams::CardWithdrawnSchema;
 use crate::time::Time;
 use binnacle_magnetics::binnacle::{Setting, Shape};
@@ -12,9 +15,23 @@ use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// What every card says of itself.
-pub(super) const STATEMENT: &str = "Predicted from observations under way by a model of the \
+/// What a predicted card says of itself.
+pub(super) const PREDICTED: &str = "Predicted from observations under way by a model of the \
      ship's magnetism. Not a certificate of adjustment: no adjuster has signed it.";
+
+/// What a verified card says of itself: by what, and that it is no more than that.
+pub(super) fn verified(by: &VerifiedAtSea) -> String {
+    format!(
+        "Verified at sea: {} headings up to {} agree, to {:.1} degrees, with what was foretold \
+         when the compass was adjusted on {} by work order {}. Not a certificate of adjustment: \
+         no adjuster has signed it.",
+        by.headings,
+        by.until.to_the_minute(),
+        by.rms_deg,
+        by.adjusted_at.day(),
+        by.order
+    )
+}
 
 /// A deviation card of one compass, at a place and a date.
 #[derive(Clone, Debug, Serialize, ToSchema)]
@@ -23,7 +40,10 @@ pub struct Card {
     /// What the card is worth.
     pub status: Status,
     /// The same in words, to stand wherever figures of the card stand.
-    pub statement: &'static str,
+    pub statement: String,
+    /// What verified it; none of a card that is predicted.
+    #[schema(required)]
+    pub verified: Option<VerifiedAtSea>,
     /// The ship.
     pub vessel: Ship,
     /// The compass: each magnetic element has a card of its own.
@@ -48,12 +68,21 @@ pub struct Card {
     pub correctors: Option<Correctors>,
     /// Magnetic cargo on board at that date, by the logbook.
     pub cargo: Vec<CargoAboard>,
+    /// How the degaussing coils are, as it is recorded of the vessel.
+    #[schema(required, example = "no coils fitted")]
+    pub degaussing: Option<String>,
     /// The last degaussing or deperming in the logbook.
     #[schema(required)]
     pub degaussed_at: Option<Time>,
     /// The last adjustment in the logbook.
     #[schema(required)]
     pub adjusted_at: Option<Time>,
+    /// Who did it, by the work order; none where that adjustment was by none.
+    #[schema(required)]
+    pub adjusted_by: Option<AdjustedBy>,
+    /// When the compass is due to be adjusted next; none where no adjustment is on record.
+    #[schema(required)]
+    pub next_due: Option<NextDue>,
     /// What belongs on a card and is not recorded here: a person must write it.
     pub not_recorded: Vec<NotRecorded>,
     /// The model that says so.
@@ -72,6 +101,41 @@ pub struct Card {
 pub enum Status {
     /// By the model alone.
     Predicted,
+    /// Headings at sea agree with what was foretold when the compass was adjusted.
+    Verified,
+}
+
+/// What verified a card.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, ToSchema)]
+#[schema(as = CardVerification)]
+pub struct VerifiedAtSea {
+    /// The work order whose adjustment was verified.
+    pub order: OrderId,
+    /// When the compass was adjusted.
+    pub adjusted_at: Time,
+    /// When the headings were found to be enough.
+    pub verified_at: Time,
+    /// Headings that counted, 15° or more apart.
+    #[schema(example = 9)]
+    pub headings: usize,
+    /// Samples on them.
+    #[schema(example = 131)]
+    pub samples: usize,
+    /// The time of the last of these.
+    pub until: Time,
+    /// Root mean square of what the headings were off, degrees.
+    #[schema(example = 0.4)]
+    pub rms_deg: f64,
+}
+
+impl Status {
+    /// In a word, as in JSON.
+    pub fn word(self) -> &'static str {
+        match self {
+            Status::Predicted => "predicted",
+            Status::Verified => "verified",
+        }
+    }
 }
 
 /// The ship that a card is of.
@@ -92,6 +156,9 @@ pub struct Ship {
     /// Her flag state.
     #[schema(required, example = "Spain")]
     pub flag: Option<String>,
+    /// How her degaussing coils are.
+    #[serde(skip)]
+    pub degaussing: Option<String>,
 }
 
 /// Where and when a card holds, and the earth's field there.
@@ -191,6 +258,39 @@ pub struct CargoAboard {
     pub cargo: Option<String>,
 }
 
+/// Who adjusted a compass, by the record of the work order. They have signed that record,
+/// and no card.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[schema(as = CardAdjuster)]
+pub struct AdjustedBy {
+    /// The work order.
+    pub order: OrderId,
+    /// The adjuster.
+    #[schema(required, example = "M. Etxeberria")]
+    pub adjuster: Option<String>,
+    /// The number of their licence.
+    #[schema(required, example = "ES-CA-114")]
+    pub licence: Option<String>,
+    /// Their firm.
+    #[schema(required, example = "Nervión Compass")]
+    pub firm: Option<String>,
+}
+
+/// When a compass is due to be adjusted next, by the schedule's rules.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[schema(as = CardNextDue)]
+pub struct NextDue {
+    /// The day.
+    #[schema(format = Date, example = "2028-11-21")]
+    pub on: String,
+    /// Why, with the rule.
+    #[schema(example = "24 months after the adjustment of 2026-11-21 (ISO 25862:2019, Annex G)")]
+    pub reason: String,
+    /// Whether the flag's own rules were among those that were asked: they are where the
+    /// vessel's flag is recorded by its two letters.
+    pub flags_own_rules: bool,
+}
+
 /// What belongs on a card and nobody has recorded here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
@@ -200,8 +300,10 @@ pub enum NotRecorded {
     Correctors,
     /// How the degaussing coils are set.
     DegaussingCoils,
-    /// The adjuster, with licence, firm and signature.
+    /// The adjuster, with licence and firm.
     Adjuster,
+    /// An adjuster's signature on the card, which no program makes.
+    Signature,
     /// When the compass is due to be adjusted next.
     NextDue,
 }
@@ -215,8 +317,11 @@ pub struct Source {
     /// Counts the compass's models from 1.
     #[schema(example = 12)]
     pub version: i64,
-    /// When it was fitted.
+    /// When it was fitted, or foretold.
     pub fitted_at: Time,
+    /// The work order that foretold it; none for a model that was fitted.
+    #[schema(required)]
+    pub foretold_by: Option<OrderId>,
     /// The time of the first sample in it.
     pub data_from: Time,
     /// The time of the last sample in it.

@@ -3,9 +3,9 @@
 //! What always holds: every line says what it is worth and where it comes from, so
 //! that none can be taken for a certificate's when it is cut out.
 
-use super::contents::{Card, Status};
+use super::contents::Card;
 
-const COLUMNS: [&str; 13] = [
+const COLUMNS: [&str; 16] = [
     "compass_deg",
     "magnetic_deg",
     "deviation_deg",
@@ -19,33 +19,40 @@ const COLUMNS: [&str; 13] = [
     "variation_deg",
     "model_version",
     "input_hash",
+    "work_order",
+    "verified_at",
+    "verified_headings",
 ];
 
 /// A line for each row of the card.
 pub(super) fn csv(card: &Card) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
-    let status = match card.status {
-        Status::Predicted => "predicted",
-    };
+    let verified = card.verified.as_ref();
+    let verified = [
+        verified.map_or(String::new(), |by| by.order.to_string()),
+        verified.map_or(String::new(), |by| by.verified_at.0.to_string()),
+        verified.map_or(String::new(), |by| by.headings.to_string()),
+    ];
     let (place, model) = (&card.place, &card.model);
     for row in &card.rows {
         let angle = |degrees: f64| format!("{degrees:.2}");
-        writer.write_record([
+        let fields = [
             angle(row.compass_deg),
             angle(row.magnetic_deg),
             angle(row.deviation_deg),
             angle(row.band95_deg),
             row.residual_deg.map(angle).unwrap_or_default(),
             row.samples.to_string(),
-            status.to_owned(),
+            card.status.word().to_owned(),
             place.lat.to_string(),
             place.lon.to_string(),
             place.at.0.to_string(),
             angle(place.variation_deg),
             model.version.to_string(),
             model.input_hash.clone(),
-        ])?;
+        ];
+        writer.write_record(fields.iter().chain(&verified))?;
     }
     writer
         .into_inner()

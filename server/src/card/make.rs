@@ -4,9 +4,10 @@
 //! is asked for. The time of asking only decides whether the model is too old.
 
 use super::contents::{
-    Card, CardRow, CargoAboard, Coefficients, Correctors, NotRecorded, Place, STATEMENT, Ship,
-    Source, Status,
+    AdjustedBy, Card, CardRow, CargoAboard, Coefficients, Correctors, NotRecorded, PREDICTED,
+    Place, Ship, Source, Status, VerifiedAtSea, verified,
 };
+use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
 use crate::alerts::{Cause, OpenAlert};
@@ -15,12 +16,16 @@ use crate::compasses::Compass;
 use crate::deviation::{self, Row};
 use crate::models::StoredModel;
 use crate::time::Time;
+use crate::work_orders::CompletedOrder;
 use binnacle_magnetics::analyse::{LogbookEntry, LogbookKind};
-use binnacle_magnetics::deviation::Coefficients as Exact;
+use binnacle_magnetics::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_magnetics::ship::EarthField;
 
 /// Degrees of compass heading between points of the curve.
 const CURVE_STEP_DEG: f64 = 5.0;
+
+/// A band that excludes no heading.
+const NO_BAND_DEG: f64 = 180.0;
 
 /// Everything that a card is made from.
 pub(super) struct Basis {
@@ -34,6 +39,8 @@ pub(super) struct Basis {
     pub(super) logbook: Vec<LogbookEntry>,
     /// What is open on this compass.
     pub(super) alerts: Vec<OpenAlert>,
+    /// The compass's adjustments by work orders, in order of time.
+    pub(super) completed: Vec<CompletedOrder>,
     /// What was observed near each line.
     pub(super) observed: [Observed; 24],
     /// The widest half of a band that makes a card, degrees.
@@ -62,24 +69,51 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
     };
     let at = place.at;
     let cargo = cargo_at(&basis.logbook, at);
+    let adjusted_at = last(&basis.logbook, LogbookKind::Adjustment, at);
+    let adjusted_by = adjusted_by(&basis.completed, adjusted_at);
+    let worst = deviation::worst_of(&curve).ok_or(DeviationError::NotFinite)?;
+    let next_due = next_due(&due::Facts {
+        flag: basis.vessel.flag.as_deref(),
+        adjusted_at,
+        logbook: &basis.logbook,
+        at,
+        worst_deviation_deg: worst.deviation_deg,
+    });
+    let verified_by = verified_by(model, &basis.completed);
     Ok(Card {
-        status: Status::Predicted,
-        statement: STATEMENT,
+        status: verified_by.map_or(Status::Predicted, |_| Status::Verified),
+        statement: verified_by
+            .as_ref()
+            .map_or_else(|| PREDICTED.to_owned(), verified),
+        verified: verified_by,
         rows: lines.iter().zip(basis.observed).map(line).collect(),
-        worst: deviation::worst_of(&curve).ok_or(Refusal::NoBand)?,
+        worst,
         widest_band95_deg,
         coefficients,
         replaces: model.replaces(),
         notes: notes(model, &basis.alerts, &cargo),
         cargo,
-        not_recorded: not_recorded(basis.binnacle.as_ref()),
+        not_recorded: missing([
+            (NotRecorded::Correctors, basis.binnacle.is_none()),
+            (
+                NotRecorded::DegaussingCoils,
+                basis.vessel.degaussing.is_none(),
+            ),
+            (NotRecorded::Adjuster, adjusted_by.is_none()),
+            (NotRecorded::Signature, true),
+            (NotRecorded::NextDue, next_due.is_none()),
+        ]),
         correctors: basis.binnacle.as_ref().map(correctors),
         degaussed_at: last(&basis.logbook, LogbookKind::Degaussing, at),
-        adjusted_at: last(&basis.logbook, LogbookKind::Adjustment, at),
+        degaussing: basis.vessel.degaussing.clone(),
+        adjusted_at,
+        adjusted_by,
+        next_due,
         model: Source {
             id: model.id,
             version: model.version,
             fitted_at: model.created_at,
+            foretold_by: model.foretold_by,
             data_from: model.data_from,
             data_until: model.data_until,
             samples_used: ship.samples_used,
@@ -91,6 +125,21 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
         vessel: basis.vessel,
         compass: basis.compass,
         place: basis.place,
+    })
+}
+
+/// What verified the adjustment that the model comes from.
+fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<VerifiedAtSea> {
+    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+    let at_sea = by.at_sea?;
+    Some(VerifiedAtSea {
+        order: by.order,
+        adjusted_at: by.at,
+        verified_at: at_sea.verified_at,
+        headings: at_sea.headings,
+        samples: at_sea.samples,
+        until: at_sea.until,
+        rms_deg: at_sea.rms_deg,
     })
 }
 
@@ -118,7 +167,8 @@ fn not_too_old(data_until: Time, at: Time) -> Result<(), Refusal> {
 fn widest(curve: &[Row], limit_deg: f64) -> Result<f64, Refusal> {
     let (mut widest_deg, mut compass_deg) = (0.0, 0.0);
     for row in curve {
-        let band95_deg = row.band95_deg.ok_or(Refusal::NoBand)?;
+        // A model without a covariance knows nothing of the band.
+        let band95_deg = row.band95_deg.unwrap_or(NO_BAND_DEG);
         if band95_deg > widest_deg {
             (widest_deg, compass_deg) = (band95_deg, row.compass_deg);
         }
@@ -138,21 +188,29 @@ fn line((row, observed): (&Row, Observed)) -> CardRow {
         compass_deg: row.compass_deg,
         magnetic_deg: row.magnetic_deg,
         deviation_deg: row.deviation_deg,
-        // The curve, which has every line's heading, was found to have a band.
-        band95_deg: row.band95_deg.unwrap_or(180.0),
+        band95_deg: row.band95_deg.unwrap_or(NO_BAND_DEG),
         samples: observed.samples,
         residual_deg: observed.residual_deg,
     }
 }
 
-fn not_recorded(binnacle: Option<&Revised>) -> Vec<NotRecorded> {
-    let correctors = binnacle.is_none().then_some(NotRecorded::Correctors);
-    let always = [
-        NotRecorded::DegaussingCoils,
-        NotRecorded::Adjuster,
-        NotRecorded::NextDue,
-    ];
-    correctors.into_iter().chain(always).collect()
+/// Who did the last adjustment, where it was by a work order.
+fn adjusted_by(completed: &[CompletedOrder], adjusted_at: Option<Time>) -> Option<AdjustedBy> {
+    let by = completed
+        .iter()
+        .rev()
+        .find(|order| Some(order.at) == adjusted_at)?;
+    Some(AdjustedBy {
+        order: by.order,
+        adjuster: by.adjuster_name.clone(),
+        licence: by.adjuster_licence.clone(),
+        firm: by.firm.clone(),
+    })
+}
+
+fn missing<const N: usize>(known: [(NotRecorded, bool); N]) -> Vec<NotRecorded> {
+    let wanted = known.into_iter().filter(|(_, is_missing)| *is_missing);
+    wanted.map(|(what, _)| what).collect()
 }
 
 fn correctors(found: &Revised) -> Correctors {
@@ -231,6 +289,7 @@ fn bears_on_the_card(cause: Cause) -> bool {
         | Cause::UnknownChange => true,
         // Refused before, or of the samples' way rather than of the ship.
         Cause::CompassFault
+        | Cause::AgreedJobAtRisk
         | Cause::ReportedAboard
         | Cause::LocalAnomaly
         | Cause::MagneticStorm

@@ -3,20 +3,22 @@
 //!
 //! What always holds:
 //!
-//! - A card says that it is predicted, and is no certificate; what nobody has recorded
-//!   is said to be so, or left blank for a person's pen.
+//! - A card says whether it is predicted, or verified by headings at sea, and that it is
+//!   no certificate; what nobody has recorded is said to be so, or left blank for a
+//!   person's pen.
 //! - Each compass has a card of its own.
 //! - Where a card would mislead, there is none: the answer says why.
 //! - The same model, place and date make the same card, to the byte.
 
 mod contents;
 mod csv;
+mod due;
 mod layout;
 mod make;
 mod observed;
 mod refusal;
 
-pub use contents::Card;
+pub use contents::{Card, Status};
 pub use refusal::Refusal;
 
 use crate::access::Reader;
@@ -35,13 +37,14 @@ use crate::settings::{self, VesselSettings};
 use crate::sheet;
 use crate::time::Time;
 use crate::vessels;
+use crate::work_orders;
 use axum::extract::State;
 use axum::response::Response;
 use binnacle_magnetics::field::field;
 use binnacle_magnetics::position::Position;
 use contents::{Place, Ship};
 use make::{Basis, make};
-use observed::observed;
+use observed::{Seen, observed};
 use serde::Deserialize;
 use utoipa::IntoParams;
 use utoipa_axum::router::OpenApiRouter;
@@ -68,15 +71,17 @@ struct Query {
     /// Degrees east; where the vessel was last if not said.
     #[param(example = -3.1)]
     lon: Option<f64>,
-    /// RFC 3339; the time of the model's last sample if not said.
+    /// RFC 3339; the time of the last sample, or of the model, if not said.
     #[param(value_type = Option<String>, format = DateTime)]
     at: Option<String>,
 }
 
 /// See a compass's deviation card
 ///
-/// Predicted by the compass's model, at a place and a date: no certificate. Besides
-/// the usual problems: `no-model-yet` (404) where there is no model, also because the
+/// By the compass's model, at a place and a date. `predicted` until headings at sea have
+/// verified the adjustment that the model comes from: then `verified`, and `verified` says
+/// by which order, when, and by how many headings. A change that ends the adjustment's epoch
+/// ends that too. In no case a certificate. Besides the usual problems: `no-model-yet` (404) where there is no model, also because the
 /// last one holds no more; and 409 where there is one that makes no card:
 /// `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
 /// `compass-suspected`.
@@ -141,8 +146,8 @@ async fn card_svg(
 
 /// A compass's deviation card as CSV
 ///
-/// A line for each 15° of compass heading; each says that it is predicted, and by
-/// which model. Refused as `card.json` is.
+/// A line for each 15° of compass heading; each says whether it is predicted or verified, by
+/// which model, and by which work order. Refused as `card.json` is.
 #[utoipa::path(get, path = "/vessels/{id}/card.csv", tag = "fleet",
     params(("id" = VesselId, Path), Query),
     responses((status = 200, content_type = "text/csv", body = String),
@@ -168,28 +173,40 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     let model = models::must_have(app, id, compass.id).await?;
     let settings = settings::find(db, id).await?;
     let last = vessel.last_position();
+    let last_at = last.map_or(model.place_at, |last| last.at);
     let last = last.map_or((model.lat, model.lon), |last| (last.lat, last.lon));
     let position = deviation::position(query.lat, query.lon, last)?;
-    let place = place(position, query.at(&model)?, &settings)?;
-    let (from, until) = (model.data_from, model.data_until.0.plus_seconds(1.0));
-    let samples = analysis::chunks(db, id, compass.id, Some(from), Some(until.into())).await?;
+    let place = place(position, query.at(&model, last_at)?, &settings)?;
+    let now = app.clock.now().into();
+    let (from, until) = match (model.foretold_by, model.epoch_from) {
+        // Nothing is in it of what was observed since.
+        (Some(_), Some(from)) => (from, now),
+        _ => (model.data_from, model.data_until.0.plus_seconds(1.0).into()),
+    };
+    let samples = analysis::chunks(db, id, compass.id, Some(from), Some(until)).await?;
+    let completed = work_orders::completed(db, id, compass.id).await?;
     let binnacle = binnacles::current(db, id, compass.id).await?;
     let logbook = logbook::of_compass(db, id, compass.id).await?;
     let alerts = alerts::open_of_compass(db, id, compass.id).await?;
-    let now = app.clock.now().into();
     let made = tokio::task::spawn_blocking(move || {
+        let seen = match model.foretold_by {
+            Some(_) => Seen::Foretold(&model.model.0),
+            None => Seen::Fitted,
+        };
         let basis = Basis {
+            observed: observed(&samples, from, seen)?,
             vessel: Ship {
                 id,
                 name: vessel.name,
                 imo_number: vessel.imo_number,
                 call_sign: vessel.call_sign,
                 flag: vessel.flag,
+                degaussing: vessel.degaussing,
             },
             compass,
             place,
-            observed: observed(&samples, from)?,
             model,
+            completed,
             binnacle,
             logbook,
             alerts,
@@ -203,8 +220,9 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
 
 impl Query {
     /// When the card is for: a model tells nothing of the time before its epoch.
-    fn at(&self, model: &StoredModel) -> Result<Time> {
-        let at = time("at", self.at.as_deref())?.map_or(model.place_at, Time);
+    fn at(&self, model: &StoredModel, last_at: Time) -> Result<Time> {
+        let at = time("at", self.at.as_deref())?.map(Time);
+        let at = at.unwrap_or(model.place_at.max(last_at));
         if let Some(from) = model.epoch_from.filter(|from| at < *from) {
             return Err(Error::Invalid {
                 field: "at",

@@ -2,6 +2,10 @@
 
 use crate::error::Result;
 use crate::time::Time;
+use binnacle_magnetics::analyse::SampleReason;
+use binnacle_magnetics::angle::{CompassHeading, wrap_180};
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::ship::EarthField;
 use serde::Deserialize;
 
 /// Degrees of compass heading from one line of a card to the next.
@@ -18,38 +22,81 @@ pub(super) struct Observed {
     pub(super) residual_deg: Option<f64>,
 }
 
+/// What the samples are to a card's model.
+#[derive(Clone, Copy)]
+pub(super) enum Seen<'a> {
+    /// It was fitted to those that carried weight.
+    Fitted,
+    /// It was foretold before them: what counts is what it says of each.
+    Foretold(&'a Model),
+}
+
 /// What of a sample is looked at.
 #[derive(Deserialize)]
-struct Seen {
+struct Sample {
     time: Time,
     compass_deg: f64,
+    #[serde(default)]
+    h_nt: Option<f64>,
+    #[serde(default)]
+    z_nt: Option<f64>,
+    #[serde(default)]
+    deviation_deg: Option<f64>,
     residual_deg: Option<f64>,
     weight: f64,
     used: bool,
+    #[serde(default)]
+    reason: Option<SampleReason>,
 }
 
 /// What was observed in an epoch from `from` on, by lines of the card; `chunks` are
 /// JSON arrays of samples.
-pub(super) fn observed(chunks: &[String], from: Time) -> Result<[Observed; SECTORS]> {
+pub(super) fn observed(
+    chunks: &[String],
+    from: Time,
+    seen: Seen<'_>,
+) -> Result<[Observed; SECTORS]> {
     let mut sums = [(0_u64, 0.0_f64, 0.0_f64); SECTORS];
     for chunk in chunks {
-        for seen in serde_json::from_str::<Vec<Seen>>(chunk)? {
-            let Some(residual_deg) = seen.residual_deg.filter(|_| seen.used) else {
-                continue;
-            };
-            if seen.time < from {
+        for sample in serde_json::from_str::<Vec<Sample>>(chunk)? {
+            if sample.time < from {
                 continue;
             }
-            let (samples, weight, sum) = &mut sums[sector(seen.compass_deg)];
+            let Some((residual_deg, weighs)) = seen.residual(&sample) else {
+                continue;
+            };
+            let (samples, weight, sum) = &mut sums[sector(sample.compass_deg)];
             *samples += 1;
-            *weight += seen.weight;
-            *sum += seen.weight * residual_deg;
+            *weight += weighs;
+            *sum += weighs * residual_deg;
         }
     }
     Ok(sums.map(|(samples, weight, sum)| Observed {
         samples,
         residual_deg: (weight > 0.0).then(|| sum / weight),
     }))
+}
+
+impl Seen<'_> {
+    /// Measured less predicted deviation, and its weight.
+    fn residual(self, sample: &Sample) -> Option<(f64, f64)> {
+        match self {
+            Seen::Fitted => Some((sample.residual_deg?, sample.weight)).filter(|_| sample.used),
+            Seen::Foretold(model) => {
+                if !matches!(sample.reason, None | Some(SampleReason::NoModel)) {
+                    return None;
+                }
+                let earth = EarthField {
+                    h_nt: sample.h_nt?,
+                    z_nt: sample.z_nt?,
+                };
+                let compass = CompassHeading::new(sample.compass_deg)?;
+                let foretold = model.deviation(compass, earth).ok()?.deviation;
+                let residual_deg = sample.deviation_deg? - foretold.degrees_east();
+                Some((wrap_180(residual_deg), 1.0))
+            }
+        }
+    }
 }
 
 fn sector(compass_deg: f64) -> usize {
@@ -84,7 +131,7 @@ mod tests {
             (7.4, Some(3.0), 1.0, true),
             (7.6, Some(-1.0), 0.5, true),
         ])];
-        let found = observed(&chunks, from("2026-11-01T00:00:00Z")).unwrap();
+        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), Seen::Fitted).unwrap();
         assert_eq!((found[0].samples, found[0].residual_deg), (2, Some(2.0)));
         assert_eq!((found[1].samples, found[1].residual_deg), (1, Some(-1.0)));
         assert_eq!(found[2], Observed::default());
@@ -98,9 +145,9 @@ mod tests {
             (90.0, Some(1.0), 1.0, true),
             (90.0, Some(4.0), 0.5, true),
         ])];
-        let found = observed(&chunks, from("2026-11-01T00:00:00Z")).unwrap();
+        let found = observed(&chunks, from("2026-11-01T00:00:00Z"), Seen::Fitted).unwrap();
         assert_eq!((found[6].samples, found[6].residual_deg), (2, Some(2.0)));
-        let later = observed(&chunks, from("2026-11-21T07:00:01Z")).unwrap();
+        let later = observed(&chunks, from("2026-11-21T07:00:01Z"), Seen::Fitted).unwrap();
         assert_eq!(later[6], Observed::default());
     }
 }

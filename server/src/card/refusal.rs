@@ -38,9 +38,6 @@ pub enum Refusal {
         /// The vessel's limit.
         limit_deg: f64,
     },
-    /// Nobody knows how well deviation is known.
-    #[error("the model does not say how certain it is")]
-    NoBand,
     /// The compass gives no unique heading there, or none at all.
     #[error("{0}")]
     NoHeadings(#[from] DeviationError),
@@ -57,7 +54,7 @@ impl Refusal {
     pub(crate) fn kind(&self) -> (&'static str, &'static str) {
         match self {
             Refusal::TooOld { .. } => ("model-too-old", "The model is too old for a card"),
-            Refusal::BandTooWide { .. } | Refusal::NoBand => {
+            Refusal::BandTooWide { .. } => {
                 ("band-too-wide", "The model is too uncertain for a card")
             }
             Refusal::NoHeadings(

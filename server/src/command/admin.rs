@@ -1,21 +1,22 @@
-//! `admin create …`: what must exist before anyone can sign in; and `admin revoke-agent`.
+//! `admin create …`: what must exist before anyone can sign in; `admin reset-user` and
+//! `admin revoke-agent`.
 
 use super::operate::block_on;
 use super::{BadInput, answer};
 use crate::clock::Clock;
 use crate::config::{Admin, AdminCommand, Create, FleetRole, Person};
-use crate::db::Db;
+use crate::db::{Db, Tx};
 use crate::error::Error;
-use crate::ids::{AgentId, OperatorId, VesselId};
+use crate::ids::{AgentId, FirmId, OperatorId, VesselId};
 use crate::session::{self, Role};
+use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{enrolment, http, operators, secret};
+use crate::{enrolment, firms, http, operators, password, secret, users};
 use anyhow::Result;
 use serde_json::json;
 use std::io::Read;
 use std::process::ExitCode;
-
-const LEAST_PASSWORD: usize = 10;
+use uuid::Uuid;
 
 /// Creates or revokes something and prints it as JSON.
 ///
@@ -28,6 +29,7 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
         let now = Clock::System.now().into();
         let made = match arguments.command {
             AdminCommand::Create { what } => create(&db, what, now).await,
+            AdminCommand::ResetUser { email } => reset_user(&db, &email, now).await,
             AdminCommand::RevokeAgent { vessel, agent } => {
                 revoke_agent(&db, VesselId(vessel), AgentId(agent), now).await
             }
@@ -52,11 +54,24 @@ async fn create(db: &Db, what: Create, now: Time) -> Made {
                 FleetRole::Admin => Role::Admin,
                 FleetRole::Viewer => Role::Viewer,
             };
-            create_user(db, Some(OperatorId(operator)), &person, role, now).await
+            let operator = Tenant::Operator(OperatorId(operator));
+            create_user(db, Some(operator), &person, role, now).await
+        }
+        Create::Firm { name, operators } => create_firm(db, &name, &operators, now).await,
+        Create::Adjuster { firm, person } => {
+            let firm = Tenant::Firm(FirmId(firm));
+            create_user(db, Some(firm), &person, Role::Adjuster, now).await
         }
         Create::PlatformAdmin { person } => {
             create_user(db, None, &person, Role::PlatformAdmin, now).await
         }
+    }
+}
+
+async fn reset_user(db: &Db, email: &str, now: Time) -> Made {
+    match users::reset(db, email, now).await? {
+        Some((code, expires_at)) => Ok(Ok(json!({ "code": code, "expires_at": expires_at }))),
+        None => Ok(Err(format!("--email: nobody signs in with {email:?}"))),
     }
 }
 
@@ -79,9 +94,39 @@ async fn create_operator(db: &Db, name: &str, now: Time) -> Made {
     Ok(Ok(json!({ "operator_id": id, "name": name })))
 }
 
+async fn create_firm(db: &Db, name: &str, operators: &[Uuid], now: Time) -> Made {
+    let name = match http::text("--name", name) {
+        Ok(name) => name,
+        Err(error) => return Ok(Err(error.to_string())),
+    };
+    let mut tx = db.begin().await?;
+    let id = firms::create(&mut tx, &name, now).await?;
+    for operator in operators {
+        if !operators::exists(&mut tx, OperatorId(*operator)).await? {
+            return Ok(Err(format!("--operator: {operator} does not exist")));
+        }
+        firms::engage(&mut tx, OperatorId(*operator), id, now).await?;
+    }
+    tx.commit().await?;
+    Ok(Ok(
+        json!({ "firm_id": id, "name": name, "operators": operators }),
+    ))
+}
+
+/// What a tenant is named by, if there is none of that id.
+async fn missing(tx: &mut Tx, tenant: Option<Tenant>) -> crate::db::Result<Option<String>> {
+    let (flag, there) = match tenant {
+        Some(Tenant::Operator(id)) => ("--operator", operators::exists(tx, id).await?),
+        Some(Tenant::Firm(id)) => ("--firm", firms::exists(tx, id).await?),
+        None => return Ok(None),
+    };
+    let id = tenant.map(Tenant::id).unwrap_or_default();
+    Ok((!there).then(|| format!("{flag}: {id} does not exist")))
+}
+
 async fn create_user(
     db: &Db,
-    operator: Option<OperatorId>,
+    tenant: Option<Tenant>,
     person: &Person,
     role: Role,
     now: Time,
@@ -95,18 +140,16 @@ async fn create_user(
     if !email.contains('@') {
         return Ok(Err(format!("--email: {email:?} is not an e-mail address")));
     }
-    let password = match read_password(person)? {
+    let password = match read_password(person, &[&email, &name])? {
         Ok(password) => password,
         Err(message) => return Ok(Err(message)),
     };
     let hash = secret::hash_password(password.as_deref().unwrap_or_default())?;
     let mut tx = db.begin().await?;
-    if let Some(operator) = operator
-        && !operators::exists(&mut tx, operator).await?
-    {
-        return Ok(Err(format!("--operator: {operator} does not exist")));
+    if let Some(missing) = missing(&mut tx, tenant).await? {
+        return Ok(Err(missing));
     }
-    let created = session::create_user(&mut tx, operator, &email, &name, role, &hash, now).await;
+    let created = session::create_user(&mut tx, tenant, &email, &name, role, &hash, now).await;
     let id = match created {
         Err(sqlx::Error::Database(error)) if error.is_unique_violation() => {
             return Ok(Err(format!("--email: {email} has an account already")));
@@ -115,7 +158,8 @@ async fn create_user(
     };
     tx.commit().await?;
     let mut made = json!({
-        "user_id": id, "operator_id": operator, "email": email, "name": name, "role": role,
+        "user_id": id, "operator_id": tenant.and_then(Tenant::operator),
+        "firm_id": tenant.and_then(Tenant::firm), "email": email, "name": name, "role": role,
     });
     if !person.password_stdin {
         made["password"] = json!(password);
@@ -124,17 +168,15 @@ async fn create_user(
 }
 
 /// The password from standard input, or a new one.
-fn read_password(person: &Person) -> Result<Result<Option<String>, String>> {
+fn read_password(person: &Person, about: &[&str]) -> Result<Result<Option<String>, String>> {
     if !person.password_stdin {
         return Ok(Ok(Some(secret::new_password())));
     }
     let mut text = String::new();
     std::io::stdin().take(4096).read_to_string(&mut text)?;
     let password = text.trim_end_matches(['\r', '\n']);
-    if password.chars().count() < LEAST_PASSWORD {
-        return Ok(Err(format!(
-            "standard input: the password has fewer than {LEAST_PASSWORD} characters"
-        )));
+    if let Err(error) = password::check("the password", password, about) {
+        return Ok(Err(format!("standard input: {error}")));
     }
     Ok(Ok(Some(password.to_owned())))
 }

@@ -5,10 +5,12 @@ use crate::clock::Clock;
 use crate::config::{Database, Serve};
 use crate::db::Db;
 use crate::mail::Mailer;
+use crate::peer::Peer;
 use crate::tls::TlsListener;
-use crate::{alerts, analysis, events, http, operations, outbox, webhooks};
+use crate::{alerts, analysis, events, http, operations, outbox, schedule, webhooks, work_orders};
 use anyhow::{Context, Result};
-use axum::serve::Listener;
+use axum::extract::connect_info::Connected;
+use axum::serve::{IncomingStream, Listener};
 use std::future::Future;
 use std::io::Write;
 use std::net::SocketAddr;
@@ -62,6 +64,7 @@ pub fn serve(config: Serve) -> Result<ExitCode> {
 pub async fn run<L>(app: App, listener: L) -> Result<()>
 where
     L: Listener<Addr = SocketAddr>,
+    Peer: for<'a> Connected<IncomingStream<'a, L>>,
 {
     let mailer = Mailer::new(&app.config.mail)?;
     let mut parts = JoinSet::new();
@@ -76,6 +79,8 @@ where
     }
     if app.config.analysis_workers > 0 {
         parts.spawn(alerts::watch(app.clone()));
+        parts.spawn(schedule::run(app.clone()));
+        parts.spawn(work_orders::watch(app.clone()));
         match webhooks::Sender::new(app.config.webhooks.reach()) {
             Ok(sender) => {
                 for _ in 0..WEBHOOK_SENDERS {
@@ -93,8 +98,9 @@ where
     }
     parts.spawn(stop_on_signal(app.clone()));
     let stopping = app.stopping.clone();
-    let serving = axum::serve(listener, http::router(app.clone()))
-        .with_graceful_shutdown(stopping.clone().cancelled_owned());
+    let service = http::router(app.clone()).into_make_service_with_connect_info::<Peer>();
+    let serving =
+        axum::serve(listener, service).with_graceful_shutdown(stopping.clone().cancelled_owned());
     let deadline = async {
         stopping.cancelled().await;
         tokio::time::sleep(GRACE).await;

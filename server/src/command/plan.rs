@@ -6,9 +6,7 @@
 
 use super::{BadInput, answer, input, json};
 use crate::config::Plan;
-use binnacle_magnetics::adjust::{
-    AdjustError, BerthForm, Mistake, Outcome, Refusal, plan as find_plans,
-};
+use binnacle_magnetics::adjust::{AdjustError, BerthForm, Outcome, plan as find_plans};
 use binnacle_magnetics::binnacle::Binnacle;
 use binnacle_magnetics::model::Model;
 use serde::Serialize;
@@ -37,6 +35,9 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
     model.check().map_err(|error| of(&arguments.model, error))?;
     let binnacle: Binnacle = input::json_file(&arguments.binnacle)?;
     let form: BerthForm = input::json_file(&arguments.berth)?;
+    if let Some(mistake) = form.mistaken(&model) {
+        return Err(of(&arguments.berth, mistake));
+    }
     let berth = form.read().map_err(|error| of(&arguments.berth, error))?;
     let outcome = find_plans(&berth.adjustment(&model, &binnacle));
     let outcome = outcome.map_err(|error| match error {
@@ -44,10 +45,6 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
         AdjustError::Deviation(error) => of(&arguments.model, error),
         error => of(&arguments.berth, error),
     })?;
-    if let Some(mistake) = explained(&outcome) {
-        let what = format!("{}: {mistake}", mistake.field());
-        return Err(of(&arguments.berth, what));
-    }
     let refused = !outcome.refusals.is_empty();
     Ok(json(&Planned {
         verdict: if refused { "refused" } else { "planned" },
@@ -57,16 +54,4 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
 
 fn of(file: &Path, what: impl std::fmt::Display) -> BadInput {
     BadInput(format!("{}: {what}", file.display()))
-}
-
-/// The mistake that makes the berth fit, if one alone does.
-fn explained(outcome: &Outcome) -> Option<Mistake> {
-    outcome
-        .refusals
-        .iter()
-        .find_map(|refused| match &refused.refusal {
-            Refusal::InconsistentBerth { mistakes, .. }
-            | Refusal::ImplausibleLambda { mistakes, .. } => mistakes.first().copied(),
-            _ => None,
-        })
 }

@@ -4,7 +4,7 @@ use super::entry::Entry;
 use crate::error::{Error, Result};
 
 /// Named as in JSON.
-const COLUMNS: [&str; 19] = [
+const COLUMNS: [&str; 20] = [
     "time",
     "occasion",
     "lat",
@@ -17,6 +17,7 @@ const COLUMNS: [&str; 19] = [
     "variation_deg",
     "deviation_deg",
     "model_version",
+    "card_status",
     "card_deviation_deg",
     "card_band95_deg",
     "difference_deg",

@@ -1,9 +1,11 @@
 //! An entry of a deviation book: what was observed, beside what the card said.
 
 use super::select::{Occasion, choose};
+use crate::card;
 use crate::models::StoredModel;
 use crate::samples::SampleReasonSchema;
 use crate::time::Time;
+use crate::work_orders::CompletedOrder;
 use binnacle_magnetics::analyse::{SampleDiagnostic, SampleReason};
 use binnacle_magnetics::angle::{TrueHeading, wrap_180};
 use binnacle_magnetics::deviation::Prediction;
@@ -49,6 +51,9 @@ pub(super) struct Entry {
     /// or it held no more.
     #[schema(required, example = 12)]
     pub(super) model_version: Option<i64>,
+    /// What its card was worth then; none where there was none.
+    #[schema(required)]
+    pub(super) card_status: Option<card::Status>,
     /// Deviation by the card of that model, degrees, east positive.
     #[schema(required, example = 2.1)]
     pub(super) card_deviation_deg: Option<f64>,
@@ -102,11 +107,13 @@ pub(super) struct Ends {
     pub(super) withdrawn: Option<Time>,
 }
 
-/// The entries that samples make, with the cards of `models`, in order of version.
+/// The entries that samples make, with the cards of `models`, in order of version, and
+/// what headings at sea had said of them by then.
 pub(super) fn entries(
     samples: Vec<SampleDiagnostic>,
     models: &[StoredModel],
     ends: &Ends,
+    completed: &[CompletedOrder],
 ) -> Vec<Entry> {
     let chosen = choose(samples).into_iter();
     chosen
@@ -117,6 +124,7 @@ pub(super) fn entries(
                 occasion,
                 &sample,
                 last.filter(|model| ends.leave(model, at)),
+                completed,
             )
         })
         .collect()
@@ -126,7 +134,10 @@ impl Ends {
     /// Whether a model's card was not ended by then.
     fn leave(&self, model: &StoredModel, at: Time) -> bool {
         let mut work = self.work.iter();
-        let worked = work.any(|begun| (model.data_until..=at).contains(begun));
+        let worked = work.any(|begun| {
+            // The work that a foretold model comes from is no end of it.
+            model.epoch_from != Some(*begun) && (model.data_until..=at).contains(begun)
+        });
         !worked && self.withdrawn.is_none_or(|since| at < since)
     }
 }
@@ -136,6 +147,7 @@ fn entry(
     occasion: Occasion,
     found: &SampleDiagnostic,
     model: Option<&StoredModel>,
+    completed: &[CompletedOrder],
 ) -> Option<Entry> {
     let sample = &found.sample;
     let (deviation_deg, variation_deg) = found.deviation_deg.zip(found.variation_deg)?;
@@ -144,7 +156,7 @@ fn entry(
         (Some(_), None) => Reference::Gyro,
         (None, _) => Reference::Satellite,
     };
-    let card = model.and_then(|model| Some((model.version, predicted(found, model)?)));
+    let card = model.and_then(|model| Some((model, predicted(found, model)?)));
     let card_deviation_deg = card.map(|(_, card)| card.deviation.degrees_east());
     let compass_deg = sample.compass.degrees();
     Some(Entry {
@@ -159,7 +171,8 @@ fn entry(
         satellite_deg: sample.satellite.map(TrueHeading::degrees),
         variation_deg,
         deviation_deg,
-        model_version: card.map(|(version, _)| version),
+        model_version: card.map(|(model, _)| model.version),
+        card_status: card.map(|(model, _)| status(model, completed, Time(sample.time))),
         card_deviation_deg,
         card_band95_deg: card.and_then(|(_, card)| card.band95_deg),
         difference_deg: card_deviation_deg.map(|card_deg| wrap_180(deviation_deg - card_deg)),
@@ -168,6 +181,18 @@ fn entry(
         reason: found.reason,
         observer: Observer::Automatic,
     })
+}
+
+/// What a model's card was worth at a time.
+fn status(model: &StoredModel, completed: &[CompletedOrder], at: Time) -> card::Status {
+    let mut bearing = completed.iter().filter(|order| order.bears_on(model));
+    let was_verified =
+        bearing.any(|order| order.at_sea.is_some_and(|at_sea| at_sea.verified_at <= at));
+    if was_verified {
+        card::Status::Verified
+    } else {
+        card::Status::Predicted
+    }
 }
 
 /// What a model's card says of the heading, where the ship was.

@@ -2,6 +2,7 @@
 
 use super::entry::{Entry, Reference};
 use super::select::Occasion;
+use crate::card;
 use crate::sheet::words::{east_west, heading_to_a_tenth, latitude, longitude, signed};
 use crate::sheet::{A4, Face, MARGIN, Pen, Sheet, Style, cut};
 use crate::time::Time;
@@ -109,7 +110,7 @@ fn row(sheet: &mut Sheet, entry: &Entry, y: f32, line: usize) {
         by(entry.reference).to_owned(),
         east_west(entry.variation_deg),
         east_west(entry.deviation_deg),
-        card(entry),
+        by_the_card(entry),
         entry.difference_deg.map_or("–".to_owned(), signed),
         remarks(entry),
     ];
@@ -141,7 +142,7 @@ fn by(reference: Reference) -> &'static str {
     }
 }
 
-fn card(entry: &Entry) -> String {
+fn by_the_card(entry: &Entry) -> String {
     let Some(card_deg) = entry.card_deviation_deg else {
         return "none in force".to_owned();
     };
@@ -156,11 +157,14 @@ fn remarks(entry: &Entry) -> String {
         Occasion::Watch => "",
         Occasion::Alteration => "course altered",
     };
+    let card = match entry.card_status {
+        Some(card::Status::Verified) => "card verified",
+        Some(card::Status::Predicted) | None => "",
+    };
     let doubt = entry.reason.map_or("", doubt);
-    let both = [occasion, doubt]
-        .into_iter()
-        .filter(|words| !words.is_empty());
-    both.collect::<Vec<_>>().join("; ")
+    let all = [occasion, doubt, card].into_iter();
+    let said = all.filter(|words| !words.is_empty());
+    said.collect::<Vec<_>>().join("; ")
 }
 
 fn doubt(reason: SampleReason) -> &'static str {
@@ -181,7 +185,8 @@ fn doubt(reason: SampleReason) -> &'static str {
 fn foot(sheet: &mut Sheet) {
     let y = HEIGHT - MARGIN;
     let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
-                each watch that has one, and after alterations of course of 20° or more.";
+                each watch that has one, and after alterations of course of 20° or more. A card is \
+                predicted where the remarks do not say that it was verified.";
     sheet.text((LEFT, y), Style::plain(7.0).grey(FAINT), says);
     sheet.rule((RIGHT - 150.0, y - 9.0), (RIGHT, y - 9.0), 0.5);
     sheet.text(

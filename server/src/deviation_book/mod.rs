@@ -74,7 +74,9 @@ struct BookPage {
 ///
 /// An entry for the first settled stretch of heading in each watch of four hours, and
 /// for the first after each alteration of course by 20° or more. Watches in which none
-/// was observed, as in port, have none.
+/// was observed, as in port, have none. `card_status` says what the card of the time was
+/// worth then: `predicted`, or `verified` from when headings at sea had verified the
+/// adjustment that it comes from.
 #[utoipa::path(get, path = "/vessels/{id}/deviation-book", tag = "fleet",
     params(("id" = VesselId, Path), Range, Page),
     responses((status = 200, body = BookPage), (status = 401, body = Problem),

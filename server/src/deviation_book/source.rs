@@ -8,6 +8,7 @@ use crate::ids::{CompassId, VesselId};
 use crate::logbook;
 use crate::models;
 use crate::time::Time;
+use crate::work_orders::{self, CompletedOrder};
 use binnacle_magnetics::analyse::SampleDiagnostic;
 use std::collections::VecDeque;
 
@@ -19,6 +20,7 @@ pub(super) struct Source {
     from: Option<Time>,
     to: Option<Time>,
     ends: Ends,
+    completed: Vec<CompletedOrder>,
     /// What is not yet read.
     left: VecDeque<Chunk>,
 }
@@ -47,6 +49,7 @@ impl Source {
             from,
             to,
             ends,
+            completed: work_orders::completed(db, vessel, compass).await?,
             left: left.into(),
         })
     }
@@ -60,9 +63,10 @@ impl Source {
         let text = analysis::chunk(db, vessel, compass, &chunk).await?;
         let models = models::in_force(db, vessel, compass, chunk.from, chunk.to).await?;
         let (from, to, ends) = (self.from, self.to, self.ends.clone());
+        let completed = self.completed.clone();
         let made = tokio::task::spawn_blocking(move || {
             let samples: Vec<SampleDiagnostic> = serde_json::from_str(&text)?;
-            let mut found = entries(samples, &models, &ends);
+            let mut found = entries(samples, &models, &ends, &completed);
             found.retain(|entry| {
                 from.is_none_or(|from| entry.time >= from) && to.is_none_or(|to| entry.time < to)
             });

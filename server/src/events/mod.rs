@@ -10,12 +10,13 @@ mod live;
 mod store;
 
 pub use live::{Line, Live};
-pub use store::{insert, prune};
+pub use store::{insert, insert_of_order, prune};
 
-use crate::access::Reader;
+use crate::access::PartyReader;
 use crate::app::App;
 use crate::error::{Problem, Result};
-use crate::ids::{EventId, OperatorId, VesselId};
+use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
+use crate::tenants::Tenant;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::sse::{Event as Sent, KeepAlive, Sse};
@@ -52,6 +53,20 @@ pub enum Kind {
     Alert,
     /// A work order has gone on.
     WorkOrder,
+    /// A port call was entered, amended or withdrawn.
+    PortCall,
+    /// The schedule has another plan for it.
+    Schedule,
+}
+
+impl Kind {
+    /// Whether the schedule rests on it.
+    fn alters_the_schedule(self) -> bool {
+        matches!(
+            self,
+            Kind::Model | Kind::Logbook | Kind::WorkOrder | Kind::PortCall
+        )
+    }
 }
 
 /// An event, with those who may know of it.
@@ -61,6 +76,10 @@ pub struct Event {
     pub id: EventId,
     /// Whose vessel.
     pub operator_id: OperatorId,
+    /// The firm that is told; none when the operator is.
+    pub firm_id: Option<FirmId>,
+    /// The work order, if it is of one.
+    pub order_id: Option<OrderId>,
     /// Which vessel.
     pub vessel_id: VesselId,
     /// What happened.
@@ -74,6 +93,9 @@ pub struct VesselEvent {
     pub vessel_id: VesselId,
     /// What happened.
     pub kind: Kind,
+    /// The work order, if it is of one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub order_id: Option<OrderId>,
 }
 
 /// A client is to come back after so long, to be looked at anew.
@@ -82,14 +104,15 @@ const LONGEST_STREAM: Duration = Duration::from_mins(30);
 /// Follow the fleet live
 ///
 /// Server-sent events named `vessel`, whose data is a `VesselEvent`. With
-/// `Last-Event-ID`, what was missed within the last day comes first.
+/// `Last-Event-ID`, what was missed within the last day comes first. A firm is told of its
+/// work orders only.
 #[utoipa::path(get, path = "/events", tag = "fleet",
     params(("Last-Event-ID" = Option<Uuid>, Header, description = "The last event seen")),
     responses((status = 200, content_type = "text/event-stream", body = VesselEvent),
               (status = 401, body = Problem)))]
 async fn follow_events(
     State(app): State<App>,
-    reader: Reader,
+    reader: PartyReader,
     headers: HeaderMap,
 ) -> Result<Sse<impl Stream<Item = std::result::Result<Sent, Infallible>>>> {
     let last = headers
@@ -100,13 +123,13 @@ async fn follow_events(
     // Listening begins before the look back, so that nothing falls in between.
     let receiver = app.live.follow();
     let missed = match last {
-        Some(last) => store::since(&app.db, reader.operator, last).await?,
+        Some(last) => store::since(&app.db, reader.tenant, last).await?,
         None => Vec::new(),
     };
     let follower = Follower {
         ends: tokio::time::Instant::now() + LONGEST_STREAM,
         app,
-        operator: reader.operator,
+        tenant: reader.tenant,
         receiver,
         pending: missed.into(),
         last,
@@ -117,7 +140,7 @@ async fn follow_events(
 
 struct Follower {
     app: App,
-    operator: OperatorId,
+    tenant: Tenant,
     receiver: Receiver<Event>,
     pending: VecDeque<Event>,
     last: Option<EventId>,
@@ -137,7 +160,7 @@ impl Follower {
                 received = self.receiver.recv() => received,
             };
             match received {
-                Ok(event) if event.operator_id == self.operator => self.pending.push_back(event),
+                Ok(event) if event.is_for(self.tenant) => self.pending.push_back(event),
                 Ok(_) => {}
                 Err(RecvError::Closed) => return None,
                 Err(RecvError::Lagged(_)) => self.catch_up().await?,
@@ -150,17 +173,25 @@ impl Follower {
         let Some(last) = self.last else {
             return Some(());
         };
-        let missed = store::since(&self.app.db, self.operator, last).await.ok()?;
+        let missed = store::since(&self.app.db, self.tenant, last).await.ok()?;
         self.pending.extend(missed);
         Some(())
     }
 }
 
 impl Event {
+    fn is_for(&self, tenant: Tenant) -> bool {
+        match tenant {
+            Tenant::Operator(operator) => self.operator_id == operator && self.firm_id.is_none(),
+            Tenant::Firm(firm) => self.firm_id == Some(firm),
+        }
+    }
+
     fn to_sent(self) -> Sent {
         let data = VesselEvent {
             vessel_id: self.vessel_id,
             kind: self.kind,
+            order_id: self.order_id,
         };
         Sent::default()
             .event("vessel")

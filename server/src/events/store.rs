@@ -4,7 +4,9 @@ use super::live::CHANNEL;
 use super::{Event, Kind};
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::error;
-use crate::ids::{EventId, OperatorId, VesselId};
+use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
+use crate::schedule;
+use crate::tenants::Tenant;
 use crate::time::Time;
 
 const KEPT_FOR_S: f64 = 86_400.0;
@@ -21,6 +23,27 @@ pub async fn insert(
     kind: Kind,
     now: Time,
 ) -> error::Result<Event> {
+    write(tx, vessel_id, kind, None, None, now).await
+}
+
+/// Stores an event of a work order, for its operator or for one firm.
+pub async fn insert_of_order(
+    tx: &mut Tx,
+    (vessel_id, order): (VesselId, OrderId),
+    firm: Option<FirmId>,
+    now: Time,
+) -> error::Result<Event> {
+    write(tx, vessel_id, Kind::WorkOrder, firm, Some(order), now).await
+}
+
+async fn write(
+    tx: &mut Tx,
+    vessel_id: VesselId,
+    kind: Kind,
+    firm_id: Option<FirmId>,
+    order_id: Option<OrderId>,
+    now: Time,
+) -> error::Result<Event> {
     let (operator_id,) = row!(
         in &mut *tx,
         (OperatorId,),
@@ -31,19 +54,27 @@ pub async fn insert(
     let event = Event {
         id: EventId::new(),
         operator_id,
+        firm_id,
+        order_id,
         vessel_id,
         kind,
     };
     execute!(
         &mut *tx,
-        "INSERT INTO events (id, operator_id, vessel_id, kind, created_at)
-         VALUES ($1, $2, $3, $4, $5)",
+        "INSERT INTO events (id, operator_id, firm_id, order_id, vessel_id, kind, created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7)",
         event.id,
         operator_id,
+        firm_id,
+        order_id,
         vessel_id,
         kind,
         now
     )?;
+    // A firm's copy of an event alters nothing more.
+    if firm_id.is_none() && kind.alters_the_schedule() {
+        schedule::ask(tx, operator_id, now).await?;
+    }
     if let Tx::Postgres(tx) = tx {
         sqlx::query("SELECT pg_notify($1, $2)")
             .bind(CHANNEL)
@@ -56,17 +87,19 @@ pub async fn insert(
 
 /// What happened since an event was seen; everything there is when that is so long
 /// ago that it was forgotten.
-pub(super) async fn since(db: &Db, operator: OperatorId, last: EventId) -> Result<Vec<Event>> {
+pub(super) async fn since(db: &Db, tenant: Tenant, last: EventId) -> Result<Vec<Event>> {
     rows!(
         db,
         Event,
-        "SELECT id, operator_id, vessel_id, kind FROM events
-         WHERE operator_id = $1 AND id <> $2
+        "SELECT id, operator_id, firm_id, order_id, vessel_id, kind FROM events
+         WHERE ((operator_id = $1 AND firm_id IS NULL) OR firm_id = $2) AND id <> $3
            AND created_at >= COALESCE((SELECT l.created_at FROM events l
-                                       WHERE l.id = $2 AND l.operator_id = $1), 0) - $3
+                                       WHERE l.id = $3
+                                         AND (l.operator_id = $1 OR l.firm_id = $2)), 0) - $4
          ORDER BY id
-         LIMIT $4",
-        operator,
+         LIMIT $5",
+        tenant.operator(),
+        tenant.firm(),
         last,
         (OVERLAP_S * 1e6) as i64,
         MOST_MISSED
@@ -78,7 +111,7 @@ pub(super) async fn all_since(db: &Db, from: Time) -> Result<Vec<Event>> {
     rows!(
         db,
         Event,
-        "SELECT id, operator_id, vessel_id, kind FROM events
+        "SELECT id, operator_id, firm_id, order_id, vessel_id, kind FROM events
          WHERE created_at >= $1
          ORDER BY id
          LIMIT $2",

@@ -17,13 +17,22 @@ pub struct File {
     pub bytes: Vec<u8>,
 }
 
+/// A line of a log.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// The line; of one that is withheld, what stands for it.
+    pub text: String,
+    /// SHA-256 of the line as it was written, hexadecimal.
+    pub sha256: String,
+}
+
 /// What an archive is made from.
 #[derive(Clone, Debug)]
 pub struct Evidence {
     /// The order's id.
     pub order: String,
     /// Lines of its log.
-    pub lines: Vec<String>,
+    pub lines: Vec<Line>,
     /// Everything but readme, log and manifest.
     pub files: Vec<File>,
 }
@@ -52,12 +61,17 @@ pub(super) struct Head {
 /// # Errors
 /// When it cannot be written, which memory alone could bring about.
 pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
-    let mut log = evidence.lines.join("\n");
+    let texts: Vec<&str> = evidence
+        .lines
+        .iter()
+        .map(|line| line.text.as_str())
+        .collect();
+    let mut log = texts.join("\n");
     log.push('\n');
     let last = evidence.lines.last().context("an order without a log")?;
     let head = Head {
         entries: evidence.lines.len() as i64,
-        last_sha256: sha256_hex(last.as_bytes()),
+        last_sha256: last.sha256.clone(),
     };
     let mut files = evidence.files;
     let file = |name: &str, text: &str| File {

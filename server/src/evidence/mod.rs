@@ -9,7 +9,7 @@ mod archive;
 mod sheets;
 mod verify;
 
-pub use archive::{Evidence, File, archive};
+pub use archive::{Evidence, File, Line, archive};
 pub use sheets::record_pdf;
 pub use verify::{Found, verify};
 

@@ -1,7 +1,7 @@
 //! Checking an archive with nothing but what is in it.
 
 use super::archive::{Head, Manifest};
-use crate::work_orders::completion::{Completed, Signed};
+use crate::work_orders::completion::{Completed, SignedBy};
 use crate::work_orders::entry::sha256_hex;
 use crate::work_orders::photos::PhotoTaken;
 use serde::de::DeserializeOwned;
@@ -109,6 +109,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     };
     let mut previous: Option<String> = None;
     let mut signed = 0;
+    let mut withheld: Vec<String> = Vec::new();
     let mut completed: Option<Completed> = None;
     let mut entries: i64 = 0;
     for line in text.lines() {
@@ -145,7 +146,19 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
             }
             _ => {}
         }
-        previous = Some(sha256_hex(line.as_bytes()));
+        previous = match entry["withheld_sha256"].as_str() {
+            Some(sha256) => {
+                withheld.push(entries.to_string());
+                Some(sha256.to_owned())
+            }
+            None => Some(sha256_hex(line.as_bytes())),
+        };
+    }
+    if !withheld.is_empty() {
+        found.facts.push(format!(
+            "entries {} are withheld, as between the operator and other firms: the operator has them",
+            withheld.join(", ")
+        ));
     }
     if completed.is_none() {
         found.wrong("the log has no completion");
@@ -212,19 +225,26 @@ fn photo(
 
 /// How many signatures hold: one or none.
 fn signature(entry: &Value, completed: Option<&Completed>, at: &str, found: &mut Found) -> usize {
-    let Some(signed) = content::<Signed>(entry, at, found) else {
+    let Some(by) = content::<SignedBy>(entry, at, found) else {
         return 0;
     };
     let Some(completed) = completed else {
         found.wrong(format!("{at}: a signature before the completion"));
         return 0;
     };
-    if let Err(error) = signed.checked(&completed.record_sha256) {
+    if let Err(error) = by.signed.checked(&completed.record_sha256) {
         found.wrong(format!("{at}: {error}"));
         return 0;
     }
-    found
-        .facts
-        .push(format!("signed by the key {}", signed.public_key));
+    let public_key = &by.signed.public_key;
+    found.facts.push(match &by.key {
+        Some(key) => format!(
+            "signed by the key {public_key}, which {} had registered as {:?}",
+            key.firm_name, key.name
+        ),
+        None => format!(
+            "signed by the key {public_key}, which no firm had registered: whose it is, ask the firm"
+        ),
+    });
     1
 }

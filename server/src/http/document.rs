@@ -44,7 +44,7 @@ fn add_problems(operation: &mut Operation) {
         })
     };
     let mut tags = operation.tags.iter().flatten();
-    let fleet = tags.any(|tag| ["fleet", "adjusting", "alerts"].contains(&tag.as_str()));
+    let fleet = tags.any(|tag| ["fleet", "adjusting", "alerts", "people"].contains(&tag.as_str()));
     let query = parameters().any(|found| found.parameter_in == ParameterIn::Query);
     let body = operation.request_body.is_some();
     // A batch's frame is taken whatever its media type is called.

@@ -3,8 +3,9 @@
 use super::headers;
 use crate::app::App;
 use crate::{
-    alerts, binnacles, card, changes, compasses, dashboard, deviation, deviation_book, enrolment,
-    error, events, logbook, mail, models, operations, samples, session, settings, streams, tokens,
+    alerts, binnacles, calendar, card, changes, compasses, dashboard, deviation, deviation_book,
+    enrolment, error, events, firms, fleet, logbook, mail, models, needs, operations, operators,
+    port_calls, samples, schedule, second_factor, session, settings, streams, tokens, users,
     vessels, webhooks, work_orders,
 };
 use axum::Router;
@@ -33,16 +34,18 @@ const PATIENCE: Duration = Duration::from_mins(2);
         description = "Magnetic compass deviation of a fleet. Errors are RFC 9457 problem \
             documents; lists page by cursor; times are RFC 3339 UTC; deviation and variation are \
             east-positive degrees; fields are nanotesla. Absence and refusal look the same (404) \
-            across operators.",
+            across operators and firms.",
     ),
     components(schemas(error::Problem)),
     security(("session" = []), ("token" = [])),
     modifiers(&Security),
     tags(
-        (name = "session", description = "Signing in; API tokens"),
+        (name = "session", description = "Signing in; one's sessions, second factor, API tokens"),
+        (name = "people", description = "Who may sign in, and how"),
+        (name = "platform", description = "Operators and firms, for platform admins"),
         (name = "agents", description = "What the agents aboard talk to"),
         (name = "fleet", description = "Vessels, compasses, models"),
-        (name = "adjusting", description = "Binnacles and work orders. What is foretold here is \
+        (name = "adjusting", description = "Binnacles, port calls and work orders. What is foretold here is \
             a prediction, not a certificate"),
         (name = "alerts", description = "What people must know of, and how they are told"),
         (name = "operations", description = "Health and metrics"),
@@ -57,7 +60,7 @@ impl utoipa::Modify for Security {
         let components = document.components.get_or_insert_default();
         components.add_security_scheme(
             "session",
-            SecurityScheme::ApiKey(ApiKey::Cookie(ApiKeyValue::new(session::COOKIE))),
+            SecurityScheme::ApiKey(ApiKey::Cookie(ApiKeyValue::new(session::cookie::PLAIN))),
         );
         components.add_security_scheme(
             "token",
@@ -77,11 +80,20 @@ fn for_agents() -> OpenApiRouter<App> {
 fn for_people() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(session::router())
+        .merge(second_factor::router())
         .merge(tokens::router())
+        .merge(users::router())
+        .merge(operators::router())
+        .merge(firms::router())
+        .merge(fleet::router())
         .merge(vessels::router())
         .merge(compasses::router())
         .merge(binnacles::router())
         .merge(work_orders::router())
+        .merge(port_calls::router())
+        .merge(needs::router())
+        .merge(schedule::router())
+        .merge(calendar::router())
         .merge(enrolment::router())
         .merge(settings::router())
         .merge(logbook::router())

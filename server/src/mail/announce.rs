@@ -64,6 +64,6 @@ async fn note(
             store::forget(tx, recipient, alert).await?;
             Ok(told.is_some())
         }
-        Kind::AlertAcknowledged | Kind::Test => Ok(false),
+        _ => Ok(false),
     }
 }

@@ -202,7 +202,8 @@ impl StoredModel {
         }
     }
 
-    fn version(self) -> ModelVersion {
+    /// The version, whole.
+    pub fn version(self) -> ModelVersion {
         ModelVersion {
             handbook: crate::deviation::handbook(&self.model.0, self.earth()),
             id: self.id,

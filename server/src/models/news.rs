@@ -15,6 +15,13 @@ const OF_BAND: f64 = 0.25;
 /// The bridge says how old its model is.
 const OLDER_S: f64 = 3.0 * 86_400.0;
 const STEP_DEG: u32 = 10;
+/// A foretold model older than this has had its time, whatever it was sure of.
+const FORETOLD_FOR_S: f64 = 60.0 * 86_400.0;
+/// Of bx and by, in [`DRIFT_S`].
+const USUAL_DRIFT_NT: f64 = 60.0;
+const DRIFT_S: f64 = 30.0 * 86_400.0;
+/// Where bx and by stand among the parameters.
+const PERMANENT: [usize; 2] = [0, 2];
 
 impl StoredModel {
     /// Whether it matters to a ship that has an earlier one: by its deviation or band, on
@@ -30,8 +37,14 @@ impl StoredModel {
             })
     }
 
-    /// Whether it is more certain of the heading of which it is least certain.
-    pub fn knows_more_than(&self, known: &StoredModel) -> bool {
+    /// Whether it is more certain of the heading of which it is least certain than a
+    /// foretold model is by then, or that one is too old to plan from.
+    pub fn knows_more_than(&self, foretold: &StoredModel) -> bool {
+        let age_s = self.data_until.0.seconds_since(foretold.data_until.0);
+        if age_s > FORETOLD_FOR_S {
+            return true;
+        }
+        let known = drifted(&foretold.model.0, age_s.max(0.0));
         let widest = |model: &Model| {
             let headings = (0..360 / STEP_DEG).filter_map(|index| {
                 let compass = CompassHeading::new(f64::from(index * STEP_DEG))?;
@@ -39,7 +52,7 @@ impl StoredModel {
             });
             headings.reduce(f64::max)
         };
-        match (widest(&self.model.0), widest(&known.model.0)) {
+        match (widest(&self.model.0), widest(&known)) {
             (Some(ours), Some(known)) => ours < known,
             (ours, known) => ours.is_some() || known.is_none(),
         }
@@ -57,6 +70,19 @@ impl StoredModel {
         let least = LEAST_DEG.max(OF_BAND * known);
         moved.abs() > least || (band - known).abs() > least
     }
+}
+
+/// A model whose permanent field has wandered for so long as is usual (docs/science.md,
+/// table of (9)): nothing that was observed since is in it.
+fn drifted(model: &Model, seconds: f64) -> Model {
+    let mut drifted = model.clone();
+    let variance = USUAL_DRIFT_NT.powi(2) * seconds / DRIFT_S;
+    if let Some(covariance) = &mut drifted.covariance {
+        for part in PERMANENT {
+            covariance[part][part] += variance;
+        }
+    }
+    drifted
 }
 
 #[cfg(test)]
@@ -142,5 +168,23 @@ mod tests {
         later.data_until = Time(known.data_until.0.plus_seconds(OLDER_S));
         assert!(later.matters_after(&known));
         assert!(known.matters_after(&later), "after a restored backup");
+    }
+
+    #[test]
+    fn what_was_foretold_grows_less_sure_by_the_day_and_has_its_time() {
+        let foretold = model(2_000.0, 0.09);
+        let mut fit = model(2_000.0, 0.1);
+        assert!(!fit.knows_more_than(&foretold));
+        let later = |days: f64| Time(foretold.data_until.0.plus_seconds(86_400.0 * days));
+        // A drift of 60 nT in 30 days is 0.17 degrees here.
+        fit.data_until = later(6.0);
+        assert!(!fit.knows_more_than(&foretold));
+        fit.data_until = later(20.0);
+        assert!(fit.knows_more_than(&foretold));
+        let mut poor = model(2_000.0, 1.0);
+        poor.data_until = later(59.0);
+        assert!(!poor.knows_more_than(&foretold));
+        poor.data_until = later(61.0);
+        assert!(poor.knows_more_than(&foretold));
     }
 }

@@ -39,10 +39,68 @@ pub enum Kind {
     #[serde(rename = "alert.cleared")]
     #[sqlx(rename = "alert.cleared")]
     AlertCleared,
+    /// A firm is asked to do an order.
+    #[serde(rename = "order.offered")]
+    #[sqlx(rename = "order.offered")]
+    OrderOffered,
+    /// A firm or an operator said yes or no, or proposed other terms.
+    #[serde(rename = "order.answered")]
+    #[sqlx(rename = "order.answered")]
+    OrderAnswered,
+    /// There was no answer in time.
+    #[serde(rename = "order.lapsed")]
+    #[sqlx(rename = "order.lapsed")]
+    OrderLapsed,
+    /// An offer is taken back: another firm has the order, or it is cancelled.
+    #[serde(rename = "order.withdrawn")]
+    #[sqlx(rename = "order.withdrawn")]
+    OrderWithdrawn,
+    /// Someone wrote a message about an order.
+    #[serde(rename = "order.message")]
+    #[sqlx(rename = "order.message")]
+    OrderMessage,
+    /// Something was done at the berth, or added.
+    #[serde(rename = "order.updated")]
+    #[sqlx(rename = "order.updated")]
+    OrderUpdated,
+    /// The adjuster has finished and signed.
+    #[serde(rename = "order.completed")]
+    #[sqlx(rename = "order.completed")]
+    OrderCompleted,
+    /// Headings at sea agree with what was foretold.
+    #[serde(rename = "order.verified")]
+    #[sqlx(rename = "order.verified")]
+    OrderVerified,
+    /// A heading at sea does not.
+    #[serde(rename = "order.failed")]
+    #[sqlx(rename = "order.failed")]
+    OrderFailed,
+    /// The order is done with.
+    #[serde(rename = "order.closed")]
+    #[sqlx(rename = "order.closed")]
+    OrderClosed,
+    /// It is not to be done, or no further.
+    #[serde(rename = "order.cancelled")]
+    #[sqlx(rename = "order.cancelled")]
+    OrderCancelled,
     /// Someone asked for a test.
     #[serde(rename = "test")]
     #[sqlx(rename = "test")]
     Test,
+}
+
+impl Kind {
+    /// Whether it is of a work order: firms are told of nothing else.
+    pub fn is_of_order(self) -> bool {
+        !matches!(
+            self,
+            Kind::AlertRaised
+                | Kind::AlertUpdated
+                | Kind::AlertAcknowledged
+                | Kind::AlertCleared
+                | Kind::Test
+        )
+    }
 }
 
 /// Something to be told.

@@ -4,23 +4,25 @@
 use super::delivery::Channel;
 use crate::db::{Result as DbResult, Tx, execute};
 use crate::error::{Error, Result};
-use crate::ids::OperatorId;
+use crate::tenants::Tenant;
 use uuid::Uuid;
 
 /// Makes a receiver; what it is besides is its channel's business.
 pub async fn insert(
     tx: &mut Tx,
-    operator: OperatorId,
+    tenant: impl Into<Tenant>,
     id: Uuid,
     channel: Channel,
     enabled: bool,
 ) -> DbResult<()> {
+    let tenant = tenant.into();
     execute!(
         tx,
-        "INSERT INTO receivers (id, operator_id, channel, enabled, last_number)
-         VALUES ($1, $2, $3, $4, 0)",
+        "INSERT INTO receivers (id, operator_id, firm_id, channel, enabled, last_number)
+         VALUES ($1, $2, $3, $4, $5, 0)",
         id,
-        operator,
+        tenant.operator(),
+        tenant.firm(),
         channel,
         enabled
     )?;
@@ -28,11 +30,19 @@ pub async fn insert(
 }
 
 /// Has messages sent to a receiver, or kept waiting.
-pub async fn enable(tx: &mut Tx, operator: OperatorId, id: Uuid, enabled: bool) -> DbResult<()> {
+pub async fn enable(
+    tx: &mut Tx,
+    tenant: impl Into<Tenant>,
+    id: Uuid,
+    enabled: bool,
+) -> DbResult<()> {
+    let tenant = tenant.into();
     execute!(
         tx,
-        "UPDATE receivers SET enabled = $3 WHERE operator_id = $1 AND id = $2",
-        operator,
+        "UPDATE receivers SET enabled = $4
+         WHERE (operator_id = $1 OR firm_id = $2) AND id = $3",
+        tenant.operator(),
+        tenant.firm(),
         id,
         enabled
     )?;
@@ -42,12 +52,20 @@ pub async fn enable(tx: &mut Tx, operator: OperatorId, id: Uuid, enabled: bool) 
 /// Removes a receiver with its deliveries and what its channel knows of it.
 ///
 /// # Errors
-/// [`Error::NotFound`] when the operator has no such receiver on the channel.
-pub async fn delete(tx: &mut Tx, operator: OperatorId, id: Uuid, channel: Channel) -> Result<()> {
+/// [`Error::NotFound`] when the tenant has no such receiver on the channel.
+pub async fn delete(
+    tx: &mut Tx,
+    tenant: impl Into<Tenant>,
+    id: Uuid,
+    channel: Channel,
+) -> Result<()> {
+    let tenant = tenant.into();
     let deleted = execute!(
         tx,
-        "DELETE FROM receivers WHERE operator_id = $1 AND id = $2 AND channel = $3",
-        operator,
+        "DELETE FROM receivers
+         WHERE (operator_id = $1 OR firm_id = $2) AND id = $3 AND channel = $4",
+        tenant.operator(),
+        tenant.firm(),
         id,
         channel
     )?;

@@ -1,52 +1,17 @@
-//! Users and their sessions in the database.
+//! Users and sessions in the database.
 
-use crate::db::{Db, Result, Tx, execute, row};
+use super::own::Session;
+use super::user::{Role, User, normal_email, user_sql};
+use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::error;
-use crate::ids::{OperatorId, UserId};
+use crate::ids::{SessionId, UserId};
+use crate::peer::Origin;
 use crate::secret;
+use crate::tenants::Tenant;
 use crate::time::Time;
-use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
 
-/// A user, as `/me` shows it.
-#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
-#[schema(as = Me)]
-pub struct User {
-    /// The user's id.
-    pub user_id: UserId,
-    /// What the user signs in with.
-    pub email: String,
-    /// The user's name.
-    pub name: String,
-    /// What the user may do.
-    pub role: Role,
-    /// The operator whose fleet the user sees; none for a platform admin.
-    #[schema(required)]
-    pub operator_id: Option<OperatorId>,
-    /// That operator's name.
-    #[schema(required)]
-    pub operator_name: Option<String>,
-}
-
-/// What a user may do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
-#[serde(rename_all = "snake_case")]
-#[sqlx(type_name = "text", rename_all = "snake_case")]
-pub enum Role {
-    /// See and change the operator's fleet.
-    Admin,
-    /// See the operator's fleet.
-    Viewer,
-    /// Manage operators.
-    PlatformAdmin,
-}
-
-impl Role {
-    /// Whether the role allows changes to a fleet.
-    pub fn may_change_fleet(self) -> bool {
-        self == Role::Admin
-    }
-}
+/// How old `last_seen_at` may be before a request is noted: reading is not to write.
+const SEEN_NOTED_EVERY_S: f64 = 600.0;
 
 #[derive(sqlx::FromRow)]
 struct Stored {
@@ -55,25 +20,49 @@ struct Stored {
     password_hash: String,
 }
 
-/// An e-mail as it is stored and compared.
-pub(super) fn normal_email(email: &str) -> String {
-    email.trim().to_lowercase()
+#[derive(sqlx::FromRow)]
+struct Holder {
+    #[sqlx(flatten)]
+    user: User,
+    session_id: SessionId,
+    last_seen_at: Time,
 }
 
-/// The user whose session this is, if it has not ended.
-pub async fn find_user(db: &Db, token_hash: &[u8], now: Time) -> Result<Option<User>> {
-    row!(
+/// The user whose session this is, if it has not ended and was not idle for so long.
+pub async fn find_user(
+    db: &Db,
+    token_hash: &[u8],
+    now: Time,
+    idle_s: f64,
+) -> Result<Option<(User, SessionId)>> {
+    let holder = row!(
         db,
-        User,
-        "SELECT u.id AS user_id, u.email, u.name, u.role, u.operator_id, o.name AS operator_name
-         FROM sessions s
-         JOIN users u ON u.id = s.user_id
-         LEFT JOIN operators o ON o.id = u.operator_id
-         WHERE s.token_hash = $1 AND s.expires_at > $2
-         ORDER BY u.id",
+        Holder,
+        concat!(
+            user_sql!(", s.id AS session_id, s.last_seen_at"),
+            "JOIN sessions s ON s.user_id = u.id
+             WHERE s.token_hash = $1 AND s.expires_at > $2 AND s.last_seen_at > $3
+               AND u.disabled_at IS NULL
+             ORDER BY u.id"
+        ),
         token_hash,
-        now
-    )
+        now,
+        Time(now.0.plus_seconds(-idle_s))
+    )?;
+    let Some(holder) = holder else {
+        return Ok(None);
+    };
+    if now.0.seconds_since(holder.last_seen_at.0) >= SEEN_NOTED_EVERY_S {
+        let mut tx = db.begin().await?;
+        execute!(
+            &mut tx,
+            "UPDATE sessions SET last_seen_at = $2 WHERE id = $1",
+            holder.session_id,
+            now
+        )?;
+        tx.commit().await?;
+    }
+    Ok(Some((holder.user, holder.session_id)))
 }
 
 /// A user's name.
@@ -91,16 +80,15 @@ pub async fn name_of(tx: &mut Tx, id: UserId) -> error::Result<String> {
     Ok(name)
 }
 
+/// Who may sign in with an e-mail, and the hash of the password.
 pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, String)>> {
     let stored = row!(
         db,
         Stored,
-        "SELECT u.id AS user_id, u.email, u.name, u.role, u.operator_id, o.name AS operator_name,
-                u.password_hash
-         FROM users u
-         LEFT JOIN operators o ON o.id = u.operator_id
-         WHERE u.email = $1
-         ORDER BY u.id",
+        concat!(
+            user_sql!(", u.password_hash"),
+            "WHERE u.email = $1 AND u.disabled_at IS NULL ORDER BY u.id"
+        ),
         email
     )?;
     Ok(stored.map(|stored| (stored.user, stored.password_hash)))
@@ -110,8 +98,8 @@ pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, 
 pub(super) async fn open(
     db: &Db,
     user: &User,
-    email: &str,
     token: &str,
+    from: &Origin,
     now: Time,
     expires_at: Time,
 ) -> Result<()> {
@@ -119,35 +107,87 @@ pub(super) async fn open(
     execute!(&mut tx, "DELETE FROM sessions WHERE expires_at <= $1", now)?;
     execute!(
         &mut tx,
-        "DELETE FROM login_failures WHERE email_hash = $1",
-        secret::hash(email)
+        "DELETE FROM login_failures WHERE subject_hash = $1",
+        secret::hash(&user.email)
     )?;
     execute!(
         &mut tx,
-        "INSERT INTO sessions (token_hash, user_id, created_at, expires_at)
-         VALUES ($1, $2, $3, $4)",
-        secret::hash(token),
+        "INSERT INTO sessions (id, user_id, token_hash, created_at, last_seen_at, expires_at,
+                               address, user_agent)
+         VALUES ($1, $2, $3, $4, $4, $5, $6, $7)",
+        SessionId::new(),
         user.user_id,
+        secret::hash(token),
         now,
-        expires_at
+        expires_at,
+        from.address_text(),
+        from.program.as_str()
     )?;
     tx.commit().await
 }
 
-pub(super) async fn close(db: &Db, token_hash: &[u8]) -> Result<()> {
+pub(super) async fn list(
+    db: &Db,
+    user: UserId,
+    now: Time,
+    idle_s: f64,
+    after: Option<uuid::Uuid>,
+    limit: i64,
+) -> Result<Vec<Session>> {
+    rows!(
+        db,
+        Session,
+        "SELECT id, created_at, last_seen_at, expires_at, address, user_agent, FALSE AS current
+         FROM sessions
+         WHERE user_id = $1 AND expires_at > $2 AND last_seen_at > $3 AND id > $4
+         ORDER BY id
+         LIMIT $5",
+        user,
+        now,
+        Time(now.0.plus_seconds(-idle_s)),
+        after.unwrap_or_default(),
+        limit
+    )
+}
+
+/// Ends one of a user's sessions; false when it is none of theirs.
+pub(super) async fn end(db: &Db, user: UserId, id: SessionId) -> Result<bool> {
     let mut tx = db.begin().await?;
-    execute!(
+    let ended = execute!(
         &mut tx,
-        "DELETE FROM sessions WHERE token_hash = $1",
-        token_hash
+        "DELETE FROM sessions WHERE user_id = $1 AND id = $2",
+        user,
+        id
     )?;
-    tx.commit().await
+    tx.commit().await?;
+    Ok(ended > 0)
 }
 
-/// Stores a new user; the e-mail must be new.
+/// Ends all of a user's sessions but the one to be kept.
+pub(super) async fn end_all(tx: &mut Tx, user: UserId, kept: Option<SessionId>) -> Result<u64> {
+    execute!(
+        tx,
+        "DELETE FROM sessions WHERE user_id = $1 AND id <> $2",
+        user,
+        kept.map_or(uuid::Uuid::nil(), |kept| kept.0)
+    )
+}
+
+/// Puts another password in place.
+pub async fn set_password(tx: &mut Tx, user: UserId, password_hash: &str) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE users SET password_hash = $2 WHERE id = $1",
+        user,
+        password_hash
+    )?;
+    Ok(())
+}
+
+/// Stores a new user of a tenant, or of none; the e-mail must be new.
 pub async fn create_user(
     tx: &mut Tx,
-    operator_id: Option<OperatorId>,
+    tenant: Option<Tenant>,
     email: &str,
     name: &str,
     role: Role,
@@ -157,10 +197,11 @@ pub async fn create_user(
     let id = UserId::new();
     execute!(
         tx,
-        "INSERT INTO users (id, operator_id, email, name, role, password_hash, created_at)
-         VALUES ($1, $2, $3, $4, $5, $6, $7)",
+        "INSERT INTO users (id, operator_id, firm_id, email, name, role, password_hash, created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
         id,
-        operator_id,
+        tenant.and_then(Tenant::operator),
+        tenant.and_then(Tenant::firm),
         normal_email(email),
         name,
         role,

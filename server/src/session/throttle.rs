@@ -1,28 +1,57 @@
-//! Slows down those who guess passwords.
+//! Slows down those who guess passwords and codes.
 //!
 //! What always holds: an e-mail that nobody has is throttled like any other, so
-//! that the answer does not tell which exist.
+//! that the answer does not tell which exist. Failures count for the e-mail, and, so
+//! that one password is not tried on every e-mail, for the address they come from.
 
 use crate::db::{Db, execute, row};
 use crate::error::{Error, Result};
+use crate::peer::Origin;
 use crate::secret;
 use crate::time::Time;
 use binnacle_magnetics::time::Timestamp;
 
-/// Wrong passwords that cost nothing.
-const FREE_FAILURES: i64 = 5;
+/// Wrong passwords that cost an e-mail nothing.
+const FREE_FOR_EMAIL: i64 = 5;
+/// And an address: a whole office may be behind it.
+const FREE_FOR_ADDRESS: i64 = 50;
 /// The longest wait between two attempts.
 const LONGEST_WAIT_S: i64 = 900;
 /// After so long without a failure all is forgotten.
 const FORGET_AFTER_S: f64 = 86_400.0;
 
+/// Whose failures are counted.
+pub struct Subjects<'a> {
+    /// The e-mail that is tried, as it is stored.
+    pub email: &'a str,
+    /// From where.
+    pub from: &'a Origin,
+}
+
+impl Subjects<'_> {
+    fn hashes(&self) -> [(Vec<u8>, i64); 2] {
+        [
+            (secret::hash(self.email), FREE_FOR_EMAIL),
+            (secret::hash(&self.from.network()), FREE_FOR_ADDRESS),
+        ]
+    }
+}
+
 /// Refuses an attempt that comes too soon after failed ones.
-pub(super) async fn check(db: &Db, email: &str, now: Timestamp) -> Result<()> {
+///
+/// # Errors
+/// Saying how long to wait.
+pub async fn check(db: &Db, subjects: &Subjects<'_>, now: Timestamp) -> Result<()> {
+    let [(email, _), (address, _)] = subjects.hashes();
     let locked = row!(
         db,
         (Time,),
-        "SELECT locked_until FROM login_failures WHERE email_hash = $1 ORDER BY email_hash",
-        secret::hash(email)
+        "SELECT locked_until FROM login_failures
+         WHERE subject_hash = $1 OR subject_hash = $2
+         ORDER BY locked_until DESC
+         LIMIT 1",
+        email,
+        address
     )?;
     let Some((Time(until),)) = locked.filter(|(until,)| until.0 > now) else {
         return Ok(());
@@ -32,39 +61,41 @@ pub(super) async fn check(db: &Db, email: &str, now: Timestamp) -> Result<()> {
     })
 }
 
-/// Counts a wrong password.
-pub(super) async fn note_failure(db: &Db, email: &str, now: Timestamp) -> Result<()> {
+/// Counts a wrong password or code.
+pub async fn note_failure(db: &Db, subjects: &Subjects<'_>, now: Timestamp) -> Result<()> {
     let mut tx = db.begin().await?;
     execute!(
         &mut tx,
         "DELETE FROM login_failures WHERE last_at < $1",
         Time(now.plus_seconds(-FORGET_AFTER_S))
     )?;
-    let counted = row!(
-        in &mut tx,
-        (i64,),
-        "INSERT INTO login_failures (email_hash, failures, last_at, locked_until)
-         VALUES ($1, 1, $2, $2)
-         ON CONFLICT (email_hash) DO UPDATE
-         SET failures = login_failures.failures + 1, last_at = excluded.last_at
-         RETURNING failures",
-        secret::hash(email),
-        Time(now)
-    )?;
-    let failures = counted.map_or(0, |(failures,)| failures);
-    execute!(
-        &mut tx,
-        "UPDATE login_failures SET locked_until = $2 WHERE email_hash = $1",
-        secret::hash(email),
-        Time(now.plus_seconds(wait_s(failures) as f64))
-    )?;
+    for (subject, free) in subjects.hashes() {
+        let counted = row!(
+            in &mut tx,
+            (i64,),
+            "INSERT INTO login_failures (subject_hash, failures, last_at, locked_until)
+             VALUES ($1, 1, $2, $2)
+             ON CONFLICT (subject_hash) DO UPDATE
+             SET failures = login_failures.failures + 1, last_at = excluded.last_at
+             RETURNING failures",
+            subject.as_slice(),
+            Time(now)
+        )?;
+        let failures = counted.map_or(0, |(failures,)| failures);
+        execute!(
+            &mut tx,
+            "UPDATE login_failures SET locked_until = $2 WHERE subject_hash = $1",
+            subject.as_slice(),
+            Time(now.plus_seconds(wait_s(failures - free) as f64))
+        )?;
+    }
     tx.commit().await?;
     Ok(())
 }
 
 /// Nothing at first, then twice as long each time.
-fn wait_s(failures: i64) -> i64 {
-    match failures - FREE_FAILURES {
+fn wait_s(beyond_free: i64) -> i64 {
+    match beyond_free {
         ..0 => 0,
         more => 2_i64
             .saturating_pow(more.min(20) as u32)
@@ -77,8 +108,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_wait_doubles_after_five_failures_up_to_a_quarter_of_an_hour() {
-        let waits: Vec<i64> = [1, 4, 5, 6, 7, 14, 15, 1000].map(wait_s).to_vec();
+    fn the_wait_doubles_after_the_free_failures_up_to_a_quarter_of_an_hour() {
+        let waits: Vec<i64> = [-4, -1, 0, 1, 2, 9, 10, 995].map(wait_s).to_vec();
         assert_eq!(waits, [0, 0, 1, 2, 4, 512, 900, 900]);
     }
 }

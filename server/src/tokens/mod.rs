@@ -115,8 +115,10 @@ async fn create_token(
     caller: Caller,
     Valid(new): Valid<NewToken>,
 ) -> Result<(StatusCode, Json<MadeToken>)> {
-    if caller.session.is_none() {
-        return Err(Error::Forbidden("a token cannot make tokens; sign in"));
+    // One that leaked is not to make others that outlive it.
+    caller.must_be_signed_in()?;
+    if caller.user.lacks_second_factor() {
+        return Err(Error::SecondFactorRequired);
     }
     let name = crate::http::text("name", &new.name)?;
     let now = app.clock.now();
@@ -151,9 +153,7 @@ async fn delete_token(
     caller: Caller,
     Id(id): Id<TokenId>,
 ) -> Result<StatusCode> {
-    if caller.read_only {
-        return Err(Error::Forbidden("this token may only read"));
-    }
+    caller.must_not_only_read()?;
     if !store::delete(&app.db, caller.user.user_id, id).await? {
         return Err(Error::NotFound("token"));
     }

@@ -5,7 +5,7 @@ use crate::access::Caller;
 use crate::db::{Db, Result, execute, row, rows};
 use crate::ids::{TokenId, UserId};
 use crate::secret;
-use crate::session::User;
+use crate::session::{User, user_sql};
 use crate::time::Time;
 
 /// How old `last_used_at` may be before a use is noted: reading is not to write.
@@ -28,13 +28,12 @@ pub async fn caller(db: &Db, token: &str, now: Time) -> Result<Option<Caller>> {
     let holder = row!(
         db,
         Holder,
-        "SELECT u.id AS user_id, u.email, u.name, u.role, u.operator_id, o.name AS operator_name,
-                t.id AS token_id, t.scope, t.last_used_at
-         FROM api_tokens t
-         JOIN users u ON u.id = t.user_id
-         LEFT JOIN operators o ON o.id = u.operator_id
-         WHERE t.token_hash = $1 AND t.expires_at > $2
-         ORDER BY t.id",
+        concat!(
+            user_sql!(", t.id AS token_id, t.scope, t.last_used_at"),
+            "JOIN api_tokens t ON t.user_id = u.id
+             WHERE t.token_hash = $1 AND t.expires_at > $2 AND u.disabled_at IS NULL
+             ORDER BY t.id"
+        ),
         secret::hash(token),
         now
     )?;
@@ -51,6 +50,7 @@ pub async fn caller(db: &Db, token: &str, now: Time) -> Result<Option<Caller>> {
         user: holder.user,
         read_only: holder.scope == Scope::Read,
         session: None,
+        token: Some(holder.token_id),
     }))
 }
 

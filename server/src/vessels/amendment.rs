@@ -17,6 +17,8 @@ pub(super) struct Amendment {
     call_sign: Amended<String>,
     #[serde(default)]
     flag: Amended<String>,
+    #[serde(default)]
+    degaussing: Amended<String>,
 }
 
 /// What is to be changed of a vessel; what is left out stays, null takes a value away.
@@ -34,6 +36,9 @@ pub(super) struct AmendmentSchema {
     /// The flag state.
     #[schema(max_length = 200, example = "Spain")]
     flag: Option<String>,
+    /// How her degaussing coils are, in words.
+    #[schema(max_length = 200, example = "no coils fitted")]
+    degaussing: Option<String>,
 }
 
 impl Amendment {
@@ -44,6 +49,7 @@ impl Amendment {
             imo_number: self.imo_number.over(vessel.imo_number),
             call_sign: self.call_sign.over(vessel.call_sign),
             flag: self.flag.over(vessel.flag),
+            degaussing: self.degaussing.over(vessel.degaussing),
         };
         amended.checked()
     }

@@ -6,7 +6,7 @@ mod amendment;
 mod imo;
 mod store;
 
-pub use store::{find_row, must_be_in_fleet};
+pub use store::{find_row, must_be_in_fleet, names};
 
 use crate::access::{Reader, Writer};
 use crate::alerts::{self, Severity, Standing};
@@ -50,6 +50,9 @@ pub struct Vessel {
     /// Its flag state.
     #[schema(required)]
     pub flag: Option<String>,
+    /// How its degaussing coils are, in words.
+    #[schema(required)]
+    pub degaussing: Option<String>,
     /// When it was entered here.
     pub created_at: Time,
     /// When its last batch came.
@@ -97,6 +100,10 @@ pub struct NewVessel {
     pub call_sign: Option<String>,
     /// Its flag state.
     pub flag: Option<String>,
+    /// How its degaussing coils are, in words.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200, example = "no coils fitted")]
+    pub degaussing: Option<String>,
 }
 
 /// A page of vessels.
@@ -226,6 +233,7 @@ impl NewVessel {
             imo_number,
             call_sign: optional_text("call_sign", self.call_sign.as_deref())?,
             flag: optional_text("flag", self.flag.as_deref())?,
+            degaussing: optional_text("degaussing", self.degaussing.as_deref())?,
         })
     }
 }
@@ -253,6 +261,7 @@ impl store::Row {
             imo_number: self.imo_number,
             call_sign: self.call_sign,
             flag: self.flag,
+            degaussing: self.degaussing,
             created_at: self.created_at,
             last_upload_at: self.last_upload_at,
             model: model.map(StoredModel::summary),

@@ -20,6 +20,8 @@ pub struct Row {
     pub call_sign: Option<String>,
     /// Its flag state.
     pub flag: Option<String>,
+    /// How its degaussing coils are.
+    pub degaussing: Option<String>,
     /// When it was entered.
     pub created_at: Time,
     /// When its last batch came.
@@ -52,8 +54,8 @@ pub(super) async fn list(
     rows!(
         db,
         Row,
-        "SELECT id, name, imo_number, call_sign, flag, created_at, last_upload_at,
-                last_sample_at, last_lat, last_lon
+        "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
+                last_upload_at, last_sample_at, last_lat, last_lon
          FROM vessels
          WHERE operator_id = $1 AND id > $2
          ORDER BY id
@@ -69,8 +71,8 @@ pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Opt
     row!(
         db,
         Row,
-        "SELECT id, name, imo_number, call_sign, flag, created_at, last_upload_at,
-                last_sample_at, last_lat, last_lon
+        "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
+                last_upload_at, last_sample_at, last_lat, last_lon
          FROM vessels
          WHERE id = $2 AND operator_id = $1
          ORDER BY id",
@@ -89,6 +91,19 @@ pub async fn must_be_in_fleet(db: &Db, operator: OperatorId, id: VesselId) -> er
         .ok_or(Error::NotFound("vessel"))
 }
 
+/// The fleet's vessels, with their names and IMO numbers.
+pub async fn names(
+    db: &Db,
+    operator: OperatorId,
+) -> Result<Vec<(VesselId, String, Option<String>)>> {
+    rows!(
+        db,
+        (VesselId, String, Option<String>),
+        "SELECT id, name, imo_number FROM vessels WHERE operator_id = $1 ORDER BY id",
+        operator
+    )
+}
+
 pub(super) async fn insert(
     tx: &mut Tx,
     operator: OperatorId,
@@ -98,14 +113,16 @@ pub(super) async fn insert(
 ) -> Result<()> {
     execute!(
         tx,
-        "INSERT INTO vessels (id, operator_id, name, imo_number, call_sign, flag, created_at)
-         VALUES ($1, $2, $3, $4, $5, $6, $7)",
+        "INSERT INTO vessels (id, operator_id, name, imo_number, call_sign, flag, degaussing,
+                              created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
         id,
         operator,
         new.name.as_str(),
         new.imo_number.as_deref(),
         new.call_sign.as_deref(),
         new.flag.as_deref(),
+        new.degaussing.as_deref(),
         now
     )?;
     Ok(())
@@ -121,8 +138,8 @@ pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, id: VesselId) -> err
         Row,
         "UPDATE vessels SET name = name
          WHERE id = $2 AND operator_id = $1
-         RETURNING id, name, imo_number, call_sign, flag, created_at, last_upload_at,
-                   last_sample_at, last_lat, last_lon",
+         RETURNING id, name, imo_number, call_sign, flag, degaussing, created_at,
+                   last_upload_at, last_sample_at, last_lat, last_lon",
         operator,
         id
     )?;
@@ -133,13 +150,14 @@ pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, id: VesselId) -> err
 pub(super) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Result<()> {
     execute!(
         tx,
-        "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5
+        "UPDATE vessels SET name = $2, imo_number = $3, call_sign = $4, flag = $5, degaussing = $6
          WHERE id = $1",
         id,
         amended.name.as_str(),
         amended.imo_number.as_deref(),
         amended.call_sign.as_deref(),
-        amended.flag.as_deref()
+        amended.flag.as_deref(),
+        amended.degaussing.as_deref()
     )?;
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! Queues what an operator's webhooks want to be told of alerts.
+//! Queues what webhooks want to be told: an operator's of alerts, and a firm's too of work
+//! orders.
 
 use super::store;
 use crate::alerts::AlertNews;
@@ -6,6 +7,7 @@ use crate::db::Tx;
 use crate::error::Result;
 use crate::ids::OperatorId;
 use crate::outbox::{self, Message};
+use crate::tenants::Tenant;
 use crate::time::Time;
 use serde_json::json;
 
@@ -16,7 +18,7 @@ pub async fn announce(
     news: &[AlertNews],
     now: Time,
 ) -> Result<()> {
-    for (webhook, kinds) in store::wishes(tx, operator).await? {
+    for (webhook, kinds) in store::wishes(tx, operator.into()).await? {
         let wanted = news.iter().filter(|news| kinds.0.contains(&news.kind));
         for AlertNews { id, kind, alert } in wanted {
             let message = Message {
@@ -25,6 +27,27 @@ pub async fn announce(
                 body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
             };
             outbox::queue(tx, webhook, &message, now).await?;
+        }
+    }
+    Ok(())
+}
+
+/// Queues messages for those of a tenant's webhooks that want them.
+pub async fn announce_messages(
+    tx: &mut Tx,
+    tenant: Tenant,
+    messages: &[Message],
+    now: Time,
+) -> Result<()> {
+    if messages.is_empty() {
+        return Ok(());
+    }
+    for (webhook, kinds) in store::wishes(tx, tenant).await? {
+        for message in messages
+            .iter()
+            .filter(|message| kinds.0.contains(&message.kind))
+        {
+            outbox::queue(tx, webhook, message, now).await?;
         }
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! Webhooks: telling an operator's programs of what happened.
+//! Webhooks: telling an operator's or a firm's programs of what happened.
 //!
 //! What always holds:
 //!
@@ -14,10 +14,10 @@ mod store;
 mod webhook;
 
 pub use address::is_public;
-pub use announce::announce;
+pub use announce::{announce, announce_messages};
 pub use send::{Reach, SIGNATURE_HEADER, Sender};
 
-use crate::access::{Reader, Writer};
+use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
 use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid};
@@ -50,10 +50,10 @@ pub fn router() -> OpenApiRouter<App> {
     responses((status = 200, body = WebhookList), (status = 401, body = Problem)))]
 async fn list_webhooks(
     State(app): State<App>,
-    reader: Reader,
+    reader: PartyReader,
     page: Page,
 ) -> Result<Json<WebhookList>> {
-    let found = store::list(&app.db, reader.operator, page.after_id()?, page.fetch()).await?;
+    let found = store::list(&app.db, reader.tenant, page.after_id()?, page.fetch()).await?;
     let listed = page.cut(found, |webhook| webhook.id.to_string());
     Ok(Json(WebhookList {
         items: listed.items,
@@ -70,26 +70,26 @@ async fn list_webhooks(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_webhook(
     State(app): State<App>,
-    writer: Writer,
+    writer: PartyWriter,
     key: Key,
     Valid(new): Valid<NewWebhook>,
 ) -> Result<(StatusCode, Json<MadeWebhook>)> {
     let request = idempotency::request_hash("webhook", &new)?;
-    let new = new.checked(app.config.webhooks.reach())?;
+    let new = new.checked(writer.tenant, app.config.webhooks.reach())?;
     let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
     let wanted = WebhookId::new();
     let made = key
-        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .once(&mut tx, writer.tenant, &request, wanted.0, now)
         .await?;
     if made == wanted.0 {
         let secret = format!("{SECRET_PREFIX}{}", secret::new_token());
-        store::insert(&mut tx, writer.operator, wanted, &new, &secret, now).await?;
+        store::insert(&mut tx, writer.tenant, wanted, &new, &secret, now).await?;
     }
     let id = WebhookId(made);
-    let secret = store::secret(&mut tx, writer.operator, id).await?;
+    let secret = store::secret(&mut tx, writer.tenant, id).await?;
     tx.commit().await?;
-    let about = store::must_find(&app.db, writer.operator, id).await?;
+    let about = store::must_find(&app.db, writer.tenant, id).await?;
     Ok((StatusCode::CREATED, Json(MadeWebhook { about, secret })))
 }
 
@@ -99,10 +99,10 @@ async fn create_webhook(
               (status = 404, body = Problem)))]
 async fn find_webhook(
     State(app): State<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id(id): Id<WebhookId>,
 ) -> Result<Json<Webhook>> {
-    Ok(Json(store::must_find(&app.db, reader.operator, id).await?))
+    Ok(Json(store::must_find(&app.db, reader.tenant, id).await?))
 }
 
 /// Change a webhook
@@ -116,16 +116,16 @@ async fn find_webhook(
               (status = 422, body = Problem)))]
 async fn change_webhook(
     State(app): State<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<WebhookId>,
     Valid(wanted): Valid<NewWebhook>,
 ) -> Result<Json<Webhook>> {
-    store::must_find(&app.db, writer.operator, id).await?;
-    let wanted = wanted.checked(app.config.webhooks.reach())?;
+    store::must_find(&app.db, writer.tenant, id).await?;
+    let wanted = wanted.checked(writer.tenant, app.config.webhooks.reach())?;
     let mut tx = app.db.begin().await?;
-    store::change(&mut tx, writer.operator, id, &wanted).await?;
+    store::change(&mut tx, writer.tenant, id, &wanted).await?;
     tx.commit().await?;
-    Ok(Json(store::must_find(&app.db, writer.operator, id).await?))
+    Ok(Json(store::must_find(&app.db, writer.tenant, id).await?))
 }
 
 /// Remove a webhook
@@ -136,11 +136,11 @@ async fn change_webhook(
               (status = 404, body = Problem)))]
 async fn delete_webhook(
     State(app): State<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<WebhookId>,
 ) -> Result<StatusCode> {
     let mut tx = app.db.begin().await?;
-    outbox::delete(&mut tx, writer.operator, id.0, Channel::Webhook).await?;
+    outbox::delete(&mut tx, writer.tenant, id.0, Channel::Webhook).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -154,10 +154,10 @@ async fn delete_webhook(
               (status = 403, body = Problem), (status = 404, body = Problem)))]
 async fn test_webhook(
     State(app): State<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<WebhookId>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
-    store::must_find(&app.db, writer.operator, id).await?;
+    store::must_find(&app.db, writer.tenant, id).await?;
     let now = app.clock.now();
     let message = DeliveryId::new();
     let body = json!({ "id": message, "kind": Kind::Test, "at": now }).to_string();
@@ -179,12 +179,12 @@ async fn test_webhook(
               (status = 404, body = Problem)))]
 async fn list_deliveries(
     State(app): State<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id(id): Id<WebhookId>,
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<DeliveryList>> {
-    store::must_find(&app.db, reader.operator, id).await?;
+    store::must_find(&app.db, reader.tenant, id).await?;
     Ok(Json(outbox::list(&app.db, id.0, filter, &page).await?))
 }
 
@@ -197,10 +197,10 @@ async fn list_deliveries(
               (status = 403, body = Problem), (status = 404, body = Problem)))]
 async fn send_delivery_again(
     State(app): State<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id((id, delivery)): Id<(WebhookId, DeliveryId)>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
-    store::must_find(&app.db, writer.operator, id).await?;
+    store::must_find(&app.db, writer.tenant, id).await?;
     let now = app.clock.now().into();
     let queued = outbox::send_again(&app.db, id.0, delivery, now).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))

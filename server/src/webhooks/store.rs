@@ -3,14 +3,15 @@
 use super::webhook::{Kinds, NewWebhook, Webhook};
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::{Error, Result};
-use crate::ids::{OperatorId, WebhookId};
+use crate::ids::WebhookId;
 use crate::outbox::{self, Channel};
+use crate::tenants::Tenant;
 use crate::time::Time;
 use uuid::Uuid;
 
 pub(super) async fn list(
     db: &Db,
-    operator: OperatorId,
+    tenant: Tenant,
     after: Option<Uuid>,
     limit: i64,
 ) -> DbResult<Vec<Webhook>> {
@@ -24,20 +25,21 @@ pub(super) async fn list(
                  WHERE d.receiver_id = w.id AND d.state = 'dead') AS dead
          FROM webhooks w
          JOIN receivers r ON r.id = w.id
-         WHERE w.operator_id = $1 AND w.id > $2
+         WHERE (w.operator_id = $1 OR w.firm_id = $2) AND w.id > $3
          ORDER BY w.id
-         LIMIT $3",
-        operator,
+         LIMIT $4",
+        tenant.operator(),
+        tenant.firm(),
         after.unwrap_or_default(),
         limit
     )
 }
 
-/// A webhook of the operator's.
+/// A webhook of the tenant's.
 ///
 /// # Errors
 /// [`Error::NotFound`] when there is none.
-pub(super) async fn must_find(db: &Db, operator: OperatorId, id: WebhookId) -> Result<Webhook> {
+pub(super) async fn must_find(db: &Db, tenant: Tenant, id: WebhookId) -> Result<Webhook> {
     row!(
         db,
         Webhook,
@@ -48,9 +50,10 @@ pub(super) async fn must_find(db: &Db, operator: OperatorId, id: WebhookId) -> R
                  WHERE d.receiver_id = w.id AND d.state = 'dead') AS dead
          FROM webhooks w
          JOIN receivers r ON r.id = w.id
-         WHERE w.operator_id = $1 AND w.id = $2
+         WHERE (w.operator_id = $1 OR w.firm_id = $2) AND w.id = $3
          ORDER BY w.id",
-        operator,
+        tenant.operator(),
+        tenant.firm(),
         id
     )?
     .ok_or(Error::NotFound("webhook"))
@@ -58,19 +61,20 @@ pub(super) async fn must_find(db: &Db, operator: OperatorId, id: WebhookId) -> R
 
 pub(super) async fn insert(
     tx: &mut Tx,
-    operator: OperatorId,
+    tenant: Tenant,
     id: WebhookId,
     new: &NewWebhook,
     secret: &str,
     now: Time,
 ) -> Result<()> {
-    outbox::insert(tx, operator, id.0, Channel::Webhook, new.enabled).await?;
+    outbox::insert(tx, tenant, id.0, Channel::Webhook, new.enabled).await?;
     execute!(
         tx,
-        "INSERT INTO webhooks (id, operator_id, url, secret, kinds, created_at)
-         VALUES ($1, $2, $3, $4, $5, $6)",
+        "INSERT INTO webhooks (id, operator_id, firm_id, url, secret, kinds, created_at)
+         VALUES ($1, $2, $3, $4, $5, $6, $7)",
         id,
-        operator,
+        tenant.operator(),
+        tenant.firm(),
         new.url.as_str(),
         secret,
         serde_json::to_string(&new.kinds)?,
@@ -80,12 +84,15 @@ pub(super) async fn insert(
 }
 
 /// A webhook's secret, for the one answer that shows it.
-pub(super) async fn secret(tx: &mut Tx, operator: OperatorId, id: WebhookId) -> Result<String> {
+pub(super) async fn secret(tx: &mut Tx, tenant: Tenant, id: WebhookId) -> Result<String> {
     let found = row!(
         in tx,
         (String,),
-        "SELECT secret FROM webhooks WHERE operator_id = $1 AND id = $2 ORDER BY id",
-        operator,
+        "SELECT secret FROM webhooks
+         WHERE (operator_id = $1 OR firm_id = $2) AND id = $3
+         ORDER BY id",
+        tenant.operator(),
+        tenant.firm(),
         id
     )?;
     let (secret,) = found.ok_or(Error::NotFound("webhook"))?;
@@ -95,18 +102,20 @@ pub(super) async fn secret(tx: &mut Tx, operator: OperatorId, id: WebhookId) -> 
 /// Changes a webhook; its secret stays.
 ///
 /// # Errors
-/// [`Error::NotFound`] when the operator has no such webhook.
+/// [`Error::NotFound`] when the tenant has no such webhook.
 pub(super) async fn change(
     tx: &mut Tx,
-    operator: OperatorId,
+    tenant: Tenant,
     id: WebhookId,
     wanted: &NewWebhook,
 ) -> Result<()> {
-    outbox::enable(tx, operator, id.0, wanted.enabled).await?;
+    outbox::enable(tx, tenant, id.0, wanted.enabled).await?;
     let changed = execute!(
         tx,
-        "UPDATE webhooks SET url = $3, kinds = $4 WHERE operator_id = $1 AND id = $2",
-        operator,
+        "UPDATE webhooks SET url = $4, kinds = $5
+         WHERE (operator_id = $1 OR firm_id = $2) AND id = $3",
+        tenant.operator(),
+        tenant.firm(),
         id,
         wanted.url.as_str(),
         serde_json::to_string(&wanted.kinds)?
@@ -127,16 +136,17 @@ pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Strin
     )
 }
 
-/// The webhooks of an operator's that are enabled, with what they want to be told of.
-pub(super) async fn wishes(tx: &mut Tx, operator: OperatorId) -> Result<Vec<(Uuid, Kinds)>> {
+/// The webhooks of an tenant's that are enabled, with what they want to be told of.
+pub(super) async fn wishes(tx: &mut Tx, tenant: Tenant) -> Result<Vec<(Uuid, Kinds)>> {
     let found = rows!(
         in tx,
         (Uuid, String),
         "SELECT w.id, w.kinds FROM webhooks w
          JOIN receivers r ON r.id = w.id AND r.enabled
-         WHERE w.operator_id = $1
+         WHERE w.operator_id = $1 OR w.firm_id = $2
          ORDER BY w.id",
-        operator
+        tenant.operator(),
+        tenant.firm()
     )?;
     let read = |(id, kinds)| Ok((id, Kinds::try_from(kinds)?));
     found.into_iter().map(read).collect()

@@ -4,6 +4,7 @@ use super::send::{Reach, check_url};
 use crate::error::{Error, Result};
 use crate::ids::WebhookId;
 use crate::outbox::Kind;
+use crate::tenants::Tenant;
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -87,7 +88,7 @@ impl NewWebhook {
     ///
     /// # Errors
     /// When it cannot, or would never be.
-    pub(super) fn checked(mut self, reach: Reach) -> Result<NewWebhook> {
+    pub(super) fn checked(mut self, tenant: Tenant, reach: Reach) -> Result<NewWebhook> {
         let invalid = |field, detail| Err(Error::Invalid { field, detail });
         if let Err(problem) = check_url(&self.url, reach) {
             return invalid("url", problem.to_string());
@@ -95,6 +96,9 @@ impl NewWebhook {
         self.kinds.sort_unstable();
         self.kinds.dedup();
         self.kinds.retain(|kind| *kind != Kind::Test);
+        if tenant.firm().is_some() && !self.kinds.iter().all(|kind| kind.is_of_order()) {
+            return invalid("kinds", "a firm is told of work orders only".to_owned());
+        }
         if self.kinds.is_empty() {
             return invalid("kinds", "is empty".to_owned());
         }

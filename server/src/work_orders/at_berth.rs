@@ -1,25 +1,38 @@
 //! What is done at the berth: the reading, the plan, its steps.
 
+use super::aboard::note_read;
+use super::asked::BerthReadingSchema;
 use super::basis::Basis;
 use super::entry::Content;
 use super::order::{Order, State};
-use super::plan::{Choice, Planned, calculate, offer};
-use super::reading::{Given, Read};
+use super::plan::{Choice, Planned, calculate, must_still_hold, offer};
+use super::reading::{Read, check, must_be_numbers};
 use super::schema::OfferSchema;
 use super::steps::{Moved, Stand, StepRead, judge};
 use super::store::{self, Whole};
 use super::{request, shown};
-use crate::access::{Reader, Writer};
+use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, ValidOrNone, degrees, optional_text};
 use crate::idempotency::Key;
 use crate::ids::OrderId;
+use crate::port_calls;
+use crate::time::Time;
 use axum::extract::State as Shared;
-use binnacle_magnetics::adjust::Outcome;
+use binnacle_magnetics::adjust::{Outcome, ReadingForm};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
+
+/// In which states something is done at the berth; an order that no firm has is read as
+/// soon as it is planned.
+const AT_BERTH: [State; 4] = [
+    State::Planned,
+    State::OnBoard,
+    State::Measured,
+    State::Adjusting,
+];
 
 pub(super) fn router() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -34,7 +47,7 @@ pub(super) fn router() -> OpenApiRouter<App> {
 /// The unit is named, never guessed. What cannot be true is kept in the log and refused,
 /// with the mistakes that would explain it.
 #[utoipa::path(post, path = "/work-orders/{id}/berth-reading", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Given,
+    params(("id" = OrderId, Path), Key), request_body = BerthReadingSchema,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 404, description = "Also when the compass has no model yet", body = Problem),
@@ -42,22 +55,22 @@ pub(super) fn router() -> OpenApiRouter<App> {
               (status = 422, description = "Also when the reading is refused", body = Problem)))]
 async fn read_berth(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(given): Valid<Given>,
+    Valid(given): Valid<ReadingForm>,
 ) -> Result<Json<Order>> {
     let request = request(&app, writer, id, key, "berth reading", &given)?;
     let (whole, done) = request.look().await?;
     if let Some(entry) = done {
         must_not_be_refused(&whole, entry)?;
-        return shown(&app, writer.operator, id).await;
+        return shown(&app, writer.tenant, id).await;
     }
     must_not_be_moved(&whole)?;
-    given.must_be_numbers(app.clock.now().into())?;
+    must_be_numbers(&given, app.clock.now().into())?;
     let (vessel, compass) = (whole.summary.vessel_id, whole.summary.compass_id);
     let basis = Basis::load(&app, vessel, compass, &given).await?;
-    let (checked, refusal) = match given.check(&basis) {
+    let (checked, refusal) = match check(&given, &basis)? {
         Ok(checked) => (Some(checked), None),
         Err(refusal) => (None, Some(refusal)),
     };
@@ -68,12 +81,16 @@ async fn read_berth(
         refusal: refusal.clone(),
     };
     if let Some(mut change) = request.begin(&whole).await? {
+        if refusal.is_none() {
+            let (at, heading_deg) = (Time(read.given.at), read.given.heading_true_deg);
+            port_calls::lies(&mut change.tx, vessel, at, heading_deg).await?;
+        }
         change.append(Content::BerthReading(Box::new(read))).await?;
         change.commit().await?;
     }
     match refusal {
         Some(refusal) => Err(Error::NotAdjustable(vec![refusal])),
-        None => shown(&app, writer.operator, id).await,
+        None => shown(&app, writer.tenant, id).await,
     }
 }
 
@@ -89,8 +106,10 @@ fn must_not_be_refused(whole: &Whole, entry: Uuid) -> Result<()> {
 
 /// The model knows the correctors as they stood: what was moved since spoils a reading.
 fn must_not_be_moved(whole: &Whole) -> Result<()> {
-    let allowed = [State::Planned, State::Measured, State::Adjusting];
-    whole.must_be(&allowed, "the berth is not read any more")?;
+    whole.must_be(
+        &AT_BERTH,
+        "the berth is read between going on board and completion",
+    )?;
     if whole.standing().was_moved() {
         return Err(Error::WrongState(
             "correctors were moved since the reading: the model does not know them so".to_owned(),
@@ -110,13 +129,14 @@ fn must_not_be_moved(whole: &Whole) -> Result<()> {
               (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
 async fn find_plan(
     Shared(app): Shared<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Json<Outcome>> {
-    let whole = store::whole(&app.db, reader.operator, id).await?;
-    let allowed = [State::Planned, State::Measured, State::Adjusting];
-    whole.must_be(&allowed, "there is nothing to plan any more")?;
+    let whole = store::whole(&app.db, reader.tenant, id).await?;
+    whole.must_be(&AT_BERTH, "there is nothing to plan")?;
     let prepared = whole.standing().prepared()?;
+    note_read(&reader, &whole.summary, "plan");
+    must_still_hold(&app, &whole.summary, &prepared).await?;
     Ok(Json(offer(&app, prepared).await?))
 }
 
@@ -129,7 +149,7 @@ async fn find_plan(
               (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
 async fn choose_plan(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     ValidOrNone(choice): ValidOrNone<Choice>,
@@ -137,11 +157,12 @@ async fn choose_plan(
     let request = request(&app, writer, id, key, "plan", &choice)?;
     let (whole, done) = request.look().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return shown(&app, writer.tenant, id).await;
     }
-    let allowed = [State::Planned, State::Measured, State::Adjusting];
-    whole.must_be(&allowed, "there is nothing to plan any more")?;
-    let outcome = offer(&app, whole.standing().prepared()?).await?;
+    whole.must_be(&AT_BERTH, "there is nothing to plan")?;
+    let prepared = whole.standing().prepared()?;
+    must_still_hold(&app, &whole.summary, &prepared).await?;
+    let outcome = offer(&app, prepared).await?;
     let offered = outcome.plans.len();
     let planned = Planned::of(outcome, choice.plan.unwrap_or(1));
     let planned = planned.ok_or_else(|| Error::Invalid {
@@ -152,7 +173,7 @@ async fn choose_plan(
         change.append(Content::Plan(Box::new(planned))).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    shown(&app, writer.tenant, id).await
 }
 
 /// Send what the compass reads after a step
@@ -166,7 +187,7 @@ async fn choose_plan(
               (status = 422, body = Problem)))]
 async fn read_step(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id((id, number)): Id<(OrderId, u32)>,
     key: Key,
     Valid(read): Valid<StepRead>,
@@ -174,7 +195,7 @@ async fn read_step(
     let request = request(&app, writer, id, key, &format!("step {number}"), &read)?;
     let (whole, done) = request.look().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return shown(&app, writer.tenant, id).await;
     }
     let standing = whole.standing();
     let wrong = |detail: String| Error::WrongState(detail);
@@ -196,7 +217,7 @@ async fn read_step(
         change.append(Content::Step(Box::new(judged))).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    shown(&app, writer.tenant, id).await
 }
 
 /// Say how the correctors stand
@@ -210,7 +231,7 @@ async fn read_step(
               (status = 422, body = Problem)))]
 async fn set_correctors(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(stand): Valid<Stand>,
@@ -218,7 +239,7 @@ async fn set_correctors(
     let request = request(&app, writer, id, key, "corrector settings", &stand)?;
     let (whole, done) = request.look().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return shown(&app, writer.tenant, id).await;
     }
     let what = "correctors are set between the reading and the completion";
     whole.must_be(&[State::Measured, State::Adjusting], what)?;
@@ -228,7 +249,7 @@ async fn set_correctors(
         change.append(content).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    shown(&app, writer.tenant, id).await
 }
 
 fn moved(whole: &Whole, stand: Stand, now: crate::time::Time) -> Result<Moved> {

@@ -1,7 +1,6 @@
 //! What a reading is held against and a plan rests on: model, field, binnacle and
 //! waters, as they were when the magnetometer was read.
 
-use super::reading::Given;
 use crate::analysis;
 use crate::app::App;
 use crate::binnacles;
@@ -10,7 +9,7 @@ use crate::ids::{CompassId, ModelId, VesselId};
 use crate::logbook;
 use crate::models::{self, StoredModel};
 use crate::time::Time;
-use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, VerticalReading, Water};
+use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, ReadingForm, Water};
 use binnacle_magnetics::analyse::{LogbookKind, SampleDiagnostic};
 use binnacle_magnetics::angle::Variation;
 use binnacle_magnetics::berth::BerthReading;
@@ -69,11 +68,13 @@ pub(super) struct Prepared {
     /// The reading as the science takes it.
     pub reading: BerthReading,
     /// The reading as it was given.
-    pub given: Given,
+    pub given: ReadingForm,
     /// The binnacle, its correctors as strong as they were found to be.
     pub binnacle: Binnacle,
     /// How they stand now, where they were moved since.
     pub moved_to: Option<Setting>,
+    /// What a plan must keep to, by the order.
+    pub limits: Limits,
 }
 
 impl Basis {
@@ -82,7 +83,7 @@ impl Basis {
         app: &App,
         vessel: VesselId,
         compass: CompassId,
-        given: &Given,
+        given: &ReadingForm,
     ) -> Result<Basis> {
         let model = models::must_have(app, vessel, compass).await?;
         let binnacle = binnacles::current(&app.db, vessel, compass).await?;
@@ -93,17 +94,16 @@ impl Basis {
             field: "lat, lon",
             detail: error.to_string(),
         })?;
-        let earth = field(FieldModel::Igrf14, position, 0.0, given.at.0).map_err(|error| {
-            Error::Invalid {
+        let earth =
+            field(FieldModel::Igrf14, position, 0.0, given.at).map_err(|error| Error::Invalid {
                 field: "at",
                 detail: error.to_string(),
-            }
-        })?;
+            })?;
         let logbook = logbook::of_compass(&app.db, vessel, compass).await?;
         let cargo = logbook.iter().any(|entry| {
             entry.kind == LogbookKind::MagneticCargo
-                && entry.from <= given.at.0
-                && entry.to.is_none_or(|to| to > given.at.0)
+                && entry.from <= given.at
+                && entry.to.is_none_or(|to| to > given.at)
         });
         Ok(Basis {
             variation_deg: earth.declination().degrees_east(),
@@ -127,8 +127,8 @@ impl Basis {
     }
 
     /// Variation at the berth.
-    pub fn variation(&self) -> Option<Variation> {
-        Variation::new(self.variation_deg)
+    pub fn variation(&self) -> Result<Variation> {
+        Ok(Variation::try_from(self.variation_deg).map_err(anyhow::Error::from)?)
     }
 }
 
@@ -148,17 +148,14 @@ impl From<StoredModel> for ModelUsed {
 impl Prepared {
     /// What the planner is asked.
     pub(super) fn adjustment(&self) -> Adjustment<'_> {
-        let age_s = self.given.at.0.seconds_since(self.basis.model.data_until.0);
+        let age_s = self.given.at.seconds_since(self.basis.model.data_until.0);
         Adjustment {
             model: &self.basis.model.model,
             earth: self.basis.earth(),
             reading: &self.reading,
             scale_sd: self.given.scale_sd(),
             compass_deg: self.given.compass_deg,
-            vertical: self
-                .given
-                .down_nt()
-                .map(|down_nt| VerticalReading { down_nt }),
+            vertical: self.given.vertical(),
             binnacle: &self.binnacle,
             now: self.moved_to.as_ref(),
             waters: &self.basis.waters,
@@ -166,7 +163,7 @@ impl Prepared {
                 model_age_days: Some((age_s / 86_400.0).max(0.0)),
                 cargo_on_board: self.basis.cargo_on_board,
             },
-            limits: Limits::default(),
+            limits: self.limits,
         }
     }
 }

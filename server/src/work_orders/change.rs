@@ -5,15 +5,16 @@
 //! and the same request under the same key writes one entry.
 
 use super::entry::{Author, Content};
+use super::news::{self, Before};
 use super::order::State;
 use super::store::{self, Whole};
-use crate::access::Writer;
+use crate::access::PartyWriter;
 use crate::app::App;
 use crate::db::Tx;
 use crate::error::{Error, Result};
 use crate::events::{self, Event, Kind};
 use crate::idempotency::Key;
-use crate::ids::OrderId;
+use crate::ids::{OrderId, VesselId};
 use crate::session;
 use crate::time::Time;
 use uuid::Uuid;
@@ -21,7 +22,7 @@ use uuid::Uuid;
 /// A request to change an order.
 pub(super) struct Request<'a> {
     pub(super) app: &'a App,
-    pub(super) writer: Writer,
+    pub(super) writer: PartyWriter,
     pub(super) order: OrderId,
     pub(super) key: Key,
     /// What tells it from another.
@@ -37,69 +38,98 @@ pub(super) struct Change<'a> {
     pub(super) now: Time,
     /// The id of the entry to be written.
     pub(super) id: Uuid,
+    /// The order before.
+    before: Before,
     told: Vec<Event>,
 }
 
 impl<'a> Request<'a> {
     /// The order as it is, and whether this request has been done already.
     pub(super) async fn look(&self) -> Result<(Whole, Option<Uuid>)> {
-        let whole = store::whole(&self.app.db, self.writer.operator, self.order).await?;
-        let done = self
-            .key
-            .find(&self.app.db, self.writer.operator, &self.hash)
-            .await?;
+        let tenant = self.writer.tenant;
+        let whole = store::whole(&self.app.db, tenant, self.order).await?;
+        let done = self.key.find(&self.app.db, tenant, &self.hash).await?;
         Ok((whole, done))
     }
 
     /// Begins to change it, unless it has gone on since it was looked at; none when this
     /// request has been done meanwhile.
     pub(super) async fn begin(self, seen: &Whole) -> Result<Option<Change<'a>>> {
-        let now = self.app.clock.now().into();
-        let mut tx = self.app.db.begin().await?;
-        let whole = store::lock(&mut tx, seen.summary.vessel_id, self.order).await?;
-        let wanted = Uuid::now_v7();
-        let operator = self.writer.operator;
-        let made = self
-            .key
-            .once(&mut tx, operator, &self.hash, wanted, now)
-            .await?;
-        if made != wanted {
-            return Ok(None);
-        }
-        if whole.summary.last_seq != seen.summary.last_seq {
+        let begun = self.begin_on(seen.summary.vessel_id).await?;
+        if let Some(change) = &begun
+            && change.whole.summary.last_seq != seen.summary.last_seq
+        {
             return Err(Error::WrongState(
                 "the order has gone on meanwhile: look at it again".to_owned(),
             ));
         }
+        Ok(begun)
+    }
+
+    /// Begins to change an order of a vessel's as it is now, without having looked before:
+    /// whoever does has to look at what is in the change.
+    pub(super) async fn begin_on(self, vessel: VesselId) -> Result<Option<Change<'a>>> {
+        let now = self.app.clock.now().into();
+        let mut tx = self.app.db.begin().await?;
+        let whole = store::lock(&mut tx, vessel, self.order).await?;
+        let wanted = Uuid::now_v7();
+        let tenant = self.writer.tenant;
+        let made = self
+            .key
+            .once(&mut tx, tenant, &self.hash, wanted, now)
+            .await?;
+        if made != wanted {
+            return Ok(None);
+        }
         let author = Author {
             id: Some(self.writer.user.0),
             name: session::name_of(&mut tx, self.writer.user).await?,
+            firm_id: tenant.firm(),
         };
-        Ok(Some(Change {
-            app: self.app,
-            tx,
-            whole,
-            author,
-            now,
-            id: wanted,
-            told: Vec::new(),
-        }))
+        Ok(Some(Change::new(self.app, tx, whole, author, now, wanted)))
     }
 }
 
-impl Change<'_> {
-    /// Writes the entry.
-    pub(super) async fn append(&mut self, content: Content) -> Result<()> {
-        let (id, now) = (self.id, self.now);
-        store::append(
-            &mut self.tx,
-            &mut self.whole,
-            id,
-            &self.author,
+impl<'a> Change<'a> {
+    pub(super) fn new(
+        app: &'a App,
+        tx: Tx,
+        whole: Whole,
+        author: Author,
+        now: Time,
+        id: Uuid,
+    ) -> Change<'a> {
+        Change {
+            app,
+            tx,
+            before: Before::of(&whole),
+            whole,
+            author,
             now,
-            content,
-        )
-        .await
+            id,
+            told: Vec::new(),
+        }
+    }
+
+    /// A change that nobody asked for.
+    pub(super) async fn by_server(
+        app: &'a App,
+        vessel: VesselId,
+        order: OrderId,
+    ) -> Result<Change<'a>> {
+        let now = app.clock.now().into();
+        let mut tx = app.db.begin().await?;
+        let whole = store::lock(&mut tx, vessel, order).await?;
+        let author = Author::server();
+        Ok(Change::new(app, tx, whole, author, now, Uuid::now_v7()))
+    }
+
+    /// Writes the next entry.
+    pub(super) async fn append(&mut self, content: Content) -> Result<()> {
+        // The first entry is the one that the request's key stands for.
+        let id = std::mem::replace(&mut self.id, Uuid::now_v7());
+        let (tx, whole) = (&mut self.tx, &mut self.whole);
+        store::append(tx, whole, id, &self.author, self.now, content).await
     }
 
     /// Tells dashboards of something else that the change brings.
@@ -110,9 +140,11 @@ impl Change<'_> {
         Ok(())
     }
 
-    /// Makes it durable, and tells the dashboards.
+    /// Makes it durable, and tells both sides.
     pub(super) async fn commit(mut self) -> Result<()> {
-        self.tell(Kind::WorkOrder).await?;
+        let news = news::tell(&mut self.tx, &self.whole, &self.before, self.now);
+        let news = news.await?;
+        self.told.extend(news);
         self.tx.commit().await?;
         for event in self.told {
             self.app.publish(event);

@@ -14,7 +14,7 @@ use crate::binnacles;
 use crate::error::{Error, Result};
 use crate::events::Kind;
 use crate::http::text;
-use crate::ids::{BinnacleId, EntryId, ModelId};
+use crate::ids::{BinnacleId, EntryId, FirmId, KeyId, ModelId};
 use crate::logbook;
 use crate::models::{self, ModelJson, StoredModel};
 use crate::time::Time;
@@ -93,11 +93,35 @@ pub struct Signed {
     pub signature: String,
 }
 
+/// A signature with what is known of its key.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SignedBy {
+    /// The signature.
+    #[serde(flatten)]
+    pub signed: Signed,
+    /// Whose key it is; none for a key that the order's firm has not registered.
+    #[serde(default)]
+    pub key: Option<KnownKey>,
+}
+
+/// A key that a firm had registered when it signed.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+pub struct KnownKey {
+    /// The key's id.
+    pub id: KeyId,
+    /// What the firm calls it.
+    pub name: String,
+    /// The firm.
+    pub firm_id: FirmId,
+    /// The firm's name then.
+    pub firm_name: String,
+}
+
 impl Word {
     /// The word, its words trimmed, at a moment that can be.
     pub(super) fn checked(self, standing: &Standing, now: Time) -> Result<(Word, Time)> {
         let at = self.at.unwrap_or(now);
-        let read_at = standing.read.as_ref().map(|read| read.given.at);
+        let read_at = standing.read.as_ref().map(|read| Time(read.given.at));
         if at > now || read_at.is_some_and(|read_at| at < read_at) {
             return Err(Error::Invalid {
                 field: "at",
@@ -173,7 +197,10 @@ pub(super) async fn complete(
     change.whole.summary.adjuster_licence = Some(word.adjuster_licence);
     change.whole.summary.firm = word.firm;
     change.whole.summary.completed_at = Some(at);
-    let read_at = standing.read.as_ref().map_or(at, |read| read.given.at);
+    let read_at = standing
+        .read
+        .as_ref()
+        .map_or(at, |read| Time(read.given.at));
     let place = standing
         .read
         .as_ref()
@@ -284,7 +311,8 @@ impl Signed {
     }
 }
 
-fn from_hex(text: &str) -> Option<Vec<u8>> {
+/// Octets written as hexadecimal digits, in pairs.
+pub fn from_hex(text: &str) -> Option<Vec<u8>> {
     let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();
     let digits = digits.filter(|digits| digits.len() % 2 == 0)?;
     Some(

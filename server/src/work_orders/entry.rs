@@ -4,7 +4,9 @@
 //! and is kept as that text; its hash is the SHA-256 of the text, and the next entry
 //! names it. So a log can be checked with nothing but SHA-256.
 
-use super::completion::{Completed, Signed};
+use super::completion::{Completed, SignedBy};
+use super::offering::Boarded;
+use super::offers::{Between, Offered};
 use super::order::Opened;
 use super::photos::PhotoTaken;
 use super::plan::Planned;
@@ -12,7 +14,7 @@ use super::reading::Read;
 use super::steps::{Moved, StepDone};
 use super::verification::Verified;
 use crate::error::Result;
-use crate::ids::OrderId;
+use crate::ids::{FirmId, OrderId};
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -48,6 +50,20 @@ pub struct Author {
     pub id: Option<Uuid>,
     /// Their name.
     pub name: String,
+    /// The firm that they are of; none for the operator's people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub firm_id: Option<FirmId>,
+}
+
+impl Author {
+    /// The server itself.
+    pub fn server() -> Author {
+        Author {
+            id: None,
+            name: "Binnacle".to_owned(),
+            firm_id: None,
+        }
+    }
 }
 
 /// What happened to an order.
@@ -56,6 +72,26 @@ pub struct Author {
 pub enum Content {
     /// The order was written.
     Opened(Box<Opened>),
+    /// It is to be offered to firms.
+    Offered(Offered),
+    /// A firm is asked.
+    Asked(Between),
+    /// A firm takes it as it was offered.
+    Accepted(Between),
+    /// A firm will not have it, or gives it back.
+    Declined(Between),
+    /// A firm would have it on other terms.
+    Proposed(Between),
+    /// The operator agrees to a firm's terms.
+    ProposalAccepted(Between),
+    /// The operator does not.
+    ProposalDeclined(Between),
+    /// There was no answer in time.
+    Lapsed(Between),
+    /// A message between the operator and a firm.
+    Message(Between),
+    /// The adjuster is on board.
+    OnBoard(Boarded),
     /// The magnetometer was read at the berth.
     BerthReading(Box<Read>),
     /// A plan was chosen.
@@ -71,7 +107,7 @@ pub enum Content {
     /// The adjuster has finished and signed.
     Completion(Box<Completed>),
     /// The firm's key signed the record.
-    Signature(Signed),
+    Signature(SignedBy),
     /// Headings at sea were held against the prediction.
     Verification(Box<Verified>),
     /// It is done with.
@@ -85,6 +121,35 @@ pub enum Content {
 pub struct Said {
     /// In words.
     pub text: String,
+}
+
+impl Content {
+    /// What is between the operator and one firm, if it is that.
+    pub fn between(&self) -> Option<&Between> {
+        match self {
+            Content::Asked(said)
+            | Content::Accepted(said)
+            | Content::Declined(said)
+            | Content::Proposed(said)
+            | Content::ProposalAccepted(said)
+            | Content::ProposalDeclined(said)
+            | Content::Lapsed(said)
+            | Content::Message(said) => Some(said),
+            _ => None,
+        }
+    }
+
+    /// Whether a firm may know of it, whose order it is.
+    pub fn is_seen_by(&self, firm: FirmId) -> bool {
+        let others = matches!(self, Content::Offered(_));
+        !others && self.between().is_none_or(|said| said.firm.firm_id == firm)
+    }
+
+    /// Whether offers may stand otherwise after it.
+    pub fn is_about_offers(&self) -> bool {
+        let said = self.between().is_some() && !matches!(self, Content::Message(_));
+        said || matches!(self, Content::Offered(_) | Content::Cancelled(_))
+    }
 }
 
 /// A value as canonical JSON: keys in order, no blanks.

@@ -1,20 +1,23 @@
 //! Photographs, completion, signatures, and the archive of evidence.
 
-use super::completion::{self, Signed, Word};
+use super::completion::{self, Signed, SignedBy, Word};
 use super::entry::Content;
 use super::order::{Order, State};
 use super::photos::{Caption, MAX_BYTES, MOST, PhotoTaken};
+use super::plan::must_still_hold;
 use super::record::Aboard;
 use super::store::{self, Whole};
+use super::view;
 use super::{request, shown};
-use crate::access::{Reader, Writer};
+use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
-use crate::evidence::{Evidence, File, archive, record_pdf};
+use crate::evidence::{Evidence, File, Line, archive, record_pdf};
+use crate::firms::keys;
 use crate::http::{Id, Json, Params, Valid};
 use crate::idempotency::Key;
-use crate::ids::{OperatorId, OrderId, PhotoId};
+use crate::ids::{OrderId, PhotoId};
 use crate::vessels;
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
@@ -23,6 +26,18 @@ use axum::http::header::{CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_T
 use axum::response::{IntoResponse, Response};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+/// In which states photographs are added.
+const WITH_PHOTOS: [State; 8] = [
+    State::Planned,
+    State::Accepted,
+    State::OnBoard,
+    State::Measured,
+    State::Adjusting,
+    State::Adjusted,
+    State::Verified,
+    State::Failed,
+];
 
 pub(super) fn router() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -47,7 +62,7 @@ pub(super) fn router() -> OpenApiRouter<App> {
               (status = 415, body = Problem)))]
 async fn add_photo(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<OrderId>,
     Params(caption): Params<Caption>,
     key: Key,
@@ -58,11 +73,12 @@ async fn add_photo(
     let request = request(&app, writer, id, key, "photo", &taken.sha256)?;
     let (whole, done) = request.look().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return shown(&app, writer.tenant, id).await;
     }
-    if matches!(whole.summary.state, State::Closed | State::Cancelled) {
-        whole.must_be(&[], "nothing is added any more")?;
-    }
+    whole.must_be(
+        &WITH_PHOTOS,
+        "nothing is added before a firm has it, or any more",
+    )?;
     if photos(&whole).count() >= MOST {
         return Err(Error::WrongState(format!("there are {MOST} photographs")));
     }
@@ -80,7 +96,7 @@ async fn add_photo(
         change.append(Content::Photo(taken)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    shown(&app, writer.tenant, id).await
 }
 
 fn photos(whole: &Whole) -> impl Iterator<Item = (i64, &PhotoTaken)> {
@@ -97,10 +113,10 @@ fn photos(whole: &Whole) -> impl Iterator<Item = (i64, &PhotoTaken)> {
               (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn find_photo(
     Shared(app): Shared<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id((id, photo)): Id<(OrderId, PhotoId)>,
 ) -> Result<Response> {
-    let summary = store::summary(&app.db, reader.operator, id).await?;
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
     let found = store::photo(&app.db, summary.vessel_id, id, photo).await?;
     let (media_type, bytes) = found.ok_or(Error::NotFound("photograph"))?;
     let headers = [
@@ -124,7 +140,7 @@ async fn find_photo(
               (status = 422, body = Problem)))]
 async fn complete_work_order(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(word): Valid<Word>,
@@ -132,21 +148,23 @@ async fn complete_work_order(
     let request = request(&app, writer, id, key, "completion", &word)?;
     let (whole, done) = request.look().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return shown(&app, writer.tenant, id).await;
     }
     whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
+    let prepared = whole.standing().prepared()?;
+    must_still_hold(&app, &whole.summary, &prepared).await?;
     let (word, at) = word.checked(&whole.standing(), app.clock.now().into())?;
-    let aboard = aboard(&app, writer.operator, &whole).await?;
+    let aboard = aboard(&app, &whole).await?;
     if let Some(mut change) = request.begin(&whole).await? {
         completion::complete(&mut change, &aboard, word, at).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    shown(&app, writer.tenant, id).await
 }
 
-async fn aboard(app: &App, operator: OperatorId, whole: &Whole) -> Result<Aboard> {
+async fn aboard(app: &App, whole: &Whole) -> Result<Aboard> {
     let summary = &whole.summary;
-    let vessel = vessels::find_row(&app.db, operator, summary.vessel_id).await?;
+    let vessel = vessels::find_row(&app.db, summary.operator_id, summary.vessel_id).await?;
     let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
     Ok(Aboard {
         vessel_name: vessel.name,
@@ -159,8 +177,9 @@ async fn aboard(app: &App, operator: OperatorId, whole: &Whole) -> Result<Aboard
 
 /// Sign the record with a firm's key
 ///
-/// An Ed25519 signature over the 32 octets of `record_sha256`. Whose key it is the firm
-/// has to say.
+/// An Ed25519 signature over the 32 octets of `record_sha256`. The order says whose key it
+/// is when the order's firm has registered it (`/firms/{id}/keys`), and otherwise that the
+/// key is unknown.
 #[utoipa::path(post, path = "/work-orders/{id}/signatures", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Signed,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -169,7 +188,7 @@ async fn aboard(app: &App, operator: OperatorId, whole: &Whole) -> Result<Aboard
               (status = 422, description = "It is not this key's", body = Problem)))]
 async fn sign_record(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(signed): Valid<Signed>,
@@ -177,16 +196,19 @@ async fn sign_record(
     let request = request(&app, writer, id, key, "signature", &signed)?;
     let (whole, done) = request.look().await?;
     if done.is_some() {
-        return shown(&app, writer.operator, id).await;
+        return shown(&app, writer.tenant, id).await;
     }
     let completed = whole.standing().completed;
     let completed = completed.ok_or_else(no_record)?;
     signed.checked(&completed.record_sha256)?;
     if let Some(mut change) = request.begin(&whole).await? {
+        let holder = change.whole.summary.firm_id;
+        let key = keys::find_active(&mut change.tx, holder, &signed.public_key).await?;
+        let signed = SignedBy { signed, key };
         change.append(Content::Signature(signed)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    shown(&app, writer.tenant, id).await
 }
 
 fn no_record() -> Error {
@@ -203,10 +225,10 @@ fn no_record() -> Error {
               (status = 409, description = "There is no record yet", body = Problem)))]
 async fn find_record(
     Shared(app): Shared<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let summary = store::summary(&app.db, reader.operator, id).await?;
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
     let record = store::record(&app.db, summary.vessel_id, id).await?;
     let headers = [(CONTENT_TYPE, "application/json")];
     Ok((headers, record.ok_or_else(no_record)?).into_response())
@@ -223,10 +245,10 @@ async fn find_record(
               (status = 409, description = "There is no record yet", body = Problem)))]
 async fn find_evidence(
     Shared(app): Shared<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Response> {
-    let whole = store::whole(&app.db, reader.operator, id).await?;
+    let whole = store::whole(&app.db, reader.tenant, id).await?;
     let vessel = whole.summary.vessel_id;
     let record = store::record(&app.db, vessel, id).await?;
     let record = record.ok_or_else(no_record)?;
@@ -246,10 +268,14 @@ async fn find_evidence(
     });
     let lines = store::lines(&app.db, vessel, id, None, i64::MAX).await?;
     // As many as were looked at: one that came meanwhile is in the next archive.
-    let lines = lines.into_iter().take(whole.log.len());
+    let lines = lines.into_iter().zip(&whole.log);
+    let lines = lines.map(|((_, line, sha256), entry)| {
+        let text = view::line(reader.tenant, entry, line, &sha256)?;
+        Ok(Line { text, sha256 })
+    });
     let mut evidence = Evidence {
         order: id.to_string(),
-        lines: lines.map(|(_, line, _)| line).collect(),
+        lines: lines.collect::<Result<_>>()?,
         files,
     };
     let written = tokio::task::spawn_blocking(move || {

@@ -1,4 +1,5 @@
-//! Work orders: one compass of one vessel, adjusted at the berth without a swing.
+//! Work orders: one compass of one vessel, adjusted at the berth without a swing; offered to
+//! firms, and carried to its end by the one that takes it.
 //!
 //! What always holds:
 //!
@@ -9,12 +10,22 @@
 //! - What is foretold says so until headings at sea agree. Nothing here issues a
 //!   certificate.
 
+mod aboard;
+mod answers;
+mod asked;
 mod at_berth;
 mod basis;
 mod change;
+mod completed;
 pub mod completion;
+mod deadlines;
 pub mod entry;
+mod find;
 mod finish;
+mod messages;
+mod news;
+mod offering;
+mod offers;
 mod order;
 pub mod photos;
 mod plan;
@@ -26,27 +37,30 @@ mod standing;
 mod steps;
 mod store;
 mod verification;
+mod view;
 
-pub use order::State;
+pub use completed::{AtSea, CompletedOrder, completed};
+pub use deadlines::{lapse, watch};
+pub use offering::NewOffer;
+pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};
 pub use verification::{after_analysis, alert};
 
-use crate::access::{Reader, Writer};
+use crate::access::{PartyReader, PartyWriter, Writer};
 use crate::app::App;
-use crate::compasses;
+use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
-use crate::events;
 use crate::http::{Id, Json, Page, Params, Valid, text};
 use crate::idempotency::{self, Key};
-use crate::ids::OrderId;
+use crate::ids::{OperatorId, OrderId};
 use crate::session;
-use crate::vessels;
+use crate::tenants::Tenant;
 use axum::extract::State as Shared;
 use axum::http::StatusCode;
-use change::Request;
+use change::{Change, Request};
 use completion::write_binnacle;
-use entry::{Author, Content, Said};
-use order::{Filter, NewOrder, Opened, Order, OrderList};
+use entry::{Author, Content, Entry, Said};
+use order::{Filter, Opened, Order, OrderList};
 use schema::{LineList, LineSchema};
 use serde::{Deserialize, Serialize};
 use store::Whole;
@@ -65,6 +79,9 @@ pub fn router() -> OpenApiRouter<App> {
         .routes(routes!(cancel_work_order))
         .routes(routes!(close_work_order))
         .merge(at_berth::router())
+        .merge(answers::router())
+        .merge(messages::router())
+        .merge(aboard::router())
 }
 
 /// Something to be said of an order.
@@ -82,12 +99,12 @@ struct Remark {
     responses((status = 200, body = OrderList), (status = 401, body = Problem)))]
 async fn list_work_orders(
     Shared(app): Shared<App>,
-    reader: Reader,
+    reader: PartyReader,
     Params(filter): Params<Filter>,
     page: Page,
 ) -> Result<Json<OrderList>> {
     let before = page.after_id()?;
-    let found = store::list(&app.db, reader.operator, &filter, before, page.fetch()).await?;
+    let found = store::list(&app.db, reader.tenant, &filter, before, page.fetch()).await?;
     let listed = page.cut(found, |order| order.id.to_string());
     Ok(Json(OrderList {
         items: listed.items,
@@ -97,7 +114,8 @@ async fn list_work_orders(
 
 /// Order a compass to be adjusted
 ///
-/// A compass has one order under way at a time.
+/// A compass has one order under way at a time. With an `offer` it is offered to firms at
+/// once.
 #[utoipa::path(post, path = "/work-orders", tag = "adjusting", params(Key),
     request_body = NewOrder,
     responses((status = 201, body = Order), (status = 401, body = Problem),
@@ -111,55 +129,86 @@ async fn create_work_order(
     Valid(new): Valid<NewOrder>,
 ) -> Result<(StatusCode, Json<Order>)> {
     let hash = idempotency::request_hash("work order", &new)?;
-    let vessel = vessels::find_row(&app.db, writer.operator, new.vessel_id).await?;
-    let vessel = vessel.ok_or(Error::NotFound("vessel"))?;
-    let compass = compasses::find(&app.db, new.vessel_id, Some(new.compass_id)).await?;
-    let opened = Opened {
-        order: new.checked()?,
-        vessel_name: vessel.name,
-        compass_name: compass.name,
-    };
-    let made = open(&app, writer, &key, &hash, opened).await?;
+    let new = new.checked()?;
+    let now = app.clock.now().into();
+    let wanted = OrderId::new();
+    let operator = writer.operator;
+    let mut tx = app.db.begin().await?;
+    let made = key.once(&mut tx, operator, &hash, wanted.0, now).await?;
+    if made == wanted.0 {
+        let author = Author {
+            id: Some(writer.user.0),
+            name: session::name_of(&mut tx, writer.user).await?,
+            firm_id: None,
+        };
+        let change = open(&app, tx, operator, wanted, new, author).await?;
+        change.commit().await?;
+    }
     Ok((
         StatusCode::CREATED,
-        shown(&app, writer.operator, made).await?,
+        shown(&app, operator, OrderId(made)).await?,
     ))
 }
 
+/// Writes a new order, and offers it where that is asked for.
+///
+/// # Errors
+/// [`Error::WrongState`] when another order of the compass is under way, and what is wrong
+/// with the offer.
 async fn open(
     app: &App,
-    writer: Writer,
-    key: &Key,
-    hash: &[u8],
-    opened: Opened,
-) -> Result<OrderId> {
-    let now = app.clock.now().into();
-    let wanted = OrderId::new();
-    let mut tx = app.db.begin().await?;
-    let made = key
-        .once(&mut tx, writer.operator, hash, wanted.0, now)
-        .await?;
-    if made != wanted.0 {
-        return Ok(OrderId(made));
-    }
-    let (vessel, compass) = (opened.order.vessel_id, opened.order.compass_id);
+    mut tx: Tx,
+    operator: OperatorId,
+    id: OrderId,
+    mut new: NewOrder,
+    author: Author,
+) -> Result<Change<'_>> {
+    let (vessel, compass) = (new.vessel_id, new.compass_id);
+    let (vessel_name, compass_name) = store::names(&mut tx, operator, vessel, compass).await?;
     if store::is_under_way(&mut tx, vessel, compass).await? {
         return Err(Error::WrongState(
             "another order of this compass is under way".to_owned(),
         ));
     }
+    // Whom it is offered to stands in entries of their own.
+    let offer = new.offer.take();
+    let now = app.clock.now().into();
+    store::insert(&mut tx, id, &new, &author, now).await?;
+    let whole = store::lock(&mut tx, vessel, id).await?;
+    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
+    let opened = Opened {
+        order: new,
+        vessel_name,
+        compass_name,
+    };
+    change.append(Content::Opened(Box::new(opened))).await?;
+    if let Some(offer) = offer {
+        let offered = offer.checked(&mut change.tx, operator).await?;
+        offering::offer(&mut change, offered).await?;
+    }
+    Ok(change)
+}
+
+/// Writes an order under an id and offers it, as the schedule has it; commits what the
+/// schedule has begun.
+///
+/// # Errors
+/// [`Error::WrongState`] when another order of the compass is under way, and what is wrong
+/// with the order or its offer.
+pub async fn write(
+    app: &App,
+    mut tx: Tx,
+    writer: Writer,
+    id: OrderId,
+    new: NewOrder,
+) -> Result<()> {
     let author = Author {
         id: Some(writer.user.0),
         name: session::name_of(&mut tx, writer.user).await?,
+        firm_id: None,
     };
-    store::insert(&mut tx, wanted, &opened.order, &author, now).await?;
-    let mut whole = store::lock(&mut tx, vessel, wanted).await?;
-    let content = Content::Opened(Box::new(opened));
-    store::append(&mut tx, &mut whole, Uuid::now_v7(), &author, now, content).await?;
-    let event = events::insert(&mut tx, vessel, events::Kind::WorkOrder, now).await?;
-    tx.commit().await?;
-    app.publish(event);
-    Ok(wanted)
+    let change = open(app, tx, writer.operator, id, new.checked()?, author).await?;
+    change.commit().await
 }
 
 /// See a work order
@@ -171,28 +220,32 @@ async fn open(
               (status = 404, body = Problem)))]
 async fn find_work_order(
     Shared(app): Shared<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id(id): Id<OrderId>,
 ) -> Result<Json<Order>> {
-    shown(&app, reader.operator, id).await
+    shown(&app, reader.tenant, id).await
 }
 
 /// Read a work order's log
+///
+/// What is between the operator and another firm is withheld from a firm; its hash stays.
 #[utoipa::path(get, path = "/work-orders/{id}/entries", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
     responses((status = 200, body = LineList), (status = 401, body = Problem),
               (status = 404, body = Problem)))]
 async fn list_entries(
     Shared(app): Shared<App>,
-    reader: Reader,
+    reader: PartyReader,
     Id(id): Id<OrderId>,
     page: Page,
 ) -> Result<Json<LineList>> {
-    let summary = store::summary(&app.db, reader.operator, id).await?;
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
     let after = page.after_number()?;
     let found = store::lines(&app.db, summary.vessel_id, id, after, page.fetch()).await?;
     let listed = page.cut(found, |(seq, _, _)| seq.to_string());
     let read = |(seq, line, sha256): (i64, String, String)| {
+        let entry: Entry = serde_json::from_str(&line)?;
+        let line = view::line(reader.tenant, &entry, line, &sha256)?;
         let entry = serde_json::from_str(&line)?;
         Ok(LineSchema { seq, sha256, entry })
     };
@@ -211,7 +264,7 @@ async fn list_entries(
               (status = 422, body = Problem)))]
 async fn remark(
     Shared(app): Shared<App>,
-    writer: Writer,
+    writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(remark): Valid<Remark>,
@@ -225,12 +278,12 @@ async fn remark(
         change.append(Content::Remark(said)).await?;
         change.commit().await?;
     }
-    shown(&app, writer.operator, id).await
+    shown(&app, writer.tenant, id).await
 }
 
 /// Cancel a work order
 ///
-/// Correctors that were moved stay as they stand: the binnacle's next revision says so,
+/// For the operator; a firm declines. Correctors that were moved stay as they stand: the binnacle's next revision says so,
 /// and the logbook has the moment.
 #[utoipa::path(post, path = "/work-orders/{id}/cancel", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Remark,
@@ -250,8 +303,9 @@ async fn cancel_work_order(
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
-    let allowed = [State::Planned, State::Measured, State::Adjusting];
-    whole.must_be(&allowed, "it cannot be cancelled any more")?;
+    if !whole.summary.state.is_under_way() {
+        whole.must_be(&[], "it cannot be cancelled any more")?;
+    }
     if let Some(mut change) = request.begin(&whole).await? {
         leave_as_it_stands(&mut change).await?;
         change.append(Content::Cancelled(said)).await?;
@@ -313,7 +367,7 @@ fn said(remark: &Remark) -> Result<Said> {
 /// A request to change an order, told from others by what it asks.
 fn request<'a>(
     app: &'a App,
-    writer: Writer,
+    writer: impl Into<PartyWriter>,
     order: OrderId,
     key: Key,
     what: &str,
@@ -321,7 +375,7 @@ fn request<'a>(
 ) -> Result<Request<'a>> {
     Ok(Request {
         app,
-        writer,
+        writer: writer.into(),
         order,
         key,
         hash: idempotency::request_hash(&format!("{what} of {order}"), content)?,
@@ -329,8 +383,9 @@ fn request<'a>(
 }
 
 /// The order as it is.
-async fn shown(app: &App, operator: crate::ids::OperatorId, id: OrderId) -> Result<Json<Order>> {
-    let whole: Whole = store::whole(&app.db, operator, id).await?;
+async fn shown(app: &App, tenant: impl Into<Tenant>, id: OrderId) -> Result<Json<Order>> {
+    let tenant = tenant.into();
+    let whole: Whole = store::whole(&app.db, tenant, id).await?;
     let standing = whole.standing();
-    Ok(Json(Order::new(whole.summary, standing)))
+    Ok(Json(Order::new(whole.summary, standing, tenant)))
 }

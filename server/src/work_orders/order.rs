@@ -1,18 +1,22 @@
 //! An order to adjust a compass, as it is asked for and shown.
 
-use super::completion::Completed;
+use super::asked::{BerthReadingSchema, LimitsSchema};
+use super::completion::{Completed, KnownKey, SignedBy};
+use super::offering::NewOffer;
+use super::offers::{Offer, OfferState};
 use super::photos::PhotoTaken;
 use super::plan::Planned;
-use super::reading::{Checked, Given};
+use super::reading::Checked;
 use super::schema::{ChosenPlanSchema, StepSchema, VerdictSchema};
 use super::standing::Standing;
 use super::verification::Verified;
 use crate::binnacles::SettingSchema;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::http::{optional_text, text};
-use crate::ids::{CompassId, OrderId, VesselId};
+use crate::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
+use crate::tenants::Tenant;
 use crate::time::Time;
-use binnacle_magnetics::adjust::Step;
+use binnacle_magnetics::adjust::{Limits, ReadingForm, Step};
 use binnacle_magnetics::binnacle::Setting;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
@@ -26,8 +30,18 @@ pub(super) const NOT_A_CERTIFICATE: &str = "predicted, not a certificate";
 #[sqlx(type_name = "text", rename_all = "snake_case")]
 #[schema(as = WorkOrderState)]
 pub enum State {
-    /// It was written.
+    /// It was written, and offered to no firm.
     Planned,
+    /// A firm is asked.
+    Offered,
+    /// A firm would have it on other terms: the operator is asked.
+    Proposed,
+    /// No firm that was asked has taken it.
+    Declined,
+    /// A firm has it.
+    Accepted,
+    /// The adjuster is on board.
+    OnBoard,
     /// The magnetometer was read at the berth.
     Measured,
     /// A plan was chosen, and its steps are being done.
@@ -42,6 +56,28 @@ pub enum State {
     Closed,
     /// Not to be done, or no further.
     Cancelled,
+}
+
+impl State {
+    /// Whether the ship's model and binnacle are a firm's business.
+    pub fn is_under_way(self) -> bool {
+        matches!(
+            self,
+            State::Planned
+                | State::Offered
+                | State::Proposed
+                | State::Declined
+                | State::Accepted
+                | State::OnBoard
+                | State::Measured
+                | State::Adjusting
+        )
+    }
+
+    /// Whether nothing is to be done any more.
+    pub fn is_over(self) -> bool {
+        matches!(self, State::Closed | State::Cancelled)
+    }
 }
 
 /// An order to be written.
@@ -79,6 +115,13 @@ pub struct NewOrder {
     #[serde(default)]
     #[schema(max_length = 200)]
     pub firm: Option<String>,
+    /// The firms that it is offered to; the order is `planned` without, `offered` with.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offer: Option<NewOffer>,
+    /// What a plan must keep to, where it is not the usual.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<LimitsSchema>)]
+    pub limits: Option<Limits>,
 }
 
 /// An order as its log's first entry has it.
@@ -99,6 +142,10 @@ pub struct Opened {
 pub(super) struct Summary {
     /// The order's id.
     pub id: OrderId,
+    /// Whose vessel it is.
+    pub operator_id: OperatorId,
+    /// Their name.
+    pub operator_name: String,
     /// The vessel.
     pub vessel_id: VesselId,
     /// Her name.
@@ -125,6 +172,13 @@ pub(super) struct Summary {
     /// Their firm.
     #[schema(required)]
     pub firm: Option<String>,
+    /// The firm that has accepted the order.
+    #[schema(required)]
+    pub firm_id: Option<FirmId>,
+    /// Until when an answer is waited for: the firm's to an offer, or the operator's to a
+    /// proposal.
+    #[schema(required)]
+    pub answer_by: Option<Time>,
     /// When it was written.
     pub created_at: Time,
     /// Who wrote it.
@@ -169,12 +223,15 @@ pub(super) struct Order {
     /// What its figures are: predictions, until headings at sea agree.
     #[schema(example = "predicted, not a certificate")]
     pub standing: &'static str,
+    /// What a plan must keep to.
+    #[schema(value_type = LimitsSchema)]
+    pub limits: Limits,
     /// What the magnetometer read; the last reading that was taken.
-    #[schema(required)]
-    pub reading: Option<Given>,
+    #[schema(required, value_type = Option<BerthReadingSchema>)]
+    pub reading: Option<ReadingForm>,
     /// What that told.
     #[schema(required)]
-    pub berth: Option<Checked>,
+    pub berth_check: Option<Checked>,
     /// The plan that is followed.
     #[schema(required, value_type = Option<ChosenPlanSchema>)]
     pub plan: Option<Planned>,
@@ -200,28 +257,84 @@ pub(super) struct Order {
     pub verification: Option<Verified>,
     /// Photographs, in order.
     pub photos: Vec<PhotoTaken>,
+    /// Signatures over the record by firms' keys, and whose they are.
+    pub signatures: Vec<KeySignature>,
+    /// What became of its offers, in the order in which firms are asked; a firm sees its
+    /// own only.
+    pub offers: Vec<Offer>,
+}
+
+/// A signature over the record.
+#[derive(Serialize, ToSchema)]
+#[schema(as = WorkOrderSignature)]
+pub(super) struct KeySignature {
+    /// The public key, hexadecimal.
+    pub public_key: String,
+    /// The signature, hexadecimal.
+    pub signature: String,
+    /// Whose key it is; none for a key that the order's firm has not registered.
+    #[schema(required)]
+    pub key: Option<KnownKey>,
+}
+
+impl From<SignedBy> for KeySignature {
+    fn from(by: SignedBy) -> KeySignature {
+        KeySignature {
+            public_key: by.signed.public_key,
+            signature: by.signed.signature,
+            key: by.key,
+        }
+    }
+}
+
+impl Summary {
+    /// The order as a firm sees it that this offer is to.
+    pub(super) fn seen_with(&self, offer: &Offer) -> Summary {
+        let state = match offer.state {
+            OfferState::Open => State::Offered,
+            OfferState::Proposed => State::Proposed,
+            OfferState::Declined | OfferState::Lapsed => State::Declined,
+            OfferState::Withdrawn => State::Cancelled,
+            OfferState::Waiting | OfferState::Accepted => self.state,
+        };
+        Summary {
+            state,
+            answer_by: offer.answer_by,
+            ..self.clone()
+        }
+    }
 }
 
 impl Order {
     /// The order with what follows from its log.
-    pub(super) fn new(summary: Summary, standing: Standing) -> Order {
+    pub(super) fn new(summary: Summary, standing: Standing, tenant: Tenant) -> Order {
+        let (next_step, setting) = (standing.next_step().cloned(), standing.setting().cloned());
+        let verified = standing.is_verified();
+        let of_firm = tenant.firm();
+        let closed = of_firm.is_some() && summary.state.is_over();
+        let seen = |offer: &Offer| of_firm.is_none_or(|firm| offer.firm_id == firm);
+        let signatures = standing.signatures.into_iter().map(KeySignature::from);
         Order {
             standing: match summary.state {
                 State::Verified => "verified at sea",
-                _ if standing.is_verified() => "verified at sea",
+                _ if verified => "verified at sea",
                 _ => NOT_A_CERTIFICATE,
             },
-            next_step: standing.next_step().cloned(),
-            setting: standing.setting().cloned(),
+            limits: standing.limits,
+            next_step,
+            setting,
             steps_done: standing.steps_done,
             compass_deg: standing.compass_deg,
             last_step: standing.last_step,
             reading: standing.read.as_ref().map(|read| read.given.clone()),
-            berth: standing.read.and_then(|read| read.checked),
-            plan: standing.plan,
+            berth_check: standing.read.and_then(|read| read.checked),
+            // The plan is a firm's business while the order is open.
+            plan: standing.plan.filter(|_| !closed),
             completion: standing.completed,
             verification: standing.verified,
             photos: standing.photos,
+            signatures: signatures.collect(),
+            offers: standing.offers.all.into_iter().filter(seen).collect(),
             summary,
         }
     }
@@ -231,6 +344,12 @@ impl NewOrder {
     /// The order, its words trimmed.
     pub fn checked(self) -> Result<NewOrder> {
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
+        if let Some(limits) = &self.limits {
+            limits.must_be_sane().map_err(|error| Error::Invalid {
+                field: "limits",
+                detail: error.to_string(),
+            })?;
+        }
         Ok(NewOrder {
             port: text("port", &self.port)?,
             berth: optional("berth", self.berth)?,

@@ -1,10 +1,12 @@
 //! The plan: what the planner offers, and what was chosen of it.
 
 use super::basis::Prepared;
+use super::order::Summary;
 use super::refusal::Refusal;
 use super::standing::Standing;
 use crate::app::App;
 use crate::error::{Error, Result};
+use crate::models;
 use binnacle_magnetics::adjust::{AdjustError, Optimality, Outcome, Plan, plan};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -56,16 +58,48 @@ impl Standing {
         let basis = read.basis.clone().ok_or_else(wrong)?;
         let reading = read
             .given
-            .reading(&basis)
+            .reading(basis.variation()?)
             .map_err(|error| anyhow::anyhow!("a reading that was taken: {error}"))?;
         Ok(Prepared {
             reading,
             given: read.given.clone(),
             binnacle: self.binnacle.clone().ok_or_else(wrong)?,
             moved_to: self.moved_to.clone(),
+            limits: self.limits,
             basis,
         })
     }
+}
+
+/// What is read at a berth holds no longer: by then she may lie elsewhere.
+const READING_HOLDS_S: f64 = 48.0 * 3600.0;
+
+/// Refuses a reading that is too old, or older than a change of the ship's magnetism.
+///
+/// # Errors
+/// [`Error::WrongState`].
+pub(super) async fn must_still_hold(
+    app: &App,
+    summary: &Summary,
+    prepared: &Prepared,
+) -> Result<()> {
+    let age_s = app.clock.now().seconds_since(prepared.given.at);
+    if age_s > READING_HOLDS_S {
+        let hours = age_s / 3600.0;
+        let words = format!("the berth was read {hours:.0} hours ago: read it again");
+        return Err(Error::WrongState(words));
+    }
+    let model = models::current(&app.db, summary.vessel_id, summary.compass_id).await?;
+    let known_until = prepared.basis.model.data_until;
+    let holds = model.is_some_and(|model| model.epoch_from.is_none_or(|from| from <= known_until));
+    if !holds {
+        return Err(Error::WrongState(
+            "the ship's magnetism has changed since the model that the berth was held against: \
+             when there is a model again, read it again"
+                .to_owned(),
+        ));
+    }
+    Ok(())
 }
 
 /// What the planner offers, or why it offers nothing.

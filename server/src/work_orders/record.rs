@@ -66,6 +66,7 @@ pub(super) fn text(
             "variation_deg": basis.variation_deg, "h_nt": basis.h_nt, "z_nt": basis.z_nt,
             "model": basis.field_model,
         })),
+        "limits": standing.limits,
         "waters": basis.map(|basis| &basis.waters),
         "reading": read.map(|read| &read.given),
         "berth_check": read.map(|read| &read.checked),

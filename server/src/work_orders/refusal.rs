@@ -49,7 +49,7 @@ impl From<&Refused> for Refusal {
         Refusal {
             refusal: word.unwrap_or_else(|| "refused".to_owned()),
             words: refused.words.clone(),
-            could_be: Vec::new(),
+            could_be: refused.refusal.could_be(),
             cures: refused.cures.iter().copied().map(Cure::from).collect(),
         }
     }

@@ -1,7 +1,8 @@
 //! How the OpenAPI document describes plans; they themselves are the science crate's.
 
 use super::steps::Verdict;
-use crate::binnacles::SettingSchema;
+use crate::binnacles::{BarSchema, BucketSchema, PairSchema, SettingSchema, TraySchema};
+use serde::Serialize;
 use serde_json::Value;
 use utoipa::ToSchema;
 
@@ -21,8 +22,7 @@ pub(super) struct OfferSchema {
     /// The recommended plan first, then others that cost more or less.
     plans: Vec<PlanSchema>,
     /// How well the search knows that nothing is better.
-    #[schema(value_type = Option<Object>)]
-    optimality: Option<Value>,
+    optimality: Option<OptimalitySchema>,
 }
 
 /// A plan that was chosen.
@@ -37,8 +37,7 @@ pub(super) struct ChosenPlanSchema {
     /// What the adjuster should know.
     notes: Vec<String>,
     /// How well the search knows that nothing is better.
-    #[schema(value_type = Option<Object>)]
-    optimality: Option<Value>,
+    optimality: Option<OptimalitySchema>,
     /// The plan.
     plan: PlanSchema,
 }
@@ -76,8 +75,7 @@ pub(super) struct PlanSchema {
     /// Residuals as they will be.
     after: Vec<TableSchema>,
     /// What becomes of the heeling magnets.
-    #[schema(value_type = Object)]
-    heeling: Value,
+    heeling: HeelingSchema,
     /// What to do, in order.
     steps: Vec<StepSchema>,
     /// The model that holds from the last step on.
@@ -137,16 +135,16 @@ struct RowSchema {
 pub(super) struct StepSchema {
     /// From 1.
     number: u32,
-    /// `flinders`, `quadrantal`, `heeling`, `fore_and_aft` or `athwartship`.
-    corrector: String,
-    /// `fit`, `take_out`, `move` or `change`.
-    action: String,
+    /// What is moved.
+    corrector: CorrectorSchema,
+    /// What is done with it.
+    action: ActionSchema,
     /// Where it was; none when it comes in.
-    #[schema(value_type = Option<Object>)]
-    from: Option<Value>,
+    #[schema(required)]
+    from: Option<PlaceSchema>,
     /// Where it will be; none when it comes out.
-    #[schema(value_type = Option<Object>)]
-    to: Option<Value>,
+    #[schema(required)]
+    to: Option<PlaceSchema>,
     /// All of it in a sentence.
     words: String,
     /// What to see to before.
@@ -164,6 +162,124 @@ pub(super) struct StepSchema {
     setting_before: SettingSchema,
     /// How they stand then.
     setting_after: SettingSchema,
+}
+
+/// What is moved at the binnacle.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = MovedCorrector)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Corrector")]
+enum CorrectorSchema {
+    Flinders,
+    Quadrantal,
+    Heeling,
+    ForeAndAft,
+    Athwartship,
+}
+
+/// What is done with a corrector.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = StepAction)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Action")]
+enum ActionSchema {
+    Fit,
+    TakeOut,
+    Move,
+    Change,
+}
+
+/// Where a corrector stands.
+#[derive(Serialize, ToSchema)]
+#[serde(tag = "place", rename_all = "snake_case")]
+#[schema(as = CorrectorPlace)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Place")]
+enum PlaceSchema {
+    Magnets(TraySchema),
+    Pair(PairSchema),
+    Bar(BarSchema),
+    Bucket(BucketSchema),
+}
+
+/// What becomes of the heeling magnets.
+#[derive(ToSchema)]
+#[schema(as = HeelingPlan)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_magnetics::adjust::HeelingPlan"
+)]
+struct HeelingSchema {
+    /// Degrees of heeling error for each degree of heel on north, at the berth, as it is;
+    /// none where the vertical force was not read.
+    #[schema(required)]
+    before_deg_per_deg: Option<f64>,
+    /// The same afterwards.
+    #[schema(required)]
+    after_deg_per_deg: Option<f64>,
+    /// Whether they are left as found for want of a vertical reading.
+    left_as_found: bool,
+}
+
+/// How well the search knows that nothing is better.
+#[derive(ToSchema)]
+#[schema(as = PlanOptimality)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Optimality")]
+struct OptimalitySchema {
+    /// Whether every setting of the catalogue was gone through or excluded.
+    proven: bool,
+    /// No setting's worst residual is better than the best plan's by more, degrees.
+    gap_deg: f64,
+    /// Boxes of settings that were looked at.
+    nodes: u64,
+    /// Most trays or holes of fore-and-aft and athwartship magnets in use at once.
+    trays_in_use: [u8; 2],
+}
+
+/// What headings at sea say of a prediction.
+#[derive(Serialize, ToSchema)]
+#[serde(tag = "verdict", rename_all = "snake_case")]
+#[schema(as = SeaVerdict)]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_magnetics::adjust::Verification"
+)]
+pub(super) enum SeaVerdictSchema {
+    /// They agree, and are enough.
+    Passed {
+        /// Headings that counted.
+        headings: usize,
+        /// The widest 95 % band that is left, degrees.
+        band95_deg: f64,
+        /// Root mean square of what they are off, degrees.
+        rms_deg: f64,
+    },
+    /// They agree so far.
+    MoreNeeded {
+        /// Headings that counted.
+        headings: usize,
+        /// Which others are needed.
+        needed: NeededSchema,
+    },
+    /// One is off by too much.
+    Alarm {
+        /// Its compass heading, degrees.
+        compass_deg: f64,
+        /// By how much it is off, degrees.
+        off_deg: f64,
+        /// The standard error of that, degrees.
+        standard_error_deg: f64,
+    },
+}
+
+/// Headings that are still needed.
+#[derive(Serialize, ToSchema)]
+#[schema(as = NeededHeadings)]
+#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Needed")]
+pub(super) struct NeededSchema {
+    /// How many.
+    count: usize,
+    /// Compass headings that would do, degrees, the best first.
+    compass_deg: Vec<f64>,
 }
 
 /// What became of a step.

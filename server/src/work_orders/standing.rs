@@ -3,15 +3,16 @@
 //! What always holds: it is a function of the log alone, so that the state in the
 //! database can be derived again.
 
-use super::completion::Completed;
+use super::completion::{Completed, SignedBy};
 use super::entry::Content;
+use super::offers::Offers;
 use super::order::State;
 use super::photos::PhotoTaken;
 use super::plan::Planned;
 use super::reading::Read;
 use super::steps::{StepSaid, Verdict};
 use super::verification::Verified;
-use binnacle_magnetics::adjust::{Step, Verification};
+use binnacle_magnetics::adjust::{Limits, Step, Verification};
 use binnacle_magnetics::binnacle::{Binnacle, Setting};
 
 /// How an order stands.
@@ -19,6 +20,10 @@ use binnacle_magnetics::binnacle::{Binnacle, Setting};
 pub(super) struct Standing {
     /// How far it has come.
     pub state: State,
+    /// What became of its offers to firms.
+    pub offers: Offers,
+    /// What a plan must keep to.
+    pub limits: Limits,
     /// The last reading that was taken.
     pub read: Option<Read>,
     /// The binnacle, its correctors as strong as they were found to be, standing as they
@@ -40,6 +45,8 @@ pub(super) struct Standing {
     pub verified: Option<Verified>,
     /// Photographs, in order.
     pub photos: Vec<PhotoTaken>,
+    /// Signatures by firms' keys, in order.
+    pub signatures: Vec<SignedBy>,
 }
 
 impl Standing {
@@ -47,6 +54,8 @@ impl Standing {
     pub(super) fn of<'a>(log: impl Iterator<Item = &'a Content>) -> Standing {
         let mut standing = Standing {
             state: State::Planned,
+            offers: Offers::default(),
+            limits: Limits::default(),
             read: None,
             binnacle: None,
             moved_to: None,
@@ -57,6 +66,7 @@ impl Standing {
             completed: None,
             verified: None,
             photos: Vec::new(),
+            signatures: Vec::new(),
         };
         for content in log {
             standing.take(content);
@@ -66,9 +76,21 @@ impl Standing {
 
     /// Goes on by an entry.
     pub(super) fn take(&mut self, content: &Content) {
+        self.offers.take(content);
         match content {
+            Content::Offered(_)
+            | Content::Asked(_)
+            | Content::Accepted(_)
+            | Content::Declined(_)
+            | Content::Proposed(_)
+            | Content::ProposalAccepted(_)
+            | Content::ProposalDeclined(_)
+            | Content::Lapsed(_) => self.state = self.offers.state(),
+            Content::OnBoard(_) => self.state = State::OnBoard,
             Content::Photo(photo) => self.photos.push(photo.clone()),
-            Content::Opened(_) | Content::Remark(_) | Content::Signature(_) => {}
+            Content::Signature(signature) => self.signatures.push(signature.clone()),
+            Content::Opened(opened) => self.limits = opened.order.limits.unwrap_or_default(),
+            Content::Remark(_) | Content::Message(_) => {}
             Content::BerthReading(read) => self.take_reading(read),
             Content::Plan(planned) => self.follow(planned.as_ref().clone()),
             Content::Step(done) => {

@@ -1,9 +1,11 @@
-//! Orders and their logs in the database.
+//! Orders and their logs on their way into the database.
 
 use super::entry::{Author, Content, Entry, canonical, sha256_hex};
-use super::order::{Filter, NewOrder, State, Summary};
+pub(super) use super::find::{lines, list, lock, overdue, summary, vessel_of_asked, whole};
+use super::offers::Offers;
+use super::order::{NewOrder, State, Summary};
 use super::standing::Standing;
-use crate::db::{Db, Tx, execute, row, rows};
+use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Result};
 use crate::ids::{CompassId, OperatorId, OrderId, PhotoId, VesselId};
 use crate::time::Time;
@@ -20,132 +22,43 @@ impl Whole {
     pub(super) fn standing(&self) -> Standing {
         Standing::of(self.log.iter().map(|entry| &entry.content))
     }
+
+    /// Brings the line about the order in step with its last entry.
+    fn follow(&mut self, standing: &Standing) {
+        let summary = &mut self.summary;
+        summary.state = standing.state;
+        summary.answer_by = standing.offers.answer_by();
+        let holder = standing.offers.holder().map(|offer| offer.firm_id);
+        if summary.firm_id.is_some() && holder.is_none() && !summary.state.is_over() {
+            (
+                summary.firm,
+                summary.adjuster_name,
+                summary.adjuster_licence,
+            ) = (None, None, None);
+        }
+        summary.firm_id = holder;
+        match self.log.last().map(|entry| &entry.content) {
+            Some(Content::Accepted(said)) => {
+                summary.firm = Some(said.firm.firm_name.clone());
+                summary.adjuster_name.clone_from(&said.adjuster_name);
+                summary.adjuster_licence.clone_from(&said.adjuster_licence);
+            }
+            Some(Content::ProposalAccepted(said)) => {
+                summary.firm = Some(said.firm.firm_name.clone());
+                (summary.adjuster_name, summary.adjuster_licence) = (None, None);
+                if let Some(terms) = &said.terms {
+                    summary.planned_at = terms.planned_at;
+                    summary.berth = terms.berth.clone().or(summary.berth.take());
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
-/// The newest first, from before an id.
-pub(super) async fn list(
-    db: &Db,
-    operator: OperatorId,
-    filter: &Filter,
-    before: Option<Uuid>,
-    limit: i64,
-) -> Result<Vec<Summary>> {
-    Ok(rows!(
-        db,
-        Summary,
-        "SELECT o.*, v.name AS vessel_name, c.name AS compass_name
-         FROM work_orders o
-         JOIN vessels v ON v.id = o.vessel_id
-         JOIN compasses c ON c.vessel_id = o.vessel_id AND c.id = o.compass_id
-         WHERE v.operator_id = $1 AND o.id < $2
-           AND ($3 IS NULL OR o.vessel_id = $3)
-           AND ($4 IS NULL OR o.state = $4)
-         ORDER BY o.id DESC
-         LIMIT $5",
-        operator,
-        before.unwrap_or(Uuid::max()),
-        filter.vessel,
-        filter.state,
-        limit
-    )?)
-}
-
-/// An order of the operator's, in a line.
-///
-/// # Errors
-/// [`Error::NotFound`] when there is none.
-pub(super) async fn summary(db: &Db, operator: OperatorId, id: OrderId) -> Result<Summary> {
-    row!(
-        db,
-        Summary,
-        "SELECT o.*, v.name AS vessel_name, c.name AS compass_name
-         FROM work_orders o
-         JOIN vessels v ON v.id = o.vessel_id
-         JOIN compasses c ON c.vessel_id = o.vessel_id AND c.id = o.compass_id
-         WHERE v.operator_id = $1 AND o.id = $2
-         ORDER BY o.id",
-        operator,
-        id
-    )?
-    .ok_or(Error::NotFound("work order"))
-}
-
-/// The same within a transaction, of a vessel that is known: others who would change
-/// it wait.
-pub(super) async fn lock(tx: &mut Tx, vessel: VesselId, id: OrderId) -> Result<Whole> {
-    execute!(
-        &mut *tx,
-        "UPDATE work_orders SET state = state WHERE vessel_id = $1 AND id = $2",
-        vessel,
-        id
-    )?;
-    let summary = row!(
-        in &mut *tx,
-        Summary,
-        "SELECT o.*, v.name AS vessel_name, c.name AS compass_name
-         FROM work_orders o
-         JOIN vessels v ON v.id = o.vessel_id
-         JOIN compasses c ON c.vessel_id = o.vessel_id AND c.id = o.compass_id
-         WHERE o.vessel_id = $1 AND o.id = $2
-         ORDER BY o.id",
-        vessel,
-        id
-    )?
-    .ok_or(Error::NotFound("work order"))?;
-    let lines = rows!(
-        in tx,
-        (String,),
-        "SELECT line FROM work_order_entries
-         WHERE vessel_id = $1 AND order_id = $2
-         ORDER BY seq",
-        vessel,
-        id
-    )?;
-    let log = read(lines)?;
-    Ok(Whole { summary, log })
-}
-
-/// An order of the operator's with its log.
-pub(super) async fn whole(db: &Db, operator: OperatorId, id: OrderId) -> Result<Whole> {
-    let summary = summary(db, operator, id).await?;
-    let lines = rows!(
-        db,
-        (String,),
-        "SELECT line FROM work_order_entries
-         WHERE vessel_id = $1 AND order_id = $2
-         ORDER BY seq",
-        summary.vessel_id,
-        id
-    )?;
-    let log = read(lines)?;
-    Ok(Whole { summary, log })
-}
-
-fn read(lines: Vec<(String,)>) -> Result<Vec<Entry>> {
+pub(super) fn read(lines: Vec<(String,)>) -> Result<Vec<Entry>> {
     let read = |(line,): (String,)| Ok(serde_json::from_str(&line)?);
     lines.into_iter().map(read).collect()
-}
-
-/// Lines of an order's log as they were hashed, with their hashes, from after a number.
-pub(super) async fn lines(
-    db: &Db,
-    vessel: VesselId,
-    id: OrderId,
-    after: Option<i64>,
-    limit: i64,
-) -> Result<Vec<(i64, String, String)>> {
-    Ok(rows!(
-        db,
-        (i64, String, String),
-        "SELECT seq, line, sha256 FROM work_order_entries
-         WHERE vessel_id = $1 AND order_id = $2 AND seq > $3
-         ORDER BY seq
-         LIMIT $4",
-        vessel,
-        id,
-        after.unwrap_or(0),
-        limit
-    )?)
 }
 
 /// Whether a compass has an order that is not done yet.
@@ -166,7 +79,8 @@ pub(super) async fn is_under_way(
         (i64,),
         "SELECT COUNT(*) FROM work_orders
          WHERE vessel_id = $1 AND compass_id = $2
-           AND state IN ('planned', 'measured', 'adjusting')",
+           AND state IN ('planned', 'offered', 'proposed', 'declined', 'accepted', 'on_board',
+                         'measured', 'adjusting')",
         vessel,
         compass
     )?;
@@ -189,6 +103,35 @@ pub(super) async fn last_completed(
         vessel,
         compass
     )?)
+}
+
+/// The names of a vessel of the operator's and of one of her compasses.
+///
+/// # Errors
+/// [`Error::NotFound`] when there is no such vessel or compass.
+pub(super) async fn names(
+    tx: &mut Tx,
+    operator: OperatorId,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<(String, String)> {
+    let found = row!(
+        in &mut *tx,
+        (String,),
+        "SELECT name FROM vessels WHERE operator_id = $1 AND id = $2 ORDER BY id",
+        operator,
+        vessel
+    )?;
+    let (vessel_name,) = found.ok_or(Error::NotFound("vessel"))?;
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT name FROM compasses WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        compass
+    )?;
+    let (compass_name,) = found.ok_or(Error::NotFound("compass"))?;
+    Ok((vessel_name, compass_name))
 }
 
 pub(super) async fn insert(
@@ -259,17 +202,53 @@ pub(super) async fn append(
     summary.last_seq = entry.seq;
     summary.last_sha256 = sha256;
     whole.log.push(entry);
-    whole.summary.state = whole.standing().state;
+    let standing = whole.standing();
+    whole.follow(&standing);
+    let summary = &whole.summary;
     execute!(
-        tx,
-        "UPDATE work_orders SET state = $3, last_seq = $4, last_sha256 = $5
+        &mut *tx,
+        "UPDATE work_orders
+         SET state = $3, last_seq = $4, last_sha256 = $5, firm_id = $6, answer_by = $7,
+             planned_at = $8, berth = $9, adjuster_name = $10, adjuster_licence = $11, firm = $12
          WHERE vessel_id = $1 AND id = $2",
-        whole.summary.vessel_id,
-        whole.summary.id,
-        whole.summary.state,
-        whole.summary.last_seq,
-        whole.summary.last_sha256.as_str()
+        summary.vessel_id,
+        summary.id,
+        summary.state,
+        summary.last_seq,
+        summary.last_sha256.as_str(),
+        summary.firm_id,
+        summary.answer_by,
+        summary.planned_at,
+        summary.berth.as_deref(),
+        summary.adjuster_name.as_deref(),
+        summary.adjuster_licence.as_deref(),
+        summary.firm.as_deref()
     )?;
+    if whole
+        .log
+        .last()
+        .is_some_and(|entry| entry.content.is_about_offers())
+    {
+        write_offers(tx, whole, &standing.offers).await?;
+    }
+    Ok(())
+}
+
+async fn write_offers(tx: &mut Tx, whole: &Whole, offers: &Offers) -> Result<()> {
+    for offer in &offers.all {
+        execute!(
+            &mut *tx,
+            "INSERT INTO work_order_offers (vessel_id, order_id, firm_id, state, answer_by)
+             VALUES ($1, $2, $3, $4, $5)
+             ON CONFLICT (vessel_id, order_id, firm_id) DO UPDATE
+             SET state = excluded.state, answer_by = excluded.answer_by",
+            whole.summary.vessel_id,
+            whole.summary.id,
+            offer.firm_id,
+            offer.state,
+            offer.answer_by
+        )?;
+    }
     Ok(())
 }
 
@@ -292,6 +271,25 @@ pub(super) async fn complete(
         summary.adjuster_name.as_deref(),
         summary.adjuster_licence.as_deref(),
         summary.firm.as_deref()
+    )?;
+    Ok(())
+}
+
+/// Notes that headings at sea verified an adjustment, and what they said.
+pub(super) async fn verified(
+    tx: &mut Tx,
+    summary: &Summary,
+    verified_at: Time,
+    verification: &str,
+) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE work_orders SET verified_at = $3, verification = $4
+         WHERE vessel_id = $1 AND id = $2",
+        summary.vessel_id,
+        summary.id,
+        verified_at,
+        verification
     )?;
     Ok(())
 }

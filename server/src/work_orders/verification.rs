@@ -3,15 +3,17 @@
 //!
 //! What always holds: a verdict is an entry of the order's log, in the transaction that
 //! stores the analysis whose samples it rests on; an alarm is an alert as long as the
-//! order stands failed.
+//! order stands failed; what has passed stays so, and a later change of the ship ends the
+//! epoch instead.
 
 use super::entry::{Author, Content};
+use super::news::{self, Before};
 use super::order::State;
 use super::store;
 use crate::alerts::{AlertWanted, Cause, Dated, Evidence, Severity};
 use crate::db::Tx;
 use crate::error::Result;
-use crate::events::{self, Event, Kind};
+use crate::events::Event;
 use crate::ids::{CompassId, OrderId, VesselId};
 use crate::time::Time;
 use binnacle_magnetics::adjust::{Settled, Verification, verify};
@@ -30,7 +32,7 @@ const HEADING_SD_DEG: f64 = 0.7;
 #[schema(as = OrderVerification)]
 pub struct Verified {
     /// The verdict with its figures: `passed`, `more_needed` or `alarm`.
-    #[schema(value_type = Object)]
+    #[schema(value_type = super::schema::SeaVerdictSchema)]
     pub verification: Verification,
     /// The same in words.
     pub words: String,
@@ -93,15 +95,16 @@ pub async fn after_analysis(
     compass: CompassId,
     samples: &[SampleDiagnostic],
     now: Time,
-) -> Result<Option<Event>> {
+) -> Result<Vec<Event>> {
     let last = store::last_completed(tx, vessel, compass).await?;
     let Some((order, State::Adjusted, _)) = last else {
-        return Ok(None);
+        return Ok(Vec::new());
     };
     let mut whole = store::lock(tx, vessel, order).await?;
     let standing = whole.standing();
+    let before = Before::of(&whole);
     let Some(completed) = standing.completed else {
-        return Ok(None);
+        return Ok(Vec::new());
     };
     let counts = |found: &&SampleDiagnostic| {
         Time(found.sample.time) > completed.at
@@ -110,27 +113,27 @@ pub async fn after_analysis(
     let counted: Vec<&SampleDiagnostic> = samples.iter().filter(counts).collect();
     let settled: Vec<Settled> = counted.iter().filter_map(|found| settled(found)).collect();
     let (Some(last), Some(here)) = (counted.last(), settled.last().map(|last| last.earth)) else {
-        return Ok(None);
+        return Ok(Vec::new());
     };
     let verification = match verify(&completed.model_after, &settled, here) {
         Ok(verification) => verification,
         Err(error) => {
             warn!(%vessel, %error, "an adjustment cannot be verified");
-            return Ok(None);
+            return Ok(Vec::new());
         }
     };
     let verified = Verified::new(verification, settled.len(), Time(last.sample.time));
     if !verified.is_news_after(standing.verified.as_ref()) {
-        return Ok(None);
+        return Ok(Vec::new());
     }
-    let author = Author {
-        id: None,
-        name: "Binnacle".to_owned(),
-    };
+    if matches!(verified.verification, Verification::Passed { .. }) {
+        let text = serde_json::to_string(&verified)?;
+        store::verified(tx, &whole.summary, now, &text).await?;
+    }
+    let author = Author::server();
     let content = Content::Verification(Box::new(verified));
     store::append(tx, &mut whole, Uuid::now_v7(), &author, now, content).await?;
-    let event = events::insert(tx, vessel, Kind::WorkOrder, now).await?;
-    Ok(Some(event))
+    news::tell(tx, &whole, &before, now).await
 }
 
 fn settled(found: &SampleDiagnostic) -> Option<Settled> {

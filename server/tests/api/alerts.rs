@@ -198,6 +198,8 @@ async fn a_silent_agent_is_an_alert_until_it_sends_again(shore: Shore) {
     nao.put(1, &passage(DAY, 3)).await.good();
     shore.advance(2.9 * DAY_S);
     alerts::for_silence(&shore.app).await.unwrap();
+    // No session lasts so long unused.
+    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     assert_eq!(list(&ada, "").await, Vec::<Value>::new());
     shore.advance(0.2 * DAY_S);
     for _ in 0..2 {

@@ -2,9 +2,14 @@
 
 use crate::binnacles::{binnacle, put};
 use crate::on_both;
-use crate::support::{Answer, Person, Ship, Shore, days_at_sea, passage, struck, truth};
+use crate::support::{Answer, Person, Ship, Shore, days_at_sea, days_in, passage, struck, truth};
+use binnacle_magnetics::time::Timestamp;
+use binnacle_wire::alert::{ShipAlert, ShipAlertState};
+use binnacle_wire::batch::Batch;
 use reqwest::Method;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use uuid::Uuid;
 
 on_both!(
     a_card_says_what_the_model_predicts_and_what_it_is_worth,
@@ -14,6 +19,8 @@ on_both!(
     a_card_tells_how_the_correctors_were_last_recorded,
     what_cannot_be_asked_is_refused_by_its_field,
     there_is_no_card_where_it_would_mislead,
+    there_is_no_card_where_headings_are_ambiguous,
+    there_is_no_card_of_a_compass_that_is_suspected,
     a_card_from_after_a_change_says_that_no_older_one_holds,
 );
 
@@ -85,6 +92,12 @@ async fn a_card_says_what_the_model_predicts_and_what_it_is_worth(shore: Shore) 
         (&card["cargo"], &card["degaussed_at"]),
         (&json!([]), &json!(null))
     );
+
+    amend(&ada, &nao.path(""), json!({ "degaussing": " coils off " })).await;
+    let told = ada.get(&nao.path("/card.json")).await.good();
+    assert_eq!(told["degaussing"], "coils off");
+    assert!(!told["not_recorded"].to_string().contains("degaussing"));
+    amend(&ada, &nao.path(""), json!({ "degaussing": null })).await;
 
     let steel =
         json!({ "kind": "magnetic_cargo", "from": "2026-11-19T00:00:00Z", "cargo": "steel" });
@@ -278,6 +291,66 @@ async fn there_is_no_card_where_it_would_mislead(shore: Shore) {
     assert_eq!((status, problem.as_str()), (404, "no-model-yet"));
     assert!(detail.contains("the card has not held since"), "{detail}");
     shore.finish().await;
+}
+
+async fn there_is_no_card_where_headings_are_ambiguous(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    // A field of her own that is nothing to the earth's in Biscay, and outdoes it in the
+    // far south.
+    let ship = struck(3000.0, 0.0);
+    let mut strong = days_in((10.0, -25.0), &ship, "2026-11-10T00:00:00Z", 4.0);
+    strong.extend(days_at_sea(&ship, FROM, 5.0));
+    nao.put(1, &strong).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    ada.get(&nao.path("/card.json")).await.good();
+    let (status, problem, detail) = refusal(&ada, &nao, "?lat=-61&lon=136").await;
+    assert_eq!((status, problem.as_str()), (409, "headings-ambiguous"));
+    assert!(detail.contains("heading"), "{detail}");
+    shore.finish().await;
+}
+
+async fn there_is_no_card_of_a_compass_that_is_suspected(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = modelled(&shore, &ada).await;
+    ada.get(&nao.path("/card.json")).await.good();
+    let since = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
+    let mut aboard = ShipAlert {
+        id: Uuid::from_u128(1),
+        revision: 1,
+        state: ShipAlertState::Open,
+        since,
+        at: since.plus_seconds(1800.0),
+        gyro_departure_deg: Some(-28.4),
+        satellite_departure_deg: None,
+        limit_deg: 3.9,
+        model_version: 1,
+    };
+    nao.put_bytes(2, reporting(&nao, 2, aboard)).await.good();
+    let (status, problem, detail) = refusal(&ada, &nao, "").await;
+    assert_eq!((status, problem.as_str()), (409, "compass-suspected"));
+    assert!(detail.contains("parted by 28°"), "{detail}");
+    // When compass and gyro agree again there is one.
+    (aboard.revision, aboard.state) = (2, ShipAlertState::Agree);
+    nao.put_bytes(3, reporting(&nao, 3, aboard)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    ada.get(&nao.path("/card.json")).await.good();
+    shore.finish().await;
+}
+
+/// A batch with nothing but an alert of the ship's own.
+fn reporting(ship: &Ship, seq: u64, alert: ShipAlert) -> Vec<u8> {
+    let batch = Batch {
+        stream: ship.stream,
+        seq,
+        samples: Vec::new(),
+        tally: BTreeMap::new(),
+        alerts: vec![alert],
+        thinned: None,
+    };
+    binnacle_wire::encode(&batch).unwrap()
 }
 
 async fn a_card_from_after_a_change_says_that_no_older_one_holds(shore: Shore) {

@@ -365,7 +365,7 @@ fn passed(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
 
 /// To and fro, for the last six hours.
 fn passing(place: (f64, f64)) -> Vec<Sample> {
-    astray(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
+    astray(place, 6, 0, |i| 3.0 * (0.7 * i).sin())
 }
 
 async fn last_change(person: &Person, ship: &Ship) -> Value {

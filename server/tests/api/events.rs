@@ -180,6 +180,8 @@ async fn events_are_forgotten_after_a_day(shore: Shore) {
         .await
         .unwrap();
     nao.put(3, &passage(DAY, 3)).await.good();
+    // No session lasts so long.
+    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     let mut source = Source::open(&ada, Some(&seen)).await;
     let (third, _) = source.next().await.unwrap();
     // Were the second still there, it would have come before.

@@ -70,14 +70,18 @@ fn ship() -> (Value, [f64; 2]) {
 
 fn berth([forward, starboard]: [f64; 2]) -> Value {
     json!({
-        "time": "2026-11-21T10:00:00Z",
-        "h_nt": BERTH.h_nt,
-        "z_nt": BERTH.z_nt,
-        "variation_deg": -3.0,
-        "true_heading_deg": 63.0,
-        "forward_nt": forward,
-        "starboard_nt": starboard,
-        "magnetometer": { "kind": "fluxgate" },
+        "reading": {
+            "at": "2026-11-21T10:00:00Z",
+            "lat": 43.35,
+            "lon": -3.03,
+            "heading_true_deg": 63.0,
+            "heading_from": "ashore",
+            "forward": forward,
+            "starboard": starboard,
+            "unit": "nanotesla",
+            "magnetometer": "fluxgate",
+        },
+        "field": { "h_nt": BERTH.h_nt, "z_nt": BERTH.z_nt, "variation_deg": -3.0 },
         "waters": [
             { "name": "Biscay", "lat": 45.0, "lon": -5.0, "weight": 2 },
             { "name": "Baltic", "h_nt": 17000, "z_nt": 47000, "weight": 1 },
@@ -129,15 +133,67 @@ fn plan_prints_settings_steps_and_what_they_leave() {
 #[test]
 fn a_refusal_is_an_answer_with_its_cure() {
     let folder = tempfile::tempdir().unwrap();
-    let (model, read) = ship();
-    let mut loaded = berth(read);
-    loaded["cargo_on_board"] = json!(true);
-    let output = plan(folder.path(), &model, &binnacle(), &loaded);
-    let found: Value = serde_json::from_str(&good(&output)).unwrap();
-    assert_eq!(found["verdict"], "refused");
-    assert_eq!(found["refusals"][0]["refusal"], "cargo_on_board");
-    assert_eq!(found["refusals"][0]["cures"][0], "after_discharge");
-    assert_eq!(found["plans"], json!([]));
+    let (model, [x, y]) = ship();
+    let blind = json!({ "parameters_over_lambda": model["parameters_over_lambda"] });
+    let mut against = model.clone();
+    // Her own field undoes the earth's on this heading.
+    let (sin, cos) = 66_f64.to_radians().sin_cos();
+    against["parameters_over_lambda"]["bx_nt"] = json!(-BERTH.h_nt * cos);
+    against["parameters_over_lambda"]["by_nt"] = json!(BERTH.h_nt * sin);
+    let with = |path: &str, value: Value| {
+        let mut berth = berth([x, y]);
+        *berth.pointer_mut(path).unwrap() = value;
+        berth
+    };
+    let limits = |limits: Value| with("/limits", limits);
+    let mut old = berth([x, y]);
+    old["model_until"] = json!("2026-08-01T00:00:00Z");
+    let mut laden = berth([x, y]);
+    laden["reading"]["cargo_on_board"] = json!(true);
+    let mut poor = limits(json!({ "residual_deg": 0.5, "lambda_sd": 0.005 }));
+    poor["reading"]["magnetometer"] = json!("magnetoresistive");
+    for (model, berth, refusal, cure) in [
+        (&blind, berth([x, y]), "no_covariance", "headings_at_sea"),
+        (&model, old, "model_too_old", "headings_at_sea"),
+        (&model, laden, "cargo_on_board", "after_discharge"),
+        (
+            &model,
+            with("/reading/heading_true_deg", json!(75.0)),
+            "inconsistent_berth",
+            "read_again",
+        ),
+        (
+            &model,
+            berth([4.0 * x, 4.0 * y]),
+            "implausible_lambda",
+            "read_again",
+        ),
+        (&against, berth([x, y]), "ambiguous_headings", "swing"),
+        (
+            &model,
+            limits(json!({ "band_deg": 0.2 })),
+            "band_too_wide",
+            "headings_at_sea",
+        ),
+        (
+            &model,
+            limits(json!({ "residual_deg": 0.5 })),
+            "residual_too_large",
+            "other_correctors",
+        ),
+        (&model, poor, "magnetometer_too_poor", "better_magnetometer"),
+    ] {
+        let output = plan(folder.path(), model, &binnacle(), &berth);
+        let found: Value = serde_json::from_str(&good(&output)).unwrap();
+        assert_eq!(found["verdict"], "refused", "{refusal}");
+        assert_eq!(
+            found["refusals"][0]["refusal"], refusal,
+            "{}",
+            found["refusals"]
+        );
+        assert_eq!(found["refusals"][0]["cures"][0], cure);
+        assert_eq!(found["plans"], json!([]));
+    }
 }
 
 #[test]
@@ -148,21 +204,41 @@ fn mistakes_at_the_berth_are_bad_input_by_file_and_field() {
         let output = plan(folder.path(), &model, &binnacle(), berth);
         assert_refused(&output, &[&["berth.json"], words].concat());
     };
-    refused(&berth([x / 1e5, y / 1e5]), &["forward_nt", "gauss"]);
-    refused(&berth([x / 1e3, y / 1e3]), &["forward_nt", "microtesla"]);
-    refused(&berth([y, x]), &["forward_nt", "axes are swapped"]);
+    refused(&berth([x / 1e5, y / 1e5]), &["reading.forward", "gauss"]);
+    refused(
+        &berth([x / 1e3, y / 1e3]),
+        &["reading.forward", "microtesla"],
+    );
+    refused(&berth([y, x]), &["reading.forward", "axes are swapped"]);
+    refused(&berth([1e6, y]), &["reading.forward", "1000000 nT is not"]);
+    let with = |path: &str, value: Value| {
+        let mut berth = berth([x, y]);
+        *berth.pointer_mut(path).unwrap() = value;
+        berth
+    };
+    let unit = with("/reading/unit", json!("microtesla"));
+    refused(&unit, &["reading.forward", "figures are in nanotesla"]);
+    let unit = with("/reading/unit", json!("gamma"));
+    refused(&unit, &["gamma"]);
+    let stern = with("/reading/heading_true_deg", json!(243.0));
+    refused(&stern, &["reading.heading_true_deg", "180 degrees off"]);
+    let wrong = with("/reading/heading_true_deg", json!(400.0));
+    refused(&wrong, &["reading.heading_true_deg", "400"]);
+    refused(
+        &with("/waters/1/h_nt", json!(-5)),
+        &["waters[1].h_nt", "-5"],
+    );
+    refused(
+        &with("/limits/residual_deg", json!(9)),
+        &["limits.residual_deg", "9"],
+    );
     let mut wrong = berth([x, y]);
-    wrong["true_heading_deg"] = json!(243.0);
-    refused(&wrong, &["heading", "180 degrees off"]);
-    let mut wrong = berth([x, y]);
-    wrong["true_heading_deg"] = json!(400.0);
-    refused(&wrong, &["true_heading_deg", "400"]);
-    let mut wrong = berth([x, y]);
-    wrong["waters"][1]["h_nt"] = json!(-5);
-    refused(&wrong, &["waters[1].h_nt", "-5"]);
-    let mut wrong = berth([x, y]);
-    wrong["forwards_nt"] = json!(1);
-    refused(&wrong, &["forwards_nt"]);
+    wrong["forwards"] = json!(1);
+    refused(&wrong, &["forwards"]);
+    let mut weak = berth([x, y]);
+    weak["field"] = Value::Null;
+    (weak["reading"]["lat"], weak["reading"]["lon"]) = (json!(-64.1), json!(136.0));
+    refused(&weak, &["the berth's h_nt"]);
 }
 
 #[test]

@@ -1,14 +1,18 @@
 //! Signing in and out, and API tokens.
 
 use crate::on_both;
-use crate::support::{Answer, PASSWORD, Person, Shore, attempt};
-use binnacle_server::session::Role;
+use crate::support::{Answer, Engine, PASSWORD, Person, Shore, attempt};
 use reqwest::Method;
 use serde_json::json;
 
 on_both!(
     a_session_lasts_until_the_user_signs_out,
     a_session_ends_by_itself,
+    an_idle_session_ends_sooner,
+    one_sees_and_ends_ones_own_sessions,
+    another_password_ends_all_other_sessions,
+    another_password_needs_the_one_before,
+    guesses_from_one_address_are_slowed_down_whatever_the_email,
     the_cookie_is_out_of_reach_of_scripts_and_other_sites,
     a_change_with_a_cookie_needs_the_header_of_our_own_pages,
     guessing_is_slowed_down_whether_or_not_the_email_exists,
@@ -34,10 +38,140 @@ async fn a_session_lasts_until_the_user_signs_out(shore: Shore) {
 
 async fn a_session_ends_by_itself(shore: Shore) {
     let ada = shore.admin("ada").await;
-    shore.advance(72.0 * 3600.0 - 1.0);
-    assert_eq!(ada.get("/me").await.status, 200);
-    shore.advance(1.0);
+    for _ in 0..3 {
+        shore.advance(24.0 * 3600.0 - 1.0);
+        assert_eq!(ada.get("/me").await.status, 200);
+    }
+    shore.advance(3.0);
     assert_eq!(ada.get("/me").await.status, 401);
+    shore.finish().await;
+}
+
+async fn an_idle_session_ends_sooner(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    shore.advance(24.0 * 3600.0);
+    assert_eq!(ada.get("/me").await.problem(), "unauthenticated");
+    let again = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let listed = again.get("/sessions").await.good();
+    assert_eq!(listed["items"].as_array().unwrap().len(), 1);
+    shore.finish().await;
+}
+
+async fn one_sees_and_ends_ones_own_sessions(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let eve = shore.admin("eve").await;
+    let telephone = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let office = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    shore.advance(900.0);
+    let listed = ada.get("/sessions").await;
+    assert!(!listed.text.contains("token"), "{listed:?}");
+    let items = listed.good()["items"].clone();
+    assert_eq!(items.as_array().unwrap().len(), 3);
+    assert_eq!(items[0]["current"], true);
+    assert_eq!(items[0]["address"], "127.0.0.1");
+    assert_eq!(items[0]["last_seen_at"], "2026-11-21T07:15:00Z");
+    assert_eq!(items[1]["last_seen_at"], "2026-11-21T07:00:00Z");
+    let end = |who: &Person, n: usize| {
+        let path = format!("/sessions/{}", items[n]["id"].as_str().unwrap());
+        Answer::of(who.request(Method::DELETE, &path))
+    };
+    assert_eq!(end(&eve, 1).await.problem(), "not-found");
+    assert_eq!(end(&ada, 1).await.status, 204);
+    assert_eq!(telephone.get("/me").await.problem(), "unauthenticated");
+    assert_eq!(office.get("/me").await.status, 200);
+    let others = Answer::of(office.request(Method::DELETE, "/sessions")).await;
+    assert_eq!(others.status, 204);
+    assert_eq!(ada.get("/me").await.problem(), "unauthenticated");
+    assert_eq!(office.get("/me").await.status, 200);
+    assert_eq!(eve.get("/me").await.status, 200);
+    shore.finish().await;
+}
+
+const NEW: &str = "seven gulls over the quay";
+
+async fn put_password(person: &Person, current: &str, new: &str) -> Answer {
+    let body = json!({ "current": current, "new": new });
+    Answer::of(person.request(Method::PUT, "/me/password").json(&body)).await
+}
+
+async fn another_password_ends_all_other_sessions(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let stolen = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    assert_eq!(put_password(&ada, PASSWORD, NEW).await.status, 204);
+    assert_eq!(ada.get("/me").await.status, 200);
+    assert_eq!(stolen.get("/me").await.problem(), "unauthenticated");
+    assert_eq!(attempt(&shore, &ada.email, PASSWORD).await.status, 401);
+    assert_eq!(attempt(&shore, &ada.email, NEW).await.status, 200);
+    shore.finish().await;
+}
+
+async fn another_password_needs_the_one_before(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    for weak in ["short", "ada@example.com", "qwertyuiop12"] {
+        assert_eq!(
+            put_password(&ada, PASSWORD, weak).await.problem(),
+            "invalid"
+        );
+    }
+    for _ in 0..5 {
+        let wrong = put_password(&ada, "a guess at the desk", NEW).await;
+        assert_eq!(wrong.problem(), "wrong-password");
+    }
+    let slowed = put_password(&ada, PASSWORD, NEW).await;
+    assert_eq!(slowed.problem(), "throttled");
+    let made = json!({ "name": "ERP", "scope": "write" });
+    let made = ada.post("/tokens", &made).await.good();
+    let request = shore.http.put(format!("{}/api/v1/me/password", shore.url));
+    let request = request.json(&json!({ "current": PASSWORD, "new": NEW }));
+    let by_token = Answer::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    assert_eq!(by_token.problem(), "forbidden");
+    shore.finish().await;
+}
+
+async fn guesses_from_one_address_are_slowed_down_whatever_the_email(shore: Shore) {
+    shore.admin("ada").await;
+    for guess in 0..50 {
+        let email = format!("nobody-{guess}@example.com");
+        let wrong = attempt(&shore, &email, "a guess").await;
+        assert_eq!(wrong.problem(), "wrong-password", "{guess}");
+    }
+    let slowed = attempt(&shore, "ada@example.com", PASSWORD).await;
+    assert_eq!(slowed.problem(), "throttled");
+    shore.advance(1.0);
+    let right = attempt(&shore, "ada@example.com", PASSWORD).await;
+    assert_eq!(right.status, 200);
+    shore.finish().await;
+}
+
+#[tokio::test]
+async fn behind_proxies_of_ones_own_the_clients_address_counts() {
+    let shore = Shore::start_with(Engine::Sqlite, &["--proxies", "1"]).await;
+    let ada = shore.admin("ada").await;
+    let body = json!({ "email": ada.email, "password": PASSWORD });
+    let request = shore.http.post(format!("{}/api/v1/session", shore.url));
+    let request = request.header("x-forwarded-for", "203.0.113.9, 198.51.100.7");
+    assert_eq!(Answer::of(request.json(&body)).await.status, 200);
+    let listed = ada.get("/sessions").await.good();
+    assert_eq!(listed["items"][1]["address"], "198.51.100.7");
+    shore.finish().await;
+}
+
+#[tokio::test]
+async fn over_https_alone_no_other_host_can_plant_the_cookie() {
+    let shore = Shore::start_with(Engine::Sqlite, &["--secure-cookies"]).await;
+    let ada = shore.admin("ada").await;
+    let answer = attempt(&shore, &ada.email, PASSWORD).await;
+    let cookie = answer.headers["set-cookie"].to_str().unwrap();
+    let (pair, attributes) = cookie.split_once("; ").unwrap();
+    let token = pair.strip_prefix("__Host-binnacle_session=").unwrap();
+    assert_eq!(
+        attributes,
+        "Path=/; HttpOnly; SameSite=Strict; Max-Age=259200; Secure"
+    );
+    let planted = shore.http.get(format!("{}/api/v1/me", shore.url));
+    let planted = planted.header("cookie", format!("binnacle_session={token}"));
+    assert_eq!(Answer::of(planted).await.problem(), "unauthenticated");
+    assert_eq!(ada.get("/me").await.status, 200);
     shore.finish().await;
 }
 
@@ -205,8 +339,7 @@ async fn a_viewer_may_see_and_not_change(shore: Shore) {
 
 async fn a_platform_admin_has_no_fleet(shore: Shore) {
     let ada = shore.admin("ada").await;
-    Person::create(&shore, None, "root@example.com", Role::PlatformAdmin).await;
-    let root = Person::sign_in(&shore, ada.operator, "root@example.com").await;
+    let root = ada.platform_admin(&shore).await;
     assert_eq!(root.get("/me").await.good()["operator_id"], json!(null));
     assert_eq!(root.get("/vessels").await.problem(), "forbidden");
     shore.finish().await;

@@ -30,17 +30,17 @@ on_both!(
     another_operators_webhooks_are_not_there,
 );
 
-const DAY_S: f64 = 86_400.0;
+pub(crate) const DAY_S: f64 = 86_400.0;
 
 /// A program that takes messages; it answers as it was told to, or 200.
 #[derive(Clone, Default)]
-struct Receiver {
+pub(crate) struct Receiver {
     got: Arc<Mutex<Vec<(String, String)>>>,
     answers: Arc<Mutex<VecDeque<Response>>>,
 }
 
 impl Receiver {
-    async fn start() -> (Receiver, String) {
+    pub(crate) async fn start() -> (Receiver, String) {
         let receiver = Receiver::default();
         let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}/hook", listener.local_addr().unwrap());
@@ -51,7 +51,7 @@ impl Receiver {
         (receiver, url)
     }
 
-    fn answer(&self, answer: impl IntoResponse) {
+    pub(crate) fn answer(&self, answer: impl IntoResponse) {
         self.answers
             .lock()
             .unwrap()
@@ -59,11 +59,11 @@ impl Receiver {
     }
 
     /// Signatures and bodies, in the order in which they came.
-    fn got(&self) -> Vec<(String, String)> {
+    pub(crate) fn got(&self) -> Vec<(String, String)> {
         self.got.lock().unwrap().clone()
     }
 
-    fn kinds(&self) -> Vec<String> {
+    pub(crate) fn kinds(&self) -> Vec<String> {
         let got = self.got().into_iter();
         got.map(|(_, body)| json_of(&body)["kind"].as_str().unwrap().to_owned())
             .collect()
@@ -82,17 +82,17 @@ fn json_of(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-async fn make(person: &Person, url: &str, kinds: &[&str]) -> Value {
+pub(crate) async fn make(person: &Person, url: &str, kinds: &[&str]) -> Value {
     let new = json!({ "url": url, "kinds": kinds });
     person.post("/webhooks", &new).await.good()
 }
 
-fn path(webhook: &Value, rest: &str) -> String {
+pub(crate) fn path(webhook: &Value, rest: &str) -> String {
     format!("/webhooks/{}{rest}", webhook["id"].as_str().unwrap())
 }
 
 /// Makes every delivery that is due now.
-async fn deliver(shore: &Shore) -> Vec<Sent> {
+pub(crate) async fn deliver(shore: &Shore) -> Vec<Sent> {
     let sender = Sender::new(Reach::Anywhere).unwrap();
     let mut sent = Vec::new();
     while let Some(done) = outbox::step(&shore.app, &sender).await.unwrap() {
@@ -110,7 +110,7 @@ async fn raise(shore: &Shore, person: &Person) -> Person {
 }
 
 /// Whether the example in the documentation takes a message for ours.
-fn example_says(secret: &str, signature: &str, body: &str, now_s: i64) -> bool {
+pub(crate) fn example_says(secret: &str, signature: &str, body: &str, now_s: i64) -> bool {
     let document = include_str!("../../../docs/webhooks.md");
     let (_, example) = document.split_once("```python\n").unwrap();
     let (example, _) = example.split_once("```").unwrap();

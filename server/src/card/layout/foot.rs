@@ -1,23 +1,25 @@
 //! The lower part: coefficients, the ship's state, what to know, who signs, and where
 //! it all comes from.
 
-use super::{FAINT, LEFT, RIGHT, UNKNOWN, fact};
-use crate::card::contents::{Card, CargoAboard};
+use super::{FAINT, LEFT, RIGHT, UNKNOWN, known, told};
+use crate::binnacles::in_words;
+use crate::card::contents::{Card, CargoAboard, NextDue};
 use crate::sheet::words::signed;
 use crate::sheet::{A4, Face, MARGIN, Sheet, Style, wrap};
+use crate::time::Time;
 use binnacle_magnetics::handbook::Handbook;
 
 const SECOND: f32 = 262.0;
 /// Where the signatures begin, from the sheet's upper edge.
-const SIGNATURES: f32 = A4.1 - MARGIN - 78.0;
+const SIGNATURES: f32 = A4.1 - MARGIN - 68.0;
 const NOTE_LINE: f32 = 9.4;
 
 /// Draws it below `top`.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, top: f32) {
     coefficients(sheet, card, top + 8.0);
-    state(sheet, card, top + 8.0);
-    let below = correctors(sheet, card, top + 90.0);
-    notes(sheet, card, below);
+    let below = state(sheet, card, top + 8.0).max(top + 80.0);
+    let below = correctors(sheet, card, below + 5.0);
+    notes(sheet, card, below + 5.0);
     signatures(sheet);
     source(sheet, card);
 }
@@ -54,15 +56,16 @@ fn coefficients(sheet: &mut Sheet, card: &Card, top: f32) {
     );
 }
 
-fn state(sheet: &mut Sheet, card: &Card, top: f32) {
-    let day = |time: crate::time::Time| time.0.to_string().chars().take(10).collect::<String>();
-    let in_logbook = |time: Option<crate::time::Time>| {
+/// Answers with where the next thing begins.
+fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
+    let in_logbook = |time: Option<Time>| {
         time.map_or("none in the logbook".to_owned(), |time| {
-            format!("{} (logbook)", day(time))
+            format!("{} (logbook)", time.day())
         })
     };
     let degaussing = format!(
-        "coils {UNKNOWN}; last degaussed: {}",
+        "{}; last degaussed: {}",
+        known(card.degaussing.as_deref()),
         in_logbook(card.degaussed_at)
     );
     let recorded = card
@@ -71,25 +74,43 @@ fn state(sheet: &mut Sheet, card: &Card, top: f32) {
         .map_or(UNKNOWN.to_owned(), |found| {
             format!(
                 "as below, recorded {} (revision {})",
-                day(found.at),
+                found.at.day(),
                 found.revision
             )
         });
+    let adjuster = card.adjusted_by.as_ref().map_or(UNKNOWN.to_owned(), |by| {
+        let licence = by
+            .licence
+            .as_ref()
+            .map(|licence| format!("licence {licence}"));
+        let all = [by.adjuster.clone(), licence, by.firm.clone()];
+        all.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    });
     let facts = [
         ("Correctors", recorded),
         ("Degaussing", degaussing),
         ("Cargo", cargo(&card.cargo)),
         ("Last adjusted", in_logbook(card.adjusted_at)),
-        (
-            "Next due",
-            "unknown: no rule of the flag is recorded".to_owned(),
-        ),
+        ("by", adjuster),
+        ("Next due", next_due(card.next_due.as_ref())),
     ];
     sheet.text((SECOND, top), Style::bold(8.0), "State");
-    for (index, (label, value)) in facts.iter().enumerate() {
-        let y = top + 11.0 * (index + 1) as f32;
-        fact(sheet, (SECOND, y), label, value, RIGHT - SECOND);
-    }
+    let at = top + 11.0;
+    facts.iter().fold(at, |y, (label, value)| {
+        told(sheet, (SECOND, y), label, value, RIGHT - SECOND)
+    })
+}
+
+fn next_due(due: Option<&NextDue>) -> String {
+    let Some(due) = due else {
+        return "at once: no adjustment is on record".to_owned();
+    };
+    let flags = if due.flags_own_rules {
+        ""
+    } else {
+        "; the flag’s own rules are not counted"
+    };
+    format!("{}: {}{flags}", due.on, due.reason)
 }
 
 fn cargo(aboard: &[CargoAboard]) -> String {
@@ -106,18 +127,22 @@ fn cargo(aboard: &[CargoAboard]) -> String {
     }
 }
 
-/// A line for each; answers with where the next thing begins.
+/// Two beside each other, as many lines as they take; answers with where the next thing
+/// begins.
 fn correctors(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     let Some(found) = &card.correctors else {
         return top;
     };
     sheet.text((LEFT, top), Style::bold(8.0), "Correctors");
-    let lines = super::correctors::lines(found);
-    for (index, (label, value)) in lines.iter().enumerate() {
-        let at = (LEFT + 74.0, top + NOTE_LINE * index as f32);
-        fact(sheet, at, label, value, RIGHT - LEFT - 74.0);
-    }
-    top + NOTE_LINE * lines.len() as f32 + 7.0
+    let all = in_words(&found.setting, found.shape);
+    all.chunks(2).fold(top + 11.0, |y, pair| {
+        let columns = [(LEFT + 6.0, SECOND - 14.0), (SECOND, RIGHT)];
+        let ends = pair
+            .iter()
+            .zip(columns)
+            .map(|((label, value), (x, end))| told(sheet, (x, y), label, value, end - x));
+        ends.fold(y, f32::max)
+    })
 }
 
 /// As many as there is room for; the last line says how many more there are.
@@ -159,7 +184,7 @@ fn signatures(sheet: &mut Sheet) {
         .enumerate()
     {
         let left = LEFT + (width + 14.0) * index as f32;
-        let y = SIGNATURES + 30.0;
+        let y = SIGNATURES + 26.0;
         sheet.rule((left, y), (left + width, y), 0.5);
         sheet.text((left, y + 9.0), Style::plain(7.0).grey(FAINT), *label);
     }
@@ -170,15 +195,21 @@ fn source(sheet: &mut Sheet, card: &Card) {
     let rms = model
         .rms_deg
         .map_or(String::new(), |rms| format!(", residuals {rms:.2}° rms"));
-    let lines = [
-        format!(
-            "Model version {} of {}, {}: {} samples from {} to {}{rms}.",
-            model.version,
-            model.fitted_at.to_the_minute(),
-            model.estimator,
+    let from = match model.foretold_by {
+        Some(order) => format!("foretold by work order {order}{rms} before it."),
+        None => format!(
+            "{} samples from {} to {}{rms}.",
             model.samples_used,
             model.data_from.to_the_minute(),
             model.data_until.to_the_minute()
+        ),
+    };
+    let lines = [
+        format!(
+            "Model version {} of {}, {}: {from}",
+            model.version,
+            model.fitted_at.to_the_minute(),
+            model.estimator
         ),
         format!("Data SHA-256 {}", model.input_hash),
     ];

@@ -1,7 +1,7 @@
 //! The upper part: what the sheet is, of which ship and compass, where and when.
 
 use super::{LEFT, RIGHT, fact, known};
-use crate::card::contents::{Card, Status};
+use crate::card::contents::Card;
 use crate::compasses::Role;
 use crate::sheet::words::{east_west, latitude, longitude};
 use crate::sheet::{MARGIN, Sheet, Style};
@@ -32,8 +32,19 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
 
 /// What the card is worth, so that nobody can overlook it.
 fn mark(sheet: &mut Sheet, card: &Card) {
-    let word = match card.status {
-        Status::Predicted => "PREDICTED",
+    let (word, why) = match &card.verified {
+        None => (
+            "PREDICTED",
+            "by a model of observations under way; no adjuster has signed it".to_owned(),
+        ),
+        Some(by) => (
+            "VERIFIED AT SEA",
+            format!(
+                "{} headings to {} agree with what was foretold",
+                by.headings,
+                by.until.day()
+            ),
+        ),
     };
     let (left, top, bottom) = (RIGHT - 250.0, MARGIN, MARGIN + 36.0);
     sheet.frame((left, top), (RIGHT, bottom), 1.5);
@@ -41,7 +52,6 @@ fn mark(sheet: &mut Sheet, card: &Card) {
     let says = format!("{word} – NOT A CERTIFICATE");
     sheet.text((middle, top + 17.0), Style::bold(13.0).middle(), says);
     let small = Style::plain(7.5).middle();
-    let why = "by a model of observations under way; no adjuster has signed it";
     sheet.text((middle, top + 29.0), small, why);
 }
 

@@ -6,7 +6,7 @@ mod relay;
 mod ship;
 
 pub(crate) use database::Engine;
-pub(crate) use person::{Answer, Person, attempt};
+pub(crate) use person::{Answer, Person, attempt, password_hash};
 pub(crate) use relay::{At, Encryption, Letter, Mood, Relay};
 pub(crate) use ship::{
     Ship, days_at_sea, days_in, exchange, frame, passage, sample, struck, truth,
@@ -22,6 +22,7 @@ use binnacle_server::{command, operations};
 use clap::Parser;
 use database::Database;
 use metrics_exporter_prometheus::PrometheusHandle;
+use sqlx::migrate::Migrator;
 use std::sync::OnceLock;
 use tokio::net::TcpListener;
 use tokio::task::JoinHandle;
@@ -42,14 +43,34 @@ pub(crate) struct Shore {
 
 impl Shore {
     pub(crate) async fn start(engine: Engine) -> Shore {
-        let database = Database::new(engine).await;
-        Shore::open(database, Clock::manual(Timestamp::parse(START).unwrap())).await
+        Shore::start_with(engine, &[]).await
     }
 
-    async fn open(database: Database, clock: Clock) -> Shore {
+    /// A server with settings of its own.
+    pub(crate) async fn start_with(engine: Engine, settings: &[&str]) -> Shore {
+        let database = Database::new(engine).await;
+        let clock = Clock::manual(Timestamp::parse(START).unwrap());
+        Shore::open(database, clock, settings).await
+    }
+
+    /// A database as the migrations before one left it, before the server opens it.
+    pub(crate) async fn aged(engine: Engine, before: i64) -> Aged {
+        let database = Database::new(engine).await;
+        let db = Db::connect(&database.url).await.unwrap();
+        let all = sqlx::migrate!("../migrations");
+        let old = all.iter().filter(|migration| migration.version < before);
+        let old = Migrator::with_migrations(old.cloned().collect());
+        match &db {
+            Db::Sqlite { writer, .. } => old.run(writer).await.unwrap(),
+            Db::Postgres(pool) => old.run(pool).await.unwrap(),
+        }
+        Aged { db, database }
+    }
+
+    async fn open(database: Database, clock: Clock, settings: &[&str]) -> Shore {
         let db = Db::connect(&database.url).await.unwrap();
         db.migrate().await.unwrap();
-        let config = config(&database.url);
+        let config = config(&database.url, settings);
         let app = App::new(db, clock, config, metrics());
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let url = format!("http://{}", listener.local_addr().unwrap());
@@ -67,7 +88,7 @@ impl Shore {
     pub(crate) async fn restart(self) -> Shore {
         self.app.stopping.cancel();
         self.serving.await.unwrap().unwrap();
-        Shore::open(self.database, self.app.clock).await
+        Shore::open(self.database, self.app.clock, &[]).await
     }
 
     /// Stops the server and removes its database.
@@ -80,7 +101,7 @@ impl Shore {
     /// A second server process on the same database, as it were.
     pub(crate) async fn second(&self) -> App {
         let db = Db::connect(&self.database.url).await.unwrap();
-        let config = config(&self.database.url);
+        let config = config(&self.database.url, &[]);
         App::new(db, self.app.clock.clone(), config, metrics())
     }
 
@@ -132,7 +153,22 @@ impl Shore {
     }
 }
 
-fn config(url: &str) -> Serve {
+/// An old database, to be filled.
+pub(crate) struct Aged {
+    pub(crate) db: Db,
+    database: Database,
+}
+
+impl Aged {
+    /// The server of today on it.
+    pub(crate) async fn open(self) -> Shore {
+        self.db.close().await;
+        let clock = Clock::manual(Timestamp::parse(START).unwrap());
+        Shore::open(self.database, clock, &[]).await
+    }
+}
+
+fn config(url: &str, settings: &[&str]) -> Serve {
     let arguments = ["binnacle-server", "serve", "--database-url", url];
     let more = [
         "--listen",
@@ -147,7 +183,11 @@ fn config(url: &str) -> Serve {
         "--public-url",
         "https://binnacle.example",
     ];
-    let Command::Serve(serve) = Cli::parse_from(arguments.into_iter().chain(more)).command else {
+    let all = arguments
+        .into_iter()
+        .chain(more)
+        .chain(settings.iter().copied());
+    let Command::Serve(serve) = Cli::parse_from(all).command else {
         unreachable!("serve was asked for");
     };
     serve

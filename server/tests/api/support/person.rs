@@ -1,9 +1,11 @@
 //! Someone with a browser.
 
 use super::{PASSWORD, Shore};
-use binnacle_server::ids::OperatorId;
+use binnacle_server::firms;
+use binnacle_server::ids::{FirmId, OperatorId};
 use binnacle_server::secret;
 use binnacle_server::session::{self, Role};
+use binnacle_server::tenants::Tenant;
 use binnacle_server::time::Time;
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -58,7 +60,7 @@ impl Answer {
 }
 
 /// Hashing takes long without optimisation: once is enough.
-fn password_hash() -> &'static str {
+pub(crate) fn password_hash() -> &'static str {
     static HASH: OnceLock<String> = OnceLock::new();
     HASH.get_or_init(|| secret::hash_password(PASSWORD).unwrap())
 }
@@ -67,26 +69,42 @@ impl Person {
     pub(super) async fn admin(shore: &Shore, name: &str) -> Person {
         let operator = create_operator(shore, name).await;
         let email = format!("{name}@example.com");
-        Person::create(shore, Some(operator), &email, Role::Admin).await;
+        Person::create(shore, Some(operator.into()), &email, Role::Admin).await;
         Person::sign_in(shore, operator, &email).await
+    }
+
+    /// An adjuster of a new firm's that works for this person's operator, signed in.
+    pub(crate) async fn adjuster(&self, shore: &Shore, name: &str) -> (FirmId, Person) {
+        let now = Time(shore.app.clock.now());
+        let mut tx = shore.app.db.begin().await.unwrap();
+        let firm = firms::create(&mut tx, name, now).await.unwrap();
+        firms::engage(&mut tx, self.operator, firm, now)
+            .await
+            .unwrap();
+        tx.commit().await.unwrap();
+        let email = format!("{name}@adjusters.example");
+        Person::create(shore, Some(firm.into()), &email, Role::Adjuster).await;
+        (firm, Person::sign_in(shore, self.operator, &email).await)
+    }
+
+    /// Someone who manages operators and firms, signed in.
+    pub(crate) async fn platform_admin(&self, shore: &Shore) -> Person {
+        let email = "root@example.com";
+        Person::create(shore, None, email, Role::PlatformAdmin).await;
+        Person::sign_in(shore, self.operator, email).await
     }
 
     /// A colleague of this person, signed in.
     pub(crate) async fn viewer(&self, shore: &Shore) -> Person {
         let email = format!("viewer-{}", self.email);
-        Person::create(shore, Some(self.operator), &email, Role::Viewer).await;
+        Person::create(shore, Some(self.operator.into()), &email, Role::Viewer).await;
         Person::sign_in(shore, self.operator, &email).await
     }
 
-    pub(crate) async fn create(
-        shore: &Shore,
-        operator: Option<OperatorId>,
-        email: &str,
-        role: Role,
-    ) {
+    pub(crate) async fn create(shore: &Shore, tenant: Option<Tenant>, email: &str, role: Role) {
         let now = Time(shore.app.clock.now());
         let mut tx = shore.app.db.begin().await.unwrap();
-        session::create_user(&mut tx, operator, email, email, role, password_hash(), now)
+        session::create_user(&mut tx, tenant, email, email, role, password_hash(), now)
             .await
             .unwrap();
         tx.commit().await.unwrap();

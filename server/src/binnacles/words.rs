@@ -1,12 +1,10 @@
 //! How a binnacle's correctors stand, in words.
 
-use crate::card::contents::Correctors;
-use binnacle_magnetics::binnacle::{Red, Shape, Side, Tray};
+use binnacle_magnetics::binnacle::{Red, Setting, Shape, Side, Tray};
 
 /// What a corrector is, and how it stands; a line for each there may be.
-pub(super) fn lines(correctors: &Correctors) -> [(&'static str, String); 5] {
-    let setting = &correctors.setting;
-    let pair = match correctors.shape {
+pub fn in_words(setting: &Setting, shape: Option<Shape>) -> [(&'static str, String); 5] {
+    let pair = match shape {
         Some(Shape::Sphere) => "Spheres",
         Some(Shape::Box) => "Boxes",
         Some(Shape::Plate) => "Plates",

@@ -1,0 +1,47 @@
+//! Adjustments that were agreed with a firm and do not fit any more: an ETA moved past the
+//! due date, a call was cancelled, the firm has fewer teams.
+//!
+//! What always holds: they are raised and cleared in the transaction that keeps the
+//! schedule that found them, and each compass has one.
+
+use super::alert::{AlertWanted, Cause};
+use super::look::{bring_in_line, tell};
+use super::store;
+use crate::db::{Tx, rows};
+use crate::error::Result;
+use crate::events::Event;
+use crate::ids::{CompassId, OperatorId, VesselId};
+use crate::time::Time;
+use std::collections::BTreeMap;
+
+/// Brings an operator's alerts of this cause in line with what a schedule found.
+pub async fn of_schedule(
+    tx: &mut Tx,
+    operator: OperatorId,
+    mut wanted: BTreeMap<(VesselId, CompassId), AlertWanted>,
+    now: Time,
+) -> Result<Vec<Event>> {
+    let open = rows!(
+        in &mut *tx,
+        (VesselId, CompassId),
+        "SELECT a.vessel_id, a.compass_id FROM alerts a JOIN vessels v ON v.id = a.vessel_id
+         WHERE v.operator_id = $1 AND a.cause = $2 AND a.holds
+         ORDER BY a.vessel_id, a.compass_id",
+        operator,
+        Cause::AgreedJobAtRisk
+    )?;
+    let mut all = open;
+    all.extend(wanted.keys().copied());
+    all.sort_unstable();
+    all.dedup();
+    let mut events = Vec::new();
+    for (vessel, compass) in all {
+        store::lock(tx, vessel, compass).await?;
+        let mut known = store::known(tx, vessel, compass).await?;
+        known.retain(|alert| alert.cause == Cause::AgreedJobAtRisk);
+        let wanted: Vec<AlertWanted> = wanted.remove(&(vessel, compass)).into_iter().collect();
+        let news = bring_in_line(tx, vessel, compass, &known, &wanted, now).await?;
+        events.extend(tell(tx, vessel, &news, now).await?);
+    }
+    Ok(events)
+}

@@ -1,0 +1,214 @@
+//! Calendars: work orders where people keep their appointments (RFC 5545).
+//!
+//! What always holds: a feed's address is its secret, shown once and stored as a hash; it
+//! shows what its operator or firm sees now, and nothing once it is removed.
+
+mod ics;
+mod store;
+
+use crate::access::{PartyReader, PartyWriter};
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Listed, Page, Params, Valid, text};
+use crate::ids::{FeedId, VesselId};
+use crate::secret;
+use crate::session;
+use crate::tenants::Tenant;
+use crate::time::Time;
+use crate::vessels;
+use axum::extract::{FromRequestParts, State};
+use axum::http::StatusCode;
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
+use axum::http::request::Parts;
+use axum::response::{IntoResponse, Response};
+use serde::{Deserialize, Serialize};
+use utoipa::{IntoParams, ToSchema};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// What a feed's token begins with.
+const PREFIX: &str = "bnc_";
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_feeds, create_feed))
+        .routes(routes!(delete_feed))
+        .routes(routes!(calendar))
+}
+
+/// A calendar that programs subscribe to.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+#[schema(as = CalendarFeed)]
+struct Feed {
+    /// Its id.
+    id: FeedId,
+    /// What it is called.
+    #[schema(example = "Nao Victoria")]
+    name: String,
+    /// The vessel, if it is one's only.
+    #[schema(required)]
+    vessel_id: Option<VesselId>,
+    /// When it was made.
+    created_at: Time,
+    /// Who made it.
+    created_by: String,
+}
+
+/// A calendar to be made.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewCalendarFeed, example = json!({ "name": "Our fleet" }))]
+struct NewFeed {
+    /// What it is called.
+    #[schema(min_length = 1, max_length = 200)]
+    name: String,
+    /// One of your vessels only, for an operator.
+    #[serde(default)]
+    vessel_id: Option<VesselId>,
+}
+
+/// A calendar just made.
+#[derive(Serialize, ToSchema)]
+#[schema(as = MadeCalendarFeed)]
+struct MadeFeed {
+    #[serde(flatten)]
+    about: Feed,
+    /// The address to subscribe to: whoever has it reads the calendar. Never shown again.
+    #[schema(example = "https://binnacle.example.com/api/v1/calendar.ics?token=bnc_mZ3q8k…")]
+    url: String,
+}
+
+/// A page of calendars.
+#[derive(Serialize, ToSchema)]
+#[schema(as = CalendarFeedList)]
+struct FeedList {
+    /// In the order in which they were made.
+    items: Vec<Feed>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// List your calendars
+#[utoipa::path(get, path = "/calendar-feeds", tag = "adjusting", params(Page),
+    responses((status = 200, body = FeedList), (status = 401, body = Problem)))]
+async fn list_feeds(
+    State(app): State<App>,
+    reader: PartyReader,
+    page: Page,
+) -> Result<Json<FeedList>> {
+    let found = store::list(&app.db, reader.tenant, page.after_id()?, page.fetch()).await?;
+    let Listed { items, next } = page.cut(found, |feed| feed.id.to_string());
+    Ok(Json(FeedList { items, next }))
+}
+
+/// Make a calendar
+///
+/// Of all your work orders, or of one vessel's. The answer shows its secret address, this
+/// once.
+#[utoipa::path(post, path = "/calendar-feeds", tag = "adjusting", request_body = NewFeed,
+    responses((status = 201, body = MadeFeed), (status = 401, body = Problem),
+              (status = 403, body = Problem),
+              (status = 404, description = "The vessel is none of yours", body = Problem),
+              (status = 422, body = Problem)))]
+async fn create_feed(
+    State(app): State<App>,
+    writer: PartyWriter,
+    Valid(new): Valid<NewFeed>,
+) -> Result<(StatusCode, Json<MadeFeed>)> {
+    let name = text("name", &new.name)?;
+    if let Some(vessel) = new.vessel_id {
+        let Tenant::Operator(operator) = writer.tenant else {
+            return Err(Error::NotFound("vessel"));
+        };
+        vessels::must_be_in_fleet(&app.db, operator, vessel).await?;
+    }
+    let token = format!("{PREFIX}{}", secret::new_token());
+    let mut tx = app.db.begin().await?;
+    let about = Feed {
+        id: FeedId::new(),
+        name,
+        vessel_id: new.vessel_id,
+        created_at: app.clock.now().into(),
+        created_by: session::name_of(&mut tx, writer.user).await?,
+    };
+    store::insert(&mut tx, writer.tenant, &about, &secret::hash(&token)).await?;
+    tx.commit().await?;
+    let base = app.config.mail.public_url.as_deref().unwrap_or_default();
+    let base = base.trim_end_matches('/');
+    let url = format!("{base}/api/v1/calendar.ics?token={token}");
+    Ok((StatusCode::CREATED, Json(MadeFeed { about, url })))
+}
+
+/// Remove a calendar
+///
+/// Its address shows nothing from now on.
+#[utoipa::path(delete, path = "/calendar-feeds/{id}", tag = "adjusting",
+    params(("id" = FeedId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn delete_feed(
+    State(app): State<App>,
+    writer: PartyWriter,
+    Id(id): Id<FeedId>,
+) -> Result<StatusCode> {
+    let mut tx = app.db.begin().await?;
+    if !store::delete(&mut tx, writer.tenant, id).await? {
+        return Err(Error::NotFound("calendar"));
+    }
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// By which address a calendar is read.
+#[derive(Debug, Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Address {
+    /// The secret of a calendar; without it, the caller's own orders.
+    token: Option<String>,
+}
+
+/// Whose orders a calendar shows.
+struct Subscriber {
+    name: String,
+    tenant: Tenant,
+    vessel: Option<VesselId>,
+}
+
+impl FromRequestParts<App> for Subscriber {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Subscriber> {
+        let Params(address) = Params::<Address>::from_request_parts(parts, app).await?;
+        if let Some(token) = address.token {
+            let found = store::find(&app.db, &secret::hash(&token)).await?;
+            return found.ok_or(Error::Unauthenticated);
+        }
+        let reader = PartyReader::from_request_parts(parts, app).await?;
+        Ok(Subscriber {
+            name: "Binnacle".to_owned(),
+            tenant: reader.tenant,
+            vessel: None,
+        })
+    }
+}
+
+/// Read a calendar of work orders
+///
+/// iCalendar (RFC 5545), by a calendar's secret address or as any other route. What is
+/// offered or planned is tentative, what a firm has is confirmed.
+#[utoipa::path(get, path = "/calendar.ics", tag = "adjusting", params(Address),
+    responses((status = 200, content_type = "text/calendar", body = String),
+              (status = 401, body = Problem)))]
+async fn calendar(State(app): State<App>, subscriber: Subscriber) -> Result<Response> {
+    let now = app.clock.now().into();
+    let found = store::appointments(&app.db, subscriber.tenant, subscriber.vessel, now).await?;
+    let public_url = app.config.mail.public_url.as_deref();
+    let text = ics::write(&subscriber.name, &found, public_url)?;
+    let headers = [
+        (CONTENT_TYPE, "text/calendar; charset=utf-8"),
+        (CACHE_CONTROL, "private, max-age=300"),
+    ];
+    Ok((headers, text).into_response())
+}

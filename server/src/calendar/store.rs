@@ -1,0 +1,139 @@
+//! Calendars in the database, and the orders that they show.
+
+use super::{Feed, Subscriber};
+use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::ids::{FeedId, FirmId, OperatorId, OrderId, VesselId};
+use crate::tenants::Tenant;
+use crate::time::Time;
+use crate::work_orders::State;
+use uuid::Uuid;
+
+/// Orders of so long ago are shown no more.
+const SHOWN_FOR_S: f64 = 400.0 * 86_400.0;
+/// As many as a calendar takes, the latest.
+const MOST: i64 = 2000;
+
+/// An order as a calendar shows it.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub(super) struct Appointment {
+    pub id: OrderId,
+    pub state: State,
+    pub port: String,
+    pub berth: Option<String>,
+    pub planned_at: Time,
+    pub vessel_name: String,
+    pub compass_name: String,
+    pub operator_name: String,
+    pub firm: Option<String>,
+    pub adjuster_name: Option<String>,
+    /// Counts the entries of its log: it is another with each.
+    pub last_seq: i64,
+    /// The last of them.
+    pub line: String,
+}
+
+pub(super) async fn list(
+    db: &Db,
+    tenant: Tenant,
+    after: Option<Uuid>,
+    limit: i64,
+) -> Result<Vec<Feed>> {
+    rows!(
+        db,
+        Feed,
+        "SELECT id, name, vessel_id, created_at, created_by FROM calendar_feeds
+         WHERE (operator_id = $1 OR firm_id = $2) AND id > $3
+         ORDER BY id
+         LIMIT $4",
+        tenant.operator(),
+        tenant.firm(),
+        after.unwrap_or_default(),
+        limit
+    )
+}
+
+pub(super) async fn insert(tx: &mut Tx, tenant: Tenant, feed: &Feed, hash: &[u8]) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO calendar_feeds (id, operator_id, firm_id, vessel_id, token_hash, name,
+                                     created_at, created_by)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+        feed.id,
+        tenant.operator(),
+        tenant.firm(),
+        feed.vessel_id,
+        hash,
+        feed.name.as_str(),
+        feed.created_at,
+        feed.created_by.as_str()
+    )?;
+    Ok(())
+}
+
+pub(super) async fn delete(tx: &mut Tx, tenant: Tenant, id: FeedId) -> Result<bool> {
+    let deleted = execute!(
+        tx,
+        "DELETE FROM calendar_feeds WHERE (operator_id = $1 OR firm_id = $2) AND id = $3",
+        tenant.operator(),
+        tenant.firm(),
+        id
+    )?;
+    Ok(deleted > 0)
+}
+
+/// Whose the calendar of this token is.
+pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Subscriber>> {
+    let found = row!(
+        db,
+        (String, Option<OperatorId>, Option<FirmId>, Option<VesselId>),
+        "SELECT name, operator_id, firm_id, vessel_id FROM calendar_feeds
+         WHERE token_hash = $1
+         ORDER BY id",
+        token_hash
+    )?;
+    let whose = |(name, operator, firm, vessel): (_, Option<OperatorId>, Option<FirmId>, _)| {
+        let tenant = operator.map(Tenant::Operator).or(firm.map(Tenant::Firm))?;
+        Some(Subscriber {
+            name,
+            tenant,
+            vessel,
+        })
+    };
+    Ok(found.and_then(whose))
+}
+
+/// The orders that a tenant sees, of one vessel or of all.
+pub(super) async fn appointments(
+    db: &Db,
+    tenant: Tenant,
+    vessel: Option<VesselId>,
+    now: Time,
+) -> Result<Vec<Appointment>> {
+    rows!(
+        db,
+        Appointment,
+        "SELECT o.id, o.port, o.berth, o.planned_at, v.name AS vessel_name,
+                c.name AS compass_name, p.name AS operator_name, o.firm, o.adjuster_name,
+                o.last_seq, e.line,
+                CASE f.state WHEN 'open' THEN 'offered' WHEN 'proposed' THEN 'proposed'
+                             ELSE o.state END AS state
+         FROM work_orders o
+         JOIN vessels v ON v.id = o.vessel_id
+         JOIN operators p ON p.id = v.operator_id
+         JOIN compasses c ON c.vessel_id = o.vessel_id AND c.id = o.compass_id
+         JOIN work_order_entries e ON e.vessel_id = o.vessel_id AND e.order_id = o.id
+                                  AND e.seq = o.last_seq
+         LEFT JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
+                                      AND f.firm_id = $1
+         WHERE (v.operator_id = $2 OR f.state IN ('open', 'proposed', 'accepted'))
+           AND ($3 IS NULL OR o.vessel_id = $3)
+           AND o.planned_at > $4
+         ORDER BY o.planned_at DESC, o.id DESC
+         LIMIT $5",
+        tenant.firm(),
+        tenant.operator(),
+        vessel,
+        Time(now.0.plus_seconds(-SHOWN_FOR_S)),
+        MOST
+    )
+}

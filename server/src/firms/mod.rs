@@ -1,0 +1,164 @@
+//! Firms that adjust compasses, and which operators they work for.
+//!
+//! What always holds: an operator sees the firms that it works with, a firm sees itself,
+//! and a platform admin, who brings them together, sees all.
+
+pub mod keys;
+mod store;
+mod terms;
+
+pub use store::{create, engage, exists, name_for};
+pub use terms::{Terms, of_operator};
+
+use crate::access::{Caller, Platform};
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Page, Valid, text};
+use crate::idempotency::{self, Key};
+use crate::ids::{FirmId, OperatorId};
+use crate::operators::{self, NewCompany};
+use crate::tenants::Tenant;
+use crate::time::Time;
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde::Serialize;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_firms, create_firm))
+        .routes(routes!(find_firm))
+        .routes(routes!(engage_firm, dismiss_firm))
+        .merge(terms::router())
+        .merge(keys::router())
+}
+
+/// A company that adjusts compasses.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+struct Firm {
+    /// Its id.
+    id: FirmId,
+    /// Its name.
+    #[schema(example = "Nervión Compass")]
+    name: String,
+    /// When it was entered here.
+    created_at: Time,
+}
+
+/// A page of firms.
+#[derive(Serialize, ToSchema)]
+struct FirmList {
+    /// In the order in which they were entered.
+    items: Vec<Firm>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// List the firms
+///
+/// Those that your operator works with; an adjuster's own; all for a platform admin.
+#[utoipa::path(get, path = "/firms", tag = "adjusting", params(Page),
+    responses((status = 200, body = FirmList), (status = 401, body = Problem)))]
+async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Result<Json<FirmList>> {
+    let who = caller.tenant();
+    let found = store::list(&app.db, who, page.after_id()?, page.fetch()).await?;
+    let listed = page.cut(found, |firm| firm.id.to_string());
+    Ok(Json(FirmList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// Enter a firm
+///
+/// For platform admins. Its first people are made by `binnacle-server admin create
+/// adjuster`.
+#[utoipa::path(post, path = "/firms", tag = "platform", params(Key), request_body = NewCompany,
+    responses((status = 201, body = Firm), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn create_firm(
+    State(app): State<App>,
+    admin: Platform,
+    key: Key,
+    Valid(new): Valid<NewCompany>,
+) -> Result<(StatusCode, Json<Firm>)> {
+    let admin = admin.who_may_write()?;
+    let request = idempotency::request_hash("firm", &new)?;
+    let name = text("name", &new.name)?;
+    let now = app.clock.now().into();
+    let wanted = FirmId::new();
+    let mut tx = app.db.begin().await?;
+    let made = key.once(&mut tx, admin, &request, wanted.0, now).await?;
+    if made == wanted.0 {
+        store::insert(&mut tx, wanted, &name, now).await?;
+    }
+    tx.commit().await?;
+    Ok((StatusCode::CREATED, found(&app, None, FirmId(made)).await?))
+}
+
+/// See a firm
+#[utoipa::path(get, path = "/firms/{id}", tag = "adjusting", params(("id" = FirmId, Path)),
+    responses((status = 200, body = Firm), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn find_firm(
+    State(app): State<App>,
+    caller: Caller,
+    Id(id): Id<FirmId>,
+) -> Result<Json<Firm>> {
+    found(&app, caller.tenant(), id).await
+}
+
+async fn found(app: &App, who: Option<Tenant>, id: FirmId) -> Result<Json<Firm>> {
+    let firm = store::find(&app.db, who, id).await?;
+    Ok(Json(firm.ok_or(Error::NotFound("firm"))?))
+}
+
+/// Have an operator work with a firm
+///
+/// For platform admins. From then on the operator may offer the firm its orders.
+#[utoipa::path(put, path = "/operators/{id}/firms/{firm}", tag = "platform",
+    params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn engage_firm(
+    State(app): State<App>,
+    admin: Platform,
+    Id((operator, firm)): Id<(OperatorId, FirmId)>,
+) -> Result<StatusCode> {
+    admin.who_may_write()?;
+    let mut tx = app.db.begin().await?;
+    if !operators::exists(&mut tx, operator).await? {
+        return Err(Error::NotFound("operator"));
+    }
+    if !store::exists(&mut tx, firm).await? {
+        return Err(Error::NotFound("firm"));
+    }
+    store::engage(&mut tx, operator, firm, app.clock.now().into()).await?;
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Have an operator work with a firm no more
+///
+/// For platform admins. Orders that the firm has stay with it.
+#[utoipa::path(delete, path = "/operators/{id}/firms/{firm}", tag = "platform",
+    params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 404, body = Problem)))]
+async fn dismiss_firm(
+    State(app): State<App>,
+    admin: Platform,
+    Id((operator, firm)): Id<(OperatorId, FirmId)>,
+) -> Result<StatusCode> {
+    admin.who_may_write()?;
+    let mut tx = app.db.begin().await?;
+    if !store::dismiss(&mut tx, operator, firm).await? {
+        return Err(Error::NotFound("firm"));
+    }
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}

@@ -1,0 +1,105 @@
+//! Which compasses are to be adjusted by when, and why.
+//!
+//! What always holds: a need is found anew each time it is asked for, from what is stored
+//! then, and nothing of it is stored; the rules and what follows from them are
+//! `binnacle_schedule`'s.
+
+mod facts;
+mod load;
+mod need;
+mod particulars;
+mod schema;
+
+pub use facts::Facts;
+pub use load::of_fleet;
+pub use need::Need;
+pub use schema::UrgencySchema;
+
+use crate::access::Reader;
+use crate::app::App;
+use crate::error::{Problem, Result};
+use crate::http::{Id, Json, Page, Params};
+use crate::ids::{CompassId, OperatorId, VesselId};
+use crate::vessels;
+use axum::extract::State;
+use binnacle_schedule::needs::{Terms, due};
+use binnacle_schedule::rules::shipped;
+use chrono::{Datelike, NaiveDate};
+use need::{Filter, NeedList};
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_needs))
+        .routes(routes!(list_vessel_needs))
+        .merge(particulars::router())
+}
+
+/// List the fleet's needs
+///
+/// When each compass is to be adjusted by the rules that bind its ship, brought forward by
+/// predicted deviation over a limit, a change of the ship's magnetism, or an adjustment
+/// that the sea does not confirm.
+#[utoipa::path(get, path = "/needs", tag = "adjusting", params(Filter, Page),
+    responses((status = 200, body = NeedList), (status = 401, body = Problem)))]
+async fn list_needs(
+    State(app): State<App>,
+    reader: Reader,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<NeedList>> {
+    listed(&app, reader.operator, None, &filter, &page).await
+}
+
+/// List a vessel's needs
+#[utoipa::path(get, path = "/vessels/{id}/needs", tag = "adjusting",
+    params(("id" = VesselId, Path), Filter, Page),
+    responses((status = 200, body = NeedList), (status = 401, body = Problem),
+              (status = 404, body = Problem)))]
+async fn list_vessel_needs(
+    State(app): State<App>,
+    reader: Reader,
+    Id(vessel): Id<VesselId>,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<NeedList>> {
+    vessels::must_be_in_fleet(&app.db, reader.operator, vessel).await?;
+    listed(&app, reader.operator, Some(vessel), &filter, &page).await
+}
+
+async fn listed(
+    app: &App,
+    operator: OperatorId,
+    vessel: Option<VesselId>,
+    filter: &Filter,
+    page: &Page,
+) -> Result<Json<NeedList>> {
+    let after = page.after_time()?.map(|(day, id)| (day, CompassId(id)));
+    let facts = of_fleet(app, operator, vessel).await?;
+    let today = app.clock.now().to_chrono().date_naive();
+    let mut needs: Vec<Need> = facts
+        .iter()
+        .filter_map(|facts| need(facts, &Terms::default(), today))
+        .filter(|need| filter.urgency.is_none_or(|only| need.urgency == only))
+        .filter(|need| filter.due_by.is_none_or(|last| need.due_on <= last))
+        .filter(|need| after.is_none_or(|after| (day_number(need.due_on), need.compass_id) > after))
+        .collect();
+    needs.sort_by_key(|need| (need.due_on, need.compass_id));
+    let listed = page.cut(needs, Need::cursor);
+    Ok(Json(NeedList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// The need of a compass; none when no rule binds its ship and nothing is wrong.
+pub fn need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
+    let due = due(&facts.ship, &facts.compass, shipped(), terms, today)?;
+    Some(Need::new(facts, due))
+}
+
+fn day_number(day: NaiveDate) -> i64 {
+    i64::from(day.num_days_from_ce())
+}

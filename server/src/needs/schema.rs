@@ -1,0 +1,42 @@
+//! How the OpenAPI document describes what the schedule's own crate has.
+
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// How much a need presses.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = Urgency)]
+#[allow(dead_code, reason = "describes binnacle_schedule::needs::Urgency")]
+pub enum UrgencySchema {
+    /// There is time.
+    Routine,
+    /// Due soon.
+    Soon,
+    /// Due very soon, or the card is not to be trusted.
+    Urgent,
+    /// The due date has passed.
+    Overdue,
+}
+
+/// What brings a due date about.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = NeedCauseKind)]
+#[allow(dead_code, reason = "describes binnacle_schedule::needs::CauseKind")]
+pub(super) enum CauseKindSchema {
+    /// No adjustment is on record.
+    NeverAdjusted,
+    /// A rule's interval ends.
+    Interval,
+    /// A rule asks for an adjustment after an event.
+    Event,
+    /// Predicted deviation is over a rule's limit.
+    OverLimit,
+    /// A transit asks for a newer table or a smaller deviation.
+    Transit,
+    /// The ship's magnetism changed.
+    Change,
+    /// The last adjustment did not pass at sea.
+    FailedVerification,
+}

@@ -1,0 +1,165 @@
+//! Which passwords are taken, after NIST SP 800-63B, section 3.1.1.2: long ones, of any
+//! letters, that are neither common nor what anybody would guess of this person. No mix
+//! of kinds of letters is asked for, and nothing is to be changed for its age.
+
+mod common;
+
+use crate::app::App;
+use crate::error::{Error, Result};
+use crate::secret;
+use tokio::sync::OwnedSemaphorePermit;
+
+/// Fewest characters.
+pub const LEAST: usize = 12;
+/// Argon2 takes any length; nobody types more.
+pub const MOST_BYTES: usize = 1024;
+/// So many characters are to be left when all that is easily guessed is taken out.
+const LEAST_LEFT: usize = 6;
+/// Shorter words are in everything.
+const LEAST_WORD: usize = 4;
+
+/// Refuses a password that is short or easily guessed; `about` is what is known of
+/// whose it is: e-mail, name, company.
+///
+/// # Errors
+/// Naming `field`, with what is wrong.
+pub fn check(field: &'static str, password: &str, about: &[&str]) -> Result<()> {
+    let wrong = |detail: String| Err(Error::Invalid { field, detail });
+    if password.chars().count() < LEAST {
+        return wrong(format!("has fewer than {LEAST} characters"));
+    }
+    if password.len() > MOST_BYTES {
+        return wrong(format!("is longer than {MOST_BYTES} bytes"));
+    }
+    if left_over(password, about) < LEAST_LEFT {
+        return wrong(
+            "is easily guessed: it is little more than a common word, a row of keys, \
+             or the e-mail, name or company"
+                .to_owned(),
+        );
+    }
+    Ok(())
+}
+
+/// The characters that a guesser who knows common words, rows of letters and these
+/// names has still to find.
+fn left_over(password: &str, about: &[&str]) -> usize {
+    let mut rest = password.to_lowercase();
+    let about: Vec<String> = about.iter().map(|text| text.to_lowercase()).collect();
+    let squeezed: Vec<String> = about.iter().map(|text| text.replace(' ', "")).collect();
+    let whole = about.iter().chain(&squeezed).map(String::as_str);
+    let parts = about
+        .iter()
+        .flat_map(|text| text.split(|letter: char| !letter.is_alphanumeric()));
+    let mut words: Vec<&str> = whole
+        .chain(parts)
+        .chain(common::WORDS.iter().copied())
+        .collect();
+    words.retain(|word| word.chars().count() >= LEAST_WORD);
+    words.sort_by_key(|word| std::cmp::Reverse(word.len()));
+    for word in words {
+        rest = rest.replace(word, " ");
+    }
+    let letters: Vec<char> = rest
+        .chars()
+        .filter(|letter| !letter.is_whitespace())
+        .collect();
+    let goes_on = |pair: &[char]| u32::from(pair[0]).abs_diff(u32::from(pair[1])) <= 1;
+    let rows = letters.windows(2).filter(|pair| goes_on(pair)).count();
+    letters.len() - rows
+}
+
+/// A place among those that are hashing: each takes 19 MB and a core.
+///
+/// # Errors
+/// When the server is stopping.
+pub async fn place(app: &App) -> Result<OwnedSemaphorePermit> {
+    let place = app.hashing.clone().acquire_owned().await;
+    Ok(place.map_err(anyhow::Error::from)?)
+}
+
+/// Whether the password is right. The place goes along, so that it is taken for as
+/// long as the hashing lasts, even when nobody waits for the answer any more.
+///
+/// # Errors
+/// When the server is stopping.
+pub async fn matches(
+    place: OwnedSemaphorePermit,
+    password: String,
+    stored: Option<String>,
+) -> Result<(bool, OwnedSemaphorePermit)> {
+    let matches = tokio::task::spawn_blocking(move || {
+        let matches = secret::password_matches(&password, stored.as_deref());
+        (matches, place)
+    });
+    Ok(matches.await?)
+}
+
+/// A password's hash, as it is stored.
+///
+/// # Errors
+/// When there is too little memory.
+pub async fn hash(place: OwnedSemaphorePermit, password: String) -> Result<String> {
+    let hashed = tokio::task::spawn_blocking(move || {
+        let hashed = secret::hash_password(&password);
+        drop(place);
+        hashed
+    });
+    Ok(hashed.await??)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ABOUT: [&str; 3] = [
+        "ada.l@northern.example",
+        "Ada Lovelace",
+        "Northern Star Lines",
+    ];
+
+    #[test]
+    fn what_is_short_common_or_known_of_the_person_is_refused() {
+        for weak in [
+            "x7!kQ2#vB9z",
+            "password1234",
+            "Passw0rd2026",
+            "123456789012",
+            "aaaaaaaaaaaa",
+            "abcdefghijkl",
+            "qwertyuiop12",
+            "1q2w3e4r5t6z",
+            "ada.l@northern.example",
+            "adalovelace1815",
+            "northernstarlines",
+            "Binnacle-2026",
+            "welcomewelcome!",
+        ] {
+            let refused = check("password", weak, &ABOUT);
+            assert!(
+                matches!(
+                    refused,
+                    Err(Error::Invalid {
+                        field: "password",
+                        ..
+                    })
+                ),
+                "{weak}"
+            );
+        }
+        assert!(check("password", &"xk".repeat(600), &ABOUT).is_err());
+    }
+
+    #[test]
+    fn any_letters_do_if_there_are_enough() {
+        for good in [
+            "correct horse battery",
+            "vk9rw2hqx7mt",
+            "наш якорь поднят",
+            "Lovelace wrote the first one",
+            "七つの海を渡る羅針盤の物語",
+        ] {
+            assert!(check("password", good, &ABOUT).is_ok(), "{good}");
+        }
+    }
+}

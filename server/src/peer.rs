@@ -1,0 +1,135 @@
+//! Where a request comes from, as far as can be told.
+//!
+//! What always holds: what a client says of itself is not believed. The address is the
+//! connection's, or the one that the outermost of our own proxies saw: `--proxies` says
+//! how many there are, and only the entries that these have appended to
+//! `X-Forwarded-For` are read.
+
+use crate::app::App;
+use crate::tls::TlsListener;
+use axum::extract::connect_info::{ConnectInfo, Connected};
+use axum::extract::{Extension, FromRequestParts};
+use axum::http::header::USER_AGENT;
+use axum::http::request::Parts;
+use axum::serve::IncomingStream;
+use std::convert::Infallible;
+use std::net::{IpAddr, SocketAddr};
+use tokio::net::TcpListener;
+
+/// Longest name of a program that is kept, in characters.
+const MAX_PROGRAM: usize = 200;
+
+/// The other end of a connection.
+#[derive(Clone, Copy, Debug)]
+pub struct Peer(SocketAddr);
+
+impl Connected<IncomingStream<'_, TcpListener>> for Peer {
+    fn connect_info(stream: IncomingStream<'_, TcpListener>) -> Peer {
+        Peer(*stream.remote_addr())
+    }
+}
+
+impl Connected<IncomingStream<'_, TlsListener>> for Peer {
+    fn connect_info(stream: IncomingStream<'_, TlsListener>) -> Peer {
+        Peer(*stream.remote_addr())
+    }
+}
+
+/// Where a request comes from.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// The client's address, if one is known.
+    pub address: Option<IpAddr>,
+    /// What the client calls itself; may be empty.
+    pub program: String,
+}
+
+impl Origin {
+    /// As it is stored and shown.
+    pub fn address_text(&self) -> String {
+        self.address.map_or_else(String::new, |ip| ip.to_string())
+    }
+
+    /// What failed sign-ins are counted under: an IPv4 address, or the /64 of an IPv6
+    /// one, of which whoever has one has all.
+    pub(crate) fn network(&self) -> String {
+        match self.address {
+            Some(IpAddr::V6(ip)) => {
+                let [a, b, c, d, ..] = ip.segments();
+                format!("address {a:x}:{b:x}:{c:x}:{d:x}::/64")
+            }
+            Some(ip) => format!("address {ip}"),
+            None => "address unknown".to_owned(),
+        }
+    }
+}
+
+impl FromRequestParts<App> for Origin {
+    type Rejection = Infallible;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Origin, Infallible> {
+        let peer = Extension::<ConnectInfo<Peer>>::from_request_parts(parts, app).await;
+        let peer = peer
+            .ok()
+            .map(|Extension(ConnectInfo(Peer(peer)))| peer.ip());
+        let forwarded = parts.headers.get_all("x-forwarded-for");
+        let forwarded: Vec<&str> = forwarded.iter().filter_map(|v| v.to_str().ok()).collect();
+        let named = parts.headers.get(USER_AGENT).and_then(|v| v.to_str().ok());
+        Ok(Origin {
+            address: client(peer, &forwarded, usize::from(app.config.proxies)),
+            program: named
+                .unwrap_or_default()
+                .chars()
+                .take(MAX_PROGRAM)
+                .collect(),
+        })
+    }
+}
+
+/// The address that so many proxies of ours vouch for.
+fn client(peer: Option<IpAddr>, forwarded: &[&str], proxies: usize) -> Option<IpAddr> {
+    let Some(before_last) = proxies.checked_sub(1) else {
+        return peer.map(|ip| ip.to_canonical());
+    };
+    let entries = forwarded.iter().flat_map(|value| value.split(','));
+    let seen: Vec<&str> = entries.map(str::trim).collect();
+    let named = seen.iter().rev().nth(before_last);
+    let parsed = named.and_then(|text| text.parse::<IpAddr>().ok());
+    parsed.or(peer).map(|ip| ip.to_canonical())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a client finds for the peer 192.0.2.1.
+    fn seen(forwarded: &[&str], proxies: usize) -> String {
+        let peer = "192.0.2.1".parse().unwrap();
+        client(Some(peer), forwarded, proxies).unwrap().to_string()
+    }
+
+    #[test]
+    fn only_our_own_proxies_are_believed() {
+        let forged = ["203.0.113.9, 198.51.100.7"];
+        assert_eq!(seen(&forged, 0), "192.0.2.1");
+        assert_eq!(seen(&forged, 1), "198.51.100.7");
+        let apart = ["203.0.113.9", "198.51.100.7"];
+        assert_eq!(seen(&apart, 1), "198.51.100.7");
+        assert_eq!(seen(&apart, 2), "203.0.113.9");
+        assert_eq!(seen(&[], 1), "192.0.2.1");
+        assert_eq!(seen(&["unknown"], 1), "192.0.2.1");
+        assert_eq!(seen(&["::ffff:203.0.113.9"], 1), "203.0.113.9");
+    }
+
+    #[test]
+    fn addresses_of_one_ipv6_network_count_as_one() {
+        let of = |text: &str| Origin {
+            address: text.parse().ok(),
+            program: String::new(),
+        };
+        let one = of("2001:db8:1:2::7").network();
+        assert_eq!(one, of("2001:db8:1:2:ffff::9").network());
+        assert_ne!(one, of("2001:db8:1:3::7").network());
+        assert_ne!(of("192.0.2.1").network(), of("192.0.2.2").network());
+    }
+}

@@ -1,0 +1,187 @@
+//! Files of port calls on their way in: read within bounds, and held against what is
+//! known already.
+
+use super::call::{Content, Source};
+use super::store::Row;
+use crate::error::{Error, Result};
+use crate::ids::VesselId;
+use crate::time::Time;
+use axum::body::Body;
+use binnacle_schedule::calls::csv::FileError;
+use binnacle_schedule::calls::{Located, overlap};
+use futures_util::StreamExt;
+use std::collections::BTreeMap;
+
+/// No file is larger, in bytes.
+pub(super) const MAX_BYTES: usize = 8 * 1024 * 1024;
+/// Up to here a file that is too large is heard out, so that whoever sends it hears why
+/// it is not taken.
+const HEARD_BYTES: usize = 128 * 1024 * 1024;
+
+/// A body's bytes.
+///
+/// # Errors
+/// [`Error::TooLarge`] when there are too many of them.
+pub(super) async fn whole(body: Body) -> Result<Vec<u8>> {
+    let (mut bytes, mut heard) = (Vec::new(), 0);
+    let mut chunks = body.into_data_stream();
+    while let Some(chunk) = chunks.next().await {
+        let chunk = chunk.map_err(|error| Error::BadRequest(error.to_string()))?;
+        heard += chunk.len();
+        if heard <= MAX_BYTES {
+            bytes.extend_from_slice(&chunk);
+        } else if heard > HEARD_BYTES {
+            break;
+        }
+    }
+    if heard > MAX_BYTES {
+        return Err(Error::TooLarge(MAX_BYTES));
+    }
+    Ok(bytes)
+}
+
+/// What a file does to the calls of one vessel.
+#[derive(Default)]
+pub(super) struct Taken<'a> {
+    pub(super) new: Vec<Content>,
+    pub(super) amended: Vec<(&'a Row, Content)>,
+    pub(super) unchanged: usize,
+    pub(super) withdrawn: Vec<&'a Row>,
+}
+
+/// What a file has of one vessel.
+#[derive(Default)]
+pub(super) struct OfVessel {
+    pub(super) calls: Vec<(usize, Content)>,
+    pub(super) cancelled: Vec<String>,
+}
+
+impl OfVessel {
+    /// Takes a call from a file.
+    pub(super) fn push(&mut self, located: Located, now: Time) -> Result<()> {
+        let line = located.line;
+        let content = Content::from_file(located.call).checked(now);
+        let content = content.map_err(|error| match error {
+            Error::Invalid { field, detail } => at_line(line, field, &detail),
+            other => other,
+        })?;
+        self.calls.push((line, content));
+        Ok(())
+    }
+
+    /// Holds the file against what is known. What came from such a file before, is not
+    /// over and is not in this one is withdrawn if the file replaces it.
+    pub(super) fn against(
+        self,
+        known: &[Row],
+        source: Source,
+        replaces: bool,
+        now: Time,
+    ) -> Result<Taken<'_>> {
+        let lines: BTreeMap<String, usize> = self
+            .calls
+            .iter()
+            .map(|(line, call)| (call.reference.clone(), *line))
+            .collect();
+        let is_gone = |row: &Row| {
+            self.cancelled.contains(&row.reference)
+                || (replaces && row.source == source && row.etd > now)
+        };
+        let mut taken = Taken::default();
+        let mut calls = Vec::new();
+        for row in known.iter().filter(|row| row.withdrawn_at.is_none()) {
+            if lines.contains_key(&row.reference) {
+                continue;
+            }
+            if is_gone(row) {
+                taken.withdrawn.push(row);
+            } else {
+                calls.push(row.content()?.of(&row.reference, ""));
+            }
+        }
+        for (_, call) in self.calls {
+            calls.push(call.of(&call.reference, ""));
+            match known.iter().find(|row| row.reference == call.reference) {
+                None => taken.new.push(call),
+                Some(row) if row.withdrawn_at.is_none() && row.content()? == call => {
+                    taken.unchanged += 1;
+                }
+                Some(row) => taken.amended.push((row, call)),
+            }
+        }
+        match overlap(&calls) {
+            None => Ok(taken),
+            Some((later, earlier)) => {
+                let in_file = |at: usize| lines.get(&calls[at].id).copied();
+                let (own, other) = match in_file(later) {
+                    Some(_) => (later, earlier),
+                    None => (earlier, later),
+                };
+                let other = &calls[other];
+                let what = format!(
+                    "overlaps call {:?} of the same vessel, from {} to {}",
+                    other.id, other.eta, other.etd
+                );
+                Err(at_line(in_file(own).unwrap_or(1), "eta", &what))
+            }
+        }
+    }
+}
+
+/// Rows of a file by the vessel that each names: by her id, her IMO number or her name.
+pub(super) fn by_vessel(
+    calls: Vec<Located>,
+    fleet: &[(VesselId, String, Option<String>)],
+    now: Time,
+) -> Result<BTreeMap<VesselId, OfVessel>> {
+    let mut named: BTreeMap<String, Vec<VesselId>> = BTreeMap::new();
+    for (id, name, imo_number) in fleet {
+        let names = [
+            Some(id.to_string()),
+            Some(name.to_lowercase()),
+            imo_number.clone(),
+        ];
+        for name in names.into_iter().flatten() {
+            named.entry(name).or_default().push(*id);
+        }
+    }
+    let mut found: BTreeMap<VesselId, OfVessel> = BTreeMap::new();
+    let mut seen: BTreeMap<(VesselId, String), usize> = BTreeMap::new();
+    for located in calls {
+        let (line, name) = (located.line, located.call.vessel.clone());
+        let vessel = match named.get(&name.to_lowercase()).map(Vec::as_slice) {
+            Some([vessel]) => *vessel,
+            Some(_) => {
+                let what = format!("{name:?} are several vessels; write the IMO number or the id");
+                return Err(at_line(line, "vessel", &what));
+            }
+            None => {
+                return Err(at_line(
+                    line,
+                    "vessel",
+                    &format!("there is no vessel {name:?}"),
+                ));
+            }
+        };
+        // One vessel may be named in two ways.
+        if let Some(first) = seen.insert((vessel, located.call.id.clone()), line) {
+            let what = format!("{:?} stands on line {first} already", located.call.id);
+            return Err(at_line(line, "id", &what));
+        }
+        found.entry(vessel).or_default().push(located, now)?;
+    }
+    Ok(found)
+}
+
+fn at_line(line: usize, field: &str, detail: &str) -> Error {
+    Error::Invalid {
+        field: "file",
+        detail: format!("line {line}: {field}: {detail}"),
+    }
+}
+
+impl From<FileError> for Error {
+    fn from(error: FileError) -> Error {
+        at_line(error.line, &error.field, &error.detail)
+    }
+}

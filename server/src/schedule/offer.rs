@@ -1,0 +1,175 @@
+//! `/schedule/offer`: a planned job becomes work orders that are offered to its firm.
+//!
+//! What always holds: a compass has one order under way at a time, and a firm is offered
+//! no more ships on a day than it has teams for, by its terms; whoever offers it more at
+//! the same time waits and is refused.
+
+use super::orders;
+use super::plan::{Job, Plan};
+use super::store;
+use crate::access::Writer;
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::firms;
+use crate::http::{Json, Valid, optional_text};
+use crate::ids::{CompassId, FirmId, OrderId};
+use crate::time::Time;
+use crate::work_orders::{self, NewOffer, NewOrder};
+use axum::extract::State;
+use axum::http::StatusCode;
+use binnacle_schedule::input::JobState;
+use binnacle_schedule::ports::{self, PortCode};
+use binnacle_schedule::time::Instant;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(super) fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new().routes(routes!(offer_job))
+}
+
+/// A planned job to be offered to its firm.
+#[derive(Clone, Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewScheduleOffer, example = json!({
+    "version": 7, "compass_id": "0199aa00-0000-7000-8000-000000000002",
+    "answer_within_hours": 48, "text": "Two compasses; gangway on the starboard side."
+}))]
+struct NewScheduleOffer {
+    /// The plan that was looked at: another one may say something else.
+    version: i64,
+    /// A compass of the job; its others go with it.
+    compass_id: CompassId,
+    /// So long the firm has for an answer, 1 to 720 hours; 48 if not said.
+    #[schema(minimum = 1, maximum = 720)]
+    answer_within_hours: Option<u32>,
+    /// Firms that are asked next, in this order, when it says no or nothing.
+    #[serde(default)]
+    then: Vec<FirmId>,
+    /// What is said to them.
+    #[schema(max_length = 200)]
+    text: Option<String>,
+}
+
+/// Orders that were offered.
+#[derive(Serialize, ToSchema)]
+#[schema(as = ScheduleOffered)]
+struct Offered {
+    /// An order for each compass of the job.
+    orders: Vec<OfferedOrder>,
+}
+
+/// An order that was offered.
+#[derive(Serialize, ToSchema)]
+#[schema(as = ScheduleOfferedOrder)]
+struct OfferedOrder {
+    /// The order.
+    order_id: OrderId,
+    /// The compass.
+    compass_id: CompassId,
+}
+
+/// Offer a planned job to its firm
+///
+/// Writes a work order for each compass of the job. From then on the plan keeps the job
+/// where it is unless there is cause.
+#[utoipa::path(post, path = "/schedule/offer", tag = "adjusting", request_body = NewScheduleOffer,
+    responses((status = 201, body = Offered), (status = 401, body = Problem),
+              (status = 403, body = Problem),
+              (status = 404, description = "No job of the plan is for that compass", body = Problem),
+              (status = 409, description = "There is another plan, the job is offered already, an \
+                             order under way says something else, or the firm has no team left \
+                             that day", body = Problem),
+              (status = 422, body = Problem)))]
+async fn offer_job(
+    State(app): State<App>,
+    writer: Writer,
+    Valid(new): Valid<NewScheduleOffer>,
+) -> Result<(StatusCode, Json<Offered>)> {
+    let text = optional_text("text", new.text.as_deref())?;
+    let plan = store::current(&app.db, writer.operator).await?;
+    let job = job_of(plan.as_ref(), &new)?;
+    let mut orders = Vec::new();
+    for compass in &job.compasses {
+        let offer = NewOffer {
+            firms: std::iter::once(job.firm_id)
+                .chain(new.then.iter().copied().filter(|firm| *firm != job.firm_id))
+                .collect(),
+            answer_within_hours: new.answer_within_hours.unwrap_or(48),
+            at_once: false,
+            text: text.clone(),
+        };
+        let order_id = write(&app, writer, job, compass.compass_id, offer).await?;
+        orders.push(OfferedOrder {
+            order_id,
+            compass_id: compass.compass_id,
+        });
+    }
+    Ok((StatusCode::CREATED, Json(Offered { orders })))
+}
+
+fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job> {
+    let wrong = |why: String| Err(Error::WrongState(why));
+    let plan = plan.ok_or(Error::NotFound("plan"))?;
+    if plan.version != new.version {
+        return wrong(format!("the plan is of version {} now", plan.version));
+    }
+    let job = plan.job_of(new.compass_id).ok_or(Error::NotFound("job"))?;
+    if job.state != JobState::Proposed {
+        return wrong("the job is offered already".to_owned());
+    }
+    if let Some(order) = job.instead_of.first() {
+        return wrong(format!(
+            "work order {order} is under way and says something else: cancel it, or agree on \
+             another time"
+        ));
+    }
+    Ok(job)
+}
+
+/// Writes one order, if the firm has a team left that day.
+async fn write(
+    app: &App,
+    writer: Writer,
+    job: &Job,
+    compass_id: CompassId,
+    offer: NewOffer,
+) -> Result<OrderId> {
+    let firms = firms::of_operator(&app.db, writer.operator).await?;
+    let terms = firms.into_iter().find(|(firm, _, _)| *firm == job.firm_id);
+    let Some((_, firm_name, Some(terms))) = terms else {
+        return Err(Error::NotFound("firm"));
+    };
+    let zone_h = PortCode::parse(&job.port)
+        .ok()
+        .and_then(ports::find)
+        .map_or(0, ports::Port::zone_h);
+    let begins = Instant::at(job.day, 0.0, zone_h);
+    let day = (Time(begins.0), Time(begins.plus_hours(24.0).0));
+    let id = OrderId::new();
+    let mut tx = app.db.begin().await?;
+    let (operator, vessel) = (writer.operator, job.vessel_id);
+    let others = orders::other_ships(&mut tx, operator, job.firm_id, vessel, day).await?;
+    if others >= i64::from(terms.teams) * i64::from(terms.jobs_a_team_day) {
+        return Err(Error::WrongState(format!(
+            "{firm_name} has no team left on {}: make the schedule anew",
+            job.day
+        )));
+    }
+    orders::at_call(&mut tx, vessel, id, job.call_id).await?;
+    let order = NewOrder {
+        vessel_id: vessel,
+        compass_id,
+        port: format!("{} ({})", job.port_name, job.port),
+        berth: job.berth.clone(),
+        planned_at: job.from,
+        adjuster_name: None,
+        adjuster_licence: None,
+        firm: None,
+        offer: Some(offer),
+        limits: None,
+    };
+    work_orders::write(app, tx, writer, id, order).await?;
+    Ok(id)
+}

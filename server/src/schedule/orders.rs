@@ -1,0 +1,153 @@
+//! Work orders as the schedule sees them.
+//!
+//! What always holds: an order that a firm is asked for or has accepted is a job of the
+//! plan, at the call that it was offered for; one that is being done, or is offered to
+//! nobody, is beside the plan.
+
+use crate::db::{Db, Tx, execute, row, rows};
+use crate::error::Result;
+use crate::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
+use crate::port_calls::Row as Call;
+use crate::time::Time;
+use crate::work_orders::State;
+use binnacle_schedule::input::JobState;
+use binnacle_schedule::ports::{self, PortCode};
+use binnacle_schedule::time::Instant;
+use chrono::NaiveDate;
+
+/// An order that is under way.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub(super) struct Order {
+    pub(super) vessel_id: VesselId,
+    pub(super) id: OrderId,
+    pub(super) compass_id: CompassId,
+    pub(super) state: State,
+    pub(super) planned_at: Time,
+    /// Who is asked, or has accepted.
+    pub(super) firm_id: Option<FirmId>,
+    /// At which call it is to be done, where that is known.
+    pub(super) call_id: Option<CallId>,
+}
+
+/// A firm's no to an order that is under way.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub(super) struct No {
+    pub(super) compass_id: CompassId,
+    pub(super) firm_id: FirmId,
+}
+
+/// A fleet's orders that are under way; each once.
+pub(super) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
+    let mut found = rows!(
+        db,
+        Order,
+        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.planned_at, f.firm_id, l.call_id
+         FROM work_orders o
+         JOIN vessels v ON v.id = o.vessel_id
+         LEFT JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
+               AND f.state IN ('open', 'proposed', 'accepted')
+         LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
+         WHERE v.operator_id = $1
+           AND o.state NOT IN ('adjusted', 'verified', 'failed', 'closed', 'cancelled')
+         ORDER BY o.vessel_id, o.id, f.firm_id",
+        operator
+    )?;
+    // Several firms may be asked at once.
+    found.dedup_by_key(|order| order.id);
+    Ok(found)
+}
+
+/// Who has said no, or nothing in time, to orders that are under way.
+pub(super) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<No>> {
+    Ok(rows!(
+        db,
+        No,
+        "SELECT o.compass_id, f.firm_id
+         FROM work_order_offers f
+         JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
+         JOIN vessels v ON v.id = o.vessel_id
+         WHERE v.operator_id = $1 AND f.state IN ('declined', 'lapsed')
+           AND o.state IN ('offered', 'proposed', 'declined')
+         ORDER BY o.compass_id, f.firm_id",
+        operator
+    )?)
+}
+
+/// Notes at which call an order is to be done.
+pub(super) async fn at_call(
+    tx: &mut Tx,
+    vessel: VesselId,
+    order: OrderId,
+    call: CallId,
+) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO schedule_orders (vessel_id, order_id, call_id) VALUES ($1, $2, $3)
+         ON CONFLICT (vessel_id, order_id) DO NOTHING",
+        vessel,
+        order,
+        call
+    )?;
+    Ok(())
+}
+
+/// How many other ships a firm is to see on some day by an operator's orders. Whoever
+/// offers it more meanwhile waits.
+pub(super) async fn other_ships(
+    tx: &mut Tx,
+    operator: OperatorId,
+    firm: FirmId,
+    vessel: VesselId,
+    (from, to): (Time, Time),
+) -> Result<i64> {
+    execute!(
+        &mut *tx,
+        "UPDATE firm_terms SET terms = terms WHERE operator_id = $1 AND firm_id = $2",
+        operator,
+        firm
+    )?;
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(DISTINCT o.vessel_id)
+         FROM work_orders o
+         JOIN vessels v ON v.id = o.vessel_id
+         JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
+         WHERE v.operator_id = $1 AND f.firm_id = $2 AND o.vessel_id <> $3
+           AND f.state IN ('open', 'proposed', 'accepted')
+           AND o.state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')
+           AND o.planned_at >= $4 AND o.planned_at < $5",
+        operator,
+        firm,
+        vessel,
+        from,
+        to
+    )?;
+    Ok(found.map_or(0, |(ships,)| ships))
+}
+
+impl Order {
+    /// How far it is a job of the plan; none where it is beside the plan.
+    pub(super) fn job_state(&self) -> Option<JobState> {
+        match self.state {
+            State::Offered | State::Proposed => Some(JobState::Offered),
+            State::Accepted => Some(JobState::Confirmed),
+            _ => None,
+        }
+    }
+
+    /// The call that it is to be done at: as was noted, or the one that its time lies in.
+    pub(super) fn call(&self, calls: &[Call]) -> Option<CallId> {
+        let hers = calls.iter().filter(|call| call.vessel_id == self.vessel_id);
+        let mut then =
+            hers.filter(|call| call.eta <= self.planned_at && self.planned_at <= call.etd);
+        self.call_id.or_else(|| then.next().map(|call| call.id))
+    }
+
+    /// The day that it is to be done on, in the ship's time of a port.
+    pub(super) fn day(&self, port: Option<&str>) -> NaiveDate {
+        let port = port.and_then(|port| PortCode::parse(port).ok());
+        let zone_h = port.and_then(ports::find).map_or(0, ports::Port::zone_h);
+        Instant(self.planned_at.0).date(zone_h)
+    }
+}

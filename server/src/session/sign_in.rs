@@ -1,0 +1,133 @@
+//! Signing in and out.
+
+use super::user::{User, normal_email};
+use super::{cookie, store, throttle};
+use crate::access::Caller;
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Json, Valid};
+use crate::peer::Origin;
+use crate::{password, second_factor, secret};
+use axum::extract::State;
+use axum::http::{HeaderMap, StatusCode};
+use serde::Deserialize;
+use throttle::Subjects;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(super) fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(sign_in, sign_out))
+        .routes(routes!(me))
+}
+
+/// What a user signs in with.
+#[derive(Deserialize, ToSchema)]
+#[schema(example = json!({ "email": "captain@example.com", "password": "seven gulls over the quay" }))]
+struct SignIn {
+    /// Without regard to case.
+    email: String,
+    /// As it was set.
+    #[schema(format = Password)]
+    password: String,
+    /// Of the authenticator app, or a recovery code; only for who has a second factor.
+    code: Option<String>,
+}
+
+/// Sign in
+///
+/// Answers with a session cookie. Whoever has a second factor and sends no code is
+/// answered `second-factor-needed` when the password is right, and sends all three. After
+/// five wrong passwords or codes for an e-mail, each further attempt has to wait, longer
+/// every time; so it is after fifty from one address.
+#[utoipa::path(post, path = "/session", tag = "session", request_body = SignIn, security(()),
+    responses((status = 200, body = User), (status = 401, body = Problem), (status = 429, body = Problem)))]
+async fn sign_in(
+    State(app): State<App>,
+    from: Origin,
+    Valid(request): Valid<SignIn>,
+) -> Result<(HeaderMap, Json<User>)> {
+    let user = judge(&app, &from, request).await?;
+    let now = app.clock.now();
+    let token = secret::new_token();
+    let lasts_s = u64::from(app.config.session_hours) * 3600;
+    let expires_at = now.plus_seconds(lasts_s as f64).into();
+    store::open(&app.db, &user, &token, &from, now.into(), expires_at).await?;
+    Ok((cookie::set(&app.config, &token, lasts_s), Json(user)))
+}
+
+/// Sign out
+///
+/// The session ends for good, whoever holds its cookie.
+#[utoipa::path(delete, path = "/session", tag = "session",
+    responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
+async fn sign_out(State(app): State<App>, caller: Caller) -> Result<(StatusCode, HeaderMap)> {
+    if let Some(session) = caller.session {
+        store::end(&app.db, caller.user.user_id, session).await?;
+    }
+    Ok((StatusCode::NO_CONTENT, cookie::set(&app.config, "", 0)))
+}
+
+/// Who is signed in
+#[utoipa::path(get, path = "/me", tag = "session",
+    responses((status = 200, body = User), (status = 401, body = Problem)))]
+async fn me(caller: Caller) -> Json<User> {
+    Json(caller.user)
+}
+
+/// The user, if everything is right.
+async fn judge(app: &App, from: &Origin, request: SignIn) -> Result<User> {
+    // PostgreSQL takes no NUL in a text, and nobody has such an e-mail.
+    if request.email.chars().any(char::is_control) {
+        return Err(Error::WrongPassword);
+    }
+    let email = normal_email(&request.email);
+    let user = with_password(app, from, &email, request.password).await?;
+    if !user.second_factor {
+        return Ok(user);
+    }
+    let code = request.code.filter(|code| !code.trim().is_empty());
+    let code = code.ok_or(Error::SecondFactorNeeded)?;
+    let now = app.clock.now();
+    if second_factor::use_code(&app.db, user.user_id, &code, now).await? {
+        return Ok(user);
+    }
+    let email = &email;
+    throttle::note_failure(&app.db, &Subjects { email, from }, now).await?;
+    Err(Error::WrongCode)
+}
+
+/// The user with this e-mail and this password.
+async fn with_password(app: &App, from: &Origin, email: &str, password: String) -> Result<User> {
+    if password.len() > password::MOST_BYTES {
+        return Err(Error::WrongPassword);
+    }
+    let now = app.clock.now();
+    let subjects = Subjects { email, from };
+    throttle::check(&app.db, &subjects, now).await?;
+    let place = password::place(app).await?;
+    // Others may have failed while this attempt waited. Each keeps its place until
+    // its failure is noted, so that guesses sent at once do not outrun the count.
+    throttle::check(&app.db, &subjects, now).await?;
+    let found = store::find_by_email(&app.db, email).await?;
+    let (user, stored) = found.map_or((None, None), |(user, hash)| (Some(user), Some(hash)));
+    let (matches, place) = password::matches(place, password, stored).await?;
+    if let Some(user) = user.filter(|_| matches) {
+        return Ok(user);
+    }
+    throttle::note_failure(&app.db, &subjects, now).await?;
+    drop(place);
+    Err(Error::WrongPassword)
+}
+
+/// Asks for the password again before something that whoever finds a session open
+/// is not to do.
+///
+/// # Errors
+/// When it is wrong, which counts like a failed sign-in.
+pub async fn prove(app: &App, user: &User, from: &Origin, password: String) -> Result<()> {
+    with_password(app, from, &user.email, password)
+        .await
+        .map(drop)
+}

@@ -1,0 +1,92 @@
+//! Who signs in.
+
+use crate::ids::{FirmId, OperatorId, UserId};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// A user, as `/me` shows it.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+#[schema(as = Me)]
+pub struct User {
+    /// The user's id.
+    pub user_id: UserId,
+    /// What the user signs in with.
+    pub email: String,
+    /// The user's name.
+    pub name: String,
+    /// What the user may do.
+    pub role: Role,
+    /// The operator whose fleet the user sees, if any.
+    #[schema(required)]
+    pub operator_id: Option<OperatorId>,
+    /// That operator's name.
+    #[schema(required)]
+    pub operator_name: Option<String>,
+    /// The firm that the user adjusts compasses for, if any.
+    #[schema(required)]
+    pub firm_id: Option<FirmId>,
+    /// That firm's name.
+    #[schema(required)]
+    pub firm_name: Option<String>,
+    /// Whether the user has a second factor.
+    pub second_factor: bool,
+    /// Whether the operator wants one: without it nothing else can be seen or done.
+    pub second_factor_required: bool,
+}
+
+impl User {
+    /// Whether nothing is to be had before a second factor is set up.
+    pub fn lacks_second_factor(&self) -> bool {
+        self.second_factor_required && !self.second_factor
+    }
+}
+
+/// The columns of a [`User`], and the tables they come from, with `more` columns.
+macro_rules! user_sql {
+    ($more:literal) => {
+        concat!(
+            "SELECT u.id AS user_id, u.email, u.name, u.role, u.operator_id,
+                    o.name AS operator_name, u.firm_id, f.name AS firm_name,
+                    y.confirmed_at IS NOT NULL AS second_factor,
+                    COALESCE(o.second_factor_required, FALSE) AS second_factor_required",
+            $more,
+            " FROM users u
+              LEFT JOIN operators o ON o.id = u.operator_id
+              LEFT JOIN firms f ON f.id = u.firm_id
+              LEFT JOIN second_factors y ON y.user_id = u.id "
+        )
+    };
+}
+pub(crate) use user_sql;
+
+/// What a user may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+pub enum Role {
+    /// See and change the operator's fleet.
+    Admin,
+    /// See the operator's fleet.
+    Viewer,
+    /// Adjust compasses for a firm.
+    Adjuster,
+    /// Manage operators and firms.
+    PlatformAdmin,
+}
+
+impl Role {
+    /// Whether the role allows changes to a fleet.
+    pub fn may_change_fleet(self) -> bool {
+        self == Role::Admin
+    }
+
+    /// Whether the role allows to bring work orders on.
+    pub fn may_bring_orders_on(self) -> bool {
+        matches!(self, Role::Admin | Role::Adjuster)
+    }
+}
+
+/// An e-mail as it is stored and compared.
+pub fn normal_email(email: &str) -> String {
+    email.trim().to_lowercase()
+}

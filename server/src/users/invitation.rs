@@ -1,0 +1,218 @@
+//! One-time codes with which people set a password of their own.
+//!
+//! What always holds: a code is stored as a hash, works once and for a week; whoever
+//! uses it gets a password and nothing else, and signs in with that.
+
+use crate::access::Writer;
+use crate::app::App;
+use crate::db::{Db, Tx, execute, row};
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Valid};
+use crate::ids::UserId;
+use crate::time::Time;
+use crate::{password, second_factor, secret, session};
+use axum::extract::State;
+use axum::http::StatusCode;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+const VALID_FOR_S: f64 = 7.0 * 86_400.0;
+
+pub(super) fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(invite_again))
+        .routes(routes!(accept_invitation))
+}
+
+/// With this someone sets a password.
+#[derive(Serialize, ToSchema)]
+#[schema(example = json!({
+    "code": "7QWM-0V3N-KX2D-9RTA",
+    "link": "https://binnacle.example.com/invitation#7QWM-0V3N-KX2D-9RTA",
+    "expires_at": "2026-11-28T07:00:00Z"
+}))]
+pub(super) struct Invitation {
+    /// Works once and is never shown again.
+    code: String,
+    /// Where to use it, if the server was told its address. What stands after the # is
+    /// sent to no server and gets into no log.
+    #[schema(required)]
+    link: Option<String>,
+    /// When it stops working.
+    expires_at: Time,
+}
+
+/// A code, and the password to be set with it.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({
+    "code": "7QWM-0V3N-KX2D-9RTA", "password": "seven gulls over the quay"
+}))]
+struct Acceptance {
+    /// As it was given; without regard to case and hyphens.
+    code: String,
+    /// At least 12 characters; neither common nor easily guessed of you.
+    #[schema(format = Password)]
+    password: String,
+}
+
+/// Who can now sign in.
+#[derive(Serialize, ToSchema)]
+struct Accepted {
+    /// What to sign in with.
+    #[schema(example = "ada@example.com")]
+    email: String,
+    /// The user's name.
+    #[schema(example = "Ada Lovelace")]
+    name: String,
+}
+
+#[derive(sqlx::FromRow)]
+struct Invited {
+    user_id: UserId,
+    email: String,
+    name: String,
+    company: Option<String>,
+    expires_at: Time,
+}
+
+/// Give a user another one-time code
+///
+/// For who let the first one lapse, or forgot the password: it goes on working until
+/// the code is used. Codes given before work no more.
+#[utoipa::path(post, path = "/users/{id}/invitation", tag = "people",
+    params(("id" = UserId, Path)),
+    responses((status = 201, body = Invitation), (status = 401, body = Problem),
+              (status = 404, body = Problem),
+              (status = 409, description = "The user is shut out", body = Problem)))]
+async fn invite_again(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<UserId>,
+) -> Result<(StatusCode, Json<Invitation>)> {
+    let mut tx = app.db.begin().await?;
+    let user = super::store::find(&mut tx, writer.operator, id).await?;
+    let user = user.ok_or(Error::NotFound("user"))?;
+    if user.state == super::Standing::Disabled {
+        return Err(Error::WrongState("the user is shut out".to_owned()));
+    }
+    let invitation = make(&mut tx, &app, id).await?;
+    tx.commit().await?;
+    Ok((StatusCode::CREATED, Json(invitation)))
+}
+
+/// Set a password with a one-time code
+///
+/// Sessions there were end. A second factor stays.
+#[utoipa::path(post, path = "/invitations/accept", tag = "people", security(()),
+    request_body = Acceptance,
+    responses((status = 200, body = Accepted),
+              (status = 404, description = "There is no such code", body = Problem),
+              (status = 410, description = "The code has lapsed", body = Problem)))]
+async fn accept_invitation(
+    State(app): State<App>,
+    Valid(acceptance): Valid<Acceptance>,
+) -> Result<Json<Accepted>> {
+    let code_hash = secret::hash(&secret::normal_code(&acceptance.code));
+    let now = app.clock.now();
+    let invited = find(&app.db, &code_hash)
+        .await?
+        .ok_or(Error::NotFound("code"))?;
+    if invited.expires_at.0 <= now {
+        return Err(Error::Gone("this code has lapsed; ask for another"));
+    }
+    let company = invited.company.as_deref().unwrap_or_default();
+    let about = [invited.email.as_str(), &invited.name, company];
+    password::check("password", &acceptance.password, &about)?;
+    let hash = password::hash(password::place(&app).await?, acceptance.password).await?;
+    let mut tx = app.db.begin().await?;
+    let used = execute!(
+        &mut tx,
+        "DELETE FROM invitations WHERE user_id = $1 AND code_hash = $2",
+        invited.user_id,
+        code_hash.as_slice()
+    )?;
+    if used == 0 {
+        return Err(Error::NotFound("code"));
+    }
+    session::set_password(&mut tx, invited.user_id, &hash).await?;
+    session::end_all(&mut tx, invited.user_id, None).await?;
+    tx.commit().await?;
+    Ok(Json(Accepted {
+        email: invited.email,
+        name: invited.name,
+    }))
+}
+
+/// Makes a code for a user, in place of any there was.
+pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitation> {
+    let now = app.clock.now();
+    let (code, expires_at) = insert(tx, user, now.into()).await?;
+    let at = app.config.mail.public_url.as_deref();
+    let link = at.map(|at| format!("{}/invitation#{code}", at.trim_end_matches('/')));
+    Ok(Invitation {
+        code,
+        link,
+        expires_at,
+    })
+}
+
+/// Begins a user anew: password, second factor and sessions are gone, and the code
+/// sets another password; none when nobody has the e-mail.
+///
+/// # Errors
+/// When the database does.
+pub async fn reset(db: &Db, email: &str, now: Time) -> Result<Option<(String, Time)>> {
+    let mut tx = db.begin().await?;
+    let user = row!(
+        in &mut tx,
+        (UserId,),
+        "SELECT id FROM users WHERE email = $1 ORDER BY id",
+        session::normal_email(email)
+    )?;
+    let Some((user,)) = user else {
+        return Ok(None);
+    };
+    session::set_password(&mut tx, user, "").await?;
+    session::end_all(&mut tx, user, None).await?;
+    second_factor::remove(&mut tx, user).await?;
+    let made = insert(&mut tx, user, now).await?;
+    tx.commit().await?;
+    Ok(Some(made))
+}
+
+async fn insert(tx: &mut Tx, user: UserId, now: Time) -> Result<(String, Time)> {
+    let code = secret::new_code();
+    let expires_at = Time(now.0.plus_seconds(VALID_FOR_S));
+    execute!(
+        tx,
+        "INSERT INTO invitations (user_id, code_hash, created_at, expires_at)
+         VALUES ($1, $2, $3, $4)
+         ON CONFLICT (user_id) DO UPDATE
+         SET code_hash = excluded.code_hash, created_at = excluded.created_at,
+             expires_at = excluded.expires_at",
+        user,
+        secret::hash(&secret::normal_code(&code)),
+        now,
+        expires_at
+    )?;
+    Ok((code, expires_at))
+}
+
+async fn find(db: &Db, code_hash: &[u8]) -> Result<Option<Invited>> {
+    let found = row!(
+        db,
+        Invited,
+        "SELECT i.user_id, u.email, u.name, COALESCE(o.name, f.name) AS company, i.expires_at
+         FROM invitations i
+         JOIN users u ON u.id = i.user_id
+         LEFT JOIN operators o ON o.id = u.operator_id
+         LEFT JOIN firms f ON f.id = u.firm_id
+         WHERE i.code_hash = $1 AND u.disabled_at IS NULL
+         ORDER BY i.user_id",
+        code_hash
+    )?;
+    Ok(found)
+}

@@ -1,0 +1,325 @@
+//! Who of an operator's people may sign in, and as what.
+//!
+//! What always holds: an operator keeps at least one admin who can sign in; nobody
+//! learns another's password, for an admin gives a one-time code and the person sets
+//! the password; who is disabled is signed out at once, and so are their tokens.
+
+mod invitation;
+mod store;
+
+pub use invitation::reset;
+
+use crate::access::{Overseer, Writer};
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::http::{Id, Json, Listed, Page, Valid, text};
+use crate::ids::UserId;
+use crate::second_factor;
+use crate::session::{Role, normal_email};
+use crate::time::Time;
+use axum::extract::State;
+use axum::http::StatusCode;
+use invitation::Invitation;
+use lettre::Address;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_users, invite_user))
+        .routes(routes!(change_user, remove_user))
+        .routes(routes!(reset_second_factor))
+        .routes(routes!(find_sign_in_rules, change_sign_in_rules))
+        .merge(invitation::router())
+}
+
+/// One of the operator's people.
+#[derive(Clone, Debug, Serialize, ToSchema, sqlx::FromRow)]
+#[schema(as = User)]
+struct Person {
+    /// The user's id.
+    id: UserId,
+    /// What the user signs in with.
+    #[schema(example = "ada@example.com")]
+    email: String,
+    /// The user's name.
+    #[schema(example = "Ada Lovelace")]
+    name: String,
+    /// What the user may do.
+    role: Role,
+    /// Whether the user can sign in.
+    state: Standing,
+    /// Whether the user has a second factor.
+    second_factor: bool,
+    /// Since when there is such a user.
+    created_at: Time,
+    /// When one of the user's sessions that go on was last used, to ten minutes.
+    #[schema(required)]
+    last_seen_at: Option<Time>,
+    /// When the one-time code ends that was made for the user, if it was not used.
+    #[schema(required)]
+    invitation_expires_at: Option<Time>,
+}
+
+/// Whether a user can sign in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ToSchema, sqlx::Type)]
+#[serde(rename_all = "snake_case")]
+#[sqlx(type_name = "text", rename_all = "snake_case")]
+#[schema(as = UserState)]
+enum Standing {
+    /// Has set no password yet.
+    Invited,
+    /// Can sign in.
+    Active,
+    /// Was shut out by an admin.
+    Disabled,
+}
+
+/// A page of users.
+#[derive(Serialize, ToSchema)]
+struct UserList {
+    /// In the order in which they were invited.
+    items: Vec<Person>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// Someone to be invited.
+#[derive(Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({ "email": "ada@example.com", "name": "Ada Lovelace", "role": "viewer" }))]
+struct NewUser {
+    /// What the user is to sign in with.
+    #[schema(max_length = 200)]
+    email: String,
+    /// The user's name.
+    #[schema(min_length = 1, max_length = 200)]
+    name: String,
+    /// What the user may do.
+    role: FleetRole,
+}
+
+/// What one of an operator's people may do.
+#[derive(Clone, Copy, Debug, Deserialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+enum FleetRole {
+    /// See and change the operator's fleet.
+    Admin,
+    /// See the operator's fleet.
+    Viewer,
+}
+
+impl From<FleetRole> for Role {
+    fn from(role: FleetRole) -> Role {
+        match role {
+            FleetRole::Admin => Role::Admin,
+            FleetRole::Viewer => Role::Viewer,
+        }
+    }
+}
+
+/// A user who was invited, and how.
+#[derive(Serialize, ToSchema)]
+struct InvitedUser {
+    /// The user.
+    user: Person,
+    /// What to give them.
+    invitation: Invitation,
+}
+
+/// What is to be otherwise about a user; what is left out stays.
+#[derive(Debug, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({ "role": "admin" }))]
+struct ChangedUser {
+    /// The user's name.
+    #[schema(min_length = 1, max_length = 200)]
+    name: Option<String>,
+    /// What the user may do.
+    role: Option<FleetRole>,
+    /// Whether the user is shut out.
+    disabled: Option<bool>,
+}
+
+/// What an operator asks of its people when they sign in.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize, ToSchema, sqlx::FromRow)]
+#[serde(deny_unknown_fields)]
+#[schema(example = json!({ "second_factor_required": true }))]
+struct SignInRules {
+    /// Whether everyone needs a second factor. Who has none may then only set one up, and
+    /// their tokens do nothing until they have.
+    second_factor_required: bool,
+}
+
+/// List your operator's users
+#[utoipa::path(get, path = "/users", tag = "people", params(Page),
+    responses((status = 200, body = UserList), (status = 401, body = Problem)))]
+async fn list_users(
+    State(app): State<App>,
+    overseer: Overseer,
+    page: Page,
+) -> Result<Json<UserList>> {
+    let after = page.after_id()?;
+    let found = store::list(&app.db, overseer.operator, after, page.fetch()).await?;
+    let Listed { items, next } = page.cut(found, |user| user.id.to_string());
+    Ok(Json(UserList { items, next }))
+}
+
+/// Invite a user
+///
+/// Give them the link or the code: with it they set a password of their own. It works
+/// once, for a week.
+#[utoipa::path(post, path = "/users", tag = "people", request_body = NewUser,
+    responses((status = 201, body = InvitedUser), (status = 401, body = Problem),
+              (status = 409, description = "The e-mail has an account", body = Problem)))]
+async fn invite_user(
+    State(app): State<App>,
+    writer: Writer,
+    Valid(new): Valid<NewUser>,
+) -> Result<(StatusCode, Json<InvitedUser>)> {
+    let email = checked_email(&new.email)?;
+    let name = text("name", &new.name)?;
+    let now = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    let created = store::insert(
+        &mut tx,
+        writer.operator,
+        &email,
+        &name,
+        new.role.into(),
+        now,
+    );
+    let id = created.await?.ok_or_else(|| {
+        Error::WrongState(format!("{email} has an account already, here or elsewhere"))
+    })?;
+    let invitation = invitation::make(&mut tx, &app, id).await?;
+    let user = store::find(&mut tx, writer.operator, id).await?;
+    tx.commit().await?;
+    let user = user.ok_or(Error::NotFound("user"))?;
+    Ok((StatusCode::CREATED, Json(InvitedUser { user, invitation })))
+}
+
+/// Change a user's name or role, or shut them out
+///
+/// Who is shut out is signed out at once. The last admin stays one.
+#[utoipa::path(patch, path = "/users/{id}", tag = "people", params(("id" = UserId, Path)),
+    request_body = ChangedUser,
+    responses((status = 200, body = Person), (status = 401, body = Problem),
+              (status = 404, body = Problem),
+              (status = 409, description = "It is the last admin", body = Problem)))]
+async fn change_user(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<UserId>,
+    Valid(change): Valid<ChangedUser>,
+) -> Result<Json<Person>> {
+    let name = change
+        .name
+        .as_deref()
+        .map(|name| text("name", name))
+        .transpose()?;
+    let role = change.role.map(Role::from);
+    let now = app.clock.now().into();
+    let mut tx = app.db.begin().await?;
+    store::lock(&mut tx, writer.operator).await?;
+    let before = store::find(&mut tx, writer.operator, id).await?;
+    before.ok_or(Error::NotFound("user"))?;
+    store::update(&mut tx, id, name.as_deref(), role).await?;
+    match change.disabled {
+        Some(true) => store::disable(&mut tx, id, now).await?,
+        Some(false) => store::enable(&mut tx, id).await?,
+        None => {}
+    }
+    store::must_have_admin(&mut tx, writer.operator).await?;
+    let after = store::find(&mut tx, writer.operator, id).await?;
+    tx.commit().await?;
+    Ok(Json(after.ok_or(Error::NotFound("user"))?))
+}
+
+/// Remove a user
+///
+/// With their sessions and tokens. What they wrote keeps their name.
+#[utoipa::path(delete, path = "/users/{id}", tag = "people", params(("id" = UserId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "It is the last admin", body = Problem)))]
+async fn remove_user(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<UserId>,
+) -> Result<StatusCode> {
+    let mut tx = app.db.begin().await?;
+    store::lock(&mut tx, writer.operator).await?;
+    if !store::delete(&mut tx, writer.operator, id).await? {
+        return Err(Error::NotFound("user"));
+    }
+    store::must_have_admin(&mut tx, writer.operator).await?;
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// Remove a user's second factor
+///
+/// For who lost telephone and recovery codes.
+#[utoipa::path(delete, path = "/users/{id}/second-factor", tag = "people",
+    params(("id" = UserId, Path)),
+    responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem)))]
+async fn reset_second_factor(
+    State(app): State<App>,
+    writer: Writer,
+    Id(id): Id<UserId>,
+) -> Result<StatusCode> {
+    let mut tx = app.db.begin().await?;
+    let user = store::find(&mut tx, writer.operator, id).await?;
+    user.ok_or(Error::NotFound("user"))?;
+    second_factor::remove(&mut tx, id).await?;
+    tx.commit().await?;
+    Ok(StatusCode::NO_CONTENT)
+}
+
+/// See what your operator asks of its people when they sign in
+#[utoipa::path(get, path = "/sign-in-rules", tag = "people",
+    responses((status = 200, body = SignInRules), (status = 401, body = Problem)))]
+async fn find_sign_in_rules(
+    State(app): State<App>,
+    overseer: Overseer,
+) -> Result<Json<SignInRules>> {
+    Ok(Json(store::rules(&app.db, overseer.operator).await?))
+}
+
+/// Change what your operator asks of its people when they sign in
+///
+/// Whoever wants a second factor of others has one.
+#[utoipa::path(put, path = "/sign-in-rules", tag = "people", request_body = SignInRules,
+    responses((status = 200, body = SignInRules), (status = 401, body = Problem),
+              (status = 409, description = "You have no second factor yourself", body = Problem)))]
+async fn change_sign_in_rules(
+    State(app): State<App>,
+    writer: Writer,
+    Valid(rules): Valid<SignInRules>,
+) -> Result<Json<SignInRules>> {
+    let mut tx = app.db.begin().await?;
+    let asking = store::find(&mut tx, writer.operator, writer.user).await?;
+    if rules.second_factor_required && !asking.is_some_and(|user| user.second_factor) {
+        let first = "set up a second factor of your own first";
+        return Err(Error::WrongState(first.to_owned()));
+    }
+    store::set_rules(&mut tx, writer.operator, rules).await?;
+    tx.commit().await?;
+    Ok(Json(rules))
+}
+
+/// An e-mail as it is stored, if mail can go there.
+fn checked_email(email: &str) -> Result<String> {
+    let email = normal_email(&text("email", email)?);
+    if !email.is_ascii() || email.parse::<Address>().is_err() {
+        return Err(Error::Invalid {
+            field: "email",
+            detail: "is not an address like name@example.com".to_owned(),
+        });
+    }
+    Ok(email)
+}

@@ -1,0 +1,172 @@
+//! Telling both sides of an order what happened: live, and by their webhooks.
+//!
+//! What always holds: news is written in the transaction that makes it true. A firm is
+//! told of what is between it and the operator, and of everything else only while the
+//! order is its own.
+
+use super::entry::{Content, Entry};
+use super::offers::{Offer, OfferState, Offers};
+use super::order::{State, Summary};
+use super::store::Whole;
+use crate::db::Tx;
+use crate::error::Result;
+use crate::events::{self, Event};
+use crate::ids::{DeliveryId, FirmId};
+use crate::outbox::{Kind, Message};
+use crate::tenants::Tenant;
+use crate::time::Time;
+use crate::webhooks;
+use binnacle_magnetics::adjust::Verification;
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+
+/// An order as it was before a change.
+pub(super) struct Before {
+    last_seq: i64,
+    offers: Offers,
+}
+
+impl Before {
+    pub(super) fn of(whole: &Whole) -> Before {
+        Before {
+            last_seq: whole.summary.last_seq,
+            offers: whole.standing().offers,
+        }
+    }
+}
+
+/// Tells of what was written since; the live events, to be published after the commit.
+pub(super) async fn tell(
+    tx: &mut Tx,
+    whole: &Whole,
+    before: &Before,
+    now: Time,
+) -> Result<Vec<Event>> {
+    let summary = &whole.summary;
+    let new = |entry: &&Entry| entry.seq > before.last_seq;
+    let new: Vec<&Entry> = whole.log.iter().filter(new).collect();
+    let offers = whole.standing().offers;
+    let mut told = Vec::new();
+    for entry in &new {
+        if let Some(kind) = kind(&entry.content) {
+            told.push(message(kind, summary, entry, now));
+        }
+    }
+    let operator = Tenant::Operator(summary.operator_id);
+    webhooks::announce_messages(tx, operator, &told, now).await?;
+    let order = (summary.vessel_id, summary.id);
+    let mut live = vec![events::insert_of_order(tx, order, None, now).await?];
+    // In the order of their ids: no two transactions wait for each other.
+    for firm in firms(&before.offers, &offers) {
+        let was = before.offers.of(firm).map(|offer| offer.state);
+        let Some(offer) = offers.of(firm) else {
+            continue;
+        };
+        let told = messages_for(summary, offer, was, &new, now);
+        if told.is_empty() {
+            continue;
+        }
+        webhooks::announce_messages(tx, Tenant::Firm(firm), &told, now).await?;
+        live.push(events::insert_of_order(tx, order, Some(firm), now).await?);
+    }
+    Ok(live)
+}
+
+fn firms(before: &Offers, after: &Offers) -> BTreeSet<FirmId> {
+    let all = before.all.iter().chain(&after.all);
+    all.map(|offer| offer.firm_id).collect()
+}
+
+fn messages_for(
+    summary: &Summary,
+    offer: &Offer,
+    was: Option<OfferState>,
+    new: &[&Entry],
+    now: Time,
+) -> Vec<Message> {
+    let holds = offer.state == OfferState::Accepted;
+    let seen = summary.seen_with(offer);
+    let mut told = Vec::new();
+    for entry in new {
+        let between = entry.content.between();
+        let mine = between.is_some_and(|said| said.firm.firm_id == offer.firm_id);
+        let ours = holds && between.is_none();
+        let Some(kind) = kind(&entry.content).filter(|_| mine || ours) else {
+            continue;
+        };
+        told.push(message(kind, &seen, entry, now));
+    }
+    let withdrawn = offer.state == OfferState::Withdrawn && was.is_some_and(OfferState::is_seen);
+    if withdrawn && let Some(last) = new.last() {
+        // Why is not the firm's business: another may have it.
+        let body = json!({ "seq": last.seq, "kind": "withdrawn", "at": last.at });
+        told.push(written(Kind::OrderWithdrawn, &seen, &body, now));
+    }
+    told
+}
+
+fn kind(content: &Content) -> Option<Kind> {
+    Some(match content {
+        Content::Offered(_) => return None,
+        Content::Asked(_) => Kind::OrderOffered,
+        Content::Accepted(_)
+        | Content::Declined(_)
+        | Content::Proposed(_)
+        | Content::ProposalAccepted(_)
+        | Content::ProposalDeclined(_) => Kind::OrderAnswered,
+        Content::Lapsed(_) => Kind::OrderLapsed,
+        Content::Message(_) => Kind::OrderMessage,
+        Content::Completion(_) => Kind::OrderCompleted,
+        Content::Verification(verified) => match verified.verification {
+            Verification::Passed { .. } => Kind::OrderVerified,
+            Verification::MoreNeeded { .. } => Kind::OrderUpdated,
+            Verification::Alarm { .. } => Kind::OrderFailed,
+        },
+        Content::Closed(_) => Kind::OrderClosed,
+        Content::Cancelled(_) => Kind::OrderCancelled,
+        Content::Opened(_)
+        | Content::OnBoard(_)
+        | Content::BerthReading(_)
+        | Content::Plan(_)
+        | Content::Step(_)
+        | Content::CorrectorSettings(_)
+        | Content::Photo(_)
+        | Content::Remark(_)
+        | Content::Signature(_) => Kind::OrderUpdated,
+    })
+}
+
+fn message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
+    let said = entry.content.between();
+    let what = serde_json::to_value(&entry.content).ok();
+    let what = what.and_then(|value| value.get("kind").cloned());
+    let entry = json!({
+        "seq": entry.seq, "kind": what, "at": entry.at, "by": entry.author.name,
+        "firm_id": said.map(|said| said.firm.firm_id),
+        "terms": said.and_then(|said| said.terms.as_ref()),
+        "text": said.and_then(|said| said.text.as_ref()),
+    });
+    written(kind, summary, &entry, now)
+}
+
+/// A message as it is sent: the order in short, and what happened to it.
+fn written(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
+    let id = DeliveryId::new();
+    let (state, answer_by): (State, Option<Time>) = (summary.state, summary.answer_by);
+    let body = json!({
+        "id": id, "kind": kind, "at": now,
+        "work_order": {
+            "id": summary.id, "state": state, "answer_by": answer_by,
+            "operator_name": summary.operator_name,
+            "vessel_id": summary.vessel_id, "vessel_name": summary.vessel_name,
+            "compass_name": summary.compass_name, "port": summary.port, "berth": summary.berth,
+            "planned_at": summary.planned_at,
+        },
+        "entry": entry,
+    });
+    Message {
+        id,
+        kind,
+        body: body.to_string(),
+    }
+}

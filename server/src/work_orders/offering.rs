@@ -1,0 +1,329 @@
+//! What is asked and answered between an operator and firms, as requests have it.
+
+use super::change::Change;
+use super::entry::Content;
+use super::offers::{Asked, Between, OfferState, Offered, Terms};
+use super::order::State;
+use crate::db::Tx;
+use crate::error::{Error, Result};
+use crate::firms;
+use crate::http::{optional_text, text};
+use crate::ids::{FirmId, OperatorId};
+use crate::time::Time;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// So many firms at most.
+const MOST_FIRMS: usize = 20;
+const LONGEST_H: u32 = 720;
+const HOUR_S: f64 = 3600.0;
+const MOST_EUR: f64 = 1e6;
+/// Longest text of a message, in characters.
+pub(super) const MAX_MESSAGE: usize = 2000;
+
+/// An order to be offered to firms.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewOffer, example = json!({
+    "firms": ["0199aa00-0000-7000-8000-000000000003"], "answer_within_hours": 48
+}))]
+pub struct NewOffer {
+    /// The firms, in the order in which they are asked: 1 to 20 that you work with.
+    pub firms: Vec<FirmId>,
+    /// So long each has for an answer, 1 to 720 hours; then the next is asked.
+    #[serde(default = "two_days")]
+    #[schema(minimum = 1, maximum = 720)]
+    pub answer_within_hours: u32,
+    /// Ask all of them at once: the first to accept has it.
+    #[serde(default)]
+    pub at_once: bool,
+    /// What is said to them.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    pub text: Option<String>,
+}
+
+fn two_days() -> u32 {
+    48
+}
+
+/// A yes or a no.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = OfferAnswer, example = json!({
+    "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114", "text": "See you there."
+}))]
+pub(super) struct Answer {
+    /// Whose proposal an operator answers; may be left out where there is one.
+    #[serde(default)]
+    pub firm_id: Option<FirmId>,
+    /// Who will come, where a firm accepts.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    pub adjuster_name: Option<String>,
+    /// The number of their licence.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    pub adjuster_licence: Option<String>,
+    /// In words.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    pub text: Option<String>,
+}
+
+/// Other terms than were offered.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = OfferProposal, example = json!({
+    "terms": { "planned_at": "2026-11-22T13:00:00Z", "fee_eur": 900.0 },
+    "text": "Our team is at Santander until noon."
+}))]
+pub(super) struct Proposal {
+    /// The terms.
+    pub terms: Terms,
+    /// In words.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    pub text: Option<String>,
+}
+
+/// When the adjuster went on board.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = OnBoard, example = json!({ "text": "Gangway on the starboard side." }))]
+pub struct Boarded {
+    /// When; now where it is not said.
+    #[serde(default)]
+    pub at: Option<Time>,
+    /// In words.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    pub text: Option<String>,
+}
+
+impl NewOffer {
+    /// The offer, if the operator works with all of the firms.
+    pub(super) async fn checked(self, tx: &mut Tx, operator: OperatorId) -> Result<Offered> {
+        let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
+        if self.firms.is_empty() || self.firms.len() > MOST_FIRMS {
+            return invalid("firms", format!("is not 1 to {MOST_FIRMS} firms"));
+        }
+        if !(1..=LONGEST_H).contains(&self.answer_within_hours) {
+            let hours = self.answer_within_hours;
+            let detail = format!("{hours} is outside 1 to {LONGEST_H}");
+            return invalid("answer_within_hours", detail);
+        }
+        let mut firms: Vec<Asked> = Vec::new();
+        for firm_id in self.firms {
+            if firms.iter().any(|asked| asked.firm_id == firm_id) {
+                return invalid("firms", format!("{firm_id} stands there twice"));
+            }
+            let Some(firm_name) = firms::name_for(tx, operator, firm_id).await? else {
+                return invalid("firms", format!("{firm_id} is no firm that you work with"));
+            };
+            firms.push(Asked { firm_id, firm_name });
+        }
+        Ok(Offered {
+            firms,
+            answer_within_hours: self.answer_within_hours,
+            at_once: self.at_once,
+            text: optional_text("text", self.text.as_deref())?,
+        })
+    }
+}
+
+impl Answer {
+    /// The same, its words trimmed.
+    pub(super) fn checked(self) -> Result<Answer> {
+        let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
+        Ok(Answer {
+            firm_id: self.firm_id,
+            adjuster_name: optional("adjuster_name", self.adjuster_name)?,
+            adjuster_licence: optional("adjuster_licence", self.adjuster_licence)?,
+            text: optional("text", self.text)?,
+        })
+    }
+
+    /// What it says of a firm.
+    pub(super) fn between(self, firm: Asked) -> Between {
+        Between {
+            adjuster_name: self.adjuster_name,
+            adjuster_licence: self.adjuster_licence,
+            text: self.text,
+            ..Between::with(firm)
+        }
+    }
+}
+
+impl Proposal {
+    /// The same, at a time to come.
+    pub(super) fn checked(self, now: Time) -> Result<Proposal> {
+        let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
+        if self.terms.planned_at <= now {
+            let detail = format!("{} is over", self.terms.planned_at.0);
+            return invalid("planned_at", detail);
+        }
+        if let Some(fee) = self.terms.fee_eur
+            && !(0.0..=MOST_EUR).contains(&fee)
+        {
+            return invalid("fee_eur", format!("{fee} is outside 0 to {MOST_EUR}"));
+        }
+        Ok(Proposal {
+            terms: Terms {
+                berth: optional_text("berth", self.terms.berth.as_deref())?,
+                ..self.terms
+            },
+            text: optional_text("text", self.text.as_deref())?,
+        })
+    }
+}
+
+impl Boarded {
+    /// The same at a moment that can be.
+    pub(super) fn checked(self, now: Time) -> Result<Boarded> {
+        let at = self.at.unwrap_or(now);
+        if at > now {
+            return Err(Error::Invalid {
+                field: "at",
+                detail: "lies in the future".to_owned(),
+            });
+        }
+        Ok(Boarded {
+            at: Some(at),
+            text: optional_text("text", self.text.as_deref())?,
+        })
+    }
+}
+
+/// What is said in a message: lines of text.
+pub(super) fn message(said: &str) -> Result<String> {
+    let said = said.trim();
+    if said.chars().any(|c| c.is_control() && c != '\n') || said.chars().count() > MAX_MESSAGE {
+        return Err(Error::Invalid {
+            field: "text",
+            detail: format!("has control characters, or more than {MAX_MESSAGE} characters"),
+        });
+    }
+    // What is blank is refused as any text is.
+    if said.is_empty() {
+        return text("text", said);
+    }
+    Ok(said.to_owned())
+}
+
+/// When an answer to what is asked now is due.
+fn due(change: &Change<'_>, hours: u32) -> Time {
+    Time(change.now.0.plus_seconds(f64::from(hours) * HOUR_S))
+}
+
+/// Offers an order, and asks whom it is the turn of.
+pub(super) async fn offer(change: &mut Change<'_>, offered: Offered) -> Result<()> {
+    change.append(Content::Offered(offered)).await?;
+    ask_next(change).await
+}
+
+/// Asks whom it is the turn of, where nobody else is waited for.
+pub(super) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
+    let offers = change.whole.standing().offers;
+    let answer_by = due(change, offers.answer_within_hours);
+    for next in offers.next() {
+        let asked = Between {
+            answer_by: Some(answer_by),
+            text: next.text.clone(),
+            ..Between::with(next.firm())
+        };
+        change.append(Content::Asked(asked)).await?;
+    }
+    Ok(())
+}
+
+/// A firm's yes or no, or its other terms.
+pub(super) enum FirmSays {
+    Yes(Answer),
+    No(Answer),
+    Instead(Proposal),
+}
+
+/// Takes a firm's answer.
+///
+/// # Errors
+/// [`Error::WrongState`] when it is not asked, or not any more.
+pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmSays) -> Result<()> {
+    let offers = change.whole.standing().offers;
+    let offer = offers.of(firm).ok_or(Error::NotFound("work order"))?;
+    let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
+    let gives_back = matches!(says, FirmSays::No(_))
+        && offer.state == OfferState::Accepted
+        && change.whole.summary.state == State::Accepted;
+    // A firm may think better of its own proposal.
+    let takes_back = matches!(says, FirmSays::No(_) | FirmSays::Instead(_))
+        && offer.state == OfferState::Proposed;
+    if offer.state != OfferState::Open && !gives_back && !takes_back {
+        return wrong(offer.state.why_not());
+    }
+    if offer.answer_by.is_some_and(|by| by < change.now) {
+        return wrong(OfferState::Lapsed.why_not());
+    }
+    let asked = offer.firm();
+    match says {
+        FirmSays::Yes(answer) => {
+            change
+                .append(Content::Accepted(answer.between(asked)))
+                .await
+        }
+        FirmSays::No(answer) => {
+            change
+                .append(Content::Declined(answer.between(asked)))
+                .await?;
+            ask_next(change).await
+        }
+        FirmSays::Instead(proposal) => {
+            let proposed = Between {
+                answer_by: Some(due(change, offers.answer_within_hours)),
+                terms: Some(proposal.terms),
+                text: proposal.text,
+                ..Between::with(asked)
+            };
+            change.append(Content::Proposed(proposed)).await
+        }
+    }
+}
+
+/// Takes an operator's yes or no to what a firm has proposed.
+///
+/// # Errors
+/// [`Error::WrongState`] when nothing is proposed, or it has lapsed.
+pub(super) async fn operator_says(
+    change: &mut Change<'_>,
+    answer: Answer,
+    yes: bool,
+) -> Result<()> {
+    let offers = change.whole.standing().offers;
+    let mut proposed = offers.all.iter().filter(|offer| {
+        let meant = answer.firm_id.is_none_or(|firm| firm == offer.firm_id);
+        meant && offer.state == OfferState::Proposed
+    });
+    let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
+    let Some(offer) = proposed.next() else {
+        return wrong("there is no proposal to answer");
+    };
+    if proposed.next().is_some() {
+        return Err(Error::Invalid {
+            field: "firm_id",
+            detail: "is missing: more than one firm has proposed terms".to_owned(),
+        });
+    }
+    if offer.answer_by.is_some_and(|by| by < change.now) {
+        return wrong("the proposal has lapsed");
+    }
+    let between = Between {
+        terms: offer.terms.clone(),
+        text: answer.text,
+        ..Between::with(offer.firm())
+    };
+    if yes {
+        return change.append(Content::ProposalAccepted(between)).await;
+    }
+    change.append(Content::ProposalDeclined(between)).await?;
+    ask_next(change).await
+}

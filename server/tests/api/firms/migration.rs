@@ -1,0 +1,151 @@
+//! A database from before there were firms loses nothing.
+
+use crate::support::{Answer, Engine, Shore, attempt, password_hash};
+use binnacle_server::db::{Db, Tx};
+use binnacle_server::secret;
+use reqwest::Method;
+use serde_json::json;
+use uuid::Uuid;
+
+/// 2026-11-21T07:00:00Z, when every test begins, and a day later.
+const NOW: i64 = 1_795_244_400_000_000;
+const TOMORROW: i64 = NOW + 86_400_000_000;
+/// People, each with a session and a token.
+const PEOPLE: usize = 3;
+
+macro_rules! run {
+    ($tx:expr, $sql:expr $(, $bind:expr)* $(,)?) => {
+        match $tx {
+            Tx::Sqlite(tx) => drop(sqlx::query($sql)$(.bind($bind))*.execute(&mut **tx).await.unwrap()),
+            Tx::Postgres(tx) => drop(sqlx::query($sql)$(.bind($bind))*.execute(&mut **tx).await.unwrap()),
+        }
+    };
+}
+
+#[tokio::test]
+async fn on_sqlite_every_token_and_webhook_is_there_afterwards() {
+    nothing_is_lost(Engine::Sqlite).await;
+}
+
+#[tokio::test]
+async fn on_postgres_every_token_and_webhook_is_there_afterwards() {
+    nothing_is_lost(Engine::Postgres).await;
+}
+
+async fn nothing_is_lost(engine: Engine) {
+    let aged = Shore::aged(engine, 25).await;
+    let operator = Uuid::now_v7();
+    fill(&aged.db, operator).await;
+    let shore = aged.open().await;
+    for number in 0..PEOPLE {
+        let role = ["admin", "viewer", "platform_admin"][number];
+        let url = format!("{}/api/v1/me", shore.url);
+        let cookie = format!("binnacle_session=session{number}");
+        // A later migration has everyone sign in again.
+        let by_cookie = Answer::of(shore.http.get(&url).header("cookie", cookie)).await;
+        assert_eq!(by_cookie.problem(), "unauthenticated");
+        let token = shore
+            .http
+            .get(&url)
+            .bearer_auth(format!("bna_token{number}"));
+        assert_eq!(Answer::of(token).await.good()["role"], role);
+        let signed_in = attempt(
+            &shore,
+            &format!("{number}@example.com"),
+            crate::support::PASSWORD,
+        )
+        .await;
+        assert_eq!(signed_in.good()["role"], role);
+    }
+    let url = |path: &str| format!("{}/api/v1{path}", shore.url);
+    let request = |method, path: &str| {
+        shore
+            .http
+            .request(method, url(path))
+            .bearer_auth("bna_token0")
+    };
+    let webhooks = Answer::of(request(Method::GET, "/webhooks")).await.good();
+    assert_eq!(webhooks["items"][0]["url"], "https://example.com/hook");
+    // The key of before still finds what it made.
+    let vessel = request(Method::POST, "/vessels").json(&json!({ "name": "Other" }));
+    let vessel = vessel.header("Idempotency-Key", "old");
+    assert_eq!(Answer::of(vessel).await.problem(), "idempotency-key-reused");
+    // What refers to users refers to those of now: who is removed is signed out.
+    shore.sql("DELETE FROM users WHERE role = 'viewer'").await;
+    let gone = shore.http.get(url("/me")).bearer_auth("bna_token1");
+    assert_eq!(Answer::of(gone).await.problem(), "unauthenticated");
+    let left = Answer::of(request(Method::GET, "/me")).await;
+    assert_eq!(left.status, 200);
+    shore.finish().await;
+}
+
+/// People of each role, as they were entered when there were no firms.
+async fn fill(db: &Db, operator: Uuid) {
+    let mut tx = db.begin().await.unwrap();
+    run!(
+        &mut tx,
+        "INSERT INTO operators (id, name, created_at) VALUES ($1, 'ada', $2)",
+        operator,
+        NOW
+    );
+    for number in 0..PEOPLE {
+        let user = Uuid::now_v7();
+        let role = ["admin", "viewer", "platform_admin"][number];
+        run!(
+            &mut tx,
+            "INSERT INTO users (id, operator_id, email, name, role, password_hash, created_at)
+             VALUES ($1, $2, $3, 'Ada', $4, $5, $6)",
+            user,
+            Some(operator).filter(|_| role != "platform_admin"),
+            format!("{number}@example.com"),
+            role,
+            password_hash(),
+            NOW
+        );
+        run!(
+            &mut tx,
+            "INSERT INTO sessions (token_hash, user_id, created_at, expires_at)
+             VALUES ($1, $2, $3, $4)",
+            secret::hash(&format!("session{number}")),
+            user,
+            NOW,
+            TOMORROW
+        );
+        run!(
+            &mut tx,
+            "INSERT INTO api_tokens (id, user_id, token_hash, name, scope, created_at, expires_at)
+             VALUES ($1, $2, $3, 'ERP', 'write', $4, $5)",
+            Uuid::now_v7(),
+            user,
+            secret::hash(&format!("bna_token{number}")),
+            NOW,
+            TOMORROW
+        );
+    }
+    let webhook = Uuid::now_v7();
+    run!(
+        &mut tx,
+        "INSERT INTO receivers (id, operator_id, channel, enabled, last_number)
+         VALUES ($1, $2, 'webhook', TRUE, 0)",
+        webhook,
+        operator
+    );
+    run!(
+        &mut tx,
+        "INSERT INTO webhooks (id, operator_id, url, secret, kinds, created_at)
+         VALUES ($1, $2, 'https://example.com/hook', 'bns_x', '[\"alert.raised\"]', $3)",
+        webhook,
+        operator,
+        NOW
+    );
+    run!(
+        &mut tx,
+        "INSERT INTO idempotency_keys (operator_id, key_hash, request_hash, resource_id, created_at)
+         VALUES ($1, $2, $3, $1, $4)",
+        operator,
+        secret::hash("old"),
+        secret::hash("request"),
+        NOW
+    );
+    tx.commit().await.unwrap();
+}

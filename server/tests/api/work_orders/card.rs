@@ -1,0 +1,125 @@
+//! The card after an adjustment: predicted, verified at sea, and over with its epoch.
+
+use super::{Job, foretold};
+use crate::on_both;
+use crate::support::{Shore, days_at_sea};
+use binnacle_magnetics::sample::Sample;
+use serde_json::{Value, json};
+
+on_both!(
+    a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch,
+    an_adjustment_that_failed_at_sea_leaves_its_card_predicted,
+);
+
+impl Job {
+    async fn card(&self) -> Value {
+        self.person.get(&self.ship.path("/card.json")).await.good()
+    }
+
+    /// The card's status in each form: JSON, CSV, SVG.
+    async fn is_said_everywhere(&self, status: &str) {
+        let card = self.card().await;
+        assert_eq!(card["status"], status, "{card}");
+        let statement = card["statement"].as_str().unwrap();
+        assert!(statement.contains("Not a certificate"), "{statement}");
+        let csv = self.person.get(&self.ship.path("/card.csv")).await.text;
+        let word = format!(",{status},");
+        assert!(
+            csv.lines().skip(1).all(|line| line.contains(&word)),
+            "{csv}"
+        );
+        let svg = self.person.get(&self.ship.path("/card.svg")).await.text;
+        let mark = match status {
+            "verified" => "VERIFIED AT SEA – NOT A CERTIFICATE",
+            _ => "PREDICTED – NOT A CERTIFICATE",
+        };
+        assert!(svg.contains(mark), "{mark}");
+        assert!(svg.contains(&format!("Deviation card ({status})")));
+    }
+
+    /// What the book's cards were worth, in order of its entries.
+    async fn in_the_book(&self, from: &str) -> Vec<Value> {
+        let path = format!("/deviation-book?limit=200&from={from}");
+        let book = self.person.get(&self.ship.path(&path)).await.good();
+        let entries = book["items"].as_array().unwrap();
+        entries.iter().map(|e| e["card_status"].clone()).collect()
+    }
+}
+
+async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch(shore: Shore) {
+    let mut job = Job::begin(&shore).await;
+    job.is_said_everywhere("predicted").await;
+    let ship = foretold(&job.complete().await);
+    job.is_said_everywhere("predicted").await;
+    let card = job.card().await;
+    assert_eq!(card["verified"], Value::Null);
+    assert_eq!(card["adjusted_by"]["order"], job.order);
+    assert_eq!(card["adjusted_by"]["licence"], "ES-CA-114");
+    assert_eq!(card["next_due"]["on"], "2028-11-21");
+    let more = job.sail(&shore, &ship, 2, 6.0).await;
+    assert_eq!(more["state"], "verified", "{}", more["verification"]);
+
+    job.is_said_everywhere("verified").await;
+    let card = job.card().await;
+    let by = &card["verified"];
+    assert_eq!(by["order"], job.order);
+    assert_eq!(by["adjusted_at"], more["completed_at"]);
+    let passed = &more["verification"]["verification"];
+    assert_eq!(by["headings"], passed["headings"]);
+    assert_eq!(by["until"], more["verification"]["until"]);
+    let rows = card["rows"].as_array().unwrap();
+    let observed = rows.iter().filter(|row| row["samples"] != 0).count();
+    assert!(
+        observed >= by["headings"].as_u64().unwrap() as usize,
+        "{card}"
+    );
+    let pdf = job.person.get(&job.ship.path("/card.pdf")).await;
+    assert_eq!(pdf.status, 200);
+
+    // A later fit of the same epoch is of the same adjustment.
+    let later = days_at_sea(&ship, "2026-11-28T13:00:00Z", 60.0);
+    let later: Vec<Sample> = later.into_iter().step_by(8).collect();
+    job.send(&shore, 3, &later, 60.5).await;
+    let model = job.person.get(&job.ship.path("/model")).await.good();
+    assert_eq!(model["foretold_by"], Value::Null, "it has been fitted");
+    assert_eq!(model["epoch_from"], by["adjusted_at"]);
+    job.is_said_everywhere("verified").await;
+    // The book has each card as it was then.
+    let book = job.in_the_book("2026-11-21T12:00:00Z").await;
+    let then: Vec<&Value> = book.iter().collect();
+    assert_eq!(then.first(), Some(&&json!("predicted")), "{book:?}");
+    assert_eq!(then.last(), Some(&&json!("verified")), "{book:?}");
+    let after = job.in_the_book("2026-11-28T14:00:00Z").await;
+    assert!(after.iter().all(|status| status == "verified"), "{after:?}");
+
+    // A magnet that somebody moved ends it,
+    let moved = json!({ "kind": "corrector_change", "from": "2027-01-27T20:00:00Z" });
+    job.person
+        .post(&job.ship.path("/logbook"), &moved)
+        .await
+        .good();
+    shore.work().await;
+    let none = job.person.get(&job.ship.path("/card.json")).await;
+    assert_eq!(none.problem(), "no-model-yet");
+    // and what is fitted after that is predicted.
+    let mut other = ship.clone();
+    other.parameters_over_lambda.bx_nt += 700.0;
+    let since = days_at_sea(&other, "2027-01-28T02:00:00Z", 6.0);
+    job.send(&shore, 4, &since, 7.0).await;
+    job.is_said_everywhere("predicted").await;
+    assert_eq!(job.card().await["verified"], Value::Null);
+    shore.finish().await;
+}
+
+async fn an_adjustment_that_failed_at_sea_leaves_its_card_predicted(shore: Shore) {
+    let mut job = Job::begin(&shore).await;
+    let mut ship = foretold(&job.complete().await);
+    ship.parameters_over_lambda.bx_nt += 4000.0;
+    let failed = job.sail(&shore, &ship, 2, 6.0).await;
+    assert_eq!(failed["state"], "failed");
+    job.is_said_everywhere("predicted").await;
+    let closed = job.post("/close", &json!({ "text": "to be swung" })).await;
+    assert_eq!(closed.good()["standing"], "predicted, not a certificate");
+    job.is_said_everywhere("predicted").await;
+    shore.finish().await;
+}

@@ -1,0 +1,203 @@
+//! The log, the photographs and the archive.
+
+use super::Job;
+use crate::on_both;
+use crate::support::{Answer, Shore};
+use binnacle_server::evidence;
+use binnacle_server::work_orders::entry::sha256_hex;
+use reqwest::Method;
+use ring::signature::{Ed25519KeyPair, KeyPair};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io::{Cursor, Read, Write};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+on_both!(
+    each_entry_names_the_hash_of_the_one_before,
+    only_a_picture_is_a_photograph,
+    evidence_that_was_tampered_with_is_found_out,
+);
+
+async fn each_entry_names_the_hash_of_the_one_before(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    job.complete().await;
+    let log = job.person.get(&job.path("/entries")).await.good();
+    let entries = log["items"].as_array().unwrap();
+    assert!(entries.len() > 4, "{}", entries.len());
+    let mut previous = Value::Null;
+    for (index, found) in entries.iter().enumerate() {
+        assert_eq!(found["seq"], index + 1);
+        assert_eq!(found["entry"]["previous_sha256"], previous);
+        previous = found["sha256"].clone();
+    }
+    assert_eq!(job.seen().await["last_sha256"], previous);
+    shore.finish().await;
+}
+
+const PICTURE: &[u8] = &[0xFF, 0xD8, 0xFF, 0xE0, 0, 16, b'J', b'F', b'I', b'F'];
+
+impl Job {
+    async fn photo(&self, bytes: &'static [u8]) -> Answer {
+        let path = self.path("/photos?caption=trays");
+        Answer::of(self.person.request(Method::POST, &path).body(bytes)).await
+    }
+}
+
+async fn only_a_picture_is_a_photograph(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let page = job.photo(b"<html><script>alert(1)</script>").await;
+    assert_eq!(
+        (page.status, page.problem().as_str()),
+        (415, "unsupported-media-type")
+    );
+    job.photo(PICTURE).await.good();
+    let order = job.seen().await;
+    assert_eq!(order["photos"].as_array().unwrap().len(), 1);
+    let log = job.person.get(&job.path("/entries?after=1")).await.good();
+    let taken = &log["items"][0]["entry"]["content"];
+    assert_eq!(
+        (&taken["media_type"], &taken["caption"]),
+        (&json!("image/jpeg"), &json!("trays"))
+    );
+    let path = job.path(&format!("/photos/{}", taken["photo"].as_str().unwrap()));
+    let request = job.person.request(Method::GET, &path).send().await.unwrap();
+    assert_eq!(request.headers()["content-type"], "image/jpeg");
+    assert_eq!(request.headers()["content-disposition"], "attachment");
+    assert_eq!(request.headers()["x-content-type-options"], "nosniff");
+    assert_eq!(request.bytes().await.unwrap(), PICTURE);
+    let large = Box::leak(vec![0xFF_u8; 11 * 1024 * 1024].into_boxed_slice());
+    assert_eq!(job.photo(large).await.status, 413);
+    shore.finish().await;
+}
+
+fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
+    (0..archive.len())
+        .map(|index| {
+            let mut file = archive.by_index(index).unwrap();
+            let name = file.name().unwrap().into_owned();
+            let mut content = Vec::new();
+            file.read_to_end(&mut content).unwrap();
+            (name, content)
+        })
+        .collect()
+}
+
+fn packed(files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for (name, content) in files {
+        writer.start_file(name.as_str(), stored).unwrap();
+        writer.write_all(content).unwrap();
+    }
+    writer.finish().unwrap().into_inner()
+}
+
+fn hex(bytes: &[u8]) -> String {
+    let digits = |text: String, byte: &u8| text + &format!("{byte:02x}");
+    bytes.iter().fold(String::new(), digits)
+}
+
+/// Puts the manifest right about a file that was changed, as a forger would.
+fn forge(files: &mut BTreeMap<String, Vec<u8>>, name: &str, content: Vec<u8>) {
+    let mut manifest: Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
+    manifest["files"][name] = json!(sha256_hex(&content));
+    files.insert(name.to_owned(), content);
+    files.insert(
+        "manifest.json".to_owned(),
+        manifest.to_string().into_bytes(),
+    );
+}
+
+async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    job.photo(PICTURE).await.good();
+    let done = job.complete().await;
+    let record_sha256 = done["completion"]["record_sha256"].as_str().unwrap();
+    let key = Ed25519KeyPair::from_seed_unchecked(&[7; 32]).unwrap();
+    let over = ring::digest::digest(
+        &ring::digest::SHA256,
+        job.person
+            .get(&job.path("/record.json"))
+            .await
+            .text
+            .as_bytes(),
+    );
+    assert_eq!(hex(over.as_ref()), record_sha256);
+    let signature = hex(key.sign(over.as_ref()).as_ref());
+    let public_key = hex(key.public_key().as_ref());
+    let mut wrong = signature.clone();
+    wrong.replace_range(0..2, if &signature[..2] == "00" { "01" } else { "00" });
+    let signed = |signature: &str| json!({ "public_key": public_key, "signature": signature });
+    assert_eq!(
+        job.post("/signatures", &signed(&wrong)).await.problem(),
+        "invalid"
+    );
+    job.post("/signatures", &signed(&signature)).await.good();
+
+    let whole = job.evidence().await;
+    assert_eq!(
+        whole,
+        job.evidence().await,
+        "the same state makes the same octets"
+    );
+    let found = evidence::verify(&whole);
+    assert_eq!(found.problems, Vec::<String>::new());
+    assert!(
+        found.facts.iter().any(|fact| fact.contains(&public_key)),
+        "{found:?}"
+    );
+    let files = unpacked(&whole);
+    assert!(String::from_utf8_lossy(&files["README.txt"]).contains("not a certificate"));
+    assert!(
+        String::from_utf8_lossy(&files["record.json"]).contains("predicted, not a certificate")
+    );
+    assert!(
+        files.keys().any(|name| name.starts_with("photos/")),
+        "{:?}",
+        files.keys()
+    );
+    for name in files.keys() {
+        let mut without = files.clone();
+        without.remove(name);
+        assert!(
+            !evidence::verify(&packed(&without)).problems.is_empty(),
+            "without {name}"
+        );
+        let mut changed = files.clone();
+        let content = changed.get_mut(name).unwrap();
+        // A digit for another, so that JSON stays JSON; a picture has none.
+        let place = content.iter().rposition(u8::is_ascii_digit);
+        let byte = &mut content[place.unwrap_or(0)];
+        *byte = if *byte == b'7' { b'8' } else { b'7' };
+        let problems = evidence::verify(&packed(&changed)).problems;
+        assert!(!problems.is_empty(), "{name} changed");
+    }
+
+    // Whoever puts the manifest right as well is caught by the log,
+    for name in files
+        .keys()
+        .filter(|name| name.starts_with("photos/") || *name == "record.json")
+    {
+        let mut forged = files.clone();
+        let mut content = files[name].clone();
+        content.push(b' ');
+        forge(&mut forged, name, content);
+        let problems = evidence::verify(&packed(&forged)).problems;
+        assert_eq!(problems.len(), 1, "{name}: {problems:?}");
+    }
+    // a log that lost a line by its chain, and one that lost its end by its head.
+    let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();
+    let lines: Vec<&str> = log.lines().collect();
+    for left_out in 0..lines.len() {
+        let mut kept = lines.clone();
+        kept.remove(left_out);
+        let mut forged = files.clone();
+        forge(&mut forged, "entries.ndjson", kept.join("\n").into_bytes());
+        let problems = evidence::verify(&packed(&forged)).problems;
+        assert!(!problems.is_empty(), "without line {}", left_out + 1);
+    }
+    assert!(!evidence::verify(b"not an archive").problems.is_empty());
+    shore.finish().await;
+}

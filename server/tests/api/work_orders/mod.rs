@@ -1,0 +1,167 @@
+//! Work orders: from the berth's reading to the evidence and the proof at sea.
+
+mod card;
+mod codes;
+mod evidence;
+mod refusals;
+mod way;
+
+use crate::binnacles::{binnacle, put};
+use crate::support::{Answer, Person, Ship, Shore, days_at_sea, days_in, truth};
+use binnacle_magnetics::field::{FieldModel, field};
+use binnacle_magnetics::model::Model;
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use reqwest::Method;
+use serde_json::{Value, json};
+
+/// The berth where all these ships are adjusted, and when the magnetometer is read.
+const BERTH: (f64, f64) = (43.35, -3.04);
+const AT: &str = "2026-11-21T06:30:00Z";
+const HEADING_DEG: f64 = 40.0;
+/// What no heading tells: the ships' λ.
+const LAMBDA: f64 = 0.9;
+
+/// A ship with a model, a binnacle with nothing in use, and an order to adjust it.
+pub(crate) struct Job {
+    pub(crate) person: Person,
+    pub(crate) ship: Ship,
+    pub(crate) compass: String,
+    pub(crate) order: String,
+}
+
+impl Job {
+    pub(crate) async fn begin(shore: &Shore) -> Job {
+        let person = shore.admin("ada").await;
+        Job::of(shore, person).await
+    }
+
+    async fn of(shore: &Shore, person: Person) -> Job {
+        let ship = shore.ship(&person, "Nao").await;
+        let mut samples = days_at_sea(&truth(), "2026-11-01T00:00:00Z", 10.0);
+        samples.extend(days_in(
+            (10.0, -25.0),
+            &truth(),
+            "2026-11-11T00:00:00Z",
+            5.0,
+        ));
+        samples.extend(days_at_sea(&truth(), "2026-11-16T00:00:00Z", 4.0));
+        ship.put(1, &samples).await.good();
+        shore.advance(60.0);
+        shore.work().await;
+        let compasses = person.get(&ship.path("/compasses")).await.good();
+        let compass = compasses["items"][0]["id"].as_str().unwrap().to_owned();
+        let path = ship.path(&format!("/compasses/{compass}/binnacle"));
+        put(&person, &path, &binnacle()).await.good();
+        let mut job = Job {
+            person,
+            ship,
+            compass,
+            order: String::new(),
+        };
+        let made = job.person.post("/work-orders", &job.new_order()).await;
+        let made = made.good();
+        made["id"].as_str().unwrap().clone_into(&mut job.order);
+        job
+    }
+
+    fn new_order(&self) -> Value {
+        json!({
+            "vessel_id": self.ship.id, "compass_id": self.compass, "port": "Bilbao",
+            "berth": "A5", "planned_at": "2026-11-21T06:00:00Z",
+            "adjuster_name": "M. Etxeberria",
+        })
+    }
+
+    pub(crate) fn path(&self, rest: &str) -> String {
+        format!("/work-orders/{}{rest}", self.order)
+    }
+
+    pub(crate) async fn post(&self, rest: &str, body: &Value) -> Answer {
+        self.person.post(&self.path(rest), body).await
+    }
+
+    pub(crate) async fn seen(&self) -> Value {
+        self.person.get(&self.path("")).await.good()
+    }
+
+    /// Reads the berth, chooses the plan, and does its steps as foretold.
+    async fn adjust(&self) -> Value {
+        self.post("/berth-reading", &reading()).await.good();
+        let mut order = self.post("/plan", &json!({})).await.good();
+        while let Some(step) = order["next_step"].as_object() {
+            let path = format!("/steps/{}", step["number"]);
+            let after = json!({ "after_deg": step["expected_compass_deg"] });
+            order = self.post(&path, &after).await.good();
+            assert_ne!(order["last_step"]["verdict"], "unexplained", "{order}");
+        }
+        order
+    }
+
+    async fn complete(&self) -> Value {
+        self.adjust().await;
+        self.post("/complete", &word()).await.good()
+    }
+
+    /// So many days at sea by a model, sent and analysed.
+    async fn sail(&mut self, shore: &Shore, ship: &Model, seq: u64, days: f64) -> Value {
+        let samples = days_at_sea(ship, "2026-11-21T12:00:00Z", days);
+        self.send(shore, seq, &samples, days + 0.5).await;
+        self.seen().await
+    }
+
+    /// Samples that are sent and analysed so many days from now.
+    async fn send(&mut self, shore: &Shore, seq: u64, samples: &[Sample], days: f64) {
+        shore.advance(86_400.0 * days);
+        self.ship.put(seq, samples).await.good();
+        shore.advance(60.0);
+        shore.work().await;
+        // No session lasts so long.
+        self.person = Person::sign_in(shore, self.person.operator, &self.person.email).await;
+    }
+
+    async fn open_alerts(&self) -> Vec<Value> {
+        let found = self.person.get("/alerts?open=true").await.good();
+        found["items"].as_array().unwrap().clone()
+    }
+
+    pub(crate) async fn evidence(&self) -> Vec<u8> {
+        let request = self
+            .person
+            .request(Method::GET, &self.path("/evidence.zip"));
+        let response = request.send().await.unwrap();
+        assert_eq!(response.status(), 200);
+        response.bytes().await.unwrap().to_vec()
+    }
+}
+
+/// The model that an order foretells.
+fn foretold(order: &Value) -> Model {
+    serde_json::from_value(order["completion"]["model"].clone()).unwrap()
+}
+
+fn word() -> Value {
+    json!({
+        "adjuster_name": "M. Etxeberria", "adjuster_licence": "ES-CA-114",
+        "firm": "Nervión Compass", "signature": "M. Etxeberria",
+    })
+}
+
+/// What a good magnetometer reads aboard the ship of these tests.
+pub(crate) fn reading() -> Value {
+    let position = Position::new(BERTH.0, BERTH.1).unwrap();
+    let time = Timestamp::parse(AT).unwrap();
+    let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
+    let magnetic_deg = HEADING_DEG - earth.declination().degrees_east();
+    let parameters = truth().parameters_over_lambda;
+    let u = parameters.field_over_lambda(magnetic_deg.to_radians(), earth.for_ship());
+    let [forward, starboard] = u.map(|part| LAMBDA * part / 1000.0);
+    // A compass points along the field.
+    let compass_deg = (-starboard).atan2(forward).to_degrees().rem_euclid(360.0);
+    json!({
+        "at": AT, "lat": BERTH.0, "lon": BERTH.1, "heading_true_deg": HEADING_DEG,
+        "heading_from": "ashore", "forward": forward, "starboard": starboard,
+        "unit": "microtesla", "magnetometer": "fluxgate", "compass_deg": compass_deg,
+    })
+}
