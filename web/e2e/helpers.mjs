@@ -10,7 +10,7 @@ export async function signIn(page, { email, password }) {
   await page.getByLabel('E-mail').fill(email);
   await page.getByLabel('Password').fill(password);
   await page.getByRole('button', { name: 'Sign in' }).click();
-  await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+  await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
 }
 
 /** Opens the first vessel of the list that has a model; answers her name. */

@@ -5,48 +5,32 @@
  * fleet has at least one vessel with a model), BINNACLE_CHROMIUM (else the
  * system's). Screenshots go to tests/artefacts. Exit code 1 on the first failure.
  */
-import { existsSync } from 'node:fs';
 import { mkdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
+import { browserPath, flags, required } from './browser.mjs';
+import { access } from './scenarios/access.mjs';
+import { adjusting } from './scenarios/adjusting.mjs';
 import { alerts } from './scenarios/alerts.mjs';
+import { fleet } from './scenarios/fleet.mjs';
+import { link } from './scenarios/link.mjs';
 import { papers } from './scenarios/papers.mjs';
 import { session } from './scenarios/session.mjs';
 import { vessel } from './scenarios/vessel.mjs';
 
 /** What a user must be able to do, each in a browser of its own. */
-const scenarios = { ...vessel, ...papers, ...alerts, ...session };
+const scenarios = {
+  ...fleet,
+  ...link,
+  ...vessel,
+  ...papers,
+  ...alerts,
+  ...session,
+  ...adjusting,
+  ...access,
+};
 
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
-
-/** Chromium in a container, with nobody to talk to but our server. */
-const flags = [
-  '--headless',
-  '--no-sandbox',
-  '--disable-gpu',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-  '--disable-dev-shm-usage',
-];
-
-function required(name) {
-  const value = process.env[name];
-  if (value) return value;
-  console.error(`e2e: ${name} is not set`);
-  process.exit(2);
-}
-
-function browserPath() {
-  const found = [process.env.BINNACLE_CHROMIUM, '/usr/bin/chromium', '/usr/bin/google-chrome'].find(
-    (path) => path && existsSync(path),
-  );
-  if (found) return found;
-  console.error('e2e: no Chromium; set BINNACLE_CHROMIUM (scripts/chromium prints one)');
-  process.exit(2);
-}
 
 const settings = {
   url: required('BINNACLE_URL').replace(/\/$/, ''),
@@ -54,13 +38,15 @@ const settings = {
   password: required('BINNACLE_PASSWORD'),
 };
 
+/** All of them, or those whose names have a word that was given: `npm run e2e -- fleet`. */
+const [, , word = ''] = process.argv;
+const chosen = Object.entries(scenarios).filter(([name]) => name.includes(word));
+
 await mkdir(artefacts, { recursive: true });
 const browser = await chromium.launch({ executablePath: browserPath(), args: flags });
 let failed = 0;
 try {
-  for (const [name, { viewport, colorScheme, allowedErrors = [], run }] of Object.entries(
-    scenarios,
-  )) {
+  for (const [name, { viewport, colorScheme, allowedErrors = [], run }] of chosen) {
     const context = await browser.newContext({
       baseURL: settings.url,
       viewport: viewport ?? { width: 1440, height: 900 },
@@ -99,5 +85,5 @@ try {
 } finally {
   await browser.close();
 }
-console.log(`e2e: ${Object.keys(scenarios).length - failed} passed, ${failed} failed`);
+console.log(`e2e: ${chosen.length - failed} passed, ${failed} failed`);
 process.exitCode = failed > 0 ? 1 : 0;

@@ -1,6 +1,6 @@
 /** How alerts are put in order: the worst first, those that nobody knows of before. */
 
-import type { Alert, Severity } from './api/types';
+import type { Alert, AlertCause, Severity } from './api/types';
 
 /** From the mildest to the worst. */
 export const severities: readonly Severity[] = ['notice', 'warning', 'critical'];
@@ -23,3 +23,16 @@ export function worstRaised(alerts: readonly Alert[]): Severity | null {
   const first = inOrder(alerts).find((alert) => alert.state === 'raised');
   return first?.severity ?? null;
 }
+
+/** Causes that an adjustment cures, or may. */
+const adjusted: AlertCause[] = [
+  'deviation_over_limit',
+  'lightning_or_shock',
+  'drift',
+  'adjustment_not_confirmed',
+  'agreed_job_at_risk',
+];
+
+/** Whether what to do about an open alert may be an adjustment. */
+export const callsForAdjustment = (alert: Alert): boolean =>
+  alert.state !== 'cleared' && adjusted.includes(alert.cause);

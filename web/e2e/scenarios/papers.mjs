@@ -27,7 +27,7 @@ export const papers = {
       await made
         .getByText(/For \d\d° \d\d\.\d′ [NS],[^]*By model \d+, to ± \d\.\d° or better/)
         .waitFor();
-      await made.getByText(/adjuster, licence, firm and signature/).waitFor();
+      await made.getByText(/adjuster, licence and firm; an adjuster’s signature/).waitFor();
       const picture = made.getByRole('img');
       await picture.scrollIntoViewIfNeeded();
       await page.waitForFunction((image) => image.naturalWidth > 0, await picture.elementHandle());

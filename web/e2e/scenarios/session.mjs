@@ -25,7 +25,7 @@ export const session = {
       await page.keyboard.press('Tab');
       await page.keyboard.type(settings.password);
       await page.keyboard.press('Enter');
-      await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+      await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
       const link = page.getByRole('row').getByRole('link').first();
       await link.waitFor();
       for (let presses = 0; presses < 30; presses++) {
@@ -35,7 +35,7 @@ export const session = {
       await page.keyboard.press('Enter');
       await page.waitForURL(/\/vessels\//);
       await page.goBack();
-      await page.getByRole('heading', { name: 'Vessels', level: 1 }).waitFor();
+      await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
     },
   },
 

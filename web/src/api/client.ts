@@ -5,6 +5,7 @@
 
 import createClient from 'openapi-fetch';
 import { text } from '../text';
+import { noteServerTime } from './clock';
 import { Problem, readProblem } from './problem';
 import type { paths } from './schema';
 import type {
@@ -27,9 +28,9 @@ export interface Place {
 }
 
 /** The server's longest page. */
-const longestPage = 10_000;
+export const longestPage = 10_000;
 
-const client = createClient<paths>({
+export const client = createClient<paths>({
   // The server takes changes only from pages that can set a header.
   headers: { 'X-Binnacle-Request': '1' },
 });
@@ -42,26 +43,47 @@ export function whenSignedOut(tell: () => void): void {
 }
 
 /** The data of an answer; a problem is thrown. */
-async function answer<T>(
+export async function answer<T>(
   call: Promise<{ data?: T; error?: unknown; response: Response }>,
 ): Promise<T> {
   const { data, error, response } = await call.catch((reason: unknown) => {
     // `fetch` rejects with a TypeError when there was no answer at all.
-    if (reason instanceof TypeError) throw new Problem(0, 'offline', text.problem.offline);
+    const none = reason instanceof TypeError;
+    // A call that was given up for its length had none either.
+    const late = reason instanceof DOMException && reason.name === 'TimeoutError';
+    if (none || late) throw new Problem(0, 'offline', text.problem.offline);
     throw reason;
   });
+  noteServerTime(response.headers.get('date'));
   if (response.ok) return data as T;
   const problem = readProblem(response.status, error);
-  if (problem.status === 401 && problem.kind !== 'wrong-password') onSignedOut();
+  if (problem.status === 401 && problem.kind === 'unauthenticated') onSignedOut();
   throw problem;
 }
 
-export const signIn = (email: string, password: string) =>
-  answer(client.POST('/api/v1/session', { body: { email, password } }));
+/** Of who has a second factor a code is asked, as `second-factor-needed`. */
+export const signIn = (email: string, password: string, code?: string) =>
+  answer(client.POST('/api/v1/session', { body: { email, password, code: code ?? null } }));
+
+/** Sets a password with a one-time code; says whose. */
+export const acceptInvitation = (code: string, password: string) =>
+  answer(client.POST('/api/v1/invitations/accept', { body: { code, password } }));
 
 export const signOut = () => answer(client.DELETE('/api/v1/session'));
 
-export const findMe = () => answer(client.GET('/api/v1/me'));
+/** On a worse connection than this a page goes on with what the browser keeps. */
+const meMs = 15_000;
+
+export const findMe = () => answer(client.GET('/api/v1/me', { signal: AbortSignal.timeout(meMs) }));
+
+/** The whole fleet at a glance. */
+export const findFleet = async () => (await answer(client.GET('/api/v1/fleet'))).vessels;
+
+/** One vessel of it; none when she is gone. */
+export const findAtAGlance = async (vessel: string) => {
+  const found = await answer(client.GET('/api/v1/fleet', { params: { query: { vessel } } }));
+  return found.vessels[0];
+};
 
 export const listVessels = () =>
   everyPage((after) =>
@@ -291,7 +313,8 @@ export async function listSamples(
   return { items: all.slice(-most), truncated: all.length > most };
 }
 
-async function everyPage<T>(
+/** All items of a list, page by page. */
+export async function everyPage<T>(
   find: (after?: string) => Promise<{ items: T[]; next?: string | null }>,
 ): Promise<T[]> {
   let items: T[] = [];
@@ -304,7 +327,8 @@ async function everyPage<T>(
   return items;
 }
 
-function page(limit: number, after?: string): { limit: number; after?: string } {
+/** Which page of a list. */
+export function page(limit: number, after?: string): { limit: number; after?: string } {
   return after === undefined ? { limit } : { limit, after };
 }
 

@@ -1,7 +1,7 @@
 /** What went wrong with a call, as RFC 9457 problem documents say it. */
 
 import { text } from '../text';
-import type { CardWithdrawn, LeftOut, Refusal } from './types';
+import type { AdjustmentRefusal, CardWithdrawn, LeftOut, Refusal } from './types';
 
 /** What the server refused, or `offline` when it could not be reached. */
 export class Problem extends Error {
@@ -16,6 +16,8 @@ export class Problem extends Error {
     readonly cardWithdrawn?: CardWithdrawn,
     /** How many samples the logbook leaves out, in `no-model-yet` if there are any. */
     readonly leftOut?: LeftOut,
+    /** What is wrong at the berth and what would cure it, in `not-adjustable`. */
+    readonly refusals: AdjustmentRefusal[] = [],
   ) {
     super(detail);
   }
@@ -38,13 +40,24 @@ export function readProblem(status: number, body: unknown): Problem {
 
 function reasonsIn(
   about: object,
-): [Refusal | undefined, CardWithdrawn | undefined, LeftOut | undefined] {
-  const { refusal, card_withdrawn, left_out } = about as {
+): [
+  Refusal | undefined,
+  CardWithdrawn | undefined,
+  LeftOut | undefined,
+  AdjustmentRefusal[] | undefined,
+] {
+  const { refusal, card_withdrawn, left_out, refusals } = about as {
     refusal?: Refusal | null;
     card_withdrawn?: CardWithdrawn | null;
     left_out?: LeftOut | null;
+    refusals?: AdjustmentRefusal[] | null;
   };
-  return [refusal ?? undefined, card_withdrawn ?? undefined, left_out ?? undefined];
+  return [
+    refusal ?? undefined,
+    card_withdrawn ?? undefined,
+    left_out ?? undefined,
+    refusals ?? undefined,
+  ];
 }
 
 /** Any error as a problem: what is not one is a fault of ours, and is logged. */

@@ -175,6 +175,69 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/calendar-feeds": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List your calendars */
+        get: operations["list_feeds"];
+        put?: never;
+        /**
+         * Make a calendar
+         * @description Of all your work orders, or of one vessel's. The answer shows its secret address, this
+         *     once.
+         */
+        post: operations["create_feed"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/calendar-feeds/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Remove a calendar
+         * @description Its address shows nothing from now on.
+         */
+        delete: operations["delete_feed"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/calendar.ics": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read a calendar of work orders
+         * @description iCalendar (RFC 5545), by a calendar's secret address or as any other route. What is
+         *     offered or planned is tentative, what a firm has is confirmed.
+         */
+        get: operations["calendar"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/events": {
         parameters: {
             query?: never;
@@ -185,11 +248,177 @@ export interface paths {
         /**
          * Follow the fleet live
          * @description Server-sent events named `vessel`, whose data is a `VesselEvent`. With
-         *     `Last-Event-ID`, what was missed within the last day comes first.
+         *     `Last-Event-ID`, what was missed within the last day comes first. A firm is told of its
+         *     work orders only.
          */
         get: operations["follow_events"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firm-terms": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List on what terms firms work for you */
+        get: operations["list_terms"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firms": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the firms
+         * @description Those that your operator works with; an adjuster's own; all for a platform admin.
+         */
+        get: operations["list_firms"];
+        put?: never;
+        /**
+         * Enter a firm
+         * @description For platform admins. Its first people are made by `binnacle-server admin create
+         *     adjuster`.
+         */
+        post: operations["create_firm"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firms/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See a firm */
+        get: operations["find_firm"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firms/{id}/keys": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List a firm's keys
+         * @description Also those that were revoked.
+         */
+        get: operations["list_keys"];
+        put?: never;
+        /**
+         * Register a key of your firm's
+         * @description With a signature by it, so that nobody registers another's.
+         */
+        post: operations["register_key"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firms/{id}/keys/{key}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke a key of your firm's
+         * @description What it signed before stays signed; it vouches for nothing from now on.
+         */
+        delete: operations["revoke_key"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/firms/{id}/terms": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Say on what terms a firm works for you
+         * @description The schedule plans with firms that have terms. Terms without days or ports are kept,
+         *     and said to be a problem.
+         */
+        put: operations["set_terms"];
+        post?: never;
+        /**
+         * Plan with a firm no more
+         * @description Its terms are removed; orders that it has stay with it.
+         */
+        delete: operations["end_terms"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/fleet": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The fleet at a glance */
+        get: operations["find_fleet"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/invitations/accept": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Set a password with a one-time code
+         * @description Sessions there were end. A second factor stays.
+         */
+        post: operations["accept_invitation"];
         delete?: never;
         options?: never;
         head?: never;
@@ -317,6 +546,423 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/me/password": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Change your password
+         * @description All your other sessions end. API tokens go on.
+         */
+        put: operations["change_password"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/second-factor": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Begin to set up a second factor
+         * @description It is asked for from the moment it is confirmed with a first code.
+         */
+        post: operations["begin_second_factor"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/second-factor/confirm": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Confirm a second factor with its first code
+         * @description All your other sessions end.
+         */
+        post: operations["confirm_second_factor"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/second-factor/recovery-codes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Make new recovery codes
+         * @description Those there were work no more.
+         */
+        post: operations["renew_recovery_codes"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/me/second-factor/remove": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Remove your second factor */
+        post: operations["remove_second_factor"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/needs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the fleet's needs
+         * @description When each compass is to be adjusted by the rules that bind its ship, brought forward by
+         *     predicted deviation over a limit, a change of the ship's magnetism, or an adjustment
+         *     that the sea does not confirm.
+         */
+        get: operations["list_needs"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operators": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the operators
+         * @description For platform admins.
+         */
+        get: operations["list_operators"];
+        put?: never;
+        /**
+         * Enter an operator
+         * @description For platform admins. Its first people are made by `binnacle-server admin create user`.
+         */
+        post: operations["create_operator"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operators/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See an operator
+         * @description For platform admins.
+         */
+        get: operations["find_operator"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/operators/{id}/firms/{firm}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Have an operator work with a firm
+         * @description For platform admins. From then on the operator may offer the firm its orders.
+         */
+        put: operations["engage_firm"];
+        post?: never;
+        /**
+         * Have an operator work with a firm no more
+         * @description For platform admins. Orders that the firm has stay with it.
+         */
+        delete: operations["dismiss_firm"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/port-calls": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List the fleet's port calls */
+        get: operations["list_port_calls"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/port-calls.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send a file of the fleet's port calls
+         * @description The first line names the columns: `vessel` (id, IMO number or name), `port`, `eta`,
+         *     `etd`, and if wanted `id`, `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`,
+         *     `berth_heading_deg`. A call is known by its `id`; one without is called after its port
+         *     and ETA. The file is taken whole or not at all: 8 MiB and 50,000 calls at most.
+         */
+        post: operations["upload_fleet_csv"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/ports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Search for ports
+         * @description From UNECE's list of UN/LOCODEs; names are found with and without accents.
+         */
+        get: operations["search_ports"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See the current schedule */
+        get: operations["find_schedule"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/input": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See what the current plan was made from
+         * @description As `binnacle-server schedule --input` reads it, which makes the same plan of it.
+         */
+        get: operations["find_input"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/offer": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Offer a planned job to its firm
+         * @description Writes a work order for each compass of the job. From then on the plan keeps the job
+         *     where it is unless there is cause.
+         */
+        post: operations["offer_job"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/pins": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List what is pinned in the schedule */
+        get: operations["list_pins"];
+        put?: never;
+        /**
+         * Pin a compass's job in the schedule
+         * @description In place of an earlier pin of the compass. It moves only for cause: where the call is
+         *     withdrawn, say, or the firm cannot.
+         */
+        post: operations["pin"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/pins/{compass}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /** Let a compass's job go where it is best */
+        delete: operations["unpin"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/plans": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List the last plans */
+        get: operations["list_plans"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/plans/{version}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See one of the last plans */
+        get: operations["find_schedule_plan"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/settings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See what counts how much in the schedule */
+        get: operations["find_schedule_settings"];
+        /** Say what counts how much in the schedule */
+        put: operations["set_settings"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/schedule/solve": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Make the schedule anew, now
+         * @description It is made by itself half a minute after something has changed; this waits for it. When
+         *     nothing has changed within the hour the plan stays as it is.
+         */
+        post: operations["solve_schedule"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/session": {
         parameters: {
             query?: never;
@@ -328,8 +974,10 @@ export interface paths {
         put?: never;
         /**
          * Sign in
-         * @description Answers with a session cookie. After five wrong passwords for an e-mail, each
-         *     further attempt has to wait, longer every time.
+         * @description Answers with a session cookie. Whoever has a second factor and sends no code is
+         *     answered `second-factor-needed` when the password is right, and sends all three. After
+         *     five wrong passwords or codes for an e-mail, each further attempt has to wait, longer
+         *     every time; so it is after fifty from one address.
          */
         post: operations["sign_in"];
         /**
@@ -337,6 +985,62 @@ export interface paths {
          * @description The session ends for good, whoever holds its cookie.
          */
         delete: operations["sign_out"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List your sessions */
+        get: operations["list_sessions"];
+        put?: never;
+        post?: never;
+        /** End all your other sessions */
+        delete: operations["end_other_sessions"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /** End one of your sessions */
+        delete: operations["end_session"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sign-in-rules": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See what your operator asks of its people when they sign in */
+        get: operations["find_sign_in_rules"];
+        /**
+         * Change what your operator asks of its people when they sign in
+         * @description Whoever wants a second factor of others has one.
+         */
+        put: operations["change_sign_in_rules"];
+        post?: never;
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -426,6 +1130,93 @@ export interface paths {
         post?: never;
         /** Revoke an API token */
         delete: operations["delete_token"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/users": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List your operator's users */
+        get: operations["list_users"];
+        put?: never;
+        /**
+         * Invite a user
+         * @description Give them the link or the code: with it they set a password of their own. It works
+         *     once, for a week.
+         */
+        post: operations["invite_user"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/users/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Remove a user
+         * @description With their sessions and tokens. What they wrote keeps their name.
+         */
+        delete: operations["remove_user"];
+        options?: never;
+        head?: never;
+        /**
+         * Change a user's name or role, or shut them out
+         * @description Who is shut out is signed out at once. The last admin stays one.
+         */
+        patch: operations["change_user"];
+        trace?: never;
+    };
+    "/api/v1/users/{id}/invitation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Give a user another one-time code
+         * @description For who let the first one lapse, or forgot the password: it goes on working until
+         *     the code is used. Codes given before work no more.
+         */
+        post: operations["invite_again"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/users/{id}/second-factor": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Remove a user's second factor
+         * @description For who lost telephone and recovery codes.
+         */
+        delete: operations["reset_second_factor"];
         options?: never;
         head?: never;
         patch?: never;
@@ -521,8 +1312,8 @@ export interface paths {
         };
         /**
          * A compass's deviation card as CSV
-         * @description A line for each 15° of compass heading; each says that it is predicted, and by
-         *     which model. Refused as `card.json` is.
+         * @description A line for each 15° of compass heading; each says whether it is predicted or verified, by
+         *     which model, and by which work order. Refused as `card.json` is.
          */
         get: operations["card_csv"];
         put?: never;
@@ -542,8 +1333,10 @@ export interface paths {
         };
         /**
          * See a compass's deviation card
-         * @description Predicted by the compass's model, at a place and a date: no certificate. Besides
-         *     the usual problems: `no-model-yet` (404) where there is no model, also because the
+         * @description By the compass's model, at a place and a date. `predicted` until headings at sea have
+         *     verified the adjustment that the model comes from: then `verified`, and `verified` says
+         *     by which order, when, and by how many headings. A change that ends the adjustment's epoch
+         *     ends that too. In no case a certificate. Besides the usual problems: `no-model-yet` (404) where there is no model, also because the
          *     last one holds no more; and 409 where there is one that makes no card:
          *     `model-too-old`, `band-too-wide`, `field-too-weak`, `headings-ambiguous` or
          *     `compass-suspected`.
@@ -762,7 +1555,9 @@ export interface paths {
          * Read a compass's deviation book
          * @description An entry for the first settled stretch of heading in each watch of four hours, and
          *     for the first after each alteration of course by 20° or more. Watches in which none
-         *     was observed, as in port, have none.
+         *     was observed, as in port, have none. `card_status` says what the card of the time was
+         *     worth then: `predicted`, or `verified` from when headings at sea had verified the
+         *     adjustment that it comes from.
          */
         get: operations["list_book"];
         put?: never;
@@ -902,6 +1697,151 @@ export interface paths {
         get: operations["list_models"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/needs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List a vessel's needs */
+        get: operations["list_vessel_needs"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/particulars": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See what rules on adjusting ask about a vessel */
+        get: operations["find_particulars"];
+        /**
+         * Say what rules on adjusting ask about a vessel
+         * @description What is left out or null is not known, and binds her: to adjust too early costs a fee,
+         *     to adjust too late a detention.
+         */
+        put: operations["set_particulars"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/port-calls": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** List a vessel's port calls */
+        get: operations["list_vessel_port_calls"];
+        put?: never;
+        /** Enter a port call */
+        post: operations["enter_port_call"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/port-calls.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read a vessel's port calls as CSV
+         * @description Those that are not over, in the form in which they are sent.
+         */
+        get: operations["export_csv"];
+        put?: never;
+        /**
+         * Send a file of a vessel's port calls
+         * @description As for the fleet; rows may leave `vessel` out.
+         */
+        post: operations["upload_csv"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/port-calls.ics": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send a calendar of a vessel's port calls
+         * @description iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND`
+         *     its ETA and ETD, and its port the first UN/LOCODE in `X-UNLOCODE`, `LOCATION` or
+         *     `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
+         */
+        post: operations["upload_ics"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/port-calls/{call}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See a port call with all its revisions */
+        get: operations["find_port_call"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        /**
+         * Amend a port call
+         * @description What is left out stays as it is; null takes a value away. The call as it was is kept
+         *     among its revisions.
+         */
+        patch: operations["amend_port_call"];
+        trace?: never;
+    };
+    "/api/v1/vessels/{id}/port-calls/{call}/withdraw": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Withdraw a port call
+         * @description It stays, marked, and counts no more. Withdrawing it again changes nothing.
+         */
+        post: operations["withdraw_port_call"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1097,7 +2037,8 @@ export interface paths {
         put?: never;
         /**
          * Order a compass to be adjusted
-         * @description A compass has one order under way at a time.
+         * @description A compass has one order under way at a time. With an `offer` it is offered to firms at
+         *     once.
          */
         post: operations["create_work_order"];
         delete?: never;
@@ -1127,6 +2068,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders/{id}/accept": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Accept an offer, or a proposal
+         * @description A firm takes the order as it is offered; an operator agrees to what a firm has
+         *     proposed. Of those who accept at once one has it.
+         */
+        post: operations["accept_work_order"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/work-orders/{id}/berth-reading": {
         parameters: {
             query?: never;
@@ -1148,6 +2110,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders/{id}/binnacle": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See the binnacle of a work order's compass
+         * @description For a firm while the order is open to it and not completed; each time is noted.
+         */
+        get: operations["find_order_binnacle"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/work-orders/{id}/cancel": {
         parameters: {
             query?: never;
@@ -1159,7 +2141,7 @@ export interface paths {
         put?: never;
         /**
          * Cancel a work order
-         * @description Correctors that were moved stay as they stand: the binnacle's next revision says so,
+         * @description For the operator; a firm declines. Correctors that were moved stay as they stand: the binnacle's next revision says so,
          *     and the logbook has the moment.
          */
         post: operations["cancel_work_order"];
@@ -1228,6 +2210,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders/{id}/decline": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Decline an offer, or a proposal
+         * @description A firm will not have the order, or gives it back before it is on board; an operator
+         *     does not agree to what a firm has proposed. The next firm is asked.
+         */
+        post: operations["decline_work_order"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/work-orders/{id}/entries": {
         parameters: {
             query?: never;
@@ -1235,7 +2238,10 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Read a work order's log */
+        /**
+         * Read a work order's log
+         * @description What is between the operator and another firm is withheld from a firm; its hash stays.
+         */
         get: operations["list_entries"];
         put?: never;
         post?: never;
@@ -1260,6 +2266,90 @@ export interface paths {
         get: operations["find_evidence"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/messages": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List the messages about a work order
+         * @description A firm reads its own only.
+         */
+        get: operations["list_messages"];
+        put?: never;
+        /**
+         * Send a message about a work order
+         * @description To the operator, or to a firm that is asked or has the order.
+         */
+        post: operations["send_message"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/model": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * See the model of a work order's compass
+         * @description For a firm while the order is open to it and not completed; each time is noted.
+         */
+        get: operations["find_model"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/offer": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Offer a work order to firms
+         * @description One after the other, or to all at once. Where nobody answers in time the next is asked.
+         */
+        post: operations["offer_work_order"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/on-board": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Say that the adjuster is on board
+         * @description The next thing is to read the berth.
+         */
+        post: operations["go_on_board"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1324,6 +2414,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders/{id}/propose": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Propose other terms
+         * @description For a firm that is asked. The operator accepts or declines, with a deadline of its own.
+         */
+        post: operations["propose_terms"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/work-orders/{id}/record.json": {
         parameters: {
             query?: never;
@@ -1372,8 +2482,9 @@ export interface paths {
         put?: never;
         /**
          * Sign the record with a firm's key
-         * @description An Ed25519 signature over the 32 octets of `record_sha256`. Whose key it is the firm
-         *     has to say.
+         * @description An Ed25519 signature over the 32 octets of `record_sha256`. The order says whose key it
+         *     is when the order's firm has registered it (`/firms/{id}/keys`), and otherwise that the
+         *     key is unknown.
          */
         post: operations["sign_record"];
         delete?: never;
@@ -1457,6 +2568,35 @@ export interface paths {
 export type webhooks = Record<string, never>;
 export interface components {
     schemas: {
+        /**
+         * @description A code, and the password to be set with it.
+         * @example {
+         *       "code": "7QWM-0V3N-KX2D-9RTA",
+         *       "password": "seven gulls over the quay"
+         *     }
+         */
+        Acceptance: {
+            /** @description As it was given; without regard to case and hyphens. */
+            code: string;
+            /**
+             * Format: password
+             * @description At least 12 characters; neither common nor easily guessed of you.
+             */
+            password: string;
+        };
+        /** @description Who can now sign in. */
+        Accepted: {
+            /**
+             * @description What to sign in with.
+             * @example ada@example.com
+             */
+            email: string;
+            /**
+             * @description The user's name.
+             * @example Ada Lovelace
+             */
+            name: string;
+        };
         /** @description That someone knows. */
         Acknowledgement: {
             /**
@@ -1470,6 +2610,55 @@ export interface components {
          * @enum {string}
          */
         AdjustmentCure: "read_again" | "headings_at_sea" | "other_waters" | "after_discharge" | "better_magnetometer" | "another_berth" | "other_correctors" | "swing";
+        /** @description A compass, and when and why it is to be adjusted next. */
+        AdjustmentNeed: {
+            /**
+             * Format: date
+             * @description The day of the last adjustment on record.
+             */
+            adjusted_on: string | null;
+            /** @description All causes, the earliest first. */
+            causes: components["schemas"]["NeedCause"][];
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Its name. */
+            compass_name: string;
+            /**
+             * Format: date
+             * @description The last day on which it may be adjusted.
+             */
+            due_on: string;
+            /**
+             * @description What is not known of the vessel, and so binds her as if it were.
+             * @example [
+             *       "gross_tonnage"
+             *     ]
+             */
+            not_known: string[];
+            /**
+             * @description The greatest deviation predicted for the places and days ahead, where the model is
+             *     sure enough to tell.
+             */
+            predicted: components["schemas"]["DeviationAhead"][];
+            /**
+             * @description Why, in words.
+             * @example 24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, read second-hand)
+             */
+            reason: string;
+            /** @description How much that presses. */
+            urgency: components["schemas"]["Urgency"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+        };
+        /** @description A page of needs. */
+        AdjustmentNeedList: {
+            /** @description The first due first. */
+            items: components["schemas"]["AdjustmentNeed"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
         /** @description Why there is no plan, or a reading is not taken. */
         AdjustmentRefusal: {
             /** @description Mistakes each of which alone would explain it. */
@@ -1627,7 +2816,7 @@ export interface components {
          * @description What an alert is about: one compass has at most one open alert of each.
          * @enum {string}
          */
-        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
+        AlertCause: "deviation_over_limit" | "reference_fault" | "compass_fault" | "lightning_or_shock" | "magnetic_cargo" | "drift" | "alignment" | "local_anomaly" | "magnetic_storm" | "berth_steel" | "unknown_change" | "adjustment_not_confirmed" | "agreed_job_at_risk" | "reported_aboard" | "silent_agent" | "cloned_agent" | "no_model" | "wide_band";
         /**
          * Format: uuid
          * @description Something that people must know of.
@@ -1692,14 +2881,19 @@ export interface components {
              * @description Length of all its pieces, mm.
              */
             length_mm: number;
-            /** @description `forward` or `aft` of the card. */
-            side: string;
+            /** @description Before or abaft the card. */
+            side: components["schemas"]["BarSide"];
             /**
              * Format: double
              * @description Degrees clockwise from there, seen from above.
              */
             slew_deg?: number;
         };
+        /**
+         * @description Before or abaft the card.
+         * @enum {string}
+         */
+        BarSide: "forward" | "aft";
         /** @description What a reading told. */
         BerthCheck: {
             /**
@@ -1732,7 +2926,7 @@ export interface components {
             verdict: string;
         };
         /**
-         * @description What was read at the berth.
+         * @description What was read at the berth; docs/plan.md has every field.
          * @example {
          *       "at": "2026-11-22T08:20:00Z",
          *       "compass_deg": 310.5,
@@ -1747,6 +2941,11 @@ export interface components {
          *     }
          */
         BerthReading: {
+            /**
+             * Format: double
+             * @description Standard deviation of how it lies, degrees; its kind's where it is not said.
+             */
+            alignment_sd_deg?: number | null;
             /** @description When it was read. */
             at: components["schemas"]["Time"];
             /** @description Whether magnetic cargo is on board. */
@@ -1771,7 +2970,10 @@ export interface components {
              * @description Horizontal field at the card's centre, bowl out, forward positive.
              */
             forward: number;
-            /** @description What that heading is from. */
+            /**
+             * @description What that heading is from: `model_reference`, the gyro or satellite compass that the
+             *     model was fitted with, or `ashore`.
+             */
             heading_from: components["schemas"]["HeadingFrom"];
             /**
              * Format: double
@@ -1814,6 +3016,16 @@ export interface components {
             starboard: number;
             /** @description Whether there is steel near: a crane, a ship alongside, a quay of steel piles. */
             steel_nearby?: boolean;
+            /**
+             * Format: double
+             * @description Standard deviation of what steel may add to each part, nT.
+             */
+            steel_sd_nt?: number | null;
+            /**
+             * Format: double
+             * @description Standard deviation of its tilt, degrees; its kind's where it is not said.
+             */
+            tilt_sd_deg?: number | null;
             /** @description What all three are in. */
             unit: components["schemas"]["FieldUnit"];
         };
@@ -1838,17 +3050,15 @@ export interface components {
         /** @description A maker's design; docs/binnacle.md has every field. */
         BinnacleDesign: {
             /** @description Trays or holes of the athwartship magnets. */
-            athwartship: Record<string, never>;
-            /** @description `class_a`, `class_b` or `other`. */
-            compass: string;
-            /** @description Holder of the Flinders bar. */
-            flinders?: Record<string, never> | null;
+            athwartship: components["schemas"]["MagnetRack"];
+            /** @description Class A or B of ISO 25862, or neither. */
+            compass: components["schemas"]["CompassClass"];
+            flinders?: components["schemas"]["FlindersHolder"] | null;
             /** @description Trays or holes of the fore-and-aft magnets. */
-            fore_and_aft: Record<string, never>;
-            /** @description Bucket of the vertical magnets. */
-            heeling?: Record<string, never> | null;
+            fore_and_aft: components["schemas"]["MagnetRack"];
+            heeling?: components["schemas"]["HeelingBucket"] | null;
             /** @description Kinds of magnets that fit somewhere in it. */
-            magnets: Record<string, never>[];
+            magnets: components["schemas"]["MagnetKind"][];
             /** @description Who makes it. */
             maker: string;
             /** @description What the maker calls it. */
@@ -1860,8 +3070,7 @@ export interface components {
             needle_moment_am2: number;
             /** @description Where its figures come from. */
             provenance: string;
-            /** @description Spheres, boxes or plates. */
-            quadrantal?: Record<string, never> | null;
+            quadrantal?: components["schemas"]["QuadrantalBrackets"] | null;
             /**
              * Format: int32
              * @description Of this form: 1.
@@ -1955,6 +3164,97 @@ export interface components {
          * @enum {string}
          */
         BookReference: "gyro" | "satellite" | "gyro_and_satellite";
+        /** @description A position of the pair. */
+        BracketMark: {
+            /**
+             * Format: double
+             * @description From the card's centre to the centre of either, mm.
+             */
+            centre_mm: number;
+            /**
+             * Format: double
+             * @description What the scale says, mm.
+             */
+            mark_mm: number;
+        };
+        /** @description A calendar that programs subscribe to. */
+        CalendarFeed: {
+            /** @description When it was made. */
+            created_at: components["schemas"]["Time"];
+            /** @description Who made it. */
+            created_by: string;
+            /** @description Its id. */
+            id: components["schemas"]["FeedId"];
+            /**
+             * @description What it is called.
+             * @example Nao Victoria
+             */
+            name: string;
+            vessel_id: components["schemas"]["VesselId"] | null;
+        };
+        /** @description A page of calendars. */
+        CalendarFeedList: {
+            /** @description In the order in which they were made. */
+            items: components["schemas"]["CalendarFeed"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A heading alongside. */
+        CallBerthHeading: {
+            /**
+             * Format: double
+             * @description Degrees, true.
+             */
+            heading_deg: number;
+            /** @description How it is known. */
+            source: components["schemas"]["CallBerthHeadingSource"];
+        };
+        /**
+         * @description How a heading alongside is known.
+         * @enum {string}
+         */
+        CallBerthHeadingSource: "given" | "read" | "berth" | "port";
+        /**
+         * Format: uuid
+         * @description A vessel's call at a port.
+         */
+        CallId: string;
+        /** @description A planned transit. */
+        CanalTransit: {
+            /**
+             * @description `panama`.
+             * @example panama
+             */
+            canal: string;
+            /**
+             * Format: date
+             * @description On which day.
+             */
+            on: string;
+        };
+        /**
+         * @description Who adjusted a compass, by the record of the work order. They have signed that record,
+         *     and no card.
+         */
+        CardAdjuster: {
+            /**
+             * @description The adjuster.
+             * @example M. Etxeberria
+             */
+            adjuster: string | null;
+            /**
+             * @description Their firm.
+             * @example Nervión Compass
+             */
+            firm: string | null;
+            /**
+             * @description The number of their licence.
+             * @example ES-CA-114
+             */
+            licence: string | null;
+            /** @description The work order. */
+            order: components["schemas"]["OrderId"];
+        };
         /** @description Coefficients at a card's place, degrees. */
         CardCoefficients: {
             /**
@@ -1998,8 +3298,9 @@ export interface components {
              * @example state-space-9
              */
             estimator: string;
-            /** @description When it was fitted. */
+            /** @description When it was fitted, or foretold. */
             fitted_at: components["schemas"]["Time"];
+            foretold_by: components["schemas"]["OrderId"] | null;
             /** @description The model version's id. */
             id: components["schemas"]["ModelId"];
             /** @description SHA-256 of everything that it was made from. */
@@ -2023,11 +3324,30 @@ export interface components {
              */
             version: number;
         };
+        /** @description When a compass is due to be adjusted next, by the schedule's rules. */
+        CardNextDue: {
+            /**
+             * @description Whether the flag's own rules were among those that were asked: they are where the
+             *     vessel's flag is recorded by its two letters.
+             */
+            flags_own_rules: boolean;
+            /**
+             * Format: date
+             * @description The day.
+             * @example 2028-11-21
+             */
+            on: string;
+            /**
+             * @description Why, with the rule.
+             * @example 24 months after the adjustment of 2026-11-21 (ISO 25862:2019, Annex G)
+             */
+            reason: string;
+        };
         /**
          * @description What belongs on a card and nobody has recorded here.
          * @enum {string}
          */
-        CardNotRecorded: "correctors" | "degaussing_coils" | "adjuster" | "next_due";
+        CardNotRecorded: "correctors" | "degaussing_coils" | "adjuster" | "signature" | "next_due";
         /** @description Where and when a card holds, and the earth's field there. */
         CardPlace: {
             /** @description When. */
@@ -2111,7 +3431,34 @@ export interface components {
          * @description What a card is worth.
          * @enum {string}
          */
-        CardStatus: "predicted";
+        CardStatus: "predicted" | "verified";
+        /** @description What verified a card. */
+        CardVerification: {
+            /** @description When the compass was adjusted. */
+            adjusted_at: components["schemas"]["Time"];
+            /**
+             * @description Headings that counted, 15° or more apart.
+             * @example 9
+             */
+            headings: number;
+            /** @description The work order whose adjustment was verified. */
+            order: components["schemas"]["OrderId"];
+            /**
+             * Format: double
+             * @description Root mean square of what the headings were off, degrees.
+             * @example 0.4
+             */
+            rms_deg: number;
+            /**
+             * @description Samples on them.
+             * @example 131
+             */
+            samples: number;
+            /** @description The time of the last of these. */
+            until: components["schemas"]["Time"];
+            /** @description When the headings were found to be enough. */
+            verified_at: components["schemas"]["Time"];
+        };
         /** @description The ship that a card is of. */
         CardVessel: {
             /**
@@ -2264,6 +3611,38 @@ export interface components {
             /** @description Of alerts as bad as this or worse. */
             severity: components["schemas"]["Severity"];
         };
+        /**
+         * @description Another password.
+         * @example {
+         *       "current": "seven gulls over the quay",
+         *       "new": "a lantern astern at midnight"
+         *     }
+         */
+        ChangedPassword: {
+            /**
+             * Format: password
+             * @description The one you sign in with now.
+             */
+            current: string;
+            /**
+             * Format: password
+             * @description At least 12 characters; neither common nor easily guessed of you.
+             */
+            new: string;
+        };
+        /**
+         * @description What is to be otherwise about a user; what is left out stays.
+         * @example {
+         *       "role": "admin"
+         *     }
+         */
+        ChangedUser: {
+            /** @description Whether the user is shut out. */
+            disabled?: boolean | null;
+            /** @description The user's name. */
+            name?: string | null;
+            role?: components["schemas"]["FleetRole"] | null;
+        };
         /** @description A plan that was chosen. */
         ChosenPlan: {
             /** @description Which of those that were offered, from 1. */
@@ -2272,8 +3651,7 @@ export interface components {
             notes: string[];
             /** @description All that were offered, in short. */
             offered: components["schemas"]["PlanInShort"][];
-            /** @description How well the search knows that nothing is better. */
-            optimality?: Record<string, never> | null;
+            optimality?: components["schemas"]["PlanOptimality"] | null;
             /** @description The plan. */
             plan: components["schemas"]["CorrectorPlan"];
         };
@@ -2325,6 +3703,11 @@ export interface components {
             /** @example 34871 */
             serial_number?: string | null;
         };
+        /**
+         * @description Classes of ISO 25862, and what is in neither.
+         * @enum {string}
+         */
+        CompassClass: "class_a" | "class_b" | "other";
         /**
          * Format: uuid
          * @description A magnetic element aboard.
@@ -2383,6 +3766,20 @@ export interface components {
             /** @description Their name, typed as a signature. */
             signature: string;
         };
+        /** @description Where a corrector stands. */
+        CorrectorPlace: (components["schemas"]["MagnetsInHole"] & {
+            /** @enum {string} */
+            place: "magnets";
+        }) | (components["schemas"]["PairSetting"] & {
+            /** @enum {string} */
+            place: "pair";
+        }) | (components["schemas"]["BarSetting"] & {
+            /** @enum {string} */
+            place: "bar";
+        }) | (components["schemas"]["HeelingSetting"] & {
+            /** @enum {string} */
+            place: "bucket";
+        });
         /** @description One way to set the correctors. */
         CorrectorPlan: {
             /** @description Residuals as they will be. */
@@ -2390,7 +3787,7 @@ export interface components {
             /** @description Deviations as they are, at the berth and in the waters. */
             before: components["schemas"]["PredictedTable"][];
             /** @description What becomes of the heeling magnets. */
-            heeling: Record<string, never>;
+            heeling: components["schemas"]["HeelingPlan"];
             /**
              * Format: double
              * @description λ with this setting.
@@ -2444,8 +3841,8 @@ export interface components {
         CorrectorsAboard: {
             /** @description Lengths of the Flinders bar's pieces, mm. */
             flinders_pieces_mm?: number[];
-            /** @description Magnets by their kind: `magnet`, `count`, `tested_moment_am2`, `tested_sd`. */
-            magnets: Record<string, never>[];
+            /** @description Magnets by their kind. */
+            magnets: components["schemas"]["MagnetLot"][];
             /** @description Sizes of which there is a pair. */
             quadrantal?: string[];
         };
@@ -2546,6 +3943,24 @@ export interface components {
          * @enum {string}
          */
         DeliveryState: "pending" | "delivered" | "dead";
+        /** @description The greatest deviation at a place and on a day. */
+        DeviationAhead: {
+            /**
+             * Format: date
+             * @description On which day.
+             */
+            on: string;
+            /**
+             * @description Where: `here`, a port's name, or a canal's.
+             * @example Rotterdam
+             */
+            place: string;
+            /**
+             * Format: double
+             * @description The largest deviation on any heading, either way, degrees.
+             */
+            worst_deviation_deg: number;
+        };
         /** @description A page of a deviation book. */
         DeviationBook: {
             /** @description In order of time. */
@@ -2567,6 +3982,7 @@ export interface components {
              * @example 2.1
              */
             card_deviation_deg: number | null;
+            card_status: components["schemas"]["CardStatus"] | null;
             /**
              * Format: double
              * @description Mean raw compass heading.
@@ -2652,6 +4068,7 @@ export interface components {
         /** @description A deviation card of one compass, at a place and a date. */
         DeviationCard: {
             adjusted_at: components["schemas"]["Time"] | null;
+            adjusted_by: components["schemas"]["CardAdjuster"] | null;
             /** @description Magnetic cargo on board at that date, by the logbook. */
             cargo: components["schemas"]["CargoAboard"][];
             /** @description The coefficients there. */
@@ -2660,8 +4077,14 @@ export interface components {
             compass: components["schemas"]["Compass"];
             correctors: components["schemas"]["CardCorrectors"] | null;
             degaussed_at: components["schemas"]["Time"] | null;
+            /**
+             * @description How the degaussing coils are, as it is recorded of the vessel.
+             * @example no coils fitted
+             */
+            degaussing: string | null;
             /** @description The model that says so. */
             model: components["schemas"]["CardModel"];
+            next_due: components["schemas"]["CardNextDue"] | null;
             /** @description What belongs on a card and is not recorded here: a person must write it. */
             not_recorded: components["schemas"]["CardNotRecorded"][];
             /** @description What the reader must know, a sentence each; the most pressing first. */
@@ -2675,6 +4098,7 @@ export interface components {
             statement: string;
             /** @description What the card is worth. */
             status: components["schemas"]["CardStatus"];
+            verified: components["schemas"]["CardVerification"] | null;
             /** @description The ship. */
             vessel: components["schemas"]["CardVessel"];
             /**
@@ -2686,6 +4110,11 @@ export interface components {
             /** @description The heading with the greatest deviation. */
             worst: components["schemas"]["WorstHeading"];
         };
+        /**
+         * @description Whether the compass deviation book is kept.
+         * @enum {string}
+         */
+        DeviationRecordKept: "kept" | "not_kept";
         /** @description Deviation on one compass heading. */
         DeviationRow: {
             /**
@@ -2834,7 +4263,12 @@ export interface components {
          * @description What happened to a vessel.
          * @enum {string}
          */
-        EventKind: "batch" | "model" | "logbook" | "alert" | "work_order";
+        EventKind: "batch" | "model" | "logbook" | "alert" | "work_order" | "port_call" | "schedule";
+        /**
+         * Format: uuid
+         * @description A calendar that is read by its secret address.
+         */
+        FeedId: string;
         /**
          * @description The model of the earth's field.
          * @enum {string}
@@ -2845,6 +4279,263 @@ export interface components {
          * @enum {string}
          */
         FieldUnit: "nanotesla" | "microtesla" | "gauss" | "milligauss";
+        /** @description A company that adjusts compasses. */
+        Firm: {
+            /** @description When it was entered here. */
+            created_at: components["schemas"]["Time"];
+            /** @description Its id. */
+            id: components["schemas"]["FirmId"];
+            /**
+             * @description Its name.
+             * @example Nervión Compass
+             */
+            name: string;
+        };
+        /**
+         * Format: uuid
+         * @description A company that adjusts compasses.
+         */
+        FirmId: string;
+        /** @description A public key. */
+        FirmKey: {
+            /** @description When it was registered. */
+            created_at: components["schemas"]["Time"];
+            /** @description Who registered it. */
+            created_by: string;
+            /** @description Its id. */
+            id: components["schemas"]["KeyId"];
+            /**
+             * @description What the firm calls it.
+             * @example Office, 2026
+             */
+            name: string;
+            /** @description Ed25519 (RFC 8032), 64 hexadecimal digits. */
+            public_key: string;
+            revoked_at: components["schemas"]["Time"] | null;
+        };
+        /** @description A page of keys. */
+        FirmKeyList: {
+            /** @description In the order in which they were registered. */
+            items: components["schemas"]["FirmKey"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A firm that could not be planned with. */
+        FirmLeftOut: {
+            /** @description The firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Its name. */
+            firm_name: string;
+            /** @description Why. */
+            why: string;
+        };
+        /** @description A page of firms. */
+        FirmList: {
+            /** @description In the order in which they were entered. */
+            items: components["schemas"]["Firm"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /**
+         * @description On what terms a firm works.
+         * @example {
+         *       "closed": [
+         *         "2026-12-25"
+         *       ],
+         *       "extra_compass_eur": 400,
+         *       "fee_eur": 1800,
+         *       "first_hour": 8,
+         *       "flags": [
+         *         "PA",
+         *         "MH",
+         *         "NL"
+         *       ],
+         *       "jobs_a_team_day": 2,
+         *       "last_hour": 18,
+         *       "lead_time_h": 72,
+         *       "licences": [
+         *         "NL-114"
+         *       ],
+         *       "ports": [
+         *         {
+         *           "port": "NLRTM",
+         *           "travel_eur": 150
+         *         },
+         *         {
+         *           "port": "BEANR",
+         *           "travel_eur": 400
+         *         }
+         *       ],
+         *       "teams": 1,
+         *       "working_days": [
+         *         "Mon",
+         *         "Tue",
+         *         "Wed",
+         *         "Thu",
+         *         "Fri"
+         *       ]
+         *     }
+         */
+        FirmTerms: {
+            /** @description Days on which it does not work. */
+            closed?: string[];
+            /**
+             * Format: double
+             * @description For each compass after the first on the same job, euros.
+             */
+            extra_compass_eur?: number;
+            /**
+             * Format: double
+             * @description The fee for a job, euros.
+             */
+            fee_eur: number;
+            /**
+             * Format: double
+             * @description The hour at which its day begins, ship's time; 8 if not said.
+             */
+            first_hour?: number;
+            /** @description Flags that accept its adjusters, ISO 3166; all, where it is empty. */
+            flags?: string[];
+            /**
+             * Format: int32
+             * @description Jobs that a team does on one day in one port; 1 if not said.
+             */
+            jobs_a_team_day?: number;
+            /**
+             * Format: double
+             * @description The hour at which its day ends; 18 if not said.
+             */
+            last_hour?: number;
+            /**
+             * Format: double
+             * @description Hours from being asked to the beginning of the day of the job.
+             */
+            lead_time_h?: number;
+            /** @description Licences that it holds. */
+            licences?: string[];
+            /** @description The ports it serves, UN/LOCODE, with what a team's day there costs in travel. */
+            ports?: components["schemas"]["ServedPort"][];
+            /**
+             * Format: int32
+             * @description Teams that it has for you on a working day; 1 if not said.
+             */
+            teams?: number;
+            /** @description Days of the week on which it works, as `Mon`; Monday to Friday if not said. */
+            working_days?: string[];
+        };
+        /** @description All firms that an operator works with. */
+        FirmTermsList: {
+            /** @description In the order in which they were entered. */
+            items: components["schemas"]["FirmWithTerms"][];
+        };
+        /** @description A firm that an operator works with, and on what terms. */
+        FirmWithTerms: {
+            /** @description The firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Its name. */
+            firm_name: string;
+            /**
+             * @description Why the schedule leaves the firm out; empty when it does not.
+             * @example [
+             *       "working_days: a firm that works on no day of the week serves nobody"
+             *     ]
+             */
+            problems: string[];
+            terms: components["schemas"]["FirmTerms"] | null;
+        };
+        /** @description An operator's vessels. */
+        Fleet: {
+            /** @description In the order in which they were entered. */
+            vessels: components["schemas"]["FleetVessel"][];
+        };
+        /** @description An alert, in short. */
+        FleetAlert: {
+            /** @description What it is about. */
+            cause: components["schemas"]["AlertCause"];
+            /** @description How bad it is. */
+            severity: components["schemas"]["Severity"];
+            /** @description How far people have come with it. */
+            state: components["schemas"]["AlertState"];
+            /** @description What is so, in a sentence. */
+            summary: string;
+        };
+        /** @description How good a model is, in short. */
+        FleetModel: {
+            /** @description For how many reasons it should not be trusted everywhere. */
+            cautions: number;
+            /** @description The time of the last sample in it. */
+            data_until: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description Root mean square of the residuals, degrees.
+             */
+            rms_deg: number | null;
+            /**
+             * Format: int64
+             * @description Counts the compass's models from 1.
+             */
+            version: number;
+        };
+        /**
+         * @description What one of an operator's people may do.
+         * @enum {string}
+         */
+        FleetRole: "admin" | "viewer";
+        /** @description How a vessel stands, in a line of a table and a mark on a map. */
+        FleetVessel: {
+            alert: components["schemas"]["FleetAlert"] | null;
+            /** @description Her call sign. */
+            call_sign: string | null;
+            /** @description The vessel's id. */
+            id: components["schemas"]["VesselId"];
+            /** @description Her IMO number, seven digits. */
+            imo_number: string | null;
+            last_upload_at: components["schemas"]["Time"] | null;
+            model: components["schemas"]["FleetModel"] | null;
+            /** @description Her name. */
+            name: string;
+            next_call: components["schemas"]["NextCall"] | null;
+            /**
+             * Format: int32
+             * @description Alerts that nobody has acknowledged.
+             */
+            open_alerts: number;
+            position: components["schemas"]["LastPosition"] | null;
+            /**
+             * @description Where she was in the month before, degrees north and east, a place for each twelve
+             *     hours, the oldest first. Empty in an answer of more than 200 vessels, where a map of
+             *     them would be a tangle: ask for the vessel.
+             */
+            track: number[][];
+            worst: components["schemas"]["WorstHeading"] | null;
+        };
+        /** @description The holder of the Flinders bar. */
+        FlindersHolder: {
+            /**
+             * Format: double
+             * @description From the card's centre to the bar's axis, mm.
+             */
+            axis_mm: number;
+            /**
+             * Format: double
+             * @description Diameter of the bar, mm.
+             */
+            diameter_mm: number;
+            /**
+             * Format: double
+             * @description The longest bar that the holder takes, mm.
+             */
+            longest_mm: number;
+            /** @description On which sides of the card it can stand. */
+            sides: components["schemas"]["BarSide"][];
+            /** @description Angles by which the holder turns from there, degrees clockwise. */
+            slews_deg?: number[];
+            /**
+             * Format: double
+             * @description Relative standard deviation of its effect about the formula's.
+             */
+            tolerance: number;
+        };
         /** @description For each parameter and the constant: 0 rests on ships at large, 1 on the data. */
         FromData: {
             /** Format: double */
@@ -2937,6 +4628,34 @@ export interface components {
             /** Format: int32 */
             heading_to_deg: number;
         };
+        /** @description The bucket of the vertical magnets. */
+        HeelingBucket: {
+            /**
+             * Format: int32
+             * @description How many it takes.
+             */
+            at_most: number;
+            /** @description The kind of magnets that fits, upright. */
+            magnet: string;
+            /** @description Where the bucket may hang, numbered from the bottom. */
+            positions: components["schemas"]["NumberedHeight"][];
+        };
+        /** @description What becomes of the heeling magnets. */
+        HeelingPlan: {
+            /**
+             * Format: double
+             * @description The same afterwards.
+             */
+            after_deg_per_deg: number | null;
+            /**
+             * Format: double
+             * @description Degrees of heeling error for each degree of heel on north, at the berth, as it is;
+             *     none where the vertical force was not read.
+             */
+            before_deg_per_deg: number | null;
+            /** @description Whether they are left as found for want of a vertical reading. */
+            left_as_found: boolean;
+        };
         /** @description Magnets in the bucket. */
         HeelingSetting: {
             /**
@@ -2963,6 +4682,70 @@ export interface components {
             chi23: boolean;
             constant_deg: boolean;
         };
+        /**
+         * @description With this someone sets a password.
+         * @example {
+         *       "code": "7QWM-0V3N-KX2D-9RTA",
+         *       "expires_at": "2026-11-28T07:00:00Z",
+         *       "link": "https://binnacle.example.com/invitation#7QWM-0V3N-KX2D-9RTA"
+         *     }
+         */
+        Invitation: {
+            /** @description Works once and is never shown again. */
+            code: string;
+            /** @description When it stops working. */
+            expires_at: components["schemas"]["Time"];
+            /**
+             * @description Where to use it, if the server was told its address. What stands after the # is
+             *     sent to no server and gets into no log.
+             */
+            link: string | null;
+        };
+        /** @description A user who was invited, and how. */
+        InvitedUser: {
+            /** @description What to give them. */
+            invitation: components["schemas"]["Invitation"];
+            /** @description The user. */
+            user: components["schemas"]["User"];
+        };
+        /**
+         * @description Shapes of quadrantal correctors.
+         * @enum {string}
+         */
+        IronShape: "sphere" | "box" | "plate";
+        /** @description One size of a pair. */
+        IronSize: {
+            /**
+             * Format: double
+             * @description Diameter of the sphere; of boxes and plates, that of the spheres that do the same.
+             */
+            diameter_mm: number;
+            /** @description What it is called. */
+            name: string;
+            /** @description What it looks like. */
+            shape: components["schemas"]["IronShape"];
+            /**
+             * Format: double
+             * @description Relative standard deviation of its effect about the formula's.
+             */
+            tolerance: number;
+        };
+        /**
+         * Format: uuid
+         * @description A public key that a firm signs with.
+         */
+        KeyId: string;
+        /** @description A key that a firm had registered when it signed. */
+        KnownKey: {
+            /** @description The firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description The firm's name then. */
+            firm_name: string;
+            /** @description The key's id. */
+            id: components["schemas"]["KeyId"];
+            /** @description What the firm calls it. */
+            name: string;
+        };
         /** @description Where a vessel was last known to be. */
         LastPosition: {
             /** @description When. */
@@ -2977,6 +4760,20 @@ export interface components {
              * @description Degrees east.
              */
             lon: number;
+        };
+        /** @description A compass that is due after the horizon. */
+        LaterNeed: components["schemas"]["PlannedCompass"] & {
+            /**
+             * Format: date
+             * @description When it is due.
+             */
+            due_on: string;
+            /** @description Why. */
+            reason: string;
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
         };
         /** @description The band in other waters, and the magnetic latitudes that narrow it. */
         LatitudeAdvice: {
@@ -3096,6 +4893,14 @@ export interface components {
             port?: string | null;
             to?: components["schemas"]["Time"] | null;
         };
+        /** @description A calendar just made. */
+        MadeCalendarFeed: components["schemas"]["CalendarFeed"] & {
+            /**
+             * @description The address to subscribe to: whoever has it reads the calendar. Never shown again.
+             * @example https://binnacle.example.com/api/v1/calendar.ics?token=bnc_mZ3q8k…
+             */
+            url: string;
+        };
         /** @description A token just made. */
         MadeToken: components["schemas"]["Token"] & {
             /** @description The secret, to be sent as `Authorization: Bearer …`; never shown again. */
@@ -3108,6 +4913,83 @@ export interface components {
              * @example bns_mZ3q8k…
              */
             secret: string;
+        };
+        /**
+         * @description What magnets are put into.
+         * @enum {string}
+         */
+        MagnetCarrier: "hole" | "tray";
+        /** @description Magnets of one kind. */
+        MagnetKind: {
+            /**
+             * Format: double
+             * @description From end to end, mm.
+             */
+            length_mm: number;
+            /**
+             * Format: double
+             * @description Nominal magnetic moment, A·m².
+             */
+            moment_am2: number;
+            /**
+             * Format: double
+             * @description Relative standard deviation of a magnet's moment about the nominal one.
+             */
+            moment_tolerance: number;
+            /** @description What they are called. */
+            name: string;
+        };
+        /** @description Magnets of one kind on board. */
+        MagnetLot: {
+            /**
+             * Format: int32
+             * @description How many there are, those in use included.
+             */
+            count: number;
+            /**
+             * @description Their kind.
+             * @example 200 mm
+             */
+            magnet: string;
+            /**
+             * Format: double
+             * @description Their moment as it was tested, A·m²; the nominal one counts otherwise.
+             */
+            tested_moment_am2?: number | null;
+            /**
+             * Format: double
+             * @description Relative standard deviation of that; 0.02 where it is not said.
+             */
+            tested_sd?: number | null;
+        };
+        /** @description Where the magnets of one axis may stand. */
+        MagnetRack: {
+            /**
+             * Format: int32
+             * @description How many trays there are, or how many holes may hold magnets at once.
+             */
+            at_once: number;
+            /** @description What magnets are put into. */
+            carrier: components["schemas"]["MagnetCarrier"];
+            /** @description The holes, numbered from the bottom. */
+            holes: components["schemas"]["NumberedHeight"][];
+            /** @description Names of the kinds that fit. */
+            magnets: string[];
+            /**
+             * Format: int32
+             * @description How many magnets each takes.
+             */
+            magnets_each: number;
+            /**
+             * Format: double
+             * @description Sideways distance of each magnet from the middle plane, mm.
+             */
+            off_centre_mm?: number;
+            /**
+             * Format: double
+             * @description Standard deviation of a magnet's height, mm.
+             */
+            position_sd_mm?: number;
         };
         /**
          * @description Kinds of magnetometer, by how well they read.
@@ -3171,6 +5053,9 @@ export interface components {
         Me: {
             /** @description What the user signs in with. */
             email: string;
+            firm_id: components["schemas"]["FirmId"] | null;
+            /** @description That firm's name. */
+            firm_name: string | null;
             /** @description The user's name. */
             name: string;
             operator_id: components["schemas"]["OperatorId"] | null;
@@ -3178,6 +5063,10 @@ export interface components {
             operator_name: string | null;
             /** @description What the user may do. */
             role: components["schemas"]["Role"];
+            /** @description Whether the user has a second factor. */
+            second_factor: boolean;
+            /** @description Whether the operator wants one: without it nothing else can be seen or done. */
+            second_factor_required: boolean;
             /** @description The user's id. */
             user_id: components["schemas"]["UserId"];
         };
@@ -3185,7 +5074,7 @@ export interface components {
          * @description What a message tells of.
          * @enum {string}
          */
-        MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "test";
+        MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "test";
         /** @description A fitted model. */
         Model: {
             /**
@@ -3321,6 +5210,58 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
+        /**
+         * @description What is moved at the binnacle.
+         * @enum {string}
+         */
+        MovedCorrector: "flinders" | "quadrantal" | "heeling" | "fore_and_aft" | "athwartship";
+        /** @description One cause, with its own due date. */
+        NeedCause: {
+            /**
+             * Format: date
+             * @description By when it wants the compass adjusted.
+             */
+            due_on: string;
+            /** @description What it is. */
+            kind: components["schemas"]["NeedCauseKind"];
+            /** @description In words. */
+            reason: string;
+            rule: components["schemas"]["RuleCited"] | null;
+        };
+        /**
+         * @description What brings a due date about.
+         * @enum {string}
+         */
+        NeedCauseKind: "never_adjusted" | "interval" | "event" | "over_limit" | "transit" | "change" | "failed_verification";
+        /** @description A compass whose order is under way beside the plan. */
+        NeedUnderWay: components["schemas"]["PlannedCompass"] & {
+            /** @description The order. */
+            order_id: components["schemas"]["OrderId"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+            /** @description Why it is beside the plan. */
+            why: string;
+        };
+        /** @description Headings that are still needed. */
+        NeededHeadings: {
+            /** @description Compass headings that would do, degrees, the best first. */
+            compass_deg: number[];
+            /** @description How many. */
+            count: number;
+        };
+        /**
+         * @description A calendar to be made.
+         * @example {
+         *       "name": "Our fleet"
+         *     }
+         */
+        NewCalendarFeed: {
+            /** @description What it is called. */
+            name: string;
+            vessel_id?: components["schemas"]["VesselId"] | null;
+        };
         /** @description An enrolment code to be made. */
         NewCode: {
             /** @default null */
@@ -3331,6 +5272,16 @@ export interface components {
              * @default null
              */
             valid_for_s: number | null;
+        };
+        /**
+         * @description A company to be entered.
+         * @example {
+         *       "name": "Armada del Sur"
+         *     }
+         */
+        NewCompany: {
+            /** @description Its name. */
+            name: string;
         };
         /** @description A compass to be entered. */
         NewCompass: {
@@ -3349,6 +5300,21 @@ export interface components {
         NewEntry: components["schemas"]["LogbookReport"] & {
             compass_id?: components["schemas"]["CompassId"] | null;
         };
+        /** @description A key to be registered. */
+        NewFirmKey: {
+            /**
+             * @description What the firm calls it.
+             * @example Office, 2026
+             */
+            name: string;
+            /**
+             * @description The key's signature over `binnacle firm key ` and the firm's id, as text: 128
+             *     hexadecimal digits.
+             */
+            proof: string;
+            /** @description Ed25519 (RFC 8032), 64 hexadecimal digits. */
+            public_key: string;
+        };
         /** @description Someone who is to get mail. */
         NewMailRecipient: {
             /**
@@ -3359,6 +5325,131 @@ export interface components {
             /** @description Of alerts as bad as this or worse; `warning` if not said. */
             severity?: components["schemas"]["Severity"];
         };
+        /**
+         * @description An order to be offered to firms.
+         * @example {
+         *       "answer_within_hours": 48,
+         *       "firms": [
+         *         "0199aa00-0000-7000-8000-000000000003"
+         *       ]
+         *     }
+         */
+        NewOffer: {
+            /**
+             * Format: int32
+             * @description So long each has for an answer, 1 to 720 hours; then the next is asked.
+             */
+            answer_within_hours?: number;
+            /** @description Ask all of them at once: the first to accept has it. */
+            at_once?: boolean;
+            /** @description The firms, in the order in which they are asked: 1 to 20 that you work with. */
+            firms: components["schemas"]["FirmId"][];
+            /** @description What is said to them. */
+            text?: string | null;
+        };
+        /**
+         * @description A message to be sent.
+         * @example {
+         *       "text": "Is the gangway to port?"
+         *     }
+         */
+        NewOrderMessage: {
+            firm_id?: components["schemas"]["FirmId"] | null;
+            /** @description In words, 2,000 characters at most. */
+            text: string;
+        };
+        /**
+         * @description A place and day that a person wants for a compass.
+         * @example {
+         *       "call_id": "0199aa00-0000-7000-8000-000000000004",
+         *       "compass_id": "0199aa00-0000-7000-8000-000000000002",
+         *       "day": "2026-12-09",
+         *       "firm_id": "0199aa00-0000-7000-8000-000000000003",
+         *       "note": "agreed by telephone"
+         *     }
+         */
+        NewPin: {
+            /** @description At this call of its vessel. */
+            call_id: components["schemas"]["CallId"];
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /**
+             * Format: date
+             * @description On this day, ship's time.
+             */
+            day: string;
+            /** @description By this firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Why. */
+            note?: string | null;
+        };
+        /**
+         * @description A call to be entered.
+         * @example {
+         *       "berth": "Maasvlakte 3",
+         *       "eta": "2026-12-08T06:00:00Z",
+         *       "eta_uncertainty_h": 12,
+         *       "etd": "2026-12-10T18:00:00Z",
+         *       "port": "NLRTM"
+         *     }
+         */
+        NewPortCall: {
+            /** @description The berth. */
+            berth?: string | null;
+            /**
+             * Format: double
+             * @description Her true heading alongside, where it is known.
+             */
+            berth_heading_deg?: number | null;
+            /** @description When she is expected alongside, with a time zone. */
+            eta: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description She comes within so many hours of that, nineteen times in twenty.
+             */
+            eta_uncertainty_h?: number;
+            /** @description When she is expected to leave, 120 days later at most. */
+            etd: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description She leaves within so many hours of that, nineteen times in twenty.
+             */
+            etd_uncertainty_h?: number;
+            /**
+             * @description UN/LOCODE of the port.
+             * @example NLRTM
+             */
+            port: string;
+            /** @description What it is called where it comes from; port and ETA where nothing is said. */
+            reference?: string | null;
+        };
+        /**
+         * @description A planned job to be offered to its firm.
+         * @example {
+         *       "answer_within_hours": 48,
+         *       "compass_id": "0199aa00-0000-7000-8000-000000000002",
+         *       "text": "Two compasses; gangway on the starboard side.",
+         *       "version": 7
+         *     }
+         */
+        NewScheduleOffer: {
+            /**
+             * Format: int32
+             * @description So long the firm has for an answer, 1 to 720 hours; 48 if not said.
+             */
+            answer_within_hours?: number | null;
+            /** @description A compass of the job; its others go with it. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description What is said to them. */
+            text?: string | null;
+            /** @description Firms that are asked next, in this order, when it says no or nothing. */
+            then?: components["schemas"]["FirmId"][];
+            /**
+             * Format: int64
+             * @description The plan that was looked at: another one may say something else.
+             */
+            version: number;
+        };
         /** @description A token to be made. */
         NewToken: {
             expires_at?: components["schemas"]["Time"] | null;
@@ -3367,10 +5458,31 @@ export interface components {
             /** @description What it may do. */
             scope: components["schemas"]["TokenScope"];
         };
+        /**
+         * @description Someone to be invited.
+         * @example {
+         *       "email": "ada@example.com",
+         *       "name": "Ada Lovelace",
+         *       "role": "viewer"
+         *     }
+         */
+        NewUser: {
+            /** @description What the user is to sign in with. */
+            email: string;
+            /** @description The user's name. */
+            name: string;
+            /** @description What the user may do. */
+            role: components["schemas"]["FleetRole"];
+        };
         /** @description A vessel to be entered. */
         NewVessel: {
             /** @description Its call sign. */
             call_sign?: string | null;
+            /**
+             * @description How its degaussing coils are, in words.
+             * @example no coils fitted
+             */
+            degaussing?: string | null;
             /** @description Its flag state. */
             flag?: string | null;
             /**
@@ -3423,6 +5535,8 @@ export interface components {
             compass_id: components["schemas"]["CompassId"];
             /** @description Their firm. */
             firm?: string | null;
+            limits?: components["schemas"]["PlanLimits"] | null;
+            offer?: components["schemas"]["NewOffer"] | null;
             /** @description When it is to be done. */
             planned_at: components["schemas"]["Time"];
             /** @description The port. */
@@ -3430,21 +5544,141 @@ export interface components {
             /** @description The vessel. */
             vessel_id: components["schemas"]["VesselId"];
         };
+        /** @description A port call, in short, and what awaits the compass there. */
+        NextCall: {
+            /** @description When she arrives. */
+            eta: components["schemas"]["Time"];
+            /** @description When she leaves. */
+            etd: components["schemas"]["Time"];
+            /** @description Its UN/LOCODE. */
+            port: string;
+            /** @description Its name; empty where the code is unknown. */
+            port_name: string;
+            worst: components["schemas"]["WorstHeading"] | null;
+        };
+        /** @description A numbered height below the card. */
+        NumberedHeight: {
+            /**
+             * Format: double
+             * @description From the card's centre down to the magnets' centre, mm.
+             */
+            below_card_mm: number;
+            /**
+             * Format: int32
+             * @description From 1, at the bottom, upwards.
+             */
+            number: number;
+        };
+        /**
+         * @description A yes or a no.
+         * @example {
+         *       "adjuster_licence": "ES-CA-114",
+         *       "adjuster_name": "M. Etxeberria",
+         *       "text": "See you there."
+         *     }
+         */
+        OfferAnswer: {
+            /** @description The number of their licence. */
+            adjuster_licence?: string | null;
+            /** @description Who will come, where a firm accepts. */
+            adjuster_name?: string | null;
+            firm_id?: components["schemas"]["FirmId"] | null;
+            /** @description In words. */
+            text?: string | null;
+        };
+        /**
+         * @description Other terms than were offered.
+         * @example {
+         *       "terms": {
+         *         "fee_eur": 900,
+         *         "planned_at": "2026-11-22T13:00:00Z"
+         *       },
+         *       "text": "Our team is at Santander until noon."
+         *     }
+         */
+        OfferProposal: {
+            /** @description The terms. */
+            terms: components["schemas"]["WorkOrderTerms"];
+            /** @description In words. */
+            text?: string | null;
+        };
+        /**
+         * @description How an offer to a firm stands.
+         * @enum {string}
+         */
+        OfferState: "waiting" | "open" | "proposed" | "accepted" | "declined" | "lapsed" | "withdrawn";
+        /**
+         * @description When the adjuster went on board.
+         * @example {
+         *       "text": "Gangway on the starboard side."
+         *     }
+         */
+        OnBoard: {
+            at?: components["schemas"]["Time"] | null;
+            /** @description In words. */
+            text?: string | null;
+        };
         /** @description A stream just opened. */
         OpenStreamAnswer: {
             /** Format: uuid */
             stream: string;
+        };
+        /** @description A company with a fleet. */
+        Operator: {
+            /** @description When it was entered here. */
+            created_at: components["schemas"]["Time"];
+            /** @description Its id. */
+            id: components["schemas"]["OperatorId"];
+            /**
+             * @description Its name.
+             * @example Armada del Sur
+             */
+            name: string;
         };
         /**
          * Format: uuid
          * @description A company with a fleet.
          */
         OperatorId: string;
+        /** @description A page of operators. */
+        OperatorList: {
+            /** @description In the order in which they were entered. */
+            items: components["schemas"]["Operator"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
         /**
          * Format: uuid
          * @description An order to adjust a compass.
          */
         OrderId: string;
+        /** @description A message. */
+        OrderMessage: {
+            /** @description When it was sent. */
+            at: components["schemas"]["Time"];
+            /** @description Who sent it. */
+            by: string;
+            /** @description The firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Its name. */
+            firm_name: string;
+            /** @description Whether someone of the firm's sent it, rather than of the operator's. */
+            from_firm: boolean;
+            /**
+             * Format: int64
+             * @description Its number in the order's log.
+             */
+            seq: number;
+            /** @description In words. */
+            text: string;
+        };
+        /** @description A page of messages. */
+        OrderMessageList: {
+            /** @description The oldest first. */
+            items: components["schemas"]["OrderMessage"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
         /** @description A photograph as the log has it. */
         OrderPhoto: {
             /** @description How large it is. */
@@ -3475,7 +5709,7 @@ export interface components {
             /** @description The time of the last of them. */
             until: components["schemas"]["Time"];
             /** @description The verdict with its figures: `passed`, `more_needed` or `alarm`. */
-            verification: Record<string, never>;
+            verification: components["schemas"]["SeaVerdict"];
             /** @description The same in words. */
             words: string;
         };
@@ -3530,10 +5764,90 @@ export interface components {
             chi23: number;
         };
         /**
+         * @description The password once more.
+         * @example {
+         *       "password": "seven gulls over the quay"
+         *     }
+         */
+        PasswordAgain: {
+            /**
+             * Format: password
+             * @description The one you sign in with.
+             */
+            password: string;
+        };
+        /**
          * Format: uuid
          * @description A photograph in an order.
          */
         PhotoId: string;
+        /** @description What a person wants for a compass. */
+        Pin: {
+            /** @description At this call. */
+            call_id: components["schemas"]["CallId"];
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description When it was said. */
+            created_at: components["schemas"]["Time"];
+            /** @description Who said it. */
+            created_by: string;
+            /**
+             * Format: date
+             * @description On this day.
+             */
+            day: string;
+            /** @description By this firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Why. */
+            note: string | null;
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+        };
+        /** @description All pins. */
+        PinList: {
+            /** @description By vessel and compass. */
+            items: components["schemas"]["Pin"][];
+        };
+        /** @description How a plan compares with the one before. */
+        PlanAgainst: {
+            /**
+             * Format: double
+             * @description What this one costs more by the weights; less, where it is negative.
+             */
+            cost_eur: number;
+            /** @description How many of its jobs moved or were dropped. */
+            moved: number;
+            /**
+             * Format: double
+             * @description What is paid more.
+             */
+            paid_eur: number;
+            /**
+             * Format: int64
+             * @description The plan before.
+             */
+            version: number;
+        };
+        /** @description What became of a job of the plan before, or that there is a new one. */
+        PlanChange: {
+            /** @description The compasses. */
+            compasses: components["schemas"]["PlannedCompass"][];
+            from: components["schemas"]["PlanPlace"] | null;
+            to: components["schemas"]["PlanPlace"] | null;
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+            /** @description What became of it. */
+            what: components["schemas"]["PlanChangeKind"];
+            /** @description Why. */
+            why: string;
+        };
+        /**
+         * @description What became of a job.
+         * @enum {string}
+         */
+        PlanChangeKind: "kept" | "moved" | "new" | "dropped";
         /**
          * @description Which plan.
          * @example {
@@ -3562,23 +5876,94 @@ export interface components {
              */
             worst_residual_deg: number;
         };
+        /**
+         * @description What a plan must keep to; what is left out is the usual.
+         * @example {
+         *       "band_deg": 1.5,
+         *       "residual_deg": 3
+         *     }
+         */
+        PlanLimits: {
+            /**
+             * Format: double
+             * @description The widest 95 % band, degrees; usually 2.5.
+             */
+            band_deg?: number;
+            /**
+             * Format: double
+             * @description With a λ less sure than this share soft iron stays; usually 0.03.
+             */
+            lambda_sd?: number;
+            /**
+             * Format: double
+             * @description The oldest model, days; usually 60.
+             */
+            model_age_days?: number;
+            /**
+             * Format: double
+             * @description Settings within this are as good as each other, degrees; usually 0.1.
+             */
+            near_equal_deg?: number;
+            /**
+             * Format: double
+             * @description The greatest residual that may be foretold, band included, degrees; usually 3.
+             */
+            residual_deg?: number;
+        };
         /** @description What the planner offers. */
         PlanOffer: {
             /** @description What the berth told, and how well each coefficient shows on this heading. */
             berth?: Record<string, never> | null;
             /** @description What the adjuster should know. */
             notes: string[];
-            /** @description How well the search knows that nothing is better. */
-            optimality?: Record<string, never> | null;
+            optimality?: components["schemas"]["PlanOptimality"] | null;
             /** @description The recommended plan first, then others that cost more or less. */
             plans: components["schemas"]["CorrectorPlan"][];
             /** @description Empty: a refusal is a problem document. */
             refusals: Record<string, never>[];
         };
+        /** @description How well the search knows that nothing is better. */
+        PlanOptimality: {
+            /**
+             * Format: double
+             * @description No setting's worst residual is better than the best plan's by more, degrees.
+             */
+            gap_deg: number;
+            /**
+             * Format: int64
+             * @description Boxes of settings that were looked at.
+             */
+            nodes: number;
+            /** @description Whether every setting of the catalogue was gone through or excluded. */
+            proven: boolean;
+            /** @description Most trays or holes of fore-and-aft and athwartship magnets in use at once. */
+            trays_in_use: number[];
+        };
+        /** @description Where and when a job is, and what is paid for it. */
+        PlanPlace: {
+            /** @description At which call. */
+            call_id: components["schemas"]["CallId"];
+            /**
+             * Format: date
+             * @description On which day.
+             */
+            day: string;
+            /** @description By which firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Its name. */
+            firm_name: string;
+            /**
+             * Format: double
+             * @description Fee and travel, euros; none where no plan had it so.
+             */
+            paid_eur: number | null;
+            /** @description The port's name; empty where the call is not known any more. */
+            port_name: string;
+        };
         /** @description One movement, to be checked on the spot. */
         PlanStep: {
-            /** @description `fit`, `take_out`, `move` or `change`. */
-            action: string;
+            /** @description What is done with it. */
+            action: components["schemas"]["StepAction"];
             /**
              * Format: double
              * @description By how much it will have turned, degrees, clockwise positive.
@@ -3586,15 +5971,14 @@ export interface components {
             change_deg: number;
             /** @description What to see to before. */
             check: string | null;
-            /** @description `flinders`, `quadrantal`, `heeling`, `fore_and_aft` or `athwartship`. */
-            corrector: string;
+            /** @description What is moved. */
+            corrector: components["schemas"]["MovedCorrector"];
             /**
              * Format: double
              * @description What the compass will then read at the berth, degrees.
              */
             expected_compass_deg: number;
-            /** @description Where it was; none when it comes in. */
-            from?: Record<string, never> | null;
+            from: components["schemas"]["CorrectorPlace"] | null;
             /**
              * Format: int32
              * @description From 1.
@@ -3606,8 +5990,7 @@ export interface components {
             setting_after: components["schemas"]["CorrectorSetting"];
             /** @description How the correctors stood before. */
             setting_before: components["schemas"]["CorrectorSetting"];
-            /** @description Where it will be; none when it comes out. */
-            to?: Record<string, never> | null;
+            to: components["schemas"]["CorrectorPlace"] | null;
             /**
              * Format: double
              * @description How far off it may be, degrees.
@@ -3615,6 +5998,304 @@ export interface components {
             tolerance_deg: number;
             /** @description All of it in a sentence. */
             words: string;
+        };
+        /** @description A heading alongside. */
+        PlannedBerthHeading: {
+            /**
+             * Format: double
+             * @description Degrees, true.
+             */
+            heading_deg: number;
+            /** @description `given`, or learnt at the same `berth` or `port`. */
+            source: string;
+        };
+        /** @description A compass that a job is for. */
+        PlannedCompass: {
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Its name. */
+            compass_name: string;
+        };
+        /** @description One job: one visit of a firm to a ship. */
+        PlannedJob: {
+            /** @description The berth, where it is known. */
+            berth: string | null;
+            berth_heading: components["schemas"]["PlannedBerthHeading"] | null;
+            /** @description At which call. */
+            call_id: components["schemas"]["CallId"];
+            /**
+             * Format: double
+             * @description The chance that she is not there, 0 to 1.
+             */
+            chance_of_missing: number;
+            /** @description The compasses to adjust. */
+            compasses: components["schemas"]["PlannedCompass"][];
+            /**
+             * Format: date
+             * @description On which day, ship's time.
+             */
+            day: string;
+            /**
+             * Format: date
+             * @description The last day on which it would be in time.
+             */
+            due_on: string;
+            /**
+             * Format: double
+             * @description The firm's fee, euros.
+             */
+            fee_eur: number;
+            /** @description By which firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Its name. */
+            firm_name: string;
+            /** @description From when she is alongside and the firm at work. */
+            from: components["schemas"]["Time"];
+            /**
+             * @description Orders under way that say something else: they are to be cancelled, or moved by
+             *     agreement, before this can be offered.
+             */
+            instead_of: components["schemas"]["OrderId"][];
+            /**
+             * Format: int64
+             * @description Days after the due date.
+             */
+            late_days: number;
+            /** @description The orders by which it is offered or agreed, one for each compass. */
+            orders: components["schemas"]["OrderId"][];
+            /** @description Whether a person wants it so. */
+            pinned: boolean;
+            /**
+             * @description UN/LOCODE of its port.
+             * @example NLRTM
+             */
+            port: string;
+            /** @description The port's name. */
+            port_name: string;
+            /** @description Why it is due. */
+            reason: string;
+            /** @description How far it got. */
+            state: components["schemas"]["PlannedJobState"];
+            /** @description Until when. */
+            to: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description Its part of the team's travel, euros.
+             */
+            travel_eur: number;
+            /** @description How much it presses. */
+            urgency: components["schemas"]["Urgency"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+            /** @description What else it was weighed by. */
+            weighed: components["schemas"]["PlannedJobWeighed"];
+        };
+        /**
+         * @description How far a job got.
+         * @enum {string}
+         */
+        PlannedJobState: "proposed" | "offered" | "confirmed";
+        /** @description What a job was weighed by beside what is paid, in euros. */
+        PlannedJobWeighed: {
+            /**
+             * Format: double
+             * @description Departing from the plan before.
+             */
+            changed_eur: number;
+            /**
+             * Format: double
+             * @description The days before it.
+             */
+            early_eur: number;
+            /**
+             * Format: double
+             * @description The days after the due date.
+             */
+            late_eur: number;
+            /**
+             * Format: double
+             * @description The chance of missing the ship.
+             */
+            risk_eur: number;
+            /**
+             * Format: double
+             * @description The days until then.
+             */
+            waiting_eur: number;
+        };
+        /** @description A sea port. */
+        Port: {
+            /**
+             * @description Its UN/LOCODE.
+             * @example NLRTM
+             */
+            code: string;
+            /**
+             * Format: double
+             * @description About where it is, degrees north: not for navigation.
+             */
+            lat: number;
+            /**
+             * Format: double
+             * @description Degrees east.
+             */
+            lon: number;
+            /**
+             * @description Its name.
+             * @example Rotterdam
+             */
+            name: string;
+            /**
+             * Format: int32
+             * @description Hours that ship's time is ahead of UTC there, by its longitude.
+             */
+            zone_h: number;
+        };
+        /** @description A vessel's call at a port. */
+        PortCall: components["schemas"]["PortCallContent"] & {
+            berth_heading: components["schemas"]["CallBerthHeading"] | null;
+            /** @description When it was entered. */
+            created_at: components["schemas"]["Time"];
+            /** @description Who entered it. */
+            created_by: string;
+            /** @description The call's id. */
+            id: components["schemas"]["CallId"];
+            /** @description The port's name. */
+            port_name: string;
+            revised_at: components["schemas"]["Time"] | null;
+            /** @description Who amended it last. */
+            revised_by: string | null;
+            /**
+             * Format: int32
+             * @description Counts from 1.
+             */
+            revision: number;
+            /** @description Where it comes from, as it is now. */
+            source: components["schemas"]["PortCallSource"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+            /** @description Why. */
+            withdrawal_reason: string | null;
+            withdrawn_at: components["schemas"]["Time"] | null;
+            /** @description Who withdrew it. */
+            withdrawn_by: string | null;
+        };
+        /**
+         * @description What is to be changed of a call; what is left out stays, null takes a value away.
+         * @example {
+         *       "eta": "2026-12-09T02:00:00Z",
+         *       "etd": "2026-12-11T12:00:00Z"
+         *     }
+         */
+        PortCallAmendment: {
+            berth?: string | null;
+            /** Format: double */
+            berth_heading_deg?: number | null;
+            eta?: components["schemas"]["Time"] | null;
+            /** Format: double */
+            eta_uncertainty_h?: number | null;
+            etd?: components["schemas"]["Time"] | null;
+            /** Format: double */
+            etd_uncertainty_h?: number | null;
+            /** @description UN/LOCODE. */
+            port?: string | null;
+        };
+        /** @description What a call says, wherever it comes from. */
+        PortCallContent: {
+            /** @description The berth. */
+            berth: string | null;
+            /**
+             * Format: double
+             * @description Her true heading alongside, as it was given.
+             */
+            berth_heading_deg: number | null;
+            /** @description When she is expected alongside. */
+            eta: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description She comes within so many hours of that, nineteen times in twenty.
+             */
+            eta_uncertainty_h: number;
+            /** @description When she is expected to leave. */
+            etd: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description She leaves within so many hours of that, nineteen times in twenty.
+             */
+            etd_uncertainty_h: number;
+            /** @description UN/LOCODE of the port. */
+            port: string;
+            /** @description What it is called where it comes from. */
+            reference: string;
+        };
+        /** @description A page of calls. */
+        PortCallList: {
+            /** @description The first to begin comes first. */
+            items: components["schemas"]["PortCall"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A call as it was written once. */
+        PortCallRevision: {
+            /** @description When. */
+            at: components["schemas"]["Time"];
+            /** @description Who sent it. */
+            author_name: string;
+            /** @description What it said. */
+            call: components["schemas"]["PortCallContent"];
+            /**
+             * Format: int32
+             * @description Counts from 1.
+             */
+            number: number;
+            /** @description Where it came from. */
+            source: components["schemas"]["PortCallSource"];
+        };
+        /**
+         * @description Where a call comes from.
+         * @enum {string}
+         */
+        PortCallSource: "api" | "csv" | "icalendar";
+        /**
+         * @description What a file did.
+         * @example {
+         *       "amended": 1,
+         *       "created": 3,
+         *       "over": 2,
+         *       "unchanged": 8,
+         *       "withdrawn": 0
+         *     }
+         */
+        PortCallUpload: {
+            /** @description Calls that say something else now. */
+            amended: number;
+            /** @description Calls that were not known. */
+            created: number;
+            /** @description Calls of a calendar that are over, and were passed by. */
+            over: number;
+            /** @description Calls that say what they said. */
+            unchanged: number;
+            /** @description Calls that count no more. */
+            withdrawn: number;
+        };
+        /**
+         * @description Why a call is withdrawn.
+         * @example {
+         *       "reason": "Charter cancelled"
+         *     }
+         */
+        PortCallWithdrawal: {
+            /** @description In a few words. */
+            reason?: string | null;
+        };
+        /** @description What was found. */
+        PortList: {
+            /** @description What begins with the text comes first. */
+            items: components["schemas"]["Port"][];
         };
         /** @description One compass heading. */
         PredictedRow: {
@@ -3684,6 +6365,15 @@ export interface components {
             /** @description Names the kind of problem; ends in a word that programs may act on. */
             type: string;
         };
+        /** @description Soft iron in pairs at the card's height. */
+        QuadrantalBrackets: {
+            /** @description Positions on the brackets' scale. */
+            marks: components["schemas"]["BracketMark"][];
+            /** @description Sizes that fit the brackets. */
+            sizes: components["schemas"]["IronSize"][];
+            /** @description Angles to which the brackets turn from athwartships, degrees clockwise. */
+            slews_deg?: number[];
+        };
         /** @description What a model rests on. */
         Quality: {
             /** @description What the model should not be trusted for. */
@@ -3726,6 +6416,18 @@ export interface components {
             public_key: string;
             /** @description Its signature over the 32 octets of the record's SHA-256, 128 hexadecimal digits. */
             signature: string;
+        };
+        /**
+         * @description Codes for when the telephone is gone.
+         * @example {
+         *       "recovery_codes": [
+         *         "7QWM-0V3N-KX2D-9RTA"
+         *       ]
+         *     }
+         */
+        RecoveryCodes: {
+            /** @description Each signs in once in place of a code from the app. Never shown again. */
+            recovery_codes: string[];
         };
         /**
          * @description Where a red, north-seeking end points.
@@ -3895,6 +6597,11 @@ export interface components {
             /** @description As it was written each time, the first time first. */
             revisions: components["schemas"]["Revision"][];
         };
+        /** @description A call as it is, and as it was. */
+        RevisedPortCall: components["schemas"]["PortCall"] & {
+            /** @description As it was written each time, the first time first. */
+            revisions: components["schemas"]["PortCallRevision"][];
+        };
         /** @description An entry as it was written once. */
         Revision: {
             /** @description When. */
@@ -3915,7 +6622,21 @@ export interface components {
          * @description What a user may do.
          * @enum {string}
          */
-        Role: "admin" | "viewer" | "platform_admin";
+        Role: "admin" | "viewer" | "adjuster" | "platform_admin";
+        /** @description A rule, and where it is written. */
+        RuleCited: {
+            /** @description Issuer and name of the document. */
+            document: string;
+            /**
+             * @description Its name here, which stays when its words change.
+             * @example iso-25862-interval
+             */
+            id: string;
+            /** @description Whether a copy or a report of it was read, rather than the document itself. */
+            second_hand: boolean;
+            /** @description Where in it. */
+            section: string | null;
+        };
         /**
          * @description What to sail next. A watch is four hours on one compass heading; three
          *     watches are on three successive days.
@@ -4036,23 +6757,294 @@ export interface components {
          * @enum {string}
          */
         SampleReason: "no_reference" | "reference_failed" | "compass_stuck" | "outside_field_model" | "field_too_weak" | "magnetic_cargo" | "berth" | "disturbance" | "outlier" | "no_model";
+        /** @description The current plan, and whether it is still right. */
+        Schedule: {
+            outdated_since: components["schemas"]["Time"] | null;
+            plan: components["schemas"]["SchedulePlan"] | null;
+            /** @description Why the last try to make another one failed. */
+            problem: string | null;
+        };
+        /** @description Orders that were offered. */
+        ScheduleOffered: {
+            /** @description An order for each compass of the job. */
+            orders: components["schemas"]["ScheduleOfferedOrder"][];
+        };
+        /** @description An order that was offered. */
+        ScheduleOfferedOrder: {
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description The order. */
+            order_id: components["schemas"]["OrderId"];
+        };
+        /** @description Who adjusts which compass where and when, how good that is, and what could not be done. */
+        SchedulePlan: {
+            against: components["schemas"]["PlanAgainst"] | null;
+            /** @description As of when: the begun hour. */
+            as_of: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description What no plan can cost less than.
+             */
+            bound_eur: number;
+            /** @description What became of the jobs of the plan before, and what is new. */
+            changes: components["schemas"]["PlanChange"][];
+            /**
+             * Format: double
+             * @description What it costs by the weights, all that is unmet included.
+             */
+            cost_eur: number;
+            /**
+             * Format: double
+             * @description How far the cost is above the bound, in per cent of the cost.
+             */
+            gap_percent: number;
+            /** @description SHA-256 of what it rests on, hexadecimal: the same again makes no new plan. */
+            input_sha256: string;
+            /** @description The jobs, in order of the day. */
+            jobs: components["schemas"]["PlannedJob"][];
+            /** @description Compasses that are due after the horizon. */
+            later: components["schemas"]["LaterNeed"][];
+            /** @description Firms that it could not plan with. */
+            left_out: components["schemas"]["FirmLeftOut"][];
+            /**
+             * Format: double
+             * @description Fees and travel that are really paid.
+             */
+            paid_eur: number;
+            /** @description Whether no plan is better. */
+            proven_optimal: boolean;
+            /** @description When it was made. */
+            solved_at: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description How long that took, seconds.
+             */
+            solved_in_s: number;
+            /** @description Compasses whose order is under way beside the plan. */
+            under_way: components["schemas"]["NeedUnderWay"][];
+            /** @description What could not be scheduled, or only late. */
+            unscheduled: components["schemas"]["UnscheduledNeed"][];
+            /**
+             * Format: int64
+             * @description Counts the operator's plans from 1.
+             */
+            version: number;
+        };
+        /** @description A page of plans. */
+        SchedulePlanList: {
+            /** @description The newest first; the last thirty are kept. */
+            items: components["schemas"]["SchedulePlanSummary"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /** @description A plan in a line. */
+        SchedulePlanSummary: {
+            /**
+             * Format: double
+             * @description What it costs by the weights, all that is unmet included.
+             */
+            cost_eur: number;
+            /**
+             * Format: double
+             * @description How far that is above what no plan can cost less than, in per cent.
+             */
+            gap_percent: number;
+            /** @description Jobs in it. */
+            jobs: number;
+            /** @description Jobs of the plan before that moved or were dropped. */
+            moved: number;
+            /**
+             * Format: double
+             * @description Fees and travel that are really paid.
+             */
+            paid_eur: number;
+            /** @description When it was made. */
+            solved_at: components["schemas"]["Time"];
+            /** @description What could not be scheduled, or only late. */
+            unscheduled: number;
+            /**
+             * Format: int64
+             * @description Counts the operator's plans from 1.
+             */
+            version: number;
+        };
+        /**
+         * @description What counts how much in the schedule.
+         * @example {
+         *       "horizon_days": 180,
+         *       "terms": {
+         *         "after_event_days": 30,
+         *         "over_limit_days": 14,
+         *         "urgent_days": 14
+         *       },
+         *       "weights": {
+         *         "changed_eur": 150,
+         *         "job_h": 3,
+         *         "late_days": 0,
+         *         "withdrawn_eur": 500
+         *       }
+         *     }
+         */
+        ScheduleSettings: {
+            /**
+             * Format: int32
+             * @description Days ahead to plan for; a compass that is due later is left out.
+             * @default 180
+             */
+            horizon_days: number;
+            /** @description The terms by which compasses are due where a rule gives no date. */
+            terms?: Record<string, never>;
+            /**
+             * @description What counts how much, in euros; what is left out has its default. docs/schedule.md
+             *     has every figure.
+             */
+            weights?: Record<string, never>;
+        };
+        /** @description What headings at sea say of a prediction. */
+        SeaVerdict: {
+            /**
+             * Format: double
+             * @description The widest 95 % band that is left, degrees.
+             */
+            band95_deg: number;
+            /** @description Headings that counted. */
+            headings: number;
+            /**
+             * Format: double
+             * @description Root mean square of what they are off, degrees.
+             */
+            rms_deg: number;
+            /** @enum {string} */
+            verdict: "passed";
+        } | {
+            /** @description Headings that counted. */
+            headings: number;
+            /** @description Which others are needed. */
+            needed: components["schemas"]["NeededHeadings"];
+            /** @enum {string} */
+            verdict: "more_needed";
+        } | {
+            /**
+             * Format: double
+             * @description Its compass heading, degrees.
+             */
+            compass_deg: number;
+            /**
+             * Format: double
+             * @description By how much it is off, degrees.
+             */
+            off_deg: number;
+            /**
+             * Format: double
+             * @description The standard error of that, degrees.
+             */
+            standard_error_deg: number;
+            /** @enum {string} */
+            verdict: "alarm";
+        };
+        /**
+         * @description A code from the app.
+         * @example {
+         *       "code": "287082"
+         *     }
+         */
+        SecondFactorCode: {
+            /** @description Six digits. */
+            code: string;
+        };
+        /**
+         * @description What an authenticator app needs to make codes.
+         * @example {
+         *       "secret": "GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ",
+         *       "uri": "otpauth://totp/Binnacle:ada%40example%2Ecom?secret=GEZDGNBVGY3TQOJQGEZDGNBVGY3TQOJQ&issuer=Binnacle"
+         *     }
+         */
+        SecondFactorSecret: {
+            /** @description To be typed into the app; base 32. Never shown again. */
+            secret: string;
+            /** @description The same as an address, to be shown as a QR code or opened on the telephone. */
+            uri: string;
+        };
+        /** @description A port that a firm serves. */
+        ServedPort: {
+            /**
+             * @description UN/LOCODE.
+             * @example NLRTM
+             */
+            port: string;
+            /**
+             * Format: double
+             * @description What it costs to send a team there for a day, euros.
+             */
+            travel_eur?: number;
+        };
+        /** @description A time that you are signed in for. */
+        Session: {
+            /**
+             * @description Where the sign-in came from; empty if that is not known.
+             * @example 198.51.100.7
+             */
+            address: string;
+            /** @description When you signed in. */
+            created_at: components["schemas"]["Time"];
+            /** @description Whether this request came with it. */
+            current: boolean;
+            /** @description When it ends at the latest. */
+            expires_at: components["schemas"]["Time"];
+            /** @description The session's id. */
+            id: components["schemas"]["SessionId"];
+            /** @description When a request last came, to ten minutes. */
+            last_seen_at: components["schemas"]["Time"];
+            /** @description What the browser called itself. */
+            user_agent: string;
+        };
+        /**
+         * Format: uuid
+         * @description A time that a person is signed in for.
+         */
+        SessionId: string;
+        /** @description A page of sessions. */
+        SessionList: {
+            /** @description In the order in which they were opened. */
+            items: components["schemas"]["Session"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
         /**
          * @description How bad it is.
          * @enum {string}
          */
         Severity: "notice" | "warning" | "critical";
-        /** @description What a user signs in with. */
+        /**
+         * @description What a user signs in with.
+         * @example {
+         *       "email": "captain@example.com",
+         *       "password": "seven gulls over the quay"
+         *     }
+         */
         SignIn: {
-            /**
-             * @description Without regard to case.
-             * @example captain@example.com
-             */
+            /** @description Of the authenticator app, or a recovery code; only for who has a second factor. */
+            code?: string | null;
+            /** @description Without regard to case. */
             email: string;
             /**
              * Format: password
              * @description As it was set.
              */
             password: string;
+        };
+        /**
+         * @description What an operator asks of its people when they sign in.
+         * @example {
+         *       "second_factor_required": true
+         *     }
+         */
+        SignInRules: {
+            /**
+             * @description Whether everyone needs a second factor. Who has none may then only set one up, and
+             *     their tokens do nothing until they have.
+             */
+            second_factor_required: boolean;
         };
         /** @description A step of permanent magnetism over the shielding factor, nT. */
         Step: {
@@ -4081,6 +7073,11 @@ export interface components {
              */
             by_se_nt: number;
         };
+        /**
+         * @description What is done with a corrector.
+         * @enum {string}
+         */
+        StepAction: "fit" | "take_out" | "move" | "change";
         /**
          * @description What the compass read after a step.
          * @example {
@@ -4214,10 +7211,81 @@ export interface components {
          */
         TokenScope: "read" | "write";
         /**
+         * @description What a ship carries for her living.
+         * @enum {string}
+         */
+        Trade: "bulk" | "container" | "tanker" | "general_cargo" | "ro_ro" | "passenger" | "fishing" | "offshore" | "other";
+        /** @description What could not be scheduled, or only late. */
+        UnscheduledNeed: {
+            /** @description Why it could not be. */
+            because: string[];
+            /** @description The compasses. */
+            compasses: components["schemas"]["PlannedCompass"][];
+            /**
+             * Format: date
+             * @description When they are due.
+             */
+            due_on: string;
+            /** @description Whether it is in the plan, after the due date. */
+            planned_late: boolean;
+            /** @description Why they are due. */
+            reason: string;
+            /** @description How much that presses. */
+            urgency: components["schemas"]["Urgency"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+            /** @description What would have made it possible, the nearest first. */
+            would_help: string[];
+        };
+        /**
+         * @description How much a need presses.
+         * @enum {string}
+         */
+        Urgency: "routine" | "soon" | "urgent" | "overdue";
+        /** @description One of the operator's people. */
+        User: {
+            /** @description Since when there is such a user. */
+            created_at: components["schemas"]["Time"];
+            /**
+             * @description What the user signs in with.
+             * @example ada@example.com
+             */
+            email: string;
+            /** @description The user's id. */
+            id: components["schemas"]["UserId"];
+            invitation_expires_at: components["schemas"]["Time"] | null;
+            last_seen_at: components["schemas"]["Time"] | null;
+            /**
+             * @description The user's name.
+             * @example Ada Lovelace
+             */
+            name: string;
+            /** @description What the user may do. */
+            role: components["schemas"]["Role"];
+            /** @description Whether the user has a second factor. */
+            second_factor: boolean;
+            /** @description Whether the user can sign in. */
+            state: components["schemas"]["UserState"];
+        };
+        /**
          * Format: uuid
          * @description A person who signs in.
          */
         UserId: string;
+        /** @description A page of users. */
+        UserList: {
+            /** @description In the order in which they were invited. */
+            items: components["schemas"]["User"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
+        /**
+         * @description Whether a user can sign in.
+         * @enum {string}
+         */
+        UserState: "invited" | "active" | "disabled";
         /** @description A vessel, and how its compass stands. */
         Vessel: {
             /** @description Its call sign. */
@@ -4226,6 +7294,8 @@ export interface components {
             compasses: components["schemas"]["Compass"][];
             /** @description When it was entered here. */
             created_at: components["schemas"]["Time"];
+            /** @description How its degaussing coils are, in words. */
+            degaussing: string | null;
             /** @description Its flag state. */
             flag: string | null;
             /** @description The vessel's id. */
@@ -4250,6 +7320,11 @@ export interface components {
             /** @example EAVN */
             call_sign?: string | null;
             /**
+             * @description How her degaussing coils are, in words.
+             * @example no coils fitted
+             */
+            degaussing?: string | null;
+            /**
              * @description The flag state.
              * @example Spain
              */
@@ -4265,6 +7340,7 @@ export interface components {
         VesselEvent: {
             /** @description What happened. */
             kind: components["schemas"]["EventKind"];
+            order_id?: components["schemas"]["OrderId"] | null;
             /** @description Which vessel. */
             vessel_id: components["schemas"]["VesselId"];
         };
@@ -4279,6 +7355,49 @@ export interface components {
             items: components["schemas"]["Vessel"][];
             /** @description `after` of the next page. */
             next: string | null;
+        };
+        /**
+         * @description What rules on adjusting ask about a vessel.
+         * @example {
+         *       "deviation_record": "kept",
+         *       "flag_state": "PA",
+         *       "gross_tonnage": 24000,
+         *       "licence": null,
+         *       "trade": "bulk",
+         *       "transits": [
+         *         {
+         *           "canal": "panama",
+         *           "on": "2027-02-10"
+         *         }
+         *       ]
+         *     }
+         */
+        VesselParticulars: {
+            /** @default null */
+            deviation_record: components["schemas"]["DeviationRecordKept"] | null;
+            /**
+             * @description Her flag, ISO 3166; where it is not said, what the vessel's own `flag` tells.
+             * @default null
+             */
+            flag_state: string | null;
+            /**
+             * Format: int32
+             * @description Her gross tonnage.
+             * @default null
+             */
+            gross_tonnage: number | null;
+            /**
+             * @description A licence that an adjuster must hold.
+             * @default null
+             */
+            licence: string | null;
+            /** @default null */
+            trade: components["schemas"]["Trade"] | null;
+            /**
+             * @description Transits of canals with a rule of their own that are planned.
+             * @default []
+             */
+            transits: components["schemas"]["CanalTransit"][];
         };
         /** @description A vessel's settings. */
         VesselSettings: {
@@ -4337,7 +7456,7 @@ export interface components {
         };
         /** @description An order, and all that the next thing to do depends on. */
         WorkOrder: components["schemas"]["WorkOrderSummary"] & {
-            berth: components["schemas"]["BerthCheck"] | null;
+            berth_check: components["schemas"]["BerthCheck"] | null;
             /**
              * Format: double
              * @description What the compass read last at the berth, degrees.
@@ -4345,12 +7464,21 @@ export interface components {
             compass_deg: number | null;
             completion: components["schemas"]["CompletionMade"] | null;
             last_step: components["schemas"]["StepSaid"] | null;
+            /** @description What a plan must keep to. */
+            limits: components["schemas"]["PlanLimits"];
             next_step: components["schemas"]["PlanStep"] | null;
+            /**
+             * @description What became of its offers, in the order in which firms are asked; a firm sees its
+             *     own only.
+             */
+            offers: components["schemas"]["WorkOrderOffer"][];
             /** @description Photographs, in order. */
             photos: components["schemas"]["OrderPhoto"][];
             plan: components["schemas"]["ChosenPlan"] | null;
             reading: components["schemas"]["BerthReading"] | null;
             setting: components["schemas"]["CorrectorSetting"] | null;
+            /** @description Signatures over the record by firms' keys, and whose they are. */
+            signatures: components["schemas"]["WorkOrderSignature"][];
             /**
              * @description What its figures are: predictions, until headings at sea agree.
              * @example predicted, not a certificate
@@ -4386,17 +7514,39 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
+        /** @description An offer to a firm. */
+        WorkOrderOffer: {
+            answer_by: components["schemas"]["Time"] | null;
+            /** @description The firm. */
+            firm_id: components["schemas"]["FirmId"];
+            /** @description Its name when it was offered. */
+            firm_name: string;
+            /** @description How it stands. */
+            state: components["schemas"]["OfferState"];
+            terms: components["schemas"]["WorkOrderTerms"] | null;
+            /** @description What was said last, in words. */
+            text: string | null;
+        };
+        /** @description A signature over the record. */
+        WorkOrderSignature: {
+            key: components["schemas"]["KnownKey"] | null;
+            /** @description The public key, hexadecimal. */
+            public_key: string;
+            /** @description The signature, hexadecimal. */
+            signature: string;
+        };
         /**
          * @description How far an order has come.
          * @enum {string}
          */
-        WorkOrderState: "planned" | "measured" | "adjusting" | "adjusted" | "verified" | "failed" | "closed" | "cancelled";
+        WorkOrderState: "planned" | "offered" | "proposed" | "declined" | "accepted" | "on_board" | "measured" | "adjusting" | "adjusted" | "verified" | "failed" | "closed" | "cancelled";
         /** @description An order in a line. */
         WorkOrderSummary: {
             /** @description The number of their licence. */
             adjuster_licence: string | null;
             /** @description Who is to do it, or did. */
             adjuster_name: string | null;
+            answer_by: components["schemas"]["Time"] | null;
             /** @description The berth. */
             berth: string | null;
             /** @description The compass. */
@@ -4410,6 +7560,7 @@ export interface components {
             created_by: string;
             /** @description Their firm. */
             firm: string | null;
+            firm_id: components["schemas"]["FirmId"] | null;
             /** @description The order's id. */
             id: components["schemas"]["OrderId"];
             /**
@@ -4419,6 +7570,10 @@ export interface components {
             last_seq: number;
             /** @description SHA-256 of the last of them. */
             last_sha256: string;
+            /** @description Whose vessel it is. */
+            operator_id: components["schemas"]["OperatorId"];
+            /** @description Their name. */
+            operator_name: string;
             /** @description When it is to be done. */
             planned_at: components["schemas"]["Time"];
             /** @description The port. */
@@ -4429,6 +7584,25 @@ export interface components {
             vessel_id: components["schemas"]["VesselId"];
             /** @description Her name. */
             vessel_name: string;
+        };
+        /**
+         * @description Other terms than were offered.
+         * @example {
+         *       "berth": "A7",
+         *       "fee_eur": 900,
+         *       "planned_at": "2026-11-22T13:00:00Z"
+         *     }
+         */
+        WorkOrderTerms: {
+            /** @description The berth, if another. */
+            berth?: string | null;
+            /**
+             * Format: double
+             * @description The fee, euros.
+             */
+            fee_eur?: number | null;
+            /** @description When it is to be done. */
+            planned_at: components["schemas"]["Time"];
         };
         /** @description The heading with the greatest deviation. */
         WorstHeading: {
@@ -5096,6 +8270,242 @@ export interface operations {
             };
         };
     };
+    list_feeds: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CalendarFeedList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_feed: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCalendarFeed"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MadeCalendarFeed"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The vessel is none of yours */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    delete_feed: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FeedId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    calendar: {
+        parameters: {
+            query?: {
+                /** @description The secret of a calendar; without it, the caller's own orders. */
+                token?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/calendar": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     follow_events: {
         parameters: {
             query?: never;
@@ -5128,6 +8538,711 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_terms: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirmTermsList"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_firms: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirmList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_firm: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCompany"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Firm"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_firm: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Firm"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_keys: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirmKeyList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    register_key: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewFirmKey"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirmKey"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is registered already */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revoke_key: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+                key: components["schemas"]["KeyId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_terms: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FirmTerms"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FirmWithTerms"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when you do not work with it */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    end_terms: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when it has no terms */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_fleet: {
+        parameters: {
+            query?: {
+                /** @description The only one, for a page that has the others already. */
+                vessel?: components["schemas"]["VesselId"];
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Fleet"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    accept_invitation: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Acceptance"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Accepted"];
+                };
+            };
+            /** @description There is no such code */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The code has lapsed */
+            410: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such code */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -5666,6 +9781,1637 @@ export interface operations {
             };
         };
     };
+    change_password: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ChangedPassword"];
+            };
+        };
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    begin_second_factor: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PasswordAgain"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SecondFactorSecret"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is one already */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    confirm_second_factor: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SecondFactorCode"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecoveryCodes"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description None was begun, or it is confirmed */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    renew_recovery_codes: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PasswordAgain"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecoveryCodes"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remove_second_factor: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PasswordAgain"];
+            };
+        };
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Too Many Requests */
+            429: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_needs: {
+        parameters: {
+            query?: {
+                /** @description Of this urgency only. */
+                urgency?: components["schemas"]["Urgency"];
+                /** @description Due on this day or before. */
+                due_by?: string;
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AdjustmentNeedList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_operators: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OperatorList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_operator: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewCompany"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Operator"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_operator: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OperatorId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Operator"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    engage_firm: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OperatorId"];
+                firm: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    dismiss_firm: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OperatorId"];
+                firm: components["schemas"]["FirmId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_port_calls: {
+        parameters: {
+            query?: {
+                /** @description What has not ended before this instant, RFC 3339. */
+                from?: string;
+                /** @description What begins before this instant, RFC 3339. */
+                to?: string;
+                /** @description At this port only, UN/LOCODE. */
+                port?: string;
+                /** @description Whether withdrawn calls are listed too; they are not if not said. */
+                withdrawn?: boolean;
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCallList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    upload_fleet_csv: {
+        parameters: {
+            query?: {
+                /**
+                 * @description Whether the file is all there is: calls of the vessels in it that came from such a
+                 *     file before, are not over and are not in this one are withdrawn. They stay if not
+                 *     said.
+                 */
+                replace?: boolean;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                /**
+                 * @example vessel,id,port,eta,etd
+                 *     9074729,c1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z
+                 */
+                "text/csv": string;
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCallUpload"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something is wrong; the detail names the line and the column */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    search_ports: {
+        parameters: {
+            query: {
+                /**
+                 * @description The beginning of a name or of a UN/LOCODE, or a part of a name.
+                 * @example rotterdam
+                 */
+                q: string;
+                /** @description How many at most; 20 if not said. */
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_schedule: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Schedule"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_input: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": Record<string, never>;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no plan yet */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    offer_job: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewScheduleOffer"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScheduleOffered"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No job of the plan is for that compass */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is another plan, the job is offered already, an order under way says something else, or the firm has no team left that day */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_pins: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PinList"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pin: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewPin"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Pin"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Compass, call or firm are not there */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    unpin: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                compass: components["schemas"]["CompassId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_plans: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SchedulePlanList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_schedule_plan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                version: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SchedulePlan"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_schedule_settings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScheduleSettings"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_settings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScheduleSettings"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ScheduleSettings"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    solve_schedule: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Schedule"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Others make it at the same time */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     sign_in: {
         parameters: {
             query?: never;
@@ -5771,6 +11517,257 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_sessions: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    end_other_sessions: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    end_session: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["SessionId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_sign_in_rules: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SignInRules"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_sign_in_rules: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SignInRules"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SignInRules"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description You have no second factor yourself */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -6087,6 +12084,404 @@ export interface operations {
             header?: never;
             path: {
                 id: components["schemas"]["TokenId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_users: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UserList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    invite_user: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewUser"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["InvitedUser"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The e-mail has an account */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remove_user: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["UserId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is the last admin */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_user: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["UserId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ChangedUser"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["User"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is the last admin */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    invite_again: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["UserId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Invitation"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The user is shut out */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    reset_second_factor: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["UserId"];
             };
             cookie?: never;
         };
@@ -6614,7 +13009,7 @@ export interface operations {
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the model's last sample if not said. */
+                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
                 at?: string;
             };
             header?: never;
@@ -6705,7 +13100,7 @@ export interface operations {
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the model's last sample if not said. */
+                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
                 at?: string;
             };
             header?: never;
@@ -6796,7 +13191,7 @@ export interface operations {
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the model's last sample if not said. */
+                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
                 at?: string;
             };
             header?: never;
@@ -6887,7 +13282,7 @@ export interface operations {
                  * @example -3.1
                  */
                 lon?: number;
-                /** @description RFC 3339; the time of the model's last sample if not said. */
+                /** @description RFC 3339; the time of the last sample, or of the model, if not said. */
                 at?: string;
             };
             header?: never;
@@ -8449,6 +14844,898 @@ export interface operations {
             };
         };
     };
+    list_vessel_needs: {
+        parameters: {
+            query?: {
+                /** @description Of this urgency only. */
+                urgency?: components["schemas"]["Urgency"];
+                /** @description Due on this day or before. */
+                due_by?: string;
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AdjustmentNeedList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_particulars: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VesselParticulars"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_particulars: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["VesselParticulars"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["VesselParticulars"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_vessel_port_calls: {
+        parameters: {
+            query?: {
+                /** @description What has not ended before this instant, RFC 3339. */
+                from?: string;
+                /** @description What begins before this instant, RFC 3339. */
+                to?: string;
+                /** @description At this port only, UN/LOCODE. */
+                port?: string;
+                /** @description Whether withdrawn calls are listed too; they are not if not said. */
+                withdrawn?: boolean;
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCallList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    enter_port_call: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewPortCall"];
+            };
+        };
+        responses: {
+            /** @description Created */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCall"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It overlaps another call, or there is one of this reference */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    export_csv: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    upload_csv: {
+        parameters: {
+            query?: {
+                /**
+                 * @description Whether the file is all there is: calls of the vessels in it that came from such a
+                 *     file before, are not over and are not in this one are withdrawn. They stay if not
+                 *     said.
+                 */
+                replace?: boolean;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                /**
+                 * @example id,port,eta,etd
+                 *     c1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z
+                 */
+                "text/csv": string;
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCallUpload"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something is wrong; the detail names the line and the column */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    upload_ics: {
+        parameters: {
+            query?: {
+                /**
+                 * @description Whether the file is all there is: calls of the vessels in it that came from such a
+                 *     file before, are not over and are not in this one are withdrawn. They stay if not
+                 *     said.
+                 */
+                replace?: boolean;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                /**
+                 * @example BEGIN:VCALENDAR
+                 *     VERSION:2.0
+                 *     PRODID:-//agent//calls//EN
+                 *     BEGIN:VEVENT
+                 *     UID:c1@agent.example
+                 *     DTSTAMP:20261121T000000Z
+                 *     DTSTART:20261208T060000Z
+                 *     DTEND:20261210T180000Z
+                 *     LOCATION:NLRTM
+                 *     END:VEVENT
+                 *     END:VCALENDAR
+                 */
+                "text/calendar": string;
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCallUpload"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Something is wrong; the detail names the line and the property */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_port_call: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                call: components["schemas"]["CallId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RevisedPortCall"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    amend_port_call: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                call: components["schemas"]["CallId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PortCallAmendment"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCall"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It would overlap another call */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The call is withdrawn */
+            410: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    withdraw_port_call: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+                call: components["schemas"]["CallId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["PortCallWithdrawal"] | null;
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PortCall"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_samples: {
         parameters: {
             query?: {
@@ -9499,6 +16786,107 @@ export interface operations {
             };
         };
     };
+    accept_work_order: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OfferAnswer"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is nothing to accept, or not any more */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     read_berth: {
         parameters: {
             query?: never;
@@ -9591,6 +16979,55 @@ export interface operations {
             };
             /** @description Also when the reading is refused */
             422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_order_binnacle: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BinnacleRevision"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10004,6 +17441,105 @@ export interface operations {
             };
         };
     };
+    decline_work_order: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OfferAnswer"];
+            };
+        };
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is nothing to decline, or not any more */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_entries: {
         parameters: {
             query?: {
@@ -10116,6 +17652,419 @@ export interface operations {
             };
             /** @description There is no record yet */
             409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_messages: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderMessageList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    send_message: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewOrderMessage"];
+            };
+        };
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no such firm to write to */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_model: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ModelVersion"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Also when there is no model yet */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    offer_work_order: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewOffer"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is offered already, or has begun */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    go_on_board: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OnBoard"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No firm has accepted it yet, or the work has begun */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
                 headers: {
                     [name: string]: unknown;
                 };
@@ -10437,6 +18386,107 @@ export interface operations {
                 };
             };
             /** @description There is no plan, and what would cure that */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    propose_terms: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OfferProposal"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is not offered to your firm, or not any more */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
             422: {
                 headers: {
                     [name: string]: unknown;

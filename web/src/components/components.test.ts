@@ -8,8 +8,8 @@ import type {
   DeviationTable as Table,
   ModelVersion,
   SailNext,
+  FleetVessel,
   Timeline,
-  Vessel,
 } from '../api/types';
 import AgentPanel from './AgentPanel.svelte';
 import CoefficientPanel from './CoefficientPanel.svelte';
@@ -20,7 +20,7 @@ import NoModel from './NoModel.svelte';
 import SailNextPanel from './SailNextPanel.svelte';
 import TimelinePanel from './TimelinePanel.svelte';
 import TrustPanel from './TrustPanel.svelte';
-import VesselTable from './VesselTable.svelte';
+import FleetRow from './fleet/FleetRow.svelte';
 import Worst from './Worst.svelte';
 
 /** What a reader without style sheets sees, in one line. */
@@ -368,25 +368,34 @@ describe('the installations', () => {
 });
 
 test('the list shows side, heading and band, and what is not there yet', () => {
-  const vessel: Vessel = {
+  const vessel: FleetVessel = {
     id: 'v',
     name: 'MV Arcturus',
     imo_number: null,
-    call_sign: null,
-    flag: null,
+    call_sign: 'EAVN',
     last_upload_at: null,
-    model: null,
-    created_at: '2026-09-01T00:00:00Z',
-    last_position: { lat: -33.9, lon: 18.4, at: '2026-11-01T06:00:00Z' },
-    compasses: [],
-    open_alerts: 0,
-    worst_alert: null,
+    position: { lat: -33.9, lon: 18.4, at: '2026-11-01T06:00:00Z' },
+    track: [],
+    model: { version: 2, rms_deg: 0.42, data_until: '2026-11-01T06:00:00Z', cautions: 1 },
     worst: { compass_deg: 45, deviation_deg: -6.2, band95_deg: 0.4 },
+    open_alerts: 3,
+    next_call: null,
+    alert: {
+      cause: 'deviation_over_limit',
+      severity: 'critical',
+      state: 'raised',
+      summary: 'The deviation exceeds 5°.',
+    },
   };
-  const shown = words(render(VesselTable, { props: { vessels: [vessel] } }));
+  const row = { vessel, chosen: false, choose: () => undefined };
+  const shown = words(render(FleetRow, { props: row }));
+  expect(shown).toContain('MV Arcturus EAVN Critical Deviation over the limit and 2 more');
   expect(shown).toContain('6.2° W large on 045°, ± 0.4° (95 %)');
+  expect(shown).toContain('fair residuals 0.4°');
   expect(shown).toContain('nothing uploaded yet');
-  expect(shown).toContain('33° 54.0′ S, 018° 24.0′ E 1 Nov 2026, 06:00 UTC');
+  const calm = { ...vessel, alert: null, open_alerts: 0, worst: null, model: null };
+  const said = words(render(FleetRow, { props: { ...row, vessel: calm } }));
+  expect(said).toContain('nothing No model yet none yet');
 });
 
 test('a worst deviation without a band claims none', () => {

@@ -33,6 +33,15 @@ export class Resource<T> {
     }
   }
 
+  /** Takes a value that came another way, or was kept from an earlier time. */
+  show(value: T, at: Date): void {
+    this.#asked++;
+    this.value = value;
+    this.problem = undefined;
+    this.loading = false;
+    this.loadedAt = at;
+  }
+
   /** Forgets the value, for another vessel or compass. */
   clear(): void {
     this.#asked++;

@@ -1,17 +1,25 @@
 /** Which page the address names, and moving between pages without reloading. */
 
 export type Route =
-  | { page: 'vessels' | 'alerts' | 'mail' | 'webhooks' | 'not-found' }
-  | { page: 'vessel'; id: string };
+  | { page: 'vessels' | 'alerts' | 'mail' | 'webhooks' | 'work-orders' | 'not-found' }
+  | { page: 'new-work-order' | 'invitation' }
+  | { page: 'vessel' | 'work-order'; id: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
   if (first === undefined) return { page: 'vessels' };
+  if (first === 'work-orders' && rest.length === 0) return workOrderRoute(second);
   if (second === undefined && (first === 'alerts' || first === 'mail' || first === 'webhooks')) {
     return { page: first };
   }
+  if (first === 'invitation' && second === undefined) return { page: 'invitation' };
   if (first !== 'vessels' || rest.length > 0) return { page: 'not-found' };
   return second === undefined ? { page: 'vessels' } : { page: 'vessel', id: second };
+}
+
+function workOrderRoute(id: string | undefined): Route {
+  if (id === undefined) return { page: 'work-orders' };
+  return id === 'new' ? { page: 'new-work-order' } : { page: 'work-order', id };
 }
 
 export const vesselPath = (id: string): string => `/vessels/${encodeURIComponent(id)}`;
@@ -19,9 +27,28 @@ export const vesselsPath = '/';
 export const alertsPath = '/alerts';
 export const mailPath = '/mail';
 export const webhooksPath = '/webhooks';
+export const workOrdersPath = '/work-orders';
+export const workOrderPath = (id: string): string => `/work-orders/${encodeURIComponent(id)}`;
+/** Where an adjustment is ordered, perhaps of a compass that is already known. */
+export function newWorkOrderPath(vessel?: string, compass?: string): string {
+  const query = new URLSearchParams({
+    ...(vessel === undefined ? {} : { vessel }),
+    ...(compass === undefined ? {} : { compass }),
+  }).toString();
+  return query === '' ? '/work-orders/new' : `/work-orders/new?${query}`;
+}
 
 class RouteState {
   current = $state<Route>({ page: 'vessels' });
+
+  /** Goes to a page as if a link to it had been followed. */
+  go(path: string): void {
+    history.pushState(null, '', path);
+    this.current = parseRoute(location.pathname);
+    scrollTo(0, 0);
+    // As after a real change of page, the keyboard starts from the top again.
+    document.getElementById('content')?.focus({ preventScroll: true });
+  }
 
   /** Follows the address bar, and takes over clicks on links within the dashboard. */
   start(): () => void {
@@ -36,11 +63,7 @@ class RouteState {
       if (link.hash !== '' && link.pathname === location.pathname) return;
       if (link.pathname.startsWith('/api/')) return;
       event.preventDefault();
-      history.pushState(null, '', link.href);
-      read();
-      scrollTo(0, 0);
-      // As after a real change of page, the keyboard starts from the top again.
-      document.getElementById('content')?.focus({ preventScroll: true });
+      this.go(link.href);
     };
     read();
     addEventListener('popstate', read);

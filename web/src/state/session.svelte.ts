@@ -3,6 +3,7 @@
 import { findMe, signIn, signOut, whenSignedOut } from '../api/client';
 import { Problem } from '../api/problem';
 import type { Me } from '../api/types';
+import { forgetMe, keepMe, keptMe } from './me';
 
 type Session =
   | { status: 'unknown' }
@@ -21,11 +22,24 @@ class SessionState {
     return this.me?.role === 'admin';
   }
 
+  /** Whether the reader may work at the binnacle: the ship's own people, or a firm's. */
+  get mayAdjust(): boolean {
+    return this.isAdmin || this.me?.role === 'adjuster';
+  }
+
   async find(): Promise<void> {
     try {
-      this.current = { status: 'in', me: await findMe() };
+      this.#begin(await findMe());
     } catch (error) {
       if (!(error instanceof Problem)) throw error;
+      // Without a connection whoever was signed in goes on with what the browser keeps;
+      // the server itself gives nothing without the session.
+      const kept = error.offline ? keptMe() : null;
+      if (kept) {
+        this.current = { status: 'in', me: kept };
+        return;
+      }
+      if (error.status === 401) forgetMe();
       this.current =
         error.status === 401
           ? { status: 'out', ended: false }
@@ -33,8 +47,8 @@ class SessionState {
     }
   }
 
-  async signIn(email: string, password: string): Promise<void> {
-    this.current = { status: 'in', me: await signIn(email, password) };
+  async signIn(email: string, password: string, code?: string): Promise<void> {
+    this.#begin(await signIn(email, password, code));
   }
 
   async signOut(): Promise<void> {
@@ -42,11 +56,17 @@ class SessionState {
       // A session that has already ended is signed out all the same.
       if (!(error instanceof Problem && error.status === 401)) throw error;
     });
+    forgetMe();
     this.current = { status: 'out', ended: false };
   }
 
   ended(): void {
     if (this.current.status === 'in') this.current = { status: 'out', ended: true };
+  }
+
+  #begin(me: Me): void {
+    keepMe(me);
+    this.current = { status: 'in', me };
   }
 }
 

@@ -11,6 +11,11 @@ describe('addresses', () => {
     expect(parseRoute('/vessels/abc')).toEqual({ page: 'vessel', id: 'abc' });
     expect(parseRoute('/alerts')).toEqual({ page: 'alerts' });
     expect(parseRoute('/webhooks/')).toEqual({ page: 'webhooks' });
+    expect(parseRoute('/invitation')).toEqual({ page: 'invitation' });
+    expect(parseRoute('/work-orders')).toEqual({ page: 'work-orders' });
+    expect(parseRoute('/work-orders/new')).toEqual({ page: 'new-work-order' });
+    expect(parseRoute('/work-orders/abc')).toEqual({ page: 'work-order', id: 'abc' });
+    expect(parseRoute('/work-orders/abc/else')).toEqual({ page: 'not-found' });
     expect(parseRoute('/alerts/else')).toEqual({ page: 'not-found' });
     expect(parseRoute('/vessels/abc/else')).toEqual({ page: 'not-found' });
     expect(parseRoute('/elsewhere')).toEqual({ page: 'not-found' });

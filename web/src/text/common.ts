@@ -24,6 +24,23 @@ export const common = {
     busy: 'Signing in…',
     wrong: 'E-mail or password is wrong.',
     missing: 'Enter e-mail and password.',
+    code: 'Code',
+    codeHelp: 'From your authenticator app; or one of your recovery codes.',
+    codeWrong: 'The code is wrong, or was used before.',
+    codeMissing: 'Enter the code.',
+    otherUser: 'Sign in as someone else',
+  },
+
+  invitation: {
+    title: 'Set your password',
+    help: 'At least 12 characters: a few words that belong together only to you are easy to keep.',
+    code: 'One-time code',
+    password: 'New password',
+    submit: 'Set password',
+    busy: 'Setting…',
+    missing: 'Enter the code and a password.',
+    unknown: 'This code is not known, or was used. Ask your admin for another.',
+    done: (email: string) => `Your password is set. Sign in as ${email}.`,
   },
 
   theme: {
@@ -52,17 +69,21 @@ export const common = {
     signedOut: 'Your session has ended. Sign in again.',
     notFoundTitle: 'Nothing here',
     notFound: 'There is no such page, or it belongs to another fleet.',
-    toVessels: 'To the vessels',
+    toVessels: 'To the fleet',
     title: 'This could not be shown',
   },
 
   document: {
-    vessels: 'Vessels · Binnacle',
+    fleet: 'Fleet · Binnacle',
     vessel: (name: string) => `${name} · Binnacle`,
     signIn: 'Sign in · Binnacle',
+    invitation: 'Set your password · Binnacle',
     notFound: 'Nothing here · Binnacle',
     alerts: 'Alerts · Binnacle',
     mail: 'Mail · Binnacle',
     webhooks: 'Webhooks · Binnacle',
+    orders: 'Work orders · Binnacle',
+    newOrder: 'Order an adjustment · Binnacle',
+    order: (vessel: string) => `Adjustment of ${vessel} · Binnacle`,
   },
 };

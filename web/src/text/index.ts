@@ -4,9 +4,13 @@
  */
 
 import { alerts } from './alerts';
+import { berth } from './berth';
+import { binnacles } from './binnacles';
 import { changes } from './changes';
 import { common } from './common';
 import { deviation } from './deviation';
+import { fleet } from './fleet';
+import { orders } from './orders';
 import { papers } from './papers';
 import { trust } from './trust';
 import { vessels } from './vessels';
@@ -15,8 +19,12 @@ export const text = {
   ...common,
   ...alerts,
   ...vessels,
+  ...fleet,
   ...deviation,
   ...changes,
   ...trust,
   ...papers,
+  ...orders,
+  ...berth,
+  ...binnacles,
 };

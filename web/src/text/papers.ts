@@ -3,13 +3,19 @@
 export const papers = {
   card: {
     title: 'Deviation card',
-    lead: 'What the model predicts on each heading, with its 95 % band, on one sheet to be printed. It is marked as predicted: it is no certificate, and an adjuster’s name stays blank.',
+    lead: 'What the model predicts on each heading, with its 95 % band, on one sheet to be printed. It is marked as predicted until headings at sea have verified the adjustment that it comes from. It is no certificate: the place of a signature stays blank.',
     make: 'Make the card',
     making: 'Making…',
     again: 'Make it again',
     moved: 'For the place and day chosen above.',
     of: (place: string, day: string) => `For ${place} on ${day}.`,
     model: (version: number, band: string) => `By model ${version}, to ${band} or better.`,
+    predicted: 'Predicted',
+    verified: 'Verified at sea',
+    byModel: 'by the model alone.',
+    byOrder: (headings: number, until: string, adjusted: string) =>
+      `by ${headings} headings up to ${until}, after the adjustment of ${adjusted}.`,
+    order: 'Work order',
     alt: 'The deviation card as it is printed; the same as text is in the table of deviations.',
     forms: {
       pdf: 'Print (PDF)',
@@ -22,7 +28,8 @@ export const papers = {
     unrecorded: {
       correctors: 'how the correctors stand',
       degaussing_coils: 'how the degaussing coils are set',
-      adjuster: 'adjuster, licence, firm and signature',
+      adjuster: 'adjuster, licence and firm',
+      signature: 'an adjuster’s signature',
       next_due: 'when the next adjustment is due',
     },
   },

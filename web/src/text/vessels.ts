@@ -2,21 +2,11 @@
 
 export const vessels = {
   vessels: {
-    title: 'Vessels',
-    fleet: (operator: string) => `Fleet of ${operator}`,
-    name: 'Vessel',
-    lastUpload: 'Last upload',
-    position: 'Position',
-    worst: 'Largest deviation',
-    fit: 'Fit',
     onHeading: (heading: string) => `on ${heading}`,
     band: (band: string) => `${band} (95 %)`,
-    model: (version: number) => `Model ${version}`,
-    rms: (rms: string) => `residuals ${rms} rms`,
     noModel: 'No model yet',
     noUpload: 'nothing uploaded yet',
     noPosition: 'no position yet',
-    shown: (n: number) => (n === 1 ? '1 vessel' : `${n} vessels`),
     emptyTitle: 'No vessels yet',
     emptyAdmin:
       'Add the first vessel; then enrol the agent on board, and its compass begins to be measured.',
@@ -44,7 +34,7 @@ export const vessels = {
   },
 
   vessel: {
-    back: 'All vessels',
+    back: 'Fleet',
     imo: 'IMO',
     callSign: 'Call sign',
     flag: 'Flag',

@@ -1,0 +1,282 @@
+/**
+ * An adjustment: the binnacle entered, the order written, the work at the binnacle on a
+ * phone with the connection cut, and the evidence.
+ */
+import assert from 'node:assert/strict';
+import { readFile } from 'node:fs/promises';
+import { phone, notSignedIn, signIn, struck, fitsItsWidth } from '../helpers.mjs';
+
+/** The berth where she is adjusted, and how she lies there. */
+const berth = { lat: 43.35, lon: -3.04, headingDeg: 40 };
+/** The share of the earth's field that reaches the compass: what no heading tells. */
+const lambda = 0.9;
+const radians = (degrees) => (degrees * Math.PI) / 180;
+const degrees = (radians) => (radians * 180) / Math.PI;
+
+/** Without a connection every call fails, and the browser says so. */
+const cut = /ERR_INTERNET_DISCONNECTED/;
+
+/** The vessel to whom nothing happened. */
+async function calm(page) {
+  const { id } = await struck(page);
+  const listed = await (await page.request.get('/api/v1/vessels')).json();
+  return listed.items.find((vessel) => vessel.model && vessel.id !== id);
+}
+
+/** What a good magnetometer reads aboard her, µT, and what her compass reads, degrees. */
+async function fieldAtBerth(page, vessel) {
+  const get = async (path) => (await page.request.get(`/api/v1/vessels/${vessel}/${path}`)).json();
+  const { parameters_over_lambda: p } = (await get('model')).model;
+  const at = new Date().toISOString();
+  const here = await get(`deviation?lat=${berth.lat}&lon=${berth.lon}&at=${at}`);
+  const magnetic = radians(berth.headingDeg - here.variation_deg);
+  const [hx, hy, z] = [here.h_nt * Math.cos(magnetic), -here.h_nt * Math.sin(magnetic), here.z_nt];
+  const d = p.chi11_minus_chi22 / 2;
+  const forward = lambda * ((1 + d) * hx + p.chi12 * hy + p.chi13 * z + p.bx_nt);
+  const starboard = lambda * (p.chi21 * hx + (1 - d) * hy + p.chi23 * z + p.by_nt);
+  return {
+    forward: (forward / 1000).toFixed(2),
+    starboard: (starboard / 1000).toFixed(2),
+    compass: ((degrees(Math.atan2(-starboard, forward)) + 360) % 360).toFixed(1),
+  };
+}
+
+async function orderOf(page, vessel) {
+  const listed = await (await page.request.get(`/api/v1/work-orders?vessel=${vessel.id}`)).json();
+  return listed.items[0];
+}
+
+const expected = async (page) => parseFloat(await page.getByTestId('expected').innerText());
+
+/** Reads the compass after a step as it should stand, and goes on. */
+async function stepAsExpected(page, n) {
+  await page.getByText(new RegExp(`^Step ${n} of`)).waitFor();
+  await page.getByLabel(/^The compass reads/).fill(String(await expected(page)));
+  await page.getByText(/^As expected, to 0\.\d°\.$/).waitFor();
+  await page.getByRole('button', { name: 'Done: next' }).click();
+}
+
+export const adjusting = {
+  'a compass is put in its binnacle, and an adjustment ordered': {
+    allowedErrors: [notSignedIn, /status of 422 .*\/binnacle/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await calm(page);
+      await page.getByRole('link', { name: 'Work orders' }).click();
+      await page.getByRole('heading', { name: 'Work orders', level: 1 }).waitFor();
+      await page.getByText('No adjustment is under way').waitFor();
+      await page.getByRole('link', { name: 'Order an adjustment' }).click();
+      await page.getByLabel('Vessel').selectOption(vessel.id);
+      await page.getByText('its binnacle, with the correctors on board').waitFor();
+      await page.getByRole('link', { name: 'Put it in' }).click();
+
+      const panel = page.getByRole('region', { name: 'Binnacle and correctors' });
+      await panel.getByRole('button', { name: 'Choose a binnacle' }).click();
+      await panel.getByLabel('Type').selectOption('class_a_trays');
+      await panel.getByLabel('Magnets, 200 mm').fill('12');
+      await panel.getByLabel('Magnets, heeling 150 mm').fill('2');
+      await panel.getByLabel('Pieces of the Flinders bar').fill('300, 150, 75, 75');
+      for (const size of ['5 inch', '7 inch']) {
+        await panel.getByLabel(size, { exact: true }).check();
+      }
+      await panel.getByRole('button', { name: /Put magnets in.*Fore-and-aft/ }).click();
+      await panel.getByLabel('Tray at hole').selectOption('5');
+      await panel.getByLabel('Red end').first().selectOption('aft');
+      const save = panel.getByRole('button', { name: 'Save the binnacle' });
+      await save.click();
+      await panel.getByRole('alert').getByText('serial number').waitFor();
+      await panel.getByLabel('Serial number').fill('2047');
+      await shoot('binnacle-form', {}, panel);
+      await save.click();
+      await panel.getByText(/^Revision 1, .* by Test Officer/).waitFor();
+      await panel.getByText('tray at hole 5, 1 magnet, 200 mm, red end AFT').waitFor();
+      const file = await page.request.get(
+        await panel.getByRole('link', { name: 'Export JSON' }).getAttribute('href'),
+      );
+      await panel.getByLabel('Import JSON').setInputFiles({
+        name: 'other.json',
+        mimeType: 'application/json',
+        buffer: Buffer.from('[]'),
+      });
+      await panel.getByRole('alert').getByText('This file is no binnacle').waitFor();
+      await panel.getByLabel('Import JSON').setInputFiles({
+        name: 'binnacle.json',
+        mimeType: 'application/json',
+        buffer: await file.body(),
+      });
+      await panel.getByText('From the file binnacle.json').waitFor();
+      await save.click();
+      await panel.getByText(/^Revision 1, /).waitFor();
+
+      const particulars = page.getByRole('region', { name: 'Particulars' });
+      await particulars.getByRole('button', { name: /Amend… Compass/ }).click();
+      await particulars.getByLabel('Maker and type').fill('Reflecta 1');
+      await particulars.getByRole('button', { name: 'Save' }).click();
+      await particulars.getByText('Reflecta 1').waitFor();
+
+      const orders = page.getByRole('region', { name: 'Adjustment' });
+      await orders.getByRole('link', { name: 'Order an adjustment' }).click();
+      const order = page.getByRole('button', { name: 'Order it' });
+      await order.click();
+      await page.getByRole('alert').getByText('Say in which port').waitFor();
+      assert.equal(await page.getByLabel('Vessel').inputValue(), vessel.id);
+      await page.getByLabel('Port').fill('Bilbao');
+      await page.getByLabel('Berth').fill('A5');
+      await page.getByLabel('Adjuster').fill('M. Etxeberria');
+      await page.getByLabel('Licence number').fill('ES-CA-114');
+      await order.click();
+      await page.getByRole('heading', { name: `${vessel.name}: adjustment`, level: 1 }).waitFor();
+      await page.getByText('Next: the adjuster reads the magnetic field').waitFor();
+      const ready = page.getByRole('region', { name: 'Before the berth' });
+      await ready.getByText(/A model of the compass, its last sample .*: there/).waitFor();
+      await ready.getByText('correctors on board : there').waitFor();
+      await fitsItsWidth(page);
+      await shoot('order', { fullPage: true });
+      await page.getByRole('link', { name: 'All work orders' }).click();
+      await page.getByRole('row').filter({ hasText: vessel.name }).getByText('Planned').waitFor();
+      await shoot('orders');
+    },
+  },
+
+  'at the binnacle a phone goes on without a connection, and loses nothing': {
+    viewport: phone,
+    allowedErrors: [notSignedIn, cut, /status of 422 .*\/berth-reading/],
+    async run({ page, context, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await calm(page);
+      const { id } = await orderOf(page, vessel);
+      const field = await fieldAtBerth(page, vessel.id);
+      // The page is kept by the browser from now on.
+      await page.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));
+      await page.goto(`/work-orders/${id}`);
+      await page.getByRole('heading', { name: 'Read the field' }).waitFor();
+
+      // In gauss what is microtesla: refused, with what it could be.
+      await page.getByLabel('Latitude').fill('43 21.0 N');
+      await page.getByLabel('Longitude').fill('003 02.4 W');
+      await page.getByLabel(/^True heading of the ship/).fill(String(berth.headingDeg));
+      await page.getByLabel('It is from').selectOption('ashore');
+      await page.getByLabel(/^The compass read, before/).fill(field.compass);
+      await page.getByLabel('Unit of the magnetometer').selectOption('gauss');
+      await page.getByLabel(/^Forward/).fill(field.forward);
+      await page.getByLabel(/^Starboard/).fill(field.starboard);
+      await page.getByText('stronger than any ship’s field').waitFor();
+      await fitsItsWidth(page);
+      await shoot('berth-reading-phone', { fullPage: true });
+      await page.getByRole('button', { name: 'Send the reading' }).click();
+      const refused = page.getByTestId('refused');
+      await refused.getByText('the figures are in microtesla (1 microtesla is 1000 nT)').waitFor();
+      await refused.getByText('What would cure it').waitFor();
+      await shoot('berth-refused-phone');
+      assert.equal(await page.getByLabel(/^Forward/).inputValue(), field.forward);
+      await page.getByLabel('Unit of the magnetometer').selectOption('microtesla');
+      await page.getByRole('button', { name: 'Send the reading' }).click();
+
+      await page.getByRole('heading', { name: 'Choose a plan' }).waitFor();
+      const plan = page.getByTestId('plan').first();
+      await plan.getByText('recommended').waitFor();
+      await fitsItsWidth(page);
+      await shoot('berth-plans-phone', { fullPage: true });
+      await plan.getByRole('button', { name: /Work by this plan/ }).click();
+
+      const step = page.getByTestId('step');
+      await step.getByText(/^Step 1 of \d$/).waitFor();
+      const steps = Number((await step.getByText(/^Step 1 of/).innerText()).at(-1));
+      assert.ok(steps >= 2, `${steps} steps`);
+      assert.match(await page.getByTestId('expected').innerText(), /^\d{3}\.\d°$/);
+      await fitsItsWidth(page);
+      await shoot('berth-step-phone', { fullPage: true });
+      await page.getByLabel(/^The compass reads/).fill('200');
+      await page.getByText(/^Off by \d+\.\d°\. Read once more/).waitFor();
+
+      await context.setOffline(true);
+      await stepAsExpected(page, 1);
+      const waiting = page.getByTestId('waiting');
+      await waiting.getByText('1 thing is waiting to be sent').waitFor();
+      await waiting.getByText('It is kept in this browser').waitFor();
+      await step.getByText(`Step 2 of ${steps}`).waitFor();
+      await page.getByLabel(/^The compass reads/).fill('12.3');
+      await shoot('berth-offline-phone', { fullPage: true });
+      // Neither what is typed nor what waits is lost with the page.
+      await page.reload();
+      await waiting.getByText('1 thing is waiting to be sent').waitFor();
+      await step.getByText(`Step 2 of ${steps}`).waitFor();
+      assert.equal(await page.getByLabel(/^The compass reads/).inputValue(), '12.3');
+      for (let n = 2; n <= steps; n++) await stepAsExpected(page, n);
+
+      await page.getByRole('heading', { name: 'Complete and sign' }).waitFor();
+      await page.getByText('Photographs, remarks').click();
+      await page.getByLabel('What the record should have').fill('Crane alongside until noon');
+      await page.getByRole('button', { name: 'Add it' }).last().click();
+      const picture = await page.screenshot();
+      await page
+        .getByLabel('Take or choose a photograph')
+        .setInputFiles({ name: 'tray.png', mimeType: 'image/png', buffer: picture });
+      await page.getByLabel('What it shows').fill('Trays as they stand');
+      await page.getByRole('button', { name: 'Add it' }).first().click();
+      await waiting.getByText(`${steps + 2} things are waiting to be sent`).waitFor();
+      const sign = page.getByRole('button', { name: 'Sign and complete' });
+      await page.getByLabel('Type your name once more').fill('somebody else');
+      await sign.click();
+      await page.getByRole('alert').getByText('The signature is not the name above').waitFor();
+      await page.getByLabel('Type your name once more').fill('M. Etxeberria');
+      await fitsItsWidth(page);
+      await shoot('berth-finish-phone', { fullPage: true });
+      await sign.click();
+      await page.getByText('The completion is signed and waiting to be sent').waitFor();
+
+      await context.setOffline(false);
+      await waiting.waitFor({ state: 'detached', timeout: 60_000 });
+      await page.getByRole('heading', { name: 'Adjusted, to be verified' }).waitFor();
+      await shoot('berth-done-phone');
+      const done = await (await page.request.get(`/api/v1/work-orders/${id}`)).json();
+      assert.equal(done.state, 'adjusted');
+      assert.equal(done.steps_done, steps);
+      assert.equal(done.photos.length, 1);
+      const log = await (await page.request.get(`/api/v1/work-orders/${id}/entries`)).json();
+      const kinds = log.items.map((line) => line.entry.kind);
+      assert.equal(kinds.filter((kind) => kind === 'step').length, steps, 'each step once');
+      assert.deepEqual(kinds.slice(-3), ['remark', 'photo', 'completion']);
+    },
+  },
+
+  'a superintendent sees plan, proof and evidence of it, by night too': {
+    colorScheme: 'dark',
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await calm(page);
+      await page.goto('/work-orders');
+      await page.getByRole('row').filter({ hasText: vessel.name }).getByRole('link').click();
+      await page.getByText('No settled heading has come in since').waitFor();
+      const plan = page.getByRole('region', { name: 'Plan', exact: true });
+      await plan
+        .getByText(/^Foretold at worst \d\.\d° on \d{3}°; with its band \d\.\d°\.$/)
+        .waitFor();
+      await plan.getByTestId('plan-chart').locator('svg [aria-label="line"] path').nth(1).waitFor();
+      await plan.locator('summary', { hasText: 'Foretold on each heading' }).click();
+      assert.equal(await plan.getByTestId('predicted-table').locator('tbody tr').count(), 24);
+      await page.getByText('predicted, not a certificate').first().waitFor();
+      const papers = page.getByRole('region', { name: 'Record and evidence' });
+      await papers.getByText('Completed by M. Etxeberria, licence ES-CA-114').waitFor();
+      const image = papers.getByRole('img', { name: 'Trays as they stand' });
+      await image.scrollIntoViewIfNeeded();
+      await page.waitForFunction((img) => img.naturalWidth > 0, await image.elementHandle());
+      const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        papers.getByTestId('evidence').click(),
+      ]);
+      const archive = await readFile(await download.path());
+      assert.equal(archive.subarray(0, 2).toString(), 'PK');
+      assert.ok(archive.includes('record.json') && archive.includes('record.pdf'));
+      const log = page.getByRole('region', { name: 'Log' });
+      await log.getByText('Crane alongside until noon').waitFor();
+      assert.match(await log.innerText(), /refused: .*\n?/);
+      await fitsItsWidth(page);
+      await shoot('order-done', { fullPage: true });
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('order-done-phone', { fullPage: true });
+    },
+  },
+};

@@ -1,0 +1,147 @@
+import { describe, expect, it } from 'vitest';
+import type { FleetVessel } from './api/types';
+import {
+  arranged,
+  fromSearch,
+  quality,
+  sortedBy,
+  toSearch,
+  urgency,
+  usual,
+  withNews,
+  worstAhead,
+} from './fleet';
+import { savedViews, saveViews, withView } from './views';
+
+const now = new Date('2026-11-22T06:00:00Z');
+
+function vessel(name: string, more: Partial<FleetVessel> = {}): FleetVessel {
+  return {
+    id: name,
+    name,
+    imo_number: null,
+    call_sign: null,
+    last_upload_at: '2026-11-22T05:00:00Z',
+    position: null,
+    track: [],
+    model: { version: 1, rms_deg: 0.4, data_until: '2026-11-22T04:00:00Z', cautions: 0 },
+    worst: { compass_deg: 90, deviation_deg: 2, band95_deg: 0.5 },
+    open_alerts: 0,
+    next_call: null,
+    alert: null,
+    ...more,
+  };
+}
+
+const alert = (severity: 'notice' | 'warning' | 'critical', state: 'raised' | 'acknowledged') => ({
+  alert: { cause: 'drift', severity, state, summary: 'It drifts.' } as const,
+  open_alerts: state === 'raised' ? 1 : 0,
+});
+
+const fleet = [
+  vessel('Anna', { call_sign: 'EAVN' }),
+  vessel('Berta', { ...alert('warning', 'raised'), imo_number: '9074729' }),
+  vessel('Carl', {
+    ...alert('critical', 'acknowledged'),
+    worst: { compass_deg: 0, deviation_deg: -7, band95_deg: 2 },
+  }),
+  vessel('Dora', { model: null, worst: null, last_upload_at: null }),
+];
+
+const names = (query: Partial<typeof usual>) =>
+  arranged(fleet, { ...usual, ...query }, now).map(({ name }) => name);
+
+describe('the fleet', () => {
+  it('begins with who needs someone most', () => {
+    expect(names({})).toEqual(['Carl', 'Berta', 'Anna', 'Dora']);
+    expect(urgency(vessel('x', alert('warning', 'raised')))).toBeGreaterThan(
+      urgency(vessel('x', alert('warning', 'acknowledged'))),
+    );
+  });
+
+  it('is searched by name, number and call sign, all words at once', () => {
+    expect(names({ search: 'eavn' })).toEqual(['Anna']);
+    expect(names({ search: '9074 ber' })).toEqual(['Berta']);
+    expect(names({ search: 'anna berta' })).toEqual([]);
+  });
+
+  it('is filtered', () => {
+    expect(names({ filter: 'attention' })).toEqual(['Carl', 'Berta']);
+    expect(names({ filter: 'unacknowledged' })).toEqual(['Berta']);
+    expect(names({ filter: 'large' })).toEqual(['Carl']);
+    expect(names({ filter: 'weak' })).toEqual(['Dora']);
+    expect(names({ filter: 'silent' })).toEqual(['Dora']);
+  });
+
+  it('is sorted by each column, and back', () => {
+    expect(names({ sort: 'name', reversed: true })[0]).toBe('Dora');
+    expect(names({ sort: 'worst' })).toEqual(['Carl', 'Anna', 'Berta', 'Dora']);
+    expect(names({ sort: 'quality' })[0]).toBe('Dora');
+    expect(names({ sort: 'upload' })[0]).toBe('Dora');
+    expect(sortedBy(sortedBy(usual, 'name'), 'name')).toMatchObject({ reversed: true });
+    expect(sortedBy({ ...usual, reversed: true }, 'name').reversed).toBe(false);
+  });
+
+  it('looks ahead to the next port, where the deviation may be larger', () => {
+    const worst = { compass_deg: 10, deviation_deg: -5.5, band95_deg: 0.8 };
+    const next_call = {
+      port: 'FIHEL',
+      port_name: 'Helsinki',
+      eta: '2026-11-24T06:00:00Z',
+      etd: '2026-11-25T06:00:00Z',
+      worst,
+    };
+    expect(worstAhead(vessel('x', { next_call }))).toEqual({ worst, port: 'Helsinki' });
+    expect(worstAhead(vessel('x'))).toMatchObject({ port: null });
+    const small = { ...next_call, worst: { ...worst, deviation_deg: 1 } };
+    expect(worstAhead(vessel('x', { next_call: small }))).toMatchObject({ port: null });
+    const calls = [vessel('late', { next_call }), vessel('never'), vessel('soon')];
+    calls[2] = vessel('soon', { next_call: { ...next_call, eta: '2026-11-23T06:00:00Z' } });
+    const order = arranged(calls, { ...usual, sort: 'call' }, now).map(({ name }) => name);
+    expect(order).toEqual(['soon', 'late', 'never']);
+  });
+
+  it('knows a firm model from a weak one', () => {
+    const band = (band95_deg: number | null) => ({
+      worst: { compass_deg: 0, deviation_deg: 3, band95_deg },
+    });
+    expect(quality(vessel('x', band(0.9)))).toBe('firm');
+    expect(quality(vessel('x', band(2)))).toBe('fair');
+    expect(quality(vessel('x', band(3.1)))).toBe('weak');
+    expect(quality(vessel('x', band(null)))).toBe('weak');
+    expect(quality(vessel('x', { model: null }))).toBe('none');
+  });
+
+  it('takes news of one vessel without asking for the others', () => {
+    const later = vessel('Anna', { open_alerts: 3 });
+    expect(withNews(fleet, 'Anna', later)[0]).toBe(later);
+    expect(withNews(fleet, 'Anna', undefined).length).toBe(3);
+    expect(withNews(fleet, 'Emil', vessel('Emil')).length).toBe(5);
+  });
+});
+
+describe('a view', () => {
+  it('stands in the address bar and comes back from it', () => {
+    const query = { search: 'nao', filter: 'silent', sort: 'worst', reversed: true } as const;
+    expect(fromSearch(toSearch(query))).toEqual(query);
+    expect(toSearch(usual)).toBe('');
+    expect(fromSearch('?show=nonsense&sort=x')).toEqual(usual);
+  });
+
+  it('is kept by person, one of a name, and never breaks the page', () => {
+    const kept = new Map<string, string>();
+    const store = {
+      getItem: (key: string) => kept.get(key) ?? null,
+      setItem: (key: string, value: string) => void kept.set(key, value),
+    };
+    const one = withView([], { name: 'Mine', search: '?q=a' });
+    const two = withView(one, { name: 'Mine', search: '?q=b' });
+    saveViews(store, 'ada', two);
+    expect(savedViews(store, 'ada')).toEqual([{ name: 'Mine', search: '?q=b' }]);
+    expect(savedViews(store, 'eve')).toEqual([]);
+    kept.set('binnacle.views.eve', '{not json');
+    expect(savedViews(store, 'eve')).toEqual([]);
+    kept.set('binnacle.views.eve', '[{"name":1},{"name":"x","search":"?q=1"}]');
+    expect(savedViews(store, 'eve')).toEqual([{ name: 'x', search: '?q=1' }]);
+  });
+});

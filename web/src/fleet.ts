@@ -1,0 +1,166 @@
+/**
+ * How a fleet is searched, filtered and put in order, and what is said of a vessel in a
+ * line. Pure functions: the page holds the query, the address bar repeats it.
+ */
+
+import type { FleetVessel, Severity, Worst } from './api/types';
+import { grade } from './science/curve';
+
+export const filters = ['all', 'attention', 'unacknowledged', 'large', 'weak', 'silent'] as const;
+export type Filter = (typeof filters)[number];
+
+export const sorts = ['needs', 'name', 'worst', 'quality', 'upload', 'call'] as const;
+export type Sort = (typeof sorts)[number];
+
+export interface Query {
+  search: string;
+  filter: Filter;
+  sort: Sort;
+  /** Against the column's usual order. */
+  reversed: boolean;
+}
+
+export const usual: Query = { search: '', filter: 'all', sort: 'needs', reversed: false };
+
+const dayMs = 86_400_000;
+
+/** The vessels that a query asks for, in its order; equals by name. */
+export function arranged(vessels: readonly FleetVessel[], query: Query, now: Date): FleetVessel[] {
+  const words = query.search.toLowerCase().split(/\s+/).filter(Boolean);
+  const sign = query.reversed ? -1 : 1;
+  return vessels
+    .filter((vessel) => passes(vessel, query.filter, now) && says(vessel, words))
+    .sort((a, b) => sign * compare(a, b, query.sort) || byName(a, b));
+}
+
+function says(vessel: FleetVessel, words: string[]): boolean {
+  const hay = [vessel.name, vessel.imo_number, vessel.call_sign].join(' ').toLowerCase();
+  return words.every((word) => hay.includes(word));
+}
+
+function passes(vessel: FleetVessel, filter: Filter, now: Date): boolean {
+  switch (filter) {
+    case 'all':
+      return true;
+    case 'attention':
+      return vessel.alert !== null;
+    case 'unacknowledged':
+      return vessel.open_alerts > 0;
+    case 'large':
+      return grade(worstAhead(vessel)?.worst.deviation_deg ?? 0) === 'large';
+    case 'weak':
+      return ['weak', 'none'].includes(quality(vessel));
+    case 'silent':
+      return now.getTime() - uploadedAt(vessel) > dayMs;
+  }
+}
+
+const byName = (a: FleetVessel, b: FleetVessel): number => a.name.localeCompare(b.name, 'en');
+
+/** What wants to be looked at first is less. */
+function compare(a: FleetVessel, b: FleetVessel, sort: Sort): number {
+  switch (sort) {
+    case 'name':
+      return byName(a, b);
+    case 'needs':
+      return urgency(b) - urgency(a) || size(b) - size(a);
+    case 'worst':
+      return size(b) - size(a);
+    case 'quality':
+      return qualities.indexOf(quality(a)) - qualities.indexOf(quality(b)) || rms(b) - rms(a);
+    case 'upload':
+      return uploadedAt(a) - uploadedAt(b);
+    case 'call':
+      return arrivesAt(a) - arrivesAt(b);
+  }
+}
+
+const uploadedAt = (vessel: FleetVessel): number =>
+  vessel.last_upload_at === null ? 0 : Date.parse(vessel.last_upload_at);
+
+const arrivesAt = ({ next_call }: FleetVessel): number =>
+  next_call === null ? Number.MAX_VALUE : Date.parse(next_call.eta);
+
+/** Nothing is less than the least deviation. */
+const size = (vessel: FleetVessel): number => {
+  const ahead = worstAhead(vessel);
+  return ahead ? Math.abs(ahead.worst.deviation_deg) : -1;
+};
+
+/** The largest deviation that she is to meet, and the port if it is not where she was last. */
+export function worstAhead({
+  worst,
+  next_call: call,
+}: FleetVessel): { worst: Worst; port: string | null } | null {
+  const there = call?.worst ?? null;
+  const here = worst === null ? -1 : Math.abs(worst.deviation_deg);
+  if (call && there && Math.abs(there.deviation_deg) > here) {
+    return { worst: there, port: call.port_name || call.port };
+  }
+  return worst && { worst, port: null };
+}
+const rms = (vessel: FleetVessel): number => vessel.model?.rms_deg ?? 0;
+
+const severityRank: Record<Severity, number> = { notice: 1, warning: 2, critical: 3 };
+
+/** The worst of her alerts counts most, then whether anyone knows, then how many there are. */
+export function urgency({ alert, open_alerts }: FleetVessel): number {
+  if (!alert) return 0;
+  const known = alert.state === 'raised' ? 1 : 0;
+  return severityRank[alert.severity] * 1_000 + known * 500 + Math.min(open_alerts, 499);
+}
+
+export type Quality = 'firm' | 'fair' | 'weak' | 'none';
+const qualities: readonly Quality[] = ['none', 'weak', 'fair', 'firm'];
+
+const firmBandDeg = 1;
+const fairBandDeg = 3;
+
+/** How far her model can be trusted on the heading where it matters most. */
+export function quality(vessel: FleetVessel): Quality {
+  const { model } = vessel;
+  if (!model) return 'none';
+  const band = worstAhead(vessel)?.worst.band95_deg ?? Infinity;
+  if (band <= firmBandDeg && model.cautions === 0) return 'firm';
+  return band <= fairBandDeg ? 'fair' : 'weak';
+}
+
+/** A query as it stands in the address bar; the usual one is nothing. */
+export function toSearch({ search, filter, sort, reversed }: Query): string {
+  const params = new URLSearchParams();
+  if (search.trim() !== '') params.set('q', search.trim());
+  if (filter !== usual.filter) params.set('show', filter);
+  if (sort !== usual.sort) params.set('sort', sort);
+  if (reversed) params.set('order', 'reversed');
+  const text = params.toString();
+  return text === '' ? '' : `?${text}`;
+}
+
+/** The query in an address; what is not understood is as usual. */
+export function fromSearch(text: string): Query {
+  const params = new URLSearchParams(text);
+  return {
+    search: params.get('q') ?? '',
+    filter: filters.find((known) => known === params.get('show')) ?? usual.filter,
+    sort: sorts.find((known) => known === params.get('sort')) ?? usual.sort,
+    reversed: params.get('order') === 'reversed',
+  };
+}
+
+/** Another column's usual order first, and then its reverse. */
+export const sortedBy = (query: Query, sort: Sort): Query => ({
+  ...query,
+  sort,
+  reversed: query.sort === sort ? !query.reversed : false,
+});
+
+/** The fleet with news of one vessel: hers replaced, hers added, or hers gone. */
+export function withNews(
+  fleet: readonly FleetVessel[],
+  id: string,
+  news: FleetVessel | undefined,
+): FleetVessel[] {
+  if (!news) return fleet.filter((vessel) => vessel.id !== id);
+  if (!fleet.some((vessel) => vessel.id === id)) return [...fleet, news];
+  return fleet.map((vessel) => (vessel.id === id ? news : vessel));
+}

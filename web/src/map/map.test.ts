@@ -1,0 +1,104 @@
+import { describe, expect, it } from 'vitest';
+import { land } from 'virtual:land';
+import { marks, nearest, towards, trackPath } from './marks';
+import { near, placeOf, pointOf, wrapped } from './mercator';
+import { fitted, panned, pointAt, revealing, screenOf, viewBox, zoomed, type View } from './view';
+
+const world: View = { x: 0, y: 0, width: 360 };
+const suva = { lat: -18.1, lon: 178.4 };
+const apia = { lat: -13.8, lon: -171.8 };
+const bilbao = { lat: 43.3, lon: -3 };
+
+describe('the chart', () => {
+  it('finds a place again from its point', () => {
+    for (const place of [suva, apia, bilbao, { lat: 0, lon: 0 }]) {
+      const again = placeOf(pointOf(place));
+      expect(again.lat).toBeCloseTo(place.lat, 9);
+      expect(again.lon).toBeCloseTo(place.lon, 9);
+    }
+  });
+
+  it('is Mercator’s: at 60° N a degree of latitude is twice one of longitude', () => {
+    const [low, high] = [pointOf({ lat: 59.5, lon: 0 }), pointOf({ lat: 60.5, lon: 0 })];
+    expect(low.y - high.y).toBeCloseTo(2, 3);
+  });
+
+  it('repeats every 360°', () => {
+    expect(wrapped(180)).toBe(-180);
+    expect(wrapped(-181)).toBe(179);
+    expect(near(-171.8, 178.4)).toBeCloseTo(188.2, 9);
+    expect(near(178.4, -171.8)).toBeCloseTo(-181.6, 9);
+  });
+
+  it('ships with coasts that begin and end inside the world', () => {
+    expect(land.startsWith('M')).toBe(true);
+    expect(land.length).toBeGreaterThan(10_000);
+    expect(land).not.toMatch(/NaN|Infinity/);
+  });
+});
+
+describe('a view', () => {
+  it('holds ships on both sides of the antimeridian without the rest of the world', () => {
+    const view = fitted([suva, apia], 0.6);
+    expect(view.width).toBeLessThan(40);
+    for (const place of [suva, apia]) {
+      const { right, down } = screenOf(view, 0.6, place);
+      expect(right).toBeGreaterThan(0);
+      expect(right).toBeLessThan(1);
+      expect(down).toBeGreaterThan(0);
+      expect(down).toBeLessThan(1);
+    }
+  });
+
+  it('is the whole world without ships, and never wider', () => {
+    expect(fitted([], 0.5).width).toBe(360);
+    expect(zoomed(world, 0.1, 0.5).width).toBe(360);
+  });
+
+  it('does not show what lies beyond the chart', () => {
+    const view = panned(fitted([bilbao], 0.6), 0, -50, 0.6);
+    const [, y = '', , height = ''] = viewBox(view, 0.6).split(' ');
+    expect(Number(y)).toBeGreaterThanOrEqual(pointOf({ lat: 80, lon: 0 }).y - 1e-9);
+    expect(Number(height)).toBeCloseTo(view.width * 0.6, 9);
+  });
+
+  it('keeps a point under the pointer when it zooms', () => {
+    const at = pointAt(world, 0.5, 0.7, 0.4);
+    const view = zoomed(world, 2, 0.5, at);
+    const again = pointAt(view, 0.5, 0.7, 0.4);
+    expect(again.x).toBeCloseTo(at.x, 9);
+    expect(again.y).toBeCloseTo(at.y, 9);
+  });
+
+  it('moves only to what it does not show', () => {
+    const view = fitted([bilbao], 0.6);
+    expect(revealing(view, { lat: 43, lon: -4 }, 0.6)).toBe(view);
+    expect(revealing(view, suva, 0.6).x).toBeCloseTo(178.4, 9);
+  });
+});
+
+describe('marks', () => {
+  it('stand on the side of the world that is looked at', () => {
+    expect(marks([suva], { ...world, x: -170 })).toMatch(/^M-181\.6 /);
+    expect(marks([suva], { ...world, x: 170 })).toMatch(/^M178\.4 /);
+  });
+
+  it('a track crosses the antimeridian the short way', () => {
+    const path = trackPath([suva, apia], { ...world, x: 180 });
+    const xs = [...path.matchAll(/[ML](-?[\d.]+) /g)].map(([, x]) => Number(x));
+    expect(xs).toEqual([188.2, 178.4]);
+    expect(trackPath([suva], world)).toBe('');
+  });
+
+  it('are found by the nearest point, also across the antimeridian', () => {
+    const fleet = [
+      { id: 'suva', place: suva },
+      { id: 'apia', place: apia },
+    ];
+    const at = pointOf({ lat: -18, lon: -181 });
+    expect(nearest(fleet, at, 2)?.id).toBe('suva');
+    expect(nearest(fleet, at, 0.1)).toBeNull();
+    expect(towards(fleet, suva, 'right')?.id).toBe('apia');
+    expect(towards(fleet, suva, 'left')).toBeNull();
+  });
+});

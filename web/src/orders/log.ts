@@ -1,0 +1,73 @@
+/** An entry of an order's log as a line for people. Pure. */
+
+import type { WorkOrderEntry } from '../api/types';
+import { degrees, fineHeading } from '../format';
+import { text } from '../text';
+
+interface Line {
+  at: string;
+  author: string;
+  title: string;
+  words: string;
+}
+
+/** What this page reads of entries; one of a kind that it does not know has a title all the same. */
+interface Read {
+  kind: string;
+  at: string;
+  author: { name: string };
+  content: {
+    text?: string;
+    caption?: string | null;
+    number?: number;
+    after_deg?: number;
+    verdict?: string;
+    words?: string;
+    chosen?: number;
+    offered?: unknown[];
+    refusal?: { words: string } | null;
+    checked?: { lambda: number; consistency_deg: number } | null;
+    adjuster_name?: string;
+    note?: string | null;
+    port?: string;
+  };
+}
+
+export function lineOf({ entry }: WorkOrderEntry): Line {
+  const { kind, at, author, content } = entry as unknown as Read;
+  return {
+    at,
+    author: author.name,
+    title: text.order.log.kinds[kind] ?? kind.replaceAll('_', ' '),
+    words: words(kind, content),
+  };
+}
+
+function words(kind: string, content: Read['content']): string {
+  const t = text.order.log;
+  switch (kind) {
+    case 'opened':
+      return content.port ?? '';
+    case 'berth_reading':
+      if (content.refusal) return `${t.refused}: ${content.refusal.words}`;
+      return content.checked
+        ? `λ ${content.checked.lambda.toFixed(3)}, ${degrees(content.checked.consistency_deg)}`
+        : '';
+    case 'plan':
+      return content.chosen === undefined
+        ? ''
+        : text.order.plan.chosen(content.chosen, content.offered?.length ?? 0);
+    case 'step': {
+      const said = text.berth.step.verdict[content.verdict ?? ''] ?? content.words ?? '';
+      return `${content.number ?? ''}, ${fineHeading(content.after_deg)}. ${said}`;
+    }
+    case 'photo':
+      return content.caption ?? '';
+    case 'completion':
+      return content.adjuster_name ?? '';
+    case 'verification':
+      return content.words ?? '';
+    default:
+      return content.text ?? content.note ?? '';
+  }
+}

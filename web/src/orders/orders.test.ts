@@ -1,0 +1,282 @@
+import { describe, expect, test } from 'vitest';
+import type { PlanOffer, PlanStep, WorkOrder, WorkOrderSummary } from '../api/types';
+import { ahead, expectedDeg, isAsExpected, offBy, wrapped } from './ahead';
+import { inOrder, isOpen, stateName } from './order';
+import { correctorName, standing, written } from './places';
+import { draftOf, fault, headingOf, horizontalNt, newReading, number, readingOf } from './reading';
+import { bearsOut, builtOn, isRefusal, nextToSend, type Content, type Write } from './writes';
+
+const step = (number: number, change_deg: number, tolerance_deg = 1): PlanStep => ({
+  number,
+  corrector: 'athwartship',
+  action: 'move',
+  from: { place: 'magnets', hole: 7, magnet: '200 mm', count: 1, red: 'port' },
+  to: { place: 'magnets', hole: 3, magnet: '200 mm', count: 1, red: 'port' },
+  words: `step ${number}`,
+  check: null,
+  expected_compass_deg: 0,
+  change_deg,
+  tolerance_deg,
+  seen: true,
+  setting_before: {},
+  setting_after: {},
+});
+
+const plan = (...steps: PlanStep[]) => ({ steps }) as PlanOffer['plans'][number];
+
+const order = (over: Partial<WorkOrder>): WorkOrder =>
+  ({
+    id: 'o',
+    state: 'adjusting',
+    plan: { plan: plan(step(1, 5), step(2, -3)) },
+    steps_done: 0,
+    next_step: step(1, 5),
+    compass_deg: 358,
+    ...over,
+  }) as WorkOrder;
+
+let made = 0;
+const write = (content: Content, over: Partial<Write> = {}): Write => ({
+  seq: ++made,
+  order: 'o',
+  user: 'u',
+  key: `k${made}`,
+  at: '2026-11-22T08:00:00Z',
+  content,
+  ...over,
+});
+const read = (number: number, after_deg: number) =>
+  write({ kind: 'step', number, body: { after_deg } });
+const refused = { status: 409, kind: 'wrong-state', detail: 'no', refusals: [] };
+
+describe('a step', () => {
+  test('is judged across north, either way', () => {
+    expect(wrapped(-358)).toBe(2);
+    expect(wrapped(180)).toBe(180);
+    expect(offBy(step(1, 5), 358, 3)).toBeCloseTo(0);
+    expect(offBy(step(1, -5), 2, 357.5)).toBeCloseTo(0.5);
+    expect(isAsExpected(step(1, 5), 358, 4)).toBe(true);
+    expect(isAsExpected(step(1, 5), 358, 4.1)).toBe(false);
+    expect(isAsExpected(step(1, 5), 358, 353)).toBe(false);
+  });
+
+  test('is expected from what the compass reads now, not from what was planned', () => {
+    expect(expectedDeg(step(1, 5), 358)).toBe(3);
+    expect(expectedDeg(step(1, -5), 2)).toBe(357);
+    expect(expectedDeg({ ...step(1, 5), expected_compass_deg: 12 }, null)).toBe(12);
+  });
+});
+
+describe('ahead of the server', () => {
+  test('a step that read as expected is followed by the next', () => {
+    const now = ahead(order({}), [read(1, 3.4)]);
+    expect(now).toMatchObject({ stepsDone: 1, compassDeg: 3.4, waitingFor: null });
+    expect(now.next?.number).toBe(2);
+    expect(ahead(order({}), [read(1, 3.4), read(2, 0.2)])).toMatchObject({
+      stepsDone: 2,
+      next: null,
+    });
+  });
+
+  test('a step that read otherwise waits for the server', () => {
+    expect(ahead(order({}), [read(1, 10), read(2, 7)])).toMatchObject({
+      stepsDone: 0,
+      waitingFor: 'step',
+    });
+  });
+
+  test('a step of another plan waits too', () => {
+    expect(ahead(order({}), [read(2, 355)]).waitingFor).toBe('step');
+  });
+
+  test('a first step with no compass reading before it needs one', () => {
+    const unread = order({ compass_deg: null });
+    expect(ahead(unread, [read(1, 3)]).waitingFor).toBe('step');
+    const both = write({ kind: 'step', number: 1, body: { before_deg: 358, after_deg: 3 } });
+    expect(ahead(unread, [both])).toMatchObject({ stepsDone: 1, compassDeg: 3 });
+  });
+
+  test('a plan that was chosen is followed where the offer is at hand', () => {
+    const measured = order({ state: 'measured', plan: null, next_step: null });
+    const choice = write({ kind: 'plan', plan: 2 });
+    const offer = { plans: [plan(step(1, 1)), plan(step(1, 9))] } as PlanOffer;
+    expect(ahead(measured, [choice]).waitingFor).toBe('plan');
+    const now = ahead(measured, [choice], offer);
+    expect(now).toMatchObject({ state: 'adjusting', stepsDone: 0 });
+    expect(now.next?.change_deg).toBe(9);
+  });
+
+  test('what was refused and what is of other orders counts for nothing', () => {
+    const other = { ...read(1, 3), order: 'other' };
+    expect(ahead(order({}), [{ ...read(1, 3), refused }, other]).stepsDone).toBe(0);
+  });
+
+  test('photographs and remarks hold nothing up', () => {
+    const said = write({ kind: 'remark', text: 'crane' });
+    expect(ahead(order({}), [said, read(1, 3)]).stepsDone).toBe(1);
+  });
+});
+
+describe('the queue', () => {
+  test('goes in order, past what was refused and what others wrote', () => {
+    const [first, second] = [read(1, 3), read(2, 0)];
+    expect(nextToSend([first, second], 'u')).toBe(first);
+    expect(nextToSend([{ ...first, refused }, second], 'u')).toBe(second);
+    expect(nextToSend([first], 'somebody else')).toBeUndefined();
+  });
+
+  test('holds what was built upon what did not hold, up to the next reading', () => {
+    const failed = read(1, 10);
+    const next = read(2, 7);
+    const said = write({ kind: 'remark', text: 'crane' });
+    const afresh = write({ kind: 'reading', body: {} as never });
+    const later = write({ kind: 'plan', plan: 1 });
+    expect(builtOn([failed, next, said, afresh, later], failed)).toEqual([next]);
+    expect(builtOn([said, next], said)).toEqual([]);
+  });
+
+  test('takes a step as borne out only by the verdict', () => {
+    const answered = (verdict: string) => ({ last_step: { verdict } }) as WorkOrder;
+    expect(bearsOut(read(1, 3).content, answered('confirmed'))).toBe(true);
+    expect(bearsOut(read(1, 3).content, answered('not_seen'))).toBe(true);
+    expect(bearsOut(read(1, 3).content, answered('wrong_end'))).toBe(false);
+    expect(bearsOut({ kind: 'remark', text: 'x' }, answered('wrong_end'))).toBe(true);
+  });
+
+  test('tells a refusal from a fault on the way', () => {
+    expect(isRefusal(409, 'wrong-state')).toBe(true);
+    expect(isRefusal(422, 'not-adjustable')).toBe(true);
+    for (const status of [0, 401, 408, 425, 429, 500, 502, 503]) {
+      expect(isRefusal(status, 'x')).toBe(false);
+    }
+    // A portal's page in place of ours.
+    expect(isRefusal(403, '')).toBe(false);
+  });
+});
+
+describe('a reading', () => {
+  const now = new Date('2026-11-22T08:20:00Z');
+  const good = {
+    ...newReading(now),
+    lat: '43 21.0 N',
+    lon: '003 02.4 W',
+    heading: '312',
+    forward: '17,2',
+    starboard: '−14.9',
+  };
+
+  test('is made of what is typed, commas and true minus signs too', () => {
+    expect(fault(good)).toBeNull();
+    const reading = readingOf(good);
+    expect(reading).toMatchObject({
+      at: '2026-11-22T08:20:00.000Z',
+      lat: 43.35,
+      heading_true_deg: 312,
+      forward: 17.2,
+      starboard: -14.9,
+      unit: 'microtesla',
+    });
+    expect(reading.lon).toBeCloseTo(-3.04);
+    expect('down' in reading).toBe(false);
+    expect('compass_deg' in reading).toBe(false);
+    expect(readingOf({ ...good, down: '0', compass: '0' })).toMatchObject({
+      down: 0,
+      compass_deg: 0,
+    });
+  });
+
+  test('names the first field that is wrong', () => {
+    for (const [field, typed] of [
+      ['at', ''],
+      ['lat', '91 N'],
+      ['lon', 'west'],
+      ['heading', '361'],
+      ['compass', 'north'],
+      ['forward', ''],
+      ['starboard', '1.2.3'],
+      ['down', 'x'],
+      ['heel', '31'],
+      ['fieldSd', '0'],
+    ] as const) {
+      expect(fault({ ...good, [field]: typed })?.field).toBe(field);
+    }
+  });
+
+  test('has its size in the unit that was chosen', () => {
+    expect(horizontalNt(newReading(now))).toBeNull();
+    const field = { ...good, forward: '3', starboard: '4' };
+    expect(horizontalNt(field)).toBe(5000);
+    expect(horizontalNt({ ...field, unit: 'gauss' })).toBe(500_000);
+  });
+
+  test('is read again from all that stays, but the field itself', () => {
+    const again = draftOf({ ...readingOf(good), compass_deg: 310.5 }, now);
+    expect(again).toMatchObject({ heading: '312', compass: '310.5', forward: '', starboard: '' });
+    expect(readingOf({ ...again, forward: '1', starboard: '1' }).lon).toBeCloseTo(-3.04);
+  });
+
+  test('takes no half number and no heading beyond 360', () => {
+    expect(number('12.')).toBe(12);
+    expect(number('')).toBeNull();
+    expect(number('1e3')).toBeNull();
+    expect(headingOf('042.6°')).toBe(42.6);
+    expect(headingOf('360')).toBe(360);
+    expect(headingOf('-1')).toBeNull();
+  });
+});
+
+describe('places', () => {
+  test('say where, what, and the red end', () => {
+    expect(written(step(1, 1).to, 'athwartship')).toEqual({
+      where: 'hole 3',
+      what: '1 magnet, 200 mm',
+      red: 'red end to PORT',
+    });
+    expect(written(null, 'athwartship')).toBeNull();
+    expect(
+      written({ place: 'pair', size: '7 inch', mark_mm: 320, slew_deg: -10 }, 'quadrantal'),
+    ).toEqual({
+      where: 'mark 320 mm',
+      what: '7 inch, slewed 10°, starboard one forward',
+      red: '',
+    });
+    expect(correctorName(step(1, 1))).toBe('Athwartship magnets');
+  });
+
+  test('of all correctors are a line each, soft iron first', () => {
+    const lines = standing({
+      athwartship: [{ hole: 7, magnet: '200 mm', count: 2, red: 'starboard' }],
+      flinders: { length_mm: 225, side: 'aft' },
+      quadrantal: null,
+    });
+    expect(lines).toEqual([
+      { corrector: 'Flinders bar', words: '225 mm, aft of the card' },
+      {
+        corrector: 'Athwartship magnets',
+        words: 'hole 7, 2 magnets, 200 mm, red end to STARBOARD',
+      },
+    ]);
+    expect(standing({})).toEqual([]);
+  });
+});
+
+describe('orders', () => {
+  test('that are open come first, the next one on top; then the last one that was done', () => {
+    const listed = (id: string, state: string, planned_at: string) =>
+      ({ id, state, planned_at }) as WorkOrderSummary;
+    const all = [
+      listed('old', 'closed', '2026-01-01'),
+      listed('later', 'planned', '2026-12-02'),
+      listed('newer', 'cancelled', '2026-02-01'),
+      listed('sooner', 'adjusting', '2026-12-01'),
+    ];
+    expect(inOrder(all).map((one) => one.id)).toEqual(['sooner', 'later', 'newer', 'old']);
+  });
+
+  test('in a state that is new here have the server’s word for it, and are open', () => {
+    expect(stateName('planned')).toBe('Planned');
+    expect(stateName('waiting_for_tide')).toBe('waiting for tide');
+    expect(isOpen('waiting_for_tide')).toBe(true);
+    expect(isOpen('cancelled')).toBe(false);
+  });
+});

@@ -1,0 +1,58 @@
+/** The fleet, kept up to date by what happens, vessel by vessel. */
+
+import { findAtAGlance, findFleet } from '../api/client';
+import { gathered, live } from '../api/live.svelte';
+import type { FleetVessel } from '../api/types';
+import { withNews } from '../fleet';
+import { Resource } from './resource.svelte';
+
+/** News of more vessels than this at once: then the whole fleet is one question. */
+const mostSingly = 6;
+const waitMs = 1_500;
+
+export class FleetState {
+  vessels = new Resource<FleetVessel[]>();
+  #stale = new Set<string>();
+  #all = false;
+  #tracked = new Set<string>();
+
+  load = (): Promise<void> => {
+    this.#tracked.clear();
+    return this.vessels.load(findFleet);
+  };
+
+  /** Keeps it up to date until the function it returns is called. */
+  follow(): () => void {
+    void this.load();
+    const refresh = gathered(() => void this.#refresh(), waitMs);
+    const stop = live.listen(({ vesselId }) => {
+      if (vesselId === null) this.#all = true;
+      else this.#stale.add(vesselId);
+      refresh.call();
+    });
+    return () => {
+      refresh.stop();
+      stop();
+    };
+  }
+
+  /** Asks for a vessel's track where the fleet is too large to bring them all. */
+  async withTrackOf(id: string): Promise<void> {
+    const vessel = this.vessels.value?.find((known) => known.id === id);
+    if (!vessel?.position || vessel.track.length > 0 || this.#tracked.has(id)) return;
+    this.#tracked.add(id);
+    const news = await findAtAGlance(id).catch(() => undefined);
+    if (news) this.vessels.value = withNews(this.vessels.value ?? [], id, news);
+  }
+
+  async #refresh(): Promise<void> {
+    const [ids, all] = [[...this.#stale], this.#all];
+    this.#stale.clear();
+    this.#all = false;
+    if (all || ids.length > mostSingly || !this.vessels.value) return this.load();
+    await this.vessels.load(async () => {
+      const news = await Promise.all(ids.map(findAtAGlance));
+      return ids.reduce((fleet, id, i) => withNews(fleet, id, news[i]), this.vessels.value ?? []);
+    });
+  }
+}
