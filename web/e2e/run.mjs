@@ -18,17 +18,9 @@ import { papers } from './scenarios/papers.mjs';
 import { session } from './scenarios/session.mjs';
 import { vessel } from './scenarios/vessel.mjs';
 
-/** What a user must be able to do, each in a browser of its own. */
-const scenarios = {
-  ...fleet,
-  ...link,
-  ...vessel,
-  ...papers,
-  ...alerts,
-  ...session,
-  ...adjusting,
-  ...access,
-};
+/** What a user must be able to do, each in a browser of its own; later ones of a group
+ * go on where earlier ones ended. */
+const groups = { fleet, link, vessel, papers, alerts, session, adjusting, access };
 
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
 
@@ -38,9 +30,13 @@ const settings = {
   password: required('BINNACLE_PASSWORD'),
 };
 
-/** All of them, or those whose names have a word that was given: `npm run e2e -- fleet`. */
-const [, , word = ''] = process.argv;
-const chosen = Object.entries(scenarios).filter(([name]) => name.includes(word));
+/** All of them, those of a group, or those with the words in their names: `npm run e2e -- fleet`. */
+const words = process.argv.slice(2).join(' ');
+const chosen = Object.entries(groups).flatMap(([group, scenarios]) =>
+  Object.entries(scenarios).filter(([name]) => group === words || name.includes(words)),
+);
+
+if (chosen.length === 0) throw new Error(`there is no group "${words}", nor a scenario with it`);
 
 await mkdir(artefacts, { recursive: true });
 const browser = await chromium.launch({ executablePath: browserPath(), args: flags });

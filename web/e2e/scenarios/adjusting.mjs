@@ -165,7 +165,8 @@ export const adjusting = {
       await shoot('berth-reading-phone', { fullPage: true });
       await page.getByRole('button', { name: 'Send the reading' }).click();
       const refused = page.getByTestId('refused');
-      await refused.getByText('the figures are in microtesla (1 microtesla is 1000 nT)').waitFor();
+      const couldBe = 'the figures are in microtesla (1 microtesla is 1000 nT)';
+      await refused.getByText(couldBe, { exact: true }).waitFor();
       await refused.getByText('What would cure it').waitFor();
       await shoot('berth-refused-phone');
       assert.equal(await page.getByLabel(/^Forward/).inputValue(), field.forward);
