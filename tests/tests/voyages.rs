@@ -27,6 +27,8 @@ const LIVE_S: f64 = 600.0;
 const PATIENCE: Duration = Duration::from_mins(5);
 /// A tenth of a degree in a sentence, and a line between rows of the truth.
 const ROUNDING_DEG: f64 = 0.15;
+/// Either ship settles more often than this in the days that she sails.
+const LEAST_SAMPLES: i64 = 1_000;
 
 struct Vessel {
     id: Uuid,
@@ -157,11 +159,9 @@ async fn assert_every_batch_once(
         "{} batches are in trouble",
         spool.in_trouble
     );
-    ensure!(
-        spool.acknowledged.len() > 20,
-        "only {:?}",
-        spool.acknowledged
-    );
+    // How many batches carry them depends on how long a busy server lets them wait.
+    let samples: i64 = spool.acknowledged.iter().map(|batch| batch.samples).sum();
+    ensure!(samples > LEAST_SAMPLES, "only {samples} samples are ashore");
     let mut sent = Vec::new();
     let mut logged = Vec::new();
     for (stream, seq, bytes) in batch_log(shore.database(), vessel.id).await? {
