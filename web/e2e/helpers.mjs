@@ -30,6 +30,13 @@ export async function openVessel(page) {
 export const chart = (page) => page.getByTestId('deviation-chart');
 export const curve = (page) => chart(page).locator('svg [aria-label="line"] path').last();
 
+/** The table has its rows, the map its marks and its coasts. */
+export async function fleetIsShown(page) {
+  await page.getByRole('rowheader').first().waitFor();
+  await page.locator('path.mark[d^="M"]').first().waitFor({ state: 'attached' });
+  await page.locator('path.land[d^="M"]').first().waitFor({ state: 'attached' });
+}
+
 /** The first vessel that has a model, by the API. */
 export async function withModel(page) {
   const listed = await (await page.request.get('/api/v1/vessels')).json();

@@ -4,9 +4,9 @@
  * Prints medians of five loads; asserts nothing.
  */
 import { chromium } from 'playwright-core';
-import { signIn } from './helpers.mjs';
+import { fleetIsShown, signIn } from './helpers.mjs';
 import { browserPath, flags, required } from './browser.mjs';
-import { counted, fleetIsShown } from './scenarios/link.mjs';
+import { wireTo } from './wire.mjs';
 
 const settings = {
   url: required('BINNACLE_URL').replace(/\/$/, ''),
@@ -16,8 +16,11 @@ const settings = {
 const median = (values) => values.toSorted((a, b) => a - b)[Math.floor(values.length / 2)];
 
 const browser = await chromium.launch({ executablePath: browserPath(), args: flags });
+const wire = await wireTo(settings.url);
 const page = await browser.newPage({
-  baseURL: settings.url,
+  baseURL: wire.url,
+  // Each load fetches everything, as a first visit does.
+  serviceWorkers: 'block',
   viewport: { width: 1440, height: 900 },
 });
 await signIn(page, settings);
@@ -31,8 +34,9 @@ await page.addInitScript(() => {
 
 const runs = [];
 for (let run = 0; run < 5; run++) {
-  const wire = await counted(page);
-  await wire.session.send('Network.clearBrowserCache');
+  const session = await page.context().newCDPSession(page);
+  await session.send('Network.clearBrowserCache');
+  const before = wire.octets;
   await page.reload();
   await fleetIsShown(page);
   await page.waitForTimeout(1_500);
@@ -50,15 +54,17 @@ for (let run = 0; run < 5; run++) {
     search.dispatchEvent(new InputEvent('input', { bubbles: true }));
     await new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
     return {
+      fleet_octets: fleet.encodedBodySize,
       server_and_wire_ms: fleet.responseEnd - fleet.requestStart,
       data_to_interactive_ms: busyUntil - fleet.responseEnd,
       search_ms: performance.now() - typed,
     };
   });
-  runs.push({ ...measured, octets: wire.octets() });
-  await wire.session.detach();
+  runs.push({ ...measured, octets: wire.octets - before });
+  await session.detach();
 }
 await browser.close();
+wire.close();
 for (const figure of Object.keys(runs[0])) {
   console.log(`${figure}: ${Math.round(median(runs.map((run) => run[figure])))}`);
 }

@@ -15,12 +15,13 @@ import { alerts } from './scenarios/alerts.mjs';
 import { fleet } from './scenarios/fleet.mjs';
 import { link } from './scenarios/link.mjs';
 import { papers } from './scenarios/papers.mjs';
+import { schedule } from './scenarios/schedule.mjs';
 import { session } from './scenarios/session.mjs';
 import { vessel } from './scenarios/vessel.mjs';
 
 /** What a user must be able to do, each in a browser of its own; later ones of a group
  * go on where earlier ones ended. */
-const groups = { fleet, link, vessel, papers, alerts, session, adjusting, access };
+const groups = { fleet, link, vessel, papers, alerts, session, adjusting, schedule, access };
 
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
 
@@ -42,11 +43,12 @@ await mkdir(artefacts, { recursive: true });
 const browser = await chromium.launch({ executablePath: browserPath(), args: flags });
 let failed = 0;
 try {
-  for (const [name, { viewport, colorScheme, allowedErrors = [], run }] of chosen) {
+  for (const [name, { viewport, colorScheme, serviceWorkers, allowedErrors = [], run }] of chosen) {
     const context = await browser.newContext({
       baseURL: settings.url,
       viewport: viewport ?? { width: 1440, height: 900 },
       colorScheme: colorScheme ?? 'light',
+      serviceWorkers: serviceWorkers ?? 'allow',
     });
     const page = await context.newPage();
     page.setDefaultTimeout(15_000);
@@ -65,7 +67,7 @@ try {
       part.screenshot({ path: `${artefacts}browser-${what}.png`, ...options });
     const started = performance.now();
     try {
-      await run({ page, context, settings, shoot });
+      await run({ page, context, browser, settings, shoot });
       if (complaints.length > 0)
         throw new Error(`the browser complained:\n  ${complaints.join('\n  ')}`);
       console.log(`ok   ${name} (${Math.round(performance.now() - started)} ms)`);
