@@ -104,6 +104,23 @@ export function clock(value: string | Date | null | undefined): string {
   return `${date.toISOString().slice(11, 16)} UTC`;
 }
 
+/** How far ship's time is from UTC: `UTC+2`. */
+export function zone(hoursAhead: number): string {
+  if (hoursAhead === 0) return 'UTC';
+  return `UTC${hoursAhead < 0 ? '−' : '+'}${Math.abs(hoursAhead)}`;
+}
+
+/** An instant by the ship's clocks: `14 Nov 2026, 10:30 (UTC+2)`. */
+export function shipsTime(value: string | Date | null | undefined, hoursAhead: number): string {
+  const date = toDate(value);
+  if (!date) return unknown;
+  const there = new Date(date.getTime() + hoursAhead * 3_600_000);
+  return `${day(there)}, ${there.toISOString().slice(11, 16)} (${zone(hoursAhead)})`;
+}
+
+/** The nautical zone of a longitude: hours ahead of UTC. */
+export const zoneOf = (lon: number): number => Math.sign(lon) * Math.round(Math.abs(lon) / 15) || 0;
+
 const months = 'Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec'.split(' ');
 
 function toDate(value: string | Date | null | undefined): Date | null {
@@ -134,6 +151,13 @@ export function microtesla(nanotesla: number | null | undefined): string {
 export function count(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
   return String(Math.round(value)).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+}
+
+/** Euros, whole: `€ 1 800`, kept on one line. */
+export function euros(value: number | null | undefined): string {
+  if (value === null || value === undefined || !Number.isFinite(value)) return unknown;
+  const whole = count(Math.abs(value));
+  return `${value < 0 && whole !== '0' ? '−' : ''}€\u00a0${whole}`;
 }
 
 /** `64 %`, and `< 1 %` for what is there but small. */

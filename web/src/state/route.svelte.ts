@@ -1,18 +1,18 @@
 /** Which page the address names, and moving between pages without reloading. */
 
+/** Pages that are known by the first word of their address alone. */
+const plain = ['alerts', 'mail', 'webhooks', 'schedule', 'invitation'] as const;
+
 export type Route =
-  | { page: 'vessels' | 'alerts' | 'mail' | 'webhooks' | 'work-orders' | 'not-found' }
-  | { page: 'new-work-order' | 'invitation' }
+  | { page: (typeof plain)[number] | 'vessels' | 'work-orders' | 'new-work-order' | 'not-found' }
   | { page: 'vessel' | 'work-order'; id: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
   if (first === undefined) return { page: 'vessels' };
   if (first === 'work-orders' && rest.length === 0) return workOrderRoute(second);
-  if (second === undefined && (first === 'alerts' || first === 'mail' || first === 'webhooks')) {
-    return { page: first };
-  }
-  if (first === 'invitation' && second === undefined) return { page: 'invitation' };
+  const known = plain.find((page) => page === first);
+  if (known && second === undefined) return { page: known };
   if (first !== 'vessels' || rest.length > 0) return { page: 'not-found' };
   return second === undefined ? { page: 'vessels' } : { page: 'vessel', id: second };
 }
@@ -27,6 +27,7 @@ export const vesselsPath = '/';
 export const alertsPath = '/alerts';
 export const mailPath = '/mail';
 export const webhooksPath = '/webhooks';
+export const schedulePath = '/schedule';
 export const workOrdersPath = '/work-orders';
 export const workOrderPath = (id: string): string => `/work-orders/${encodeURIComponent(id)}`;
 /** Where an adjustment is ordered, perhaps of a compass that is already known. */

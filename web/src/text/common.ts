@@ -83,6 +83,7 @@ export const common = {
     mail: 'Mail · Binnacle',
     webhooks: 'Webhooks · Binnacle',
     orders: 'Work orders · Binnacle',
+    schedule: 'Schedule · Binnacle',
     newOrder: 'Order an adjustment · Binnacle',
     order: (vessel: string) => `Adjustment of ${vessel} · Binnacle`,
   },

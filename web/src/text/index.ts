@@ -12,6 +12,7 @@ import { deviation } from './deviation';
 import { fleet } from './fleet';
 import { orders } from './orders';
 import { papers } from './papers';
+import { schedule } from './schedule';
 import { trust } from './trust';
 import { vessels } from './vessels';
 
@@ -25,6 +26,7 @@ export const text = {
   ...trust,
   ...papers,
   ...orders,
+  ...schedule,
   ...berth,
   ...binnacles,
 };

@@ -1,0 +1,179 @@
+/** The schedule: calls entered, the plan made, a job pinned, dragged and offered. */
+import assert from 'node:assert/strict';
+import { fitsItsWidth, notSignedIn, phone, signIn, struck } from '../helpers.mjs';
+
+const dayMs = 86_400_000;
+const written = { headers: { 'X-Binnacle-Request': '1' } };
+const iso = (at) => new Date(at).toISOString();
+
+/** The Monday after next: far enough for every lead time. */
+function monday() {
+  const midnight = Math.floor(Date.now() / dayMs) * dayMs;
+  return midnight + (15 - ((new Date(midnight).getUTCDay() + 6) % 7)) * dayMs - dayMs;
+}
+
+async function good(answer) {
+  const { ok, text } = await answer.then(async (a) => ({ ok: a.ok(), text: await a.text() }));
+  assert.ok(ok, text);
+  return text === '' ? null : JSON.parse(text);
+}
+
+/** Terms of two firms, the cheaper of which serves Rotterdam only. */
+async function firmsHaveTerms(page) {
+  const { items } = await good(page.request.get('/api/v1/firms'));
+  assert.ok(items.length >= 2, 'the operator works with no two firms');
+  const ports = [
+    [{ port: 'NLRTM', travel_eur: 100 }],
+    [
+      { port: 'NLRTM', travel_eur: 150 },
+      { port: 'BEANR', travel_eur: 400 },
+    ],
+  ];
+  for (const [n, firm] of items.slice(0, 2).entries()) {
+    const data = { fee_eur: 1800 + 100 * n, ports: ports[n] };
+    await good(page.request.put(`/api/v1/firms/${firm.id}/terms`, { ...written, data }));
+  }
+}
+
+/** What rules ask about her, and that she was adjusted so that she is due in forty days. */
+async function due(page, vessel) {
+  const path = `/api/v1/vessels/${vessel.id}`;
+  const known = { flag_state: 'NO', gross_tonnage: 24000, trade: 'bulk', deviation_record: 'kept' };
+  await good(page.request.put(`${path}/particulars`, { ...written, data: known }));
+  const before = new Date(Date.now() + 40 * dayMs);
+  before.setUTCFullYear(before.getUTCFullYear() - 2);
+  const adjusted = { kind: 'adjustment', from: before.toISOString() };
+  await good(page.request.post(`${path}/logbook`, { ...written, data: adjusted }));
+}
+
+const jobs = (page) => page.getByTestId('jobs').locator('tbody tr');
+const solve = (page) => page.getByRole('button', { name: /^(Re-solve|Make the plan)$/ });
+
+export const schedule = {
+  'port calls are entered by hand and from a file, and the schedule is solved': {
+    allowedErrors: [notSignedIn, /status of 422 .*port-calls\.csv/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const hit = await struck(page);
+      await firmsHaveTerms(page);
+      await due(page, hit);
+      await page.getByRole('link', { name: 'Schedule' }).click();
+      await page.getByRole('heading', { name: 'Schedule', level: 1 }).waitFor();
+      const calls = page.getByRole('region', { name: 'Port calls' });
+      await calls.getByLabel('Vessel').selectOption(hit.id);
+      await calls.getByRole('button', { name: 'Enter it' }).click();
+      await calls.getByRole('alert').getByText('Choose a port').waitFor();
+      await calls.getByLabel('Port', { exact: true }).fill('NLRTM');
+      await calls.getByText('Times are ship’s time there, UTC.').waitFor();
+      await calls.getByLabel('Arrives').fill(iso(monday() + dayMs / 4).slice(0, 16));
+      await calls.getByLabel('Leaves').fill(iso(monday() + 2.5 * dayMs).slice(0, 16));
+      await calls.getByRole('button', { name: 'Enter it' }).click();
+      await calls.getByText('The call is entered.').waitFor();
+
+      const file = (text) => ({
+        name: 'calls.csv',
+        mimeType: 'text/csv',
+        buffer: Buffer.from(text),
+      });
+      const head = 'id,vessel,port,eta,etd\n';
+      const [eta, etd] = [iso(monday() + 7 * dayMs), iso(monday() + 9 * dayMs)];
+      await calls
+        .getByLabel('File, .csv or .ics')
+        .setInputFiles(file(`${head}b1,${hit.name},BEANR,${eta},soon\n`));
+      await calls.getByRole('button', { name: 'Send the file' }).click();
+      await calls
+        .getByRole('alert')
+        .getByText(/line 2/)
+        .waitFor();
+      await calls
+        .getByLabel('File, .csv or .ics')
+        .setInputFiles(file(`${head}b1,${hit.name},BEANR,${eta},${etd}\n`));
+      await calls.getByRole('button', { name: 'Send the file' }).click();
+      await calls.getByText('1 new, 0 changed, 0 as before, 0 withdrawn.').waitFor();
+
+      await solve(page).click();
+      const job = jobs(page).filter({ hasText: hit.name });
+      await job.getByText('Rotterdam').waitFor();
+      await job.getByText('Proposed').waitFor();
+      await page.getByTestId('timeline').getByRole('button', { name: hit.name }).waitFor();
+      await fitsItsWidth(page);
+      await shoot('schedule', { fullPage: true });
+    },
+  },
+
+  'a job is dragged to another call and pinned, and it is said what that costs': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const hit = await struck(page);
+      await page.goto('/schedule');
+      const block = page.getByTestId('timeline').getByRole('button', { name: hit.name });
+      await block.scrollIntoViewIfNeeded();
+      const box = await block.boundingBox();
+      const track = await page.getByTestId('timeline').locator('li .track').first().boundingBox();
+      const week = (track.width / 91) * 7;
+      const y = box.y + box.height / 2;
+      await page.mouse.move(box.x + box.width / 2, y);
+      await page.mouse.down();
+      await page.mouse.move(box.x + box.width / 2 + week / 2, y, { steps: 4 });
+      await page.mouse.move(box.x + box.width / 2 + week, y, { steps: 4 });
+      await shoot('schedule-dragging');
+      await page.mouse.up();
+      const panel = page.locator('#job');
+      assert.match(
+        await panel.getByLabel('Port call').locator('option:checked').innerText(),
+        /^Antwerp/,
+      );
+      await panel.getByLabel('Firm').selectOption({ index: 1 });
+      await panel.getByLabel(/^Why/).fill('Agreed by telephone');
+      await shoot('schedule-job', {}, panel);
+      await panel.getByRole('button', { name: 'Pin and re-solve' }).click();
+      const changes = page.getByRole('region', { name: 'What changed' });
+      await changes.getByTestId('changes').getByText('Moved').waitFor();
+      await changes.getByText(/costs €.* more by your weights/).waitFor();
+      const job = jobs(page).filter({ hasText: hit.name });
+      await job.getByText(/pinned/).waitFor();
+      await job.getByText('Antwerp').waitFor();
+      await page
+        .locator('#job')
+        .getByText(/^Pinned by Test Officer/)
+        .waitFor();
+      await shoot('schedule-changed', { fullPage: true });
+    },
+  },
+
+  'with the keyboard alone a pin is let go, on a phone': {
+    viewport: phone,
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const hit = await struck(page);
+      await page.goto('/schedule');
+      const block = page.getByTestId('timeline').getByRole('button', { name: hit.name });
+      await block.focus();
+      await page.keyboard.press('Enter');
+      const letGo = page.getByRole('button', { name: 'Let it go where it is best' });
+      await letGo.focus();
+      await page.keyboard.press('Enter');
+      await page.getByTestId('changes').getByText('Moved').waitFor();
+      await jobs(page).filter({ hasText: hit.name }).getByText('Rotterdam').waitFor();
+      await fitsItsWidth(page);
+      await shoot('schedule-phone', { fullPage: true });
+    },
+  },
+
+  'a planned job is offered to its firm': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const hit = await struck(page);
+      await page.goto('/schedule');
+      await jobs(page).filter({ hasText: hit.name }).getByRole('button').click();
+      const panel = page.locator('#job');
+      await panel.getByRole('button', { name: 'Offer it' }).click();
+      await jobs(page).filter({ hasText: hit.name }).getByText('Offered').waitFor();
+      await panel.getByRole('link', { name: 'See the order' }).waitFor();
+      await shoot('schedule-offered', {}, panel);
+    },
+  },
+};

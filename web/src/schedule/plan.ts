@@ -1,0 +1,100 @@
+/** A plan as people look at it: a row for each vessel, what changed, what it costs. */
+
+import type { AdjustmentNeed, PlanChange, PlannedJob, PortCall, SchedulePlan } from '../api/types';
+
+/** A vessel of the schedule: when she is in port, what is planned and what is due. */
+export interface Row {
+  vesselId: string;
+  vesselName: string;
+  calls: PortCall[];
+  jobs: PlannedJob[];
+  needs: AdjustmentNeed[];
+  /** Whether a need of hers that falls into the time shown is not met, or only late. */
+  unmet: boolean;
+}
+
+const urgencies = ['overdue', 'urgent', 'soon', 'routine'] as const;
+
+/** The vessels that have something to show: what is not met first, then by the next job. */
+export function rowsOf(
+  plan: SchedulePlan | null,
+  needs: readonly AdjustmentNeed[],
+  calls: readonly PortCall[],
+): Row[] {
+  const rows = new Map<string, Row>();
+  const of = (item: { vessel_id: string; vessel_name: string }): Row => {
+    const known = rows.get(item.vessel_id);
+    if (known) return known;
+    const { vessel_id: vesselId, vessel_name: vesselName } = item;
+    const row: Row = { vesselId, vesselName, calls: [], jobs: [], needs: [], unmet: false };
+    rows.set(vesselId, row);
+    return row;
+  };
+  for (const call of calls) of(call).calls.push(call);
+  for (const need of needs) of(need).needs.push(need);
+  for (const job of plan?.jobs ?? []) of(job).jobs.push(job);
+  for (const unmet of plan?.unscheduled ?? []) of(unmet).unmet = true;
+  return [...rows.values()].sort(
+    (a, b) =>
+      Number(b.unmet) - Number(a.unmet) ||
+      first(a) - first(b) ||
+      a.vesselName.localeCompare(b.vesselName, 'en'),
+  );
+}
+
+/** When a vessel is to be thought of: her first job, else her first due date. */
+function first({ jobs, needs }: Row): number {
+  const days = jobs.length > 0 ? jobs.map((job) => job.day) : needs.map((need) => need.due_on);
+  return Math.min(Number.MAX_SAFE_INTEGER, ...days.map((day) => Date.parse(day)));
+}
+
+/** How much the most pressing of some needs presses. */
+export const mostUrgent = (needs: readonly { urgency: (typeof urgencies)[number] }[]) =>
+  urgencies.find((urgency) => needs.some((need) => need.urgency === urgency)) ?? 'routine';
+
+/** What a job is known by from plan to plan. */
+export const jobKey = (job: { compasses: readonly { compass_id: string }[] }): string =>
+  job.compasses.map((compass) => compass.compass_id).join('+');
+
+export const paid = (job: PlannedJob): number => job.fee_eur + job.travel_eur;
+
+/** What changed, without what stayed as it was; the moved and dropped first. */
+export function realChanges(changes: readonly PlanChange[]): PlanChange[] {
+  const order = ['dropped', 'moved', 'new'];
+  return changes
+    .filter((change) => change.what !== 'kept')
+    .sort((a, b) => order.indexOf(a.what) - order.indexOf(b.what));
+}
+
+const hourMs = 3_600_000;
+const dayMs = 24 * hourMs;
+
+/** The days of a call in ship's time, as `YYYY-MM-DD`, for a port so many hours ahead of UTC. */
+export function daysOf(call: { eta: string; etd: string }, zoneH: number): string[] {
+  const days: string[] = [];
+  const last = shipsDay(Date.parse(call.etd), zoneH);
+  for (let at = Date.parse(call.eta); ; at += dayMs) {
+    const day = shipsDay(at, zoneH);
+    days.push(day < last ? day : last);
+    if (day >= last) return days;
+  }
+}
+
+/** The day that it is on board at an instant. */
+export const shipsDay = (atMs: number, zoneH: number): string =>
+  new Date(atMs + zoneH * hourMs).toISOString().slice(0, 10);
+
+/** The call in which an instant lies; with `slackH` it may lie so far beside one. */
+export function callAt<C extends { eta: string; etd: string }>(
+  calls: readonly C[],
+  atMs: number,
+  slackH = 0,
+): C | undefined {
+  const off = (call: C) => Math.max(Date.parse(call.eta) - atMs, atMs - Date.parse(call.etd), 0);
+  const near = calls.filter((call) => off(call) <= slackH * hourMs);
+  return near.sort((a, b) => off(a) - off(b))[0];
+}
+
+/** An instant that was written in ship's time, as `2026-12-08T06:00`. */
+export const instantOf = (written: string, zoneH: number): string =>
+  new Date(Date.parse(`${written}Z`) - zoneH * hourMs).toISOString();

@@ -1,0 +1,104 @@
+import { describe, expect, test } from 'vitest';
+import type { AdjustmentNeed, PlannedJob, PortCall, SchedulePlan } from '../api/types';
+import { atX, shown, spanFrom, ticks, xOf } from './axis';
+import { callAt, daysOf, instantOf, realChanges, rowsOf } from './plan';
+
+const dayMs = 86_400_000;
+
+describe('the days of a call', () => {
+  const call = { eta: '2026-12-08T20:00:00Z', etd: '2026-12-10T02:00:00Z' };
+
+  test('are ship’s days, not UTC’s', () => {
+    expect(daysOf(call, 0)).toEqual(['2026-12-08', '2026-12-09', '2026-12-10']);
+    expect(daysOf(call, 9)).toEqual(['2026-12-09', '2026-12-10']);
+    expect(daysOf(call, -5)).toEqual(['2026-12-08', '2026-12-09']);
+  });
+
+  test('are one where she comes and goes on the same day', () => {
+    const short = { eta: '2026-12-08T01:00:00Z', etd: '2026-12-08T05:00:00Z' };
+    expect(daysOf(short, 1)).toEqual(['2026-12-08']);
+  });
+
+  test('written in ship’s time are an instant', () => {
+    expect(instantOf('2026-12-08T06:00', 9)).toBe('2026-12-07T21:00:00.000Z');
+    expect(instantOf('2026-12-08T06:00', -4)).toBe('2026-12-08T10:00:00.000Z');
+  });
+});
+
+describe('a job that is dropped', () => {
+  const calls = [
+    { id: 'a', eta: '2026-12-01T00:00:00Z', etd: '2026-12-02T00:00:00Z' },
+    { id: 'b', eta: '2026-12-04T00:00:00Z', etd: '2026-12-05T00:00:00Z' },
+  ];
+  const at = (time: string, slackH = 0) => callAt(calls, Date.parse(time), slackH)?.id;
+
+  test('belongs into the call in which it falls', () => {
+    expect(at('2026-12-04T12:00:00Z')).toBe('b');
+    expect(at('2026-12-03T00:00:00Z')).toBeUndefined();
+  });
+
+  test('beside a call belongs into the nearer one', () => {
+    expect(at('2026-12-02T20:00:00Z', 24)).toBe('a');
+    expect(at('2026-12-03T10:00:00Z', 24)).toBe('b');
+    expect(at('2026-12-08T00:00:00Z', 24)).toBeUndefined();
+  });
+});
+
+describe('the time line', () => {
+  test('begins on a Monday before today', () => {
+    const span = spanFrom(new Date('2026-11-22T15:00:00Z'), 28);
+    expect(new Date(span.fromMs).toISOString()).toBe('2026-11-16T00:00:00.000Z');
+    const onMonday = spanFrom(new Date('2026-11-23T00:30:00Z'), 28);
+    expect(new Date(onMonday.fromMs).toISOString()).toBe('2026-11-16T00:00:00.000Z');
+  });
+
+  test('places an instant and finds it again', () => {
+    const span = { fromMs: 0, days: 10 };
+    expect(xOf(span, 5 * dayMs, 800)).toBe(400);
+    expect(atX(span, 400, 800)).toBe(5 * dayMs);
+  });
+
+  test('cuts what reaches beyond it, and leaves out what lies beside it', () => {
+    const span = { fromMs: 0, days: 10 };
+    expect(shown(span, -dayMs, dayMs, 1000)).toEqual({ x: 0, width: 100 });
+    expect(shown(span, 9 * dayMs, 20 * dayMs, 1000)).toEqual({ x: 900, width: 100 });
+    expect(shown(span, 11 * dayMs, 12 * dayMs, 1000)).toBeNull();
+  });
+
+  test('writes fewer dates where there is less room', () => {
+    const span = spanFrom(new Date('2026-11-22T00:00:00Z'), 182);
+    expect(ticks(span, 2_000)).toHaveLength(26);
+    expect(ticks(span, 320).length).toBeLessThanOrEqual(5);
+  });
+});
+
+describe('the vessels of a plan', () => {
+  const vessel = (name: string) => ({ vessel_id: name, vessel_name: name });
+  const job = (name: string, day: string) => ({ ...vessel(name), day }) as PlannedJob;
+  const plan = {
+    jobs: [job('Late', '2026-12-20'), job('Early', '2026-12-01')],
+    unscheduled: [{ ...vessel('Nowhere') }],
+  } as unknown as SchedulePlan;
+  const needs = [{ ...vessel('Due'), due_on: '2026-12-10' } as AdjustmentNeed];
+  const calls = [{ ...vessel('Calls') } as PortCall, { ...vessel('Late') } as PortCall];
+
+  test('come in the order in which someone must think of them', () => {
+    const rows = rowsOf(plan, needs, calls);
+    expect(rows.map((row) => row.vesselName)).toEqual(['Nowhere', 'Early', 'Due', 'Late', 'Calls']);
+    expect(rows.map((row) => row.unmet)).toEqual([true, false, false, false, false]);
+  });
+
+  test('are there without a plan', () => {
+    expect(rowsOf(null, needs, calls).map((row) => row.vesselName)).toEqual([
+      'Due',
+      'Calls',
+      'Late',
+    ]);
+  });
+
+  test('have changes without what stayed, dropped jobs first', () => {
+    const change = (what: string) => ({ what }) as SchedulePlan['changes'][number];
+    const found = realChanges(['kept', 'new', 'moved', 'dropped'].map(change));
+    expect(found.map((line) => line.what)).toEqual(['dropped', 'moved', 'new']);
+  });
+});
