@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import type { FleetVessel } from './api/types';
+import type { AdjustmentNeed, FleetVessel } from './api/types';
 import {
   arranged,
   fromSearch,
@@ -8,6 +8,7 @@ import {
   toSearch,
   urgency,
   usual,
+  withDues,
   withNews,
   worstAhead,
 } from './fleet';
@@ -143,5 +144,22 @@ describe('a view', () => {
     expect(savedViews(store, 'eve')).toEqual([]);
     kept.set('binnacle.views.eve', '[{"name":1},{"name":"x","search":"?q=1"}]');
     expect(savedViews(store, 'eve')).toEqual([{ name: 'x', search: '?q=1' }]);
+  });
+});
+
+describe('what is due next', () => {
+  const need = (vessel_id: string, due_on: string) =>
+    ({ vessel_id, due_on, urgency: 'soon', reason: 'r' }) as AdjustmentNeed;
+
+  it('is the first of her needs, and puts the earliest first and the unknown last', () => {
+    const vessels = ['A', 'B', 'C'].map((id) => ({ id, name: id }) as FleetVessel);
+    const lines = withDues(vessels, [
+      need('B', '2027-01-01'),
+      need('A', '2027-03-01'),
+      need('B', '2026-12-01'),
+    ]);
+    expect(lines.map((line) => line.due?.on)).toEqual(['2027-03-01', '2026-12-01', undefined]);
+    const sorted = arranged(lines, { ...usual, sort: 'due' }, new Date());
+    expect(sorted.map((line) => line.name)).toEqual(['B', 'A', 'C']);
   });
 });

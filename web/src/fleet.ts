@@ -3,13 +3,13 @@
  * line. Pure functions: the page holds the query, the address bar repeats it.
  */
 
-import type { FleetVessel, Severity, Worst } from './api/types';
+import type { AdjustmentNeed, FleetVessel, Severity, Urgency, Worst } from './api/types';
 import { grade } from './science/curve';
 
 export const filters = ['all', 'attention', 'unacknowledged', 'large', 'weak', 'silent'] as const;
 export type Filter = (typeof filters)[number];
 
-export const sorts = ['needs', 'name', 'worst', 'quality', 'upload', 'call'] as const;
+export const sorts = ['needs', 'name', 'worst', 'quality', 'upload', 'due', 'call'] as const;
 export type Sort = (typeof sorts)[number];
 
 export interface Query {
@@ -24,8 +24,31 @@ export const usual: Query = { search: '', filter: 'all', sort: 'needs', reversed
 
 const dayMs = 86_400_000;
 
+/** When a vessel's compass is to be adjusted next, the first of hers. */
+export interface Due {
+  on: string;
+  urgency: Urgency;
+  reason: string;
+}
+
+/** A vessel with when she is due; nothing where that is not known yet, or she is not. */
+export type FleetLine = FleetVessel & { due?: Due | undefined };
+
+/** The vessels with the first of the needs of each. */
+export function withDues(
+  vessels: readonly FleetVessel[],
+  needs: readonly AdjustmentNeed[],
+): FleetLine[] {
+  const first = new Map<string, Due>();
+  for (const { vessel_id, due_on: on, urgency, reason } of needs) {
+    const known = first.get(vessel_id);
+    if (!known || on < known.on) first.set(vessel_id, { on, urgency, reason });
+  }
+  return vessels.map((vessel) => ({ ...vessel, due: first.get(vessel.id) }));
+}
+
 /** The vessels that a query asks for, in its order; equals by name. */
-export function arranged(vessels: readonly FleetVessel[], query: Query, now: Date): FleetVessel[] {
+export function arranged(vessels: readonly FleetLine[], query: Query, now: Date): FleetLine[] {
   const words = query.search.toLowerCase().split(/\s+/).filter(Boolean);
   const sign = query.reversed ? -1 : 1;
   return vessels
@@ -58,7 +81,7 @@ function passes(vessel: FleetVessel, filter: Filter, now: Date): boolean {
 const byName = (a: FleetVessel, b: FleetVessel): number => a.name.localeCompare(b.name, 'en');
 
 /** What wants to be looked at first is less. */
-function compare(a: FleetVessel, b: FleetVessel, sort: Sort): number {
+function compare(a: FleetLine, b: FleetLine, sort: Sort): number {
   switch (sort) {
     case 'name':
       return byName(a, b);
@@ -70,6 +93,8 @@ function compare(a: FleetVessel, b: FleetVessel, sort: Sort): number {
       return qualities.indexOf(quality(a)) - qualities.indexOf(quality(b)) || rms(b) - rms(a);
     case 'upload':
       return uploadedAt(a) - uploadedAt(b);
+    case 'due':
+      return dueAt(a) - dueAt(b);
     case 'call':
       return arrivesAt(a) - arrivesAt(b);
   }
@@ -77,6 +102,8 @@ function compare(a: FleetVessel, b: FleetVessel, sort: Sort): number {
 
 const uploadedAt = (vessel: FleetVessel): number =>
   vessel.last_upload_at === null ? 0 : Date.parse(vessel.last_upload_at);
+
+const dueAt = ({ due }: FleetLine): number => (due ? Date.parse(due.on) : Number.MAX_VALUE);
 
 const arrivesAt = ({ next_call }: FleetVessel): number =>
   next_call === null ? Number.MAX_VALUE : Date.parse(next_call.eta);

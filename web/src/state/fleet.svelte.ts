@@ -2,16 +2,21 @@
 
 import { findAtAGlance, findFleet } from '../api/client';
 import { gathered, live } from '../api/live.svelte';
-import type { FleetVessel } from '../api/types';
+import { listNeeds } from '../api/schedule';
+import type { AdjustmentNeed, FleetVessel } from '../api/types';
 import { withNews } from '../fleet';
 import { Resource } from './resource.svelte';
 
 /** News of more vessels than this at once: then the whole fleet is one question. */
 const mostSingly = 6;
 const waitMs = 1_500;
+/** What is due changes by days. */
+const needsWaitMs = 15_000;
 
 export class FleetState {
   vessels = new Resource<FleetVessel[]>();
+  /** What is due when: asked for when the vessels are there, for they are looked at first. */
+  needs = new Resource<AdjustmentNeed[]>();
   #stale = new Set<string>();
   #all = false;
   #tracked = new Set<string>();
@@ -23,15 +28,18 @@ export class FleetState {
 
   /** Keeps it up to date until the function it returns is called. */
   follow(): () => void {
-    void this.load();
+    void this.load().then(this.#loadNeeds);
+    const needs = gathered(() => void this.#loadNeeds(), needsWaitMs);
     const refresh = gathered(() => void this.#refresh(), waitMs);
-    const stop = live.listen(({ vesselId }) => {
+    const stop = live.listen(({ vesselId, kind }) => {
+      if (kind !== 'batch') needs.call();
       if (vesselId === null) this.#all = true;
       else this.#stale.add(vesselId);
       refresh.call();
     });
     return () => {
       refresh.stop();
+      needs.stop();
       stop();
     };
   }
@@ -44,6 +52,8 @@ export class FleetState {
     const news = await findAtAGlance(id).catch(() => undefined);
     if (news) this.vessels.value = withNews(this.vessels.value ?? [], id, news);
   }
+
+  #loadNeeds = (): Promise<void> => this.needs.load(listNeeds);
 
   async #refresh(): Promise<void> {
     const [ids, all] = [[...this.#stale], this.#all];

@@ -14,6 +14,7 @@ export const fleet = {
     worstHelp: 'By her model, where she was last and at her next port: whichever is larger',
     quality: 'Model',
     lastUpload: 'Last upload',
+    nextDue: 'Next due',
     nextCall: 'Next port call',
     noCall: 'none entered',
     arrives: (when: string) => `arrives ${when}`,
