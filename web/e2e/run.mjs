@@ -2,7 +2,8 @@
  * Drives the built dashboard in a real Chromium against a real server with data.
  *
  * Environment: BINNACLE_URL, BINNACLE_EMAIL, BINNACLE_PASSWORD (an admin whose
- * fleet has at least one vessel with a model), BINNACLE_CHROMIUM (else the
+ * fleet has at least one vessel with a model), BINNACLE_ADJUSTER (the e-mail of one of
+ * a firm that works for it, with the same password), BINNACLE_CHROMIUM (else the
  * system's). Screenshots go to tests/artefacts. Exit code 1 on the first failure.
  */
 import { mkdir } from 'node:fs/promises';
@@ -15,13 +16,25 @@ import { alerts } from './scenarios/alerts.mjs';
 import { fleet } from './scenarios/fleet.mjs';
 import { link } from './scenarios/link.mjs';
 import { papers } from './scenarios/papers.mjs';
+import { people } from './scenarios/people.mjs';
 import { schedule } from './scenarios/schedule.mjs';
 import { session } from './scenarios/session.mjs';
 import { vessel } from './scenarios/vessel.mjs';
 
 /** What a user must be able to do, each in a browser of its own; later ones of a group
  * go on where earlier ones ended. */
-const groups = { fleet, link, vessel, papers, alerts, session, adjusting, schedule, access };
+const groups = {
+  fleet,
+  link,
+  vessel,
+  papers,
+  alerts,
+  session,
+  adjusting,
+  schedule,
+  people,
+  access,
+};
 
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
 
@@ -29,6 +42,7 @@ const settings = {
   url: required('BINNACLE_URL').replace(/\/$/, ''),
   email: required('BINNACLE_EMAIL'),
   password: required('BINNACLE_PASSWORD'),
+  adjuster: process.env.BINNACLE_ADJUSTER,
 };
 
 /** All of them, those of a group, or those with the words in their names: `npm run e2e -- fleet`. */

@@ -121,6 +121,15 @@ export function shipsTime(value: string | Date | null | undefined, hoursAhead: n
 /** The nautical zone of a longitude: hours ahead of UTC. */
 export const zoneOf = (lon: number): number => Math.sign(lon) * Math.round(Math.abs(lon) / 15) || 0;
 
+/** `14 Nov, 10:30` by the clock of the device that shows it. */
+export function localTime(value: string): string {
+  const date = toDate(value);
+  if (!date) return unknown;
+  const two = (n: number) => String(n).padStart(2, '0');
+  const on = `${date.getDate()} ${months[date.getMonth()] ?? ''}`;
+  return `${on}, ${two(date.getHours())}:${two(date.getMinutes())}`;
+}
+
 const months = 'Jan Feb Mar Apr May Jun Jul Aug Sep Oct Nov Dec'.split(' ');
 
 function toDate(value: string | Date | null | undefined): Date | null {

@@ -3,6 +3,12 @@ import assert from 'node:assert/strict';
 import { findings } from '../axe.mjs';
 import { curve, fitsItsWidth, notSignedIn, phone, signIn, withModel } from '../helpers.mjs';
 
+/** The latest order there is. */
+async function anOrder(vessel, page) {
+  const { items } = await (await page.request.get('/api/v1/work-orders')).json();
+  return `/work-orders/${items.at(-1).id}`;
+}
+
 /** Each page, and what shows that it is there. */
 const pages = [
   { name: 'fleet', path: '/', ready: (page) => page.getByRole('rowheader').first() },
@@ -10,6 +16,27 @@ const pages = [
   { name: 'mail', path: '/mail', ready: (page) => page.getByRole('heading', { level: 1 }) },
   { name: 'webhooks', path: '/webhooks', ready: (page) => page.getByRole('heading', { level: 1 }) },
   { name: 'vessel', path: (vessel) => `/vessels/${vessel.id}`, ready: curve },
+  { name: 'schedule', path: '/schedule', ready: (page) => page.getByTestId('timeline') },
+  { name: 'orders', path: '/work-orders', ready: (page) => page.getByRole('row').first() },
+  {
+    name: 'order',
+    path: anOrder,
+    ready: (page) => page.getByRole('heading', { level: 2 }).first(),
+  },
+  { name: 'new-order', path: '/work-orders/new', ready: (page) => page.getByLabel('Vessel') },
+  {
+    name: 'firms',
+    path: '/firms',
+    ready: (page) => page.getByRole('heading', { level: 3 }).first(),
+  },
+  { name: 'settings', path: '/settings', ready: (page) => page.getByText('this browser') },
+  { name: 'people', path: '/settings/people', ready: (page) => page.getByTestId('users') },
+  { name: 'agents', path: '/settings/agents', ready: (page) => page.getByLabel('Vessel') },
+  {
+    name: 'schedule-rules',
+    path: '/settings/schedule',
+    ready: (page) => page.getByLabel('Hours that a job takes on board'),
+  },
   { name: 'nothing', path: '/no-such', ready: (page) => page.getByRole('heading', { level: 1 }) },
 ];
 
@@ -21,7 +48,7 @@ async function each({ page, settings, shoot }, look) {
   await signIn(page, settings);
   const vessel = await withModel(page);
   for (const { name, path, ready } of pages) {
-    await page.goto(typeof path === 'string' ? path : path(vessel));
+    await page.goto(typeof path === 'string' ? path : await path(vessel, page));
     await ready(page).waitFor();
     await page.waitForTimeout(400);
     found.push(...(await findings(page)).map((line) => `${name}: ${line}`));

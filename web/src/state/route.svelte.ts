@@ -1,20 +1,35 @@
 /** Which page the address names, and moving between pages without reloading. */
 
 /** Pages that are known by the first word of their address alone. */
-const plain = ['alerts', 'mail', 'webhooks', 'schedule', 'invitation'] as const;
+const plain = ['alerts', 'mail', 'webhooks', 'schedule', 'firms', 'invitation'] as const;
+
+/** The settings' pages, by the second word. */
+const ofSettings = {
+  people: 'people',
+  agents: 'aboard',
+  schedule: 'schedule-rules',
+} as const;
 
 export type Route =
-  | { page: (typeof plain)[number] | 'vessels' | 'work-orders' | 'new-work-order' | 'not-found' }
+  | { page: (typeof plain)[number] | (typeof ofSettings)[keyof typeof ofSettings] | 'settings' }
+  | { page: 'vessels' | 'work-orders' | 'new-work-order' | 'not-found' }
   | { page: 'vessel' | 'work-order'; id: string };
 
 export function parseRoute(path: string): Route {
   const [first, second, ...rest] = path.split('/').filter((part) => part !== '');
   if (first === undefined) return { page: 'vessels' };
   if (first === 'work-orders' && rest.length === 0) return workOrderRoute(second);
+  if (first === 'settings' && rest.length === 0) return settingsRoute(second);
   const known = plain.find((page) => page === first);
   if (known && second === undefined) return { page: known };
   if (first !== 'vessels' || rest.length > 0) return { page: 'not-found' };
   return second === undefined ? { page: 'vessels' } : { page: 'vessel', id: second };
+}
+
+function settingsRoute(second: string | undefined): Route {
+  if (second === undefined) return { page: 'settings' };
+  const known = Object.entries(ofSettings).find(([word]) => word === second);
+  return { page: known ? known[1] : 'not-found' };
 }
 
 function workOrderRoute(id: string | undefined): Route {
@@ -28,6 +43,13 @@ export const alertsPath = '/alerts';
 export const mailPath = '/mail';
 export const webhooksPath = '/webhooks';
 export const schedulePath = '/schedule';
+export const firmsPath = '/firms';
+export const settingsPath = '/settings';
+/** The pages of the settings besides one's own. */
+export const settingsPaths = Object.entries(ofSettings).map(([word, page]) => ({
+  page,
+  path: `/settings/${word}`,
+}));
 export const workOrdersPath = '/work-orders';
 export const workOrderPath = (id: string): string => `/work-orders/${encodeURIComponent(id)}`;
 /** Where an adjustment is ordered, perhaps of a compass that is already known. */

@@ -22,9 +22,19 @@ class SessionState {
     return this.me?.role === 'admin';
   }
 
+  /** Whether the reader is of a firm that adjusts compasses. */
+  get isAdjuster(): boolean {
+    return this.me?.role === 'adjuster';
+  }
+
   /** Whether the reader may work at the binnacle: the ship's own people, or a firm's. */
   get mayAdjust(): boolean {
-    return this.isAdmin || this.me?.role === 'adjuster';
+    return this.isAdmin || this.isAdjuster;
+  }
+
+  /** Whether nothing may be done before a second factor is set up. */
+  get lacksSecondFactor(): boolean {
+    return this.me !== null && this.me.second_factor_required && !this.me.second_factor;
   }
 
   async find(): Promise<void> {

@@ -9,10 +9,12 @@ import { binnacles } from './binnacles';
 import { changes } from './changes';
 import { common } from './common';
 import { deviation } from './deviation';
+import { firms } from './firms';
 import { fleet } from './fleet';
 import { orders } from './orders';
 import { papers } from './papers';
 import { schedule } from './schedule';
+import { settings } from './settings';
 import { trust } from './trust';
 import { vessels } from './vessels';
 
@@ -27,6 +29,8 @@ export const text = {
   ...papers,
   ...orders,
   ...schedule,
+  ...firms,
+  ...settings,
   ...berth,
   ...binnacles,
 };

@@ -1,0 +1,196 @@
+/** People and what acts for them: inviting, a second factor, tokens, enrolling, firms, an adjuster. */
+import assert from 'node:assert/strict';
+import { createHmac } from 'node:crypto';
+import { encode } from 'uqr';
+import { fitsItsWidth, notSignedIn, phone, signIn, struck } from '../helpers.mjs';
+
+/** RFC 6238 with what authenticator apps use: SHA-1, 30 s, six digits. */
+function codeNow(secret) {
+  const bits = [...secret.replaceAll(/[\s=]/g, '')]
+    .map((letter) =>
+      'ABCDEFGHIJKLMNOPQRSTUVWXYZ234567'.indexOf(letter).toString(2).padStart(5, '0'),
+    )
+    .join('');
+  const key = Buffer.from((bits.match(/.{8}/g) ?? []).map((octet) => parseInt(octet, 2)));
+  const counter = Buffer.alloc(8);
+  counter.writeBigUInt64BE(BigInt(Math.floor(Date.now() / 30_000)));
+  const mac = createHmac('sha1', key).update(counter).digest();
+  const at = mac[19] & 15;
+  return String((mac.readUInt32BE(at) & 0x7fffffff) % 1_000_000).padStart(6, '0');
+}
+
+/** The picture's dark modules are those of `content`. */
+async function saysQr(qr, content) {
+  const drawn = await qr.locator('path').getAttribute('d');
+  const { data } = encode(content, { ecc: 'M', border: 4 });
+  const dark = data.flatMap((row, y) => row.flatMap((is, x) => (is ? [`M${x} ${y}h1v1h-1z`] : [])));
+  assert.equal(drawn, dark.join(''));
+}
+
+const adjuster = (settings) => ({ email: settings.adjuster, password: settings.password });
+
+async function signInAs(page, { email, password }, heading) {
+  await page.goto('/');
+  await page.getByLabel('E-mail').fill(email);
+  await page.getByLabel('Password').fill(password);
+  await page.getByRole('button', { name: 'Sign in' }).click();
+  await page.getByRole('heading', { name: heading, level: 1 }).waitFor();
+}
+
+export const people = {
+  'someone is invited, sets a password, and sets up a second factor': {
+    allowedErrors: [notSignedIn, /status of 422 .*\/me\/second-factor/],
+    async run({ page, context, browser, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: 'Settings' }).click();
+      await page.getByRole('link', { name: 'People' }).click();
+      const email = `ada-${Date.now()}@test.example`;
+      await page.getByRole('button', { name: 'Invite', exact: true }).click();
+      await page.getByRole('alert').getByText('Enter a name').waitFor();
+      await page.getByLabel('Name').fill('Ada Example');
+      await page.getByLabel('E-mail').fill(email);
+      await page.getByRole('button', { name: 'Invite', exact: true }).click();
+      const code = await page.getByTestId('invitation-code').innerText();
+      const link = await page.getByTestId('invitation-link').innerText();
+      await saysQr(page.getByTestId('qr'), link);
+      await page.getByTestId('users').getByText(email).waitFor();
+      await shoot('people', { fullPage: true });
+
+      const other = await browser.newContext({ baseURL: settings.url, viewport: phone });
+      const theirs = await other.newPage();
+      await theirs.goto('/invitation');
+      await theirs.getByLabel('One-time code').fill(code);
+      await theirs.getByLabel('New password').fill('gangway lantern 1867 brass');
+      await theirs.getByRole('button', { name: 'Set password' }).click();
+      await theirs.getByText(`Your password is set. Sign in as ${email}.`).waitFor();
+      await signInAs(theirs, { email, password: 'gangway lantern 1867 brass' }, 'Fleet');
+      await theirs.getByRole('link', { name: 'Settings' }).click();
+      const factor = theirs.getByRole('region', { name: 'Second factor' });
+      await factor.getByLabel('Your password').fill('gangway lantern 1867 brass');
+      await factor.getByRole('button', { name: 'Set it up' }).click();
+      const secret = await factor.getByTestId('secret').innerText();
+      await factor.getByTestId('qr').waitFor();
+      await fitsItsWidth(theirs);
+      await shoot('second-factor-phone', {}, theirs);
+      await factor.getByLabel('Code from the app').fill(codeNow(secret));
+      await factor.getByRole('button', { name: 'Confirm' }).click();
+      await factor.getByTestId('recovery-codes').waitFor();
+      assert.ok((await factor.getByTestId('recovery-codes').locator('li').count()) >= 5);
+      await factor.getByRole('button', { name: 'I have them' }).click();
+      await factor.getByText('You have a second factor.').waitFor();
+      await other.close();
+      await context.clearCookies();
+    },
+  },
+
+  'a token is made, shown once, and ended': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.goto('/settings');
+      const tokens = page.getByRole('region', { name: 'API tokens' });
+      await tokens.getByLabel('What it is for').fill('Reports');
+      await tokens.getByRole('button', { name: 'Make a token' }).click();
+      const token = await tokens.getByTestId('token').innerText();
+      const asked = await page.request.get('/api/v1/vessels', {
+        headers: { Authorization: `Bearer ${token}`, Cookie: '' },
+      });
+      assert.equal(asked.status(), 200);
+      await tokens.getByRole('button', { name: 'I have it' }).click();
+      assert.equal(await tokens.getByText(token).count(), 0);
+      await tokens.getByRole('button', { name: 'End the token “Reports”' }).click();
+      await tokens.getByRole('button', { name: 'End', exact: true }).click();
+      await tokens.getByText('You have none.').waitFor();
+      await shoot('settings', { fullPage: true });
+    },
+  },
+
+  'an agent is enrolled by the code in a QR code': {
+    viewport: phone,
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await struck(page);
+      await page.goto('/settings/agents');
+      await page.getByLabel('Vessel').selectOption(vessel.id);
+      await page.getByRole('button', { name: 'Make a code' }).click();
+      const code = await page.getByTestId('enrolment-code').innerText();
+      const command = await page.locator('pre code').innerText();
+      assert.ok(command.includes(code));
+      await saysQr(page.getByTestId('qr'), command);
+      await fitsItsWidth(page);
+      await shoot('enrol-phone', { fullPage: true });
+    },
+  },
+
+  'a firm’s terms are said and changed': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: 'Firms' }).click();
+      const firm = page.getByRole('region', { name: 'Maas Compass' });
+      await firm.getByRole('button', { name: /^(Say|Change) the terms$/ }).click();
+      await firm.getByLabel('Fee for a job, €').fill('2100');
+      await firm.getByLabel(/^Ports/).fill('Rotterdam');
+      await firm.getByRole('button', { name: 'Save the terms' }).click();
+      await firm.getByRole('alert').getByText('Line 1 of the ports').waitFor();
+      await firm.getByLabel(/^Ports/).fill('NLRTM 150\nBEANR 400');
+      await firm.getByLabel('Saturday').check();
+      await firm.getByRole('button', { name: 'Save the terms' }).click();
+      await firm.getByText('NLRTM (€ 150 travel), BEANR (€ 400 travel)').waitFor();
+      await firm.getByText(/Friday, Saturday, 08:00 to 18:00/).waitFor();
+      await fitsItsWidth(page);
+      await shoot('firms', { fullPage: true });
+    },
+  },
+
+  'an adjuster signs in on a phone and finds today’s ship': {
+    viewport: phone,
+    allowedErrors: [notSignedIn],
+    async run({ page, browser, settings, shoot }) {
+      const office = await browser.newContext({ baseURL: settings.url });
+      const theirs = await office.newPage();
+      await signIn(theirs, settings);
+      const vessel = await struck(theirs);
+      const headers = { 'X-Binnacle-Request': '1' };
+      const { items: firms } = await (await theirs.request.get('/api/v1/firms')).json();
+      const firm = firms.find(({ name }) => name === 'Ibaizabal Compass');
+      const before = await (
+        await theirs.request.get(`/api/v1/work-orders?vessel=${vessel.id}`)
+      ).json();
+      for (const { id, state } of before.items) {
+        if (['closed', 'cancelled'].includes(state)) continue;
+        const data = { text: 'Made anew' };
+        await theirs.request.post(`/api/v1/work-orders/${id}/cancel`, { headers, data });
+      }
+      const made = await theirs.request.post('/api/v1/work-orders', {
+        headers,
+        data: {
+          vessel_id: vessel.id,
+          compass_id: vessel.compasses[0].id,
+          port: 'Bilbao (ESBIO)',
+          planned_at: new Date().toISOString(),
+          offer: { firms: [firm.id], answer_within_hours: 24 },
+        },
+      });
+      assert.equal(made.status(), 201, await made.text());
+      const { id } = await made.json();
+
+      await signInAs(page, adjuster(settings), 'My orders');
+      await page.getByRole('heading', { name: 'Waiting for an answer' }).waitFor();
+      await page.getByRole('link', { name: vessel.name }).waitFor();
+      const taken = await page.request.post(`/api/v1/work-orders/${id}/accept`, {
+        headers,
+        data: { adjuster_name: 'R. Sáez', adjuster_licence: 'ES-CA-114' },
+      });
+      assert.ok(taken.ok(), await taken.text());
+      await page.getByRole('heading', { name: 'Today’s ships' }).waitFor();
+      await page.getByText(/UTC · \d+ \w+, \d\d:\d\d by this device’s clock/).waitFor();
+      await fitsItsWidth(page);
+      await shoot('home-phone', { fullPage: true });
+      const way = page.getByRole('link', { name: 'Go to the binnacle' });
+      assert.equal(await way.getAttribute('href'), `/work-orders/${id}`);
+      await office.close();
+    },
+  },
+};

@@ -1,0 +1,32 @@
+import { expect, test } from 'vitest';
+import type { ScheduleSettings } from '../api/types';
+import { fieldsOf, settingsOf } from './rules';
+
+const settings = {
+  horizon_days: 180,
+  weights: { unmet_eur: { routine: 20000, soon: 30000 }, late_eur_day: 500, job_h: 3 },
+  terms: { urgent_days: 14 },
+} as unknown as ScheduleSettings;
+
+test('the schedule’s figures as fields, read again, are the same', () => {
+  expect(settingsOf('180', fieldsOf(settings))).toEqual(settings);
+});
+
+test('a changed figure is changed and no other', () => {
+  const fields = fieldsOf(settings).map((field) =>
+    field.urgency === 'soon' ? { ...field, value: '31000.5' } : field,
+  );
+  expect(settingsOf('90', fields)).toEqual({
+    ...settings,
+    horizon_days: 90,
+    weights: { ...settings.weights, unmet_eur: { routine: 20000, soon: 31000.5 } },
+  });
+});
+
+test('what is no number is named', () => {
+  const fields = fieldsOf(settings).map((field) =>
+    field.name === 'job_h' ? { ...field, value: 'three' } : field,
+  );
+  expect(settingsOf('180', fields)).toMatchObject({ wrong: { name: 'job_h' } });
+  expect(settingsOf(' ', fieldsOf(settings))).toEqual({ wrong: null });
+});

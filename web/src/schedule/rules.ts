@@ -1,0 +1,49 @@
+/** The schedule's weights and terms as the fields of a form. Pure. */
+
+import type { ScheduleSettings } from '../api/types';
+
+/** A figure of the settings: which part it is in, its name, and its urgency if it has one. */
+export interface Field {
+  part: 'weights' | 'terms';
+  name: string;
+  urgency: string | null;
+  value: string;
+}
+
+/** Every figure that the server knows, in its order. */
+export function fieldsOf(settings: ScheduleSettings): Field[] {
+  return (['weights', 'terms'] as const).flatMap((part) =>
+    Object.entries((settings[part] ?? {}) as Record<string, unknown>).flatMap(
+      ([name, value]): Field[] =>
+        typeof value === 'object' && value !== null
+          ? Object.entries(value).map(([urgency, figure]) => ({
+              part,
+              name,
+              urgency,
+              value: String(figure),
+            }))
+          : [{ part, name, urgency: null, value: String(value) }],
+    ),
+  );
+}
+
+/** The settings that such fields say, or the field that is no number. */
+export function settingsOf(
+  horizonDays: string,
+  fields: readonly Field[],
+): ScheduleSettings | { wrong: Field | null } {
+  const isNumber = (text: string) => text.trim() !== '' && Number.isFinite(Number(text));
+  if (!isNumber(horizonDays)) return { wrong: null };
+  const wrong = fields.find((field) => !isNumber(field.value));
+  if (wrong) return { wrong };
+  const parts: Record<Field['part'], Record<string, unknown>> = { weights: {}, terms: {} };
+  for (const { part, name, urgency, value } of fields) {
+    if (urgency === null) parts[part][name] = Number(value);
+    else
+      parts[part][name] = {
+        ...(parts[part][name] as Record<string, number> | undefined),
+        [urgency]: Number(value),
+      };
+  }
+  return { horizon_days: Number(horizonDays), ...parts } as ScheduleSettings;
+}
