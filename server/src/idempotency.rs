@@ -2,9 +2,10 @@
 //!
 //! What always holds: the key and what it made are stored in one transaction, so
 //! that either both exist or neither. A key is the operator's or the firm's own and is
-//! forgotten after a day.
+//! forgotten after a day; those of a work order are kept with the order
+//! (`work_orders::keys`).
 
-use crate::db::{Db, Tx, execute, row};
+use crate::db::{Tx, execute, row};
 use crate::error::{Error, Result};
 use crate::secret;
 use crate::tenants::Tenant;
@@ -24,6 +25,11 @@ const KEPT_FOR_S: f64 = 86_400.0;
 pub struct Key(Option<String>);
 
 impl Key {
+    /// SHA-256 of the key, if there is one.
+    pub fn hash(&self) -> Option<Vec<u8>> {
+        self.0.as_deref().map(secret::hash)
+    }
+
     /// The id to create under: `wanted`, or the one that the same request created
     /// before under this key.
     ///
@@ -37,11 +43,10 @@ impl Key {
         wanted: Uuid,
         now: Time,
     ) -> Result<Uuid> {
-        let Some(key) = &self.0 else {
+        let Some(key_hash) = self.hash() else {
             return Ok(wanted);
         };
         let tenant = tenant.into().id();
-        let key_hash = secret::hash(key);
         let outdated = Time(now.0.plus_seconds(-KEPT_FOR_S));
         execute!(
             &mut *tx,
@@ -74,36 +79,6 @@ impl Key {
             return Err(Error::KeyReused);
         }
         Ok(id)
-    }
-}
-
-impl Key {
-    /// What the same request created before under this key; none where it has not come yet.
-    ///
-    /// # Errors
-    /// When the key was used for another request.
-    pub async fn find(
-        &self,
-        db: &Db,
-        tenant: impl Into<Tenant>,
-        request_hash: &[u8],
-    ) -> Result<Option<Uuid>> {
-        let Some(key) = &self.0 else {
-            return Ok(None);
-        };
-        let found = row!(
-            db,
-            (Vec<u8>, Uuid),
-            "SELECT request_hash, resource_id FROM idempotency_keys
-             WHERE tenant_id = $1 AND key_hash = $2
-             ORDER BY key_hash",
-            tenant.into().id(),
-            secret::hash(key).as_slice()
-        )?;
-        match found {
-            Some((made_for, _)) if made_for != request_hash => Err(Error::KeyReused),
-            found => Ok(found.map(|(_, id)| id)),
-        }
     }
 }
 

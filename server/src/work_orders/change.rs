@@ -5,6 +5,7 @@
 //! and the same request under the same key writes one entry.
 
 use super::entry::{Author, Content};
+use super::keys;
 use super::news::{self, Before};
 use super::order::State;
 use super::store::{self, Whole};
@@ -48,7 +49,8 @@ impl<'a> Request<'a> {
     pub(super) async fn look(&self) -> Result<(Whole, Option<Uuid>)> {
         let tenant = self.writer.tenant;
         let whole = store::whole(&self.app.db, tenant, self.order).await?;
-        let done = self.key.find(&self.app.db, tenant, &self.hash).await?;
+        let db = &self.app.db;
+        let done = keys::find(&self.key, db, tenant, &whole.summary, &self.hash).await?;
         Ok((whole, done))
     }
 
@@ -74,11 +76,9 @@ impl<'a> Request<'a> {
         let whole = store::lock(&mut tx, vessel, self.order).await?;
         let wanted = Uuid::now_v7();
         let tenant = self.writer.tenant;
-        let made = self
-            .key
-            .once(&mut tx, tenant, &self.hash, wanted, now)
-            .await?;
-        if made != wanted {
+        let (key, order) = (&self.key, &whole.summary);
+        let written = keys::once(key, &mut tx, tenant, order, &self.hash, wanted).await?;
+        if written != wanted {
             return Ok(None);
         }
         let author = Author {

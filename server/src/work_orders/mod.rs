@@ -22,6 +22,7 @@ mod deadlines;
 pub mod entry;
 mod find;
 mod finish;
+mod keys;
 mod messages;
 mod news;
 mod offering;

@@ -2,12 +2,13 @@
 
 use super::{HEADING_DEG, Job, reading, word};
 use crate::on_both;
-use crate::support::{Answer, Shore};
+use crate::support::{Answer, Person, Shore};
 use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
     a_request_sent_again_under_its_key_writes_one_entry,
+    what_a_phone_kept_for_days_is_written_once,
     a_bad_reading_is_kept_and_refused_with_what_could_be_wrong,
     a_step_that_reads_otherwise_is_planned_anew,
     what_cannot_be_done_in_a_state_is_refused_and_writes_nothing,
@@ -49,11 +50,38 @@ async fn a_request_sent_again_under_its_key_writes_one_entry(shore: Shore) {
     assert_eq!(first, again);
     let other = send(&path, json!({ "after_deg": 1.0 }), "step").await;
     assert_eq!(other.problem(), "idempotency-key-reused");
-    let request = job.person.request(Method::POST, "/work-orders");
-    let reused = request
-        .header("idempotency-key", "step")
-        .json(&job.new_order());
-    assert_eq!(Answer::of(reused).await.problem(), "idempotency-key-reused");
+    shore.finish().await;
+}
+
+async fn what_a_phone_kept_for_days_is_written_once(shore: Shore) {
+    let mut job = Job::begin(&shore).await;
+    let photo = b"\xFF\xD8\xFF\xE0 a tray".to_vec();
+    for days in [0.0, 3.0, 40.0] {
+        shore.advance(86_400.0 * days);
+        // No session lasts so long.
+        job.person = Person::sign_in(&shore, job.person.operator, &job.person.email).await;
+        let send = |rest: &str, key: &str| {
+            let request = job.person.request(Method::POST, &job.path(rest));
+            request.header("idempotency-key", key)
+        };
+        let remark = send("/remarks", "remark").json(&json!({ "text": "crane alongside" }));
+        Answer::of(remark).await.good();
+        let picture = send("/photos", "photo").body(photo.clone());
+        Answer::of(picture).await.good();
+        let other = send("/remarks", "remark").json(&json!({ "text": "no crane" }));
+        assert_eq!(Answer::of(other).await.problem(), "idempotency-key-reused");
+        // Whatever else is written meanwhile under keys of their own.
+        let another = send("/remarks", &format!("after {days}"));
+        let another = another.json(&json!({ "text": "crane gone" }));
+        Answer::of(another).await.good();
+    }
+    let log = job.person.get(&job.path("/entries")).await.good();
+    let lines = log["items"].as_array().unwrap().iter();
+    let kinds: Vec<&Value> = lines.map(|line| &line["entry"]["kind"]).collect();
+    assert_eq!(
+        kinds,
+        ["opened", "remark", "photo", "remark", "remark", "remark"]
+    );
     shore.finish().await;
 }
 
