@@ -1,5 +1,6 @@
 //! Every setting there is to choose from.
 
+use super::condition::Condition;
 use super::moves;
 use crate::binnacle::{Axis, BarSetting, Binnacle, PairSetting, Setting, Soft, Tray};
 use crate::corrector::{Iron, Vector, magnet_field};
@@ -227,14 +228,10 @@ fn extend(
 }
 
 /// All choices of soft iron, with the moves from how it stands.
-pub(super) fn iron(
-    binnacle: &Binnacle,
-    standing: &Setting,
-    may_move_pair: bool,
-    may_move_bar: bool,
-) -> Vec<(Soft, u32)> {
-    let pairs = pairs(binnacle, standing, may_move_pair);
-    let bars = bars(binnacle, standing, may_move_bar);
+pub(super) fn iron(condition: &Condition<'_>, standing: &Setting) -> Vec<(Soft, u32)> {
+    let binnacle = condition.binnacle;
+    let pairs = pairs(binnacle, standing, condition.may_move_pair);
+    let bars = bars(condition, standing);
     let mut all = Vec::with_capacity(pairs.len() * bars.len());
     for pair in &pairs {
         let pair_moves = moves::pair(standing.quadrantal.as_ref(), pair.as_ref());
@@ -270,7 +267,12 @@ fn pairs(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<
     all
 }
 
-fn bars(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<BarSetting>> {
+/// A bar cures what the vertical field induces and nothing else: one that leaves more of
+/// it than the standing one would trade a permanent field for one that changes sign with
+/// the hemisphere, however well it may look in the waters that are known.
+fn bars(condition: &Condition<'_>, standing: &Setting) -> Vec<Option<BarSetting>> {
+    let binnacle = condition.binnacle;
+    let may_move = condition.may_move_bar;
     let Some(holder) = binnacle.design.flinders.as_ref().filter(|_| may_move) else {
         return vec![standing.flinders.clone()];
     };
@@ -286,5 +288,9 @@ fn bars(binnacle: &Binnacle, standing: &Setting, may_move: bool) -> Vec<Option<B
             }
         }
     }
+    let left_now = condition.left_to_induction(standing.flinders.as_ref());
+    all.retain(|bar| {
+        *bar == standing.flinders || condition.left_to_induction(bar.as_ref()) <= left_now
+    });
     all
 }

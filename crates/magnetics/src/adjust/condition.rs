@@ -6,8 +6,8 @@
 use super::tolerance::errors_of;
 use super::{AdjustError, Adjustment};
 use crate::berth::{BerthEstimate, JointCovariance, lambda_at_berth};
-use crate::binnacle::{Binnacle, Setting};
-use crate::corrector::{Effect, effect};
+use crate::binnacle::{BarSetting, Binnacle, Setting, Soft};
+use crate::corrector::{Effect, Iron, effect};
 use crate::deviation::DeviationError;
 use crate::model::{Covariance, Model, Parameters};
 use crate::ship::{EarthField, PARAMETERS, ShipMagnetism};
@@ -95,6 +95,18 @@ impl<'a> Condition<'a> {
             }),
             b_nt: std::array::from_fn(|axis| self.base.b_nt[axis] + effect.b_nt[axis]),
         }
+    }
+
+    /// What of a unit of vertical field is induced across the card with a bar: the size
+    /// of χ13 and χ23 together.
+    pub(super) fn left_to_induction(&self, bar: Option<&BarSetting>) -> f64 {
+        let soft = Soft {
+            quadrantal: None,
+            flinders: bar.cloned(),
+        };
+        let bar = Iron::new(self.binnacle, &soft).effect(0.0);
+        let left = |row: usize| self.base.chi[row][2] + bar.chi[row][2];
+        left(0).hypot(left(1))
     }
 
     pub(super) fn lambda_with(&self, setting: &Setting) -> f64 {

@@ -121,12 +121,7 @@ pub(super) fn search(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> 
     };
     let mut front = Front::new();
     front.optimality.trays_in_use = [search.axes[0].trays, search.axes[1].trays];
-    let irons = iron(
-        binnacle,
-        standing,
-        condition.may_move_pair,
-        condition.may_move_bar,
-    );
+    let irons = iron(condition, standing);
     let mut choices: Vec<Choice> = irons
         .into_iter()
         // What is known of few moves makes the bounds of more moves bite.

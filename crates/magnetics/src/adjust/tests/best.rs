@@ -46,7 +46,7 @@ fn trying_everything(case: &Case) {
     let condition = Condition::new(&adjustment).unwrap();
     let front = search::search(&adjustment, &condition);
     let mut best: Vec<f64> = vec![f64::INFINITY; 20];
-    every_setting(&case.binnacle, |setting| {
+    every_setting(&condition, |setting| {
         if case.binnacle.with_setting(setting.clone()).is_err() {
             return;
         }
@@ -81,7 +81,8 @@ fn worst_of(case: &Case, condition: &Condition<'_>, setting: &Setting) -> f64 {
     .worst_deg([0.0; 2])
 }
 
-fn every_setting(binnacle: &Binnacle, mut visit: impl FnMut(&Setting)) {
+fn every_setting(condition: &Condition<'_>, mut visit: impl FnMut(&Setting)) {
+    let binnacle = condition.binnacle;
     let standing = &binnacle.setting;
     let options = |axis: Axis| {
         let mut all = vec![Vec::new()];
@@ -99,7 +100,7 @@ fn every_setting(binnacle: &Binnacle, mut visit: impl FnMut(&Setting)) {
         }
         all
     };
-    for (soft, _) in candidates::iron(binnacle, standing, true, true) {
+    for (soft, _) in candidates::iron(condition, standing) {
         for fore_and_aft in options(Axis::ForeAndAft) {
             for athwartship in options(Axis::Athwartship) {
                 visit(&Setting {
@@ -112,6 +113,32 @@ fn every_setting(binnacle: &Binnacle, mut visit: impl FnMut(&Setting)) {
             }
         }
     }
+}
+
+/// Without the vertical field's share there is nothing for a bar to cure, though in one
+/// water it would do as well as a magnet.
+#[test]
+fn a_bar_is_no_cure_for_what_is_permanent() {
+    let plans = |chi13: f64, waters: usize| {
+        let mut ship = bare();
+        ship.chi[0][2] = chi13;
+        ship.chi[1][2] = 0.0;
+        let mut form: BinnacleForm = class_a().into();
+        form.setting.flinders = None;
+        let mut case = Case::new(ship, Binnacle::try_from(form).unwrap(), 60.0);
+        case.waters.truncate(waters);
+        let plans = case.plan().plans;
+        assert!(!plans.is_empty());
+        plans
+    };
+    for plan in plans(0.0, 1) {
+        assert_eq!(plan.setting.flinders, None);
+    }
+    // In two hemispheres no magnet does what a bar does.
+    let induced = &plans(-0.05, 2)[0];
+    assert!(induced.setting.flinders.is_some());
+    let left = induced.model_after.parameters_over_lambda.chi13;
+    assert!(left.abs() < 0.05, "{left}");
 }
 
 #[test]
