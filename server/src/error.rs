@@ -212,11 +212,14 @@ impl Error {
 }
 
 fn in_words(refusals: &[Refusal]) -> String {
-    let words: Vec<&str> = refusals
-        .iter()
-        .map(|refusal| refusal.words.as_str())
-        .collect();
-    words.join("; ")
+    let said = refusals.iter().map(|refusal| {
+        let explained = refusal.could_be.join(", or ");
+        match explained.as_str() {
+            "" => refusal.words.clone(),
+            explained => format!("{}; it could be that {explained}", refusal.words),
+        }
+    });
+    said.collect::<Vec<_>>().join("; ")
 }
 
 impl IntoResponse for Error {

@@ -38,6 +38,8 @@ pub enum Cure {
     AnotherBerth,
     /// Magnets, spheres or pieces of bar that are not on board.
     OtherCorrectors,
+    /// Look after the lubber line and how the reference stands.
+    Alignment,
     /// Swing the ship.
     Swing,
 }
@@ -48,7 +50,8 @@ impl From<&Refused> for Refusal {
         let word = word.and_then(|value| Some(value.get("refusal")?.as_str()?.to_owned()));
         Refusal {
             refusal: word.unwrap_or_else(|| "refused".to_owned()),
-            words: refused.words.clone(),
+            // What could explain it stands beside it.
+            words: refused.refusal.found(),
             could_be: refused.refusal.could_be(),
             cures: refused.cures.iter().copied().map(Cure::from).collect(),
         }
@@ -65,6 +68,7 @@ impl From<Cured> for Cure {
             Cured::BetterMagnetometer => Cure::BetterMagnetometer,
             Cured::AnotherBerth => Cure::AnotherBerth,
             Cured::OtherCorrectors => Cure::OtherCorrectors,
+            Cured::Alignment => Cure::Alignment,
             Cured::Swing => Cure::Swing,
         }
     }

@@ -2609,7 +2609,7 @@ export interface components {
          * @description What would cure a refusal.
          * @enum {string}
          */
-        AdjustmentCure: "read_again" | "headings_at_sea" | "other_waters" | "after_discharge" | "better_magnetometer" | "another_berth" | "other_correctors" | "swing";
+        AdjustmentCure: "read_again" | "headings_at_sea" | "other_waters" | "after_discharge" | "better_magnetometer" | "another_berth" | "other_correctors" | "alignment" | "swing";
         /** @description A compass, and when and why it is to be adjusted next. */
         AdjustmentNeed: {
             /**

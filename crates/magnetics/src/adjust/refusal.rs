@@ -121,6 +121,8 @@ pub enum Cure {
     AnotherBerth,
     /// Magnets, spheres or pieces of bar that are not on board.
     OtherCorrectors,
+    /// Look after the lubber line and how the reference stands.
+    Alignment,
     /// Swing the ship.
     Swing,
 }
@@ -138,9 +140,16 @@ impl Refusal {
                 lambda: *lambda,
                 mistakes,
             },
-            BerthError::Reading { .. } | BerthError::NothingRead => {
-                Refusal::NoSuchField { what, mistakes }
-            }
+            BerthError::Reading {
+                name,
+                value,
+                greatest,
+                ..
+            } => Refusal::NoSuchField {
+                what: too_strong(name, *value, *greatest).unwrap_or(what),
+                mistakes,
+            },
+            BerthError::NothingRead => Refusal::NoSuchField { what, mistakes },
             BerthError::NoDirectiveForce { .. } | BerthError::Model(_) | BerthError::Field(_) => {
                 Refusal::AmbiguousHeadings { what }
             }
@@ -168,6 +177,20 @@ impl Refusal {
         mistakes.chain(suspects).collect()
     }
 
+    /// What is wrong, without what could explain it.
+    pub fn found(&self) -> String {
+        match self {
+            Refusal::InconsistentBerth { consistency, .. } => {
+                format!("the berth is inconsistent: {}", consistency.apart())
+            }
+            Refusal::ImplausibleLambda { lambda, .. } => {
+                format!("the field read would make lambda {lambda:.3}")
+            }
+            Refusal::NoSuchField { what, .. } => format!("no ship lies in such a field: {what}"),
+            other => other.to_string(),
+        }
+    }
+
     pub(super) fn with_cures(self) -> Refused {
         let cures = match &self {
             Refusal::NoCovariance | Refusal::ModelTooOld { .. } => {
@@ -190,6 +213,11 @@ impl Refusal {
                     Cure::Swing,
                 ]
             }
+            // No corrector cures A.
+            Refusal::ResidualTooLarge {
+                mostly: Coefficient::A,
+                ..
+            } => vec![Cure::Alignment, Cure::HeadingsAtSea, Cure::Swing],
             Refusal::ResidualTooLarge { .. } => {
                 vec![Cure::OtherCorrectors, Cure::HeadingsAtSea, Cure::Swing]
             }
@@ -201,6 +229,21 @@ impl Refusal {
             cures,
         }
     }
+}
+
+/// A part of the field that cannot be, as a person calls it.
+fn too_strong(name: &str, value_nt: f64, greatest_nt: f64) -> Option<String> {
+    let part = match name {
+        "forward_nt" => "forward",
+        "starboard_nt" => "to starboard",
+        "down_nt" => "down",
+        _ => return None,
+    };
+    Some(format!(
+        "{:.0} microtesla {part}, where more than {:.0} cannot be",
+        value_nt / 1e3,
+        greatest_nt / 1e3
+    ))
 }
 
 /// What is known to be wrong before anything is calculated.
@@ -362,12 +405,8 @@ impl fmt::Display for Refusal {
                 write!(f, "the berth is inconsistent: {}", consistency.in_words())?;
                 explained(f, mistakes)
             }
-            Refusal::ImplausibleLambda { lambda, mistakes } => {
-                write!(f, "the field read would make lambda {lambda:.4}")?;
-                explained(f, mistakes)
-            }
-            Refusal::NoSuchField { what, mistakes } => {
-                write!(f, "no ship lies in such a field: {what}")?;
+            Refusal::ImplausibleLambda { mistakes, .. } | Refusal::NoSuchField { mistakes, .. } => {
+                f.write_str(&self.found())?;
                 explained(f, mistakes)
             }
             Refusal::FieldTooWeak { h_nt } => write!(

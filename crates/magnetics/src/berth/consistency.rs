@@ -107,17 +107,22 @@ impl Consistency {
         ]
     }
 
-    /// One line: the angle, its error, and the suspects.
-    pub fn in_words(&self) -> String {
+    /// The angle and its error.
+    pub fn apart(&self) -> String {
         let error = self
             .standard_error_deg
             .map_or("unknown".to_owned(), |error| format!("{error:.1} degrees"));
-        let [heading, magnetometer, steel, ship] = self.suspects();
         format!(
-            "the field read is {:.1} degrees from the model's (standard error {error}); \
-             {heading}, or {magnetometer}, or {steel}, or {ship}",
+            "the field read is {:.1} degrees from the model's (standard error {error})",
             self.angle_deg.abs()
         )
+    }
+
+    /// One line: the angle, its error, and the suspects.
+    pub fn in_words(&self) -> String {
+        let [heading, magnetometer, steel, ship] = self.suspects();
+        let apart = self.apart();
+        format!("{apart}; {heading}, or {magnetometer}, or {steel}, or {ship}")
     }
 }
 

@@ -33,6 +33,18 @@ fn what_is_refused_says_why_and_what_would_cure_it() {
 }
 
 #[test]
+fn a_lubber_line_is_no_matter_for_more_magnets() {
+    let mut case = case(60.0);
+    case.model.constant_deg = 4.0;
+    let mut adjustment = case.adjustment();
+    adjustment.limits = Limits::default();
+    let refused = plan(&adjustment).unwrap().refusals.remove(0);
+    assert!(refused.words.contains("alignment"), "{}", refused.words);
+    assert_eq!(refused.cures[0], Cure::Alignment);
+    assert!(!refused.cures.contains(&Cure::OtherCorrectors));
+}
+
+#[test]
 fn a_model_without_covariance_is_refused() {
     let mut case = case(60.0);
     case.model.covariance = None;
