@@ -15,15 +15,19 @@ pub fn in_words(setting: &Setting, shape: Option<Shape>) -> [(&'static str, Stri
             "{} at {} mm{}",
             pair.size,
             pair.mark_mm,
-            slewed(pair.slew_deg)
+            slewed(
+                pair.slew_deg,
+                ["starboard one aft", "starboard one forward"]
+            )
         )
     });
     let flinders = setting.flinders.as_ref().map(|bar| {
-        let side = match bar.side {
-            Side::Forward => "forward",
-            Side::Aft => "aft",
+        // Seen from above, clockwise from forward is to starboard, from abaft to port.
+        let (side, ways) = match bar.side {
+            Side::Forward => ("forward", ["to starboard", "to port"]),
+            Side::Aft => ("aft", ["to port", "to starboard"]),
         };
-        format!("{} mm {side}{}", bar.length_mm, slewed(bar.slew_deg))
+        format!("{} mm {side}{}", bar.length_mm, slewed(bar.slew_deg, ways))
     });
     let heeling = setting.heeling.as_ref().map(|bucket| {
         let (count, position) = (bucket.count, bucket.position);
@@ -51,11 +55,13 @@ fn or_none(words: Option<String>) -> String {
     words.unwrap_or_else(|| "none".to_owned())
 }
 
-fn slewed(slew_deg: f64) -> String {
+/// By how much, and which way: clockwise seen from above, or the other way.
+fn slewed(slew_deg: f64, [clockwise, other]: [&str; 2]) -> String {
     if slew_deg == 0.0 {
         return String::new();
     }
-    format!(", slewed {slew_deg}°")
+    let way = if slew_deg > 0.0 { clockwise } else { other };
+    format!(", slewed {}°, {way}", slew_deg.abs())
 }
 
 fn red(red: Red) -> &'static str {
@@ -66,5 +72,53 @@ fn red(red: Red) -> &'static str {
         Red::Port => "to port",
         Red::Up => "up",
         Red::Down => "down",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_magnetics::binnacle::{BarSetting, PairSetting};
+
+    #[test]
+    fn slewed_iron_says_which_way() {
+        let setting = |side, slew_deg| Setting {
+            quadrantal: Some(PairSetting {
+                size: "7 inch".to_owned(),
+                mark_mm: 320.0,
+                slew_deg,
+            }),
+            flinders: Some(BarSetting {
+                length_mm: 225.0,
+                side,
+                slew_deg,
+            }),
+            ..Setting::default()
+        };
+        for (side, slew_deg, pair, bar) in [
+            (
+                Side::Forward,
+                10.0,
+                "7 inch at 320 mm, slewed 10°, starboard one aft",
+                "225 mm forward, slewed 10°, to starboard",
+            ),
+            (
+                Side::Forward,
+                -10.0,
+                "7 inch at 320 mm, slewed 10°, starboard one forward",
+                "225 mm forward, slewed 10°, to port",
+            ),
+            (
+                Side::Aft,
+                10.0,
+                "7 inch at 320 mm, slewed 10°, starboard one aft",
+                "225 mm aft, slewed 10°, to port",
+            ),
+            (Side::Aft, 0.0, "7 inch at 320 mm", "225 mm aft"),
+        ] {
+            let words = in_words(&setting(side, slew_deg), Some(Shape::Sphere));
+            assert_eq!((words[2].0, words[2].1.as_str()), ("Spheres", pair));
+            assert_eq!(words[3].1, bar);
+        }
     }
 }
