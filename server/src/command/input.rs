@@ -46,7 +46,18 @@ pub(super) fn position(lat: f64, lon: f64) -> Result<Position, BadInput> {
 
 /// A JSON file.
 pub(super) fn json_file<T: DeserializeOwned>(path: &Path) -> Result<T, BadInput> {
-    serde_json::from_str(&text_file(path)?).map_err(|error| json_complaint(path, 0, "", &error))
+    let text = text_file(path)?;
+    let mut json = serde_json::Deserializer::from_str(&text);
+    let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let field = match error.path().to_string().as_str() {
+            "." => String::new(),
+            field => format!("{field}: "),
+        };
+        json_complaint(path, 0, &field, error.inner())
+    })?;
+    json.end()
+        .map_err(|error| json_complaint(path, 0, "", &error))?;
+    Ok(read)
 }
 
 /// What is wrong with JSON that begins so many lines down a file, in which field.
