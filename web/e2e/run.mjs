@@ -39,6 +39,7 @@ const groups = {
 const artefacts = fileURLToPath(new URL('../../tests/artefacts/', import.meta.url));
 
 const settings = {
+  artefacts,
   url: required('BINNACLE_URL').replace(/\/$/, ''),
   email: required('BINNACLE_EMAIL'),
   password: required('BINNACLE_PASSWORD'),

@@ -241,6 +241,96 @@ export const adjusting = {
     },
   },
 
+  'an operator and a firm agree on terms, and write to each other': {
+    allowedErrors: [notSignedIn],
+    async run({ page, context, settings, shoot }) {
+      await signIn(page, settings);
+      const { id, name } = await struck(page);
+      await page.goto(`/work-orders/new?vessel=${id}`);
+      await page.getByLabel('Port').fill('Bilbao');
+      await page.getByRole('button', { name: 'Order it' }).click();
+      const title = { name: `${name}: adjustment`, level: 1 };
+      await page.getByRole('heading', title).waitFor();
+      const firms = page.getByRole('region', { name: 'Firms' });
+      await firms.getByRole('button', { name: 'Offer it to firms' }).click();
+      const submit = firms.getByRole('button', { name: 'Offer it', exact: true });
+      await firms.getByLabel('Ibaizabal Compass').waitFor();
+      await submit.click();
+      await firms.getByRole('alert').getByText('Choose a firm').waitFor();
+      await firms.getByLabel('Ibaizabal Compass').check();
+      await firms.getByLabel('What is said to them').fill('Gangway to port');
+      await shoot('order-offer', {}, firms);
+      await submit.click();
+      await firms.getByText(/^Ibaizabal Compass: asked, answer due by /).waitFor();
+      await fitsItsWidth(page);
+
+      // The firm's adjuster, on a phone of their own.
+      const faults = [];
+      const theirs = await context.browser().newContext({
+        baseURL: settings.url,
+        viewport: phone,
+      });
+      try {
+        const other = await theirs.newPage();
+        other.setDefaultTimeout(15_000);
+        other.on('pageerror', (error) => faults.push(error.message));
+        await other.goto('/');
+        await other.getByLabel('E-mail').fill(settings.adjuster);
+        await other.getByLabel('Password').fill(settings.password);
+        await other.getByRole('button', { name: 'Sign in' }).click();
+        await other.getByRole('link', { name: 'Work orders' }).click();
+        await other.getByRole('row').filter({ hasText: name }).getByRole('link').click();
+        await other.getByRole('heading', title).waitFor();
+        const asked = other.getByRole('region', { name: 'Firms' });
+        await asked.getByText('it is offered to your firm').waitFor();
+        await asked.getByText('Gangway to port').waitFor();
+        await other.getByText('not shown to your firm').waitFor();
+        await asked.getByRole('button', { name: 'Propose other terms' }).click();
+        await asked.getByLabel('Fee in euros').fill('a lot');
+        await asked.getByRole('button', { name: 'Propose it' }).click();
+        await asked.getByRole('alert').getByText('A fee is a figure').waitFor();
+        await asked.getByLabel('Fee in euros').fill('900');
+        await fitsItsWidth(other);
+        await other.screenshot({
+          path: `${settings.artefacts}browser-firm-proposes-phone.png`,
+          fullPage: true,
+        });
+        await asked.getByRole('button', { name: 'Propose it' }).click();
+        await asked.getByText('the operator has not answered yet').waitFor();
+        const chat = other.getByRole('region', { name: 'Messages' });
+        await chat.getByLabel('Message').fill('Is there a pilot ladder?');
+        await chat.getByRole('button', { name: 'Send' }).click();
+        await chat.getByText('Is there a pilot ladder?').waitFor();
+
+        // The operator's page hears of it by itself.
+        await firms.getByText('€ 900').waitFor();
+        const messages = page.getByRole('region', { name: 'Messages' });
+        await messages.getByText('Is there a pilot ladder?').waitFor();
+        await messages.getByLabel('Message').fill('A gangway; the mate meets you.');
+        await messages.getByRole('button', { name: 'Send' }).click();
+        await shoot('order-proposed', { fullPage: true });
+        await firms.getByRole('button', { name: /^Agree to what Ibaizabal Compass/ }).click();
+        await firms.getByText(/^Ibaizabal Compass: has it/).waitFor();
+
+        await asked.getByText('your firm has it').waitFor();
+        await chat.getByText('A gangway; the mate meets you.').waitFor();
+        await other.getByRole('group', { name: 'Show' }).getByText('At the binnacle').click();
+        await other.getByRole('button', { name: 'I am on board' }).click();
+        await other.getByRole('heading', { name: 'Read the field' }).waitFor();
+        await fitsItsWidth(other);
+        await other.screenshot({ path: `${settings.artefacts}browser-firm-on-board-phone.png` });
+      } finally {
+        await theirs.close();
+      }
+      assert.deepEqual(faults, []);
+      await page.getByText('Adjuster on board').first().waitFor();
+      await page.getByRole('button', { name: 'Cancel the order…' }).click();
+      await page.getByLabel('Why it is not to be done').fill('A test');
+      await page.getByRole('button', { name: 'Cancel the order', exact: true }).click();
+      await page.getByText('Cancelled').first().waitFor();
+    },
+  },
+
   'a superintendent sees plan, proof and evidence of it, by night too': {
     colorScheme: 'dark',
     allowedErrors: [notSignedIn],

@@ -2,7 +2,16 @@
 
 import { answer, client, everyPage, longestPage, page } from './client';
 import type { Write } from '../orders/writes';
-import type { NewWorkOrder, WorkOrder } from './types';
+import { Problem } from './problem';
+import type {
+  BinnacleRevision,
+  NewOffer,
+  NewOrderMessage,
+  NewWorkOrder,
+  OfferAnswer,
+  OfferProposal,
+  WorkOrder,
+} from './types';
 
 /** What crosses a bad connection may take its time; the server waits two minutes. */
 const patienceMs = 60_000;
@@ -59,6 +68,54 @@ export const closeOrder = (id: string, text: string, key: string) =>
   answer(
     client.POST('/api/v1/work-orders/{id}/close', { params: toPath(id, key), body: { text } }),
   );
+
+/** The binnacle of an order's compass, for a firm that is asked or has it; `null` where none was entered. */
+export async function findOrderBinnacle(id: string): Promise<BinnacleRevision | null> {
+  const params = { path: { id } };
+  try {
+    return await answer(client.GET('/api/v1/work-orders/{id}/binnacle', { params }));
+  } catch (error) {
+    if (error instanceof Problem && error.status === 404) return null;
+    throw error;
+  }
+}
+
+/** The model of an order's compass, for a firm that is asked or has it. */
+export const findOrderModel = (id: string) =>
+  answer(client.GET('/api/v1/work-orders/{id}/model', { params: { path: { id } } }));
+
+/** The firms that the operator works with. */
+export const listFirms = () =>
+  everyPage((after) =>
+    answer(client.GET('/api/v1/firms', { params: { query: page(longestPage, after) } })),
+  );
+
+export const offerOrder = (id: string, body: NewOffer, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/offer', { params: toPath(id, key), body }));
+
+/** A firm takes what it is offered; an operator agrees to what a firm proposed. */
+export const acceptOrder = (id: string, body: OfferAnswer, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/accept', { params: toPath(id, key), body }));
+
+/** A firm will not have it, or gives it back; an operator does not agree. */
+export const declineOrder = (id: string, body: OfferAnswer, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/decline', { params: toPath(id, key), body }));
+
+export const proposeTerms = (id: string, body: OfferProposal, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/propose', { params: toPath(id, key), body }));
+
+/** What operator and firm wrote to each other, the oldest first. */
+export const listOrderMessages = (id: string) =>
+  everyPage((after) =>
+    answer(
+      client.GET('/api/v1/work-orders/{id}/messages', {
+        params: { path: { id }, query: page(longestPage, after) },
+      }),
+    ),
+  );
+
+export const sendOrderMessage = (id: string, body: NewOrderMessage, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/messages', { params: toPath(id, key), body }));
 
 /** Sends a write from the binnacle; the order as it is then. */
 export function sendWrite({ order, key, content }: Write): Promise<WorkOrder> {

@@ -4,10 +4,12 @@
  */
 
 import { findBinnacle } from '../api/binnacles';
-import { findOffer, findOrder } from '../api/orders';
+import { findOffer, findOrder, findOrderBinnacle } from '../api/orders';
 import type { BinnacleRevision, PlanOffer, WorkOrder } from '../api/types';
 import { Resource } from '../state/resource.svelte';
+import { session } from '../state/session.svelte';
 import { ahead } from './ahead';
+import { isUnderWay } from './order';
 import { outbox } from './outbox.svelte';
 import type { Content, Write } from './writes';
 
@@ -79,12 +81,18 @@ export class Desk {
   async #follow(): Promise<void> {
     const order = this.order.value;
     if (!order || this.order.problem) return;
-    const { vessel_id, compass_id } = order;
-    if (!this.binnacle.value || this.binnacle.problem) {
-      await this.binnacle.load(() => findBinnacle(vessel_id, compass_id));
-    }
+    if (!this.binnacle.value || this.binnacle.problem) await this.#loadBinnacle(order);
     await this.#keep();
     await this.loadOffer();
+  }
+
+  async #loadBinnacle({ vessel_id, compass_id, state }: WorkOrder): Promise<void> {
+    if (!session.isAdjuster) {
+      await this.binnacle.load(() => findBinnacle(vessel_id, compass_id));
+    } else if (isUnderWay(state)) {
+      // A firm's business only until the work is done.
+      await this.binnacle.load(() => findOrderBinnacle(this.id));
+    }
   }
 
   async #keep(): Promise<void> {

@@ -5,8 +5,9 @@ import { degrees, fineHeading } from '../format';
 import { text } from '../text';
 
 interface Line {
-  at: string;
-  author: string;
+  /** Neither is told of what is between the operator and another firm. */
+  at: string | null;
+  author: string | null;
   title: string;
   words: string;
 }
@@ -25,7 +26,7 @@ interface Read {
     words?: string;
     chosen?: number;
     offered?: unknown[];
-    refusal?: { words: string } | null;
+    refusal?: { words: string; could_be: string[] } | null;
     checked?: { lambda: number; consistency_deg: number } | null;
     adjuster_name?: string;
     note?: string | null;
@@ -34,22 +35,29 @@ interface Read {
 }
 
 export function lineOf({ entry }: WorkOrderEntry): Line {
-  const { kind, at, author, content } = entry as unknown as Read;
+  const { kind, at, author, content } = entry as unknown as Partial<Read>;
+  if (kind === undefined || author === undefined || at === undefined) {
+    return { at: null, author: null, title: text.order.log.withheld, words: '' };
+  }
   return {
     at,
     author: author.name,
     title: text.order.log.kinds[kind] ?? kind.replaceAll('_', ' '),
-    words: words(kind, content),
+    words: words(kind, content ?? {}),
   };
 }
 
+/** What was found, and what alone would explain it. */
+function refused({ words, could_be }: { words: string; could_be: string[] }): string {
+  return `${text.order.log.refused}: ${[words, ...could_be].join('; ')}`;
+}
+
 function words(kind: string, content: Read['content']): string {
-  const t = text.order.log;
   switch (kind) {
     case 'opened':
       return content.port ?? '';
     case 'berth_reading':
-      if (content.refusal) return `${t.refused}: ${content.refusal.words}`;
+      if (content.refusal) return refused(content.refusal);
       return content.checked
         ? `λ ${content.checked.lambda.toFixed(3)}, ${degrees(content.checked.consistency_deg)}`
         : '';

@@ -17,6 +17,7 @@ export const isBeforeBerth = (state: string): boolean => beforeBerth.includes(st
 export const isUnderWay = (state: string): boolean => underWay.includes(state);
 export const isAtBinnacle = (state: string): boolean => atBinnacle.includes(state);
 export const mayBeCancelled = (state: string): boolean => isUnderWay(state);
+export const mayBeOffered = (state: string): boolean => state === 'planned' || state === 'declined';
 export const mayBeClosed = (state: string): boolean => state === 'verified' || state === 'failed';
 
 /** A state's name; one that is new here is shown as the server calls it. */

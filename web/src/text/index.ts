@@ -11,6 +11,7 @@ import { common } from './common';
 import { deviation } from './deviation';
 import { firms } from './firms';
 import { fleet } from './fleet';
+import { offers } from './offers';
 import { orders } from './orders';
 import { papers } from './papers';
 import { schedule } from './schedule';
@@ -27,6 +28,7 @@ export const text = {
   ...changes,
   ...trust,
   ...papers,
+  ...offers,
   ...orders,
   ...schedule,
   ...firms,

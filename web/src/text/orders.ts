@@ -22,6 +22,7 @@ export const orders = {
     emptyTitle: 'No adjustment is under way',
     empty:
       'When a compass deviates more than it should, order an adjustment here, from the vessel’s page or from an alert.',
+    emptyFirm: 'When an operator offers your firm an adjustment, it stands here.',
     emptyViewer: 'An administrator of your company orders adjustments.',
     noneDone: 'No order is done with yet.',
     shown: (n: number) => (n === 1 ? '1 order' : `${n} orders`),
@@ -218,6 +219,7 @@ export const orders = {
       by: (name: string) => `by ${name}`,
       step: (n: number, words: string) => `Step ${n}: ${words}`,
       refused: 'refused',
+      withheld: 'Between the operator and others: not shown to your firm',
       taken: 'taken',
     },
     act: {
@@ -244,6 +246,8 @@ export const orders = {
       better_magnetometer: 'Use a magnetometer with less error.',
       another_berth: 'Shift to another berth, or farther from steel.',
       other_correctors: 'Get magnets, spheres or pieces of bar that are not on board.',
+      alignment:
+        'See to the lubber line and to how gyro or satellite compass are aligned: no corrector cures this.',
       swing: 'Swing the ship.',
     } satisfies Record<AdjustmentCure, string>,
   },
