@@ -8,10 +8,10 @@
 
 use crate::app::App;
 use crate::error::{Error, Result};
-use crate::ids::{AgentId, CompassId, OperatorId, SessionId, TokenId, UserId, VesselId};
+use crate::ids::{AgentId, CompassId, FirmId, OperatorId, SessionId, TokenId, UserId, VesselId};
 use crate::session::{self, Role, User, cookie};
 use crate::tenants::Tenant;
-use crate::{enrolment, secret, tokens};
+use crate::{audit, enrolment, secret, tokens};
 use axum::extract::FromRequestParts;
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
@@ -86,6 +86,12 @@ impl From<Writer> for PartyWriter {
     }
 }
 
+/// Someone who may read the audit log, and of which tenant: all of it where that is none.
+#[derive(Clone, Copy, Debug)]
+pub struct Auditor {
+    tenant: Option<Tenant>,
+}
+
 /// Someone who manages operators and firms.
 #[derive(Clone, Copy, Debug)]
 pub struct Platform {
@@ -116,22 +122,28 @@ impl Caller {
 
     /// Whose side the caller is on; none for a platform admin.
     pub fn tenant(&self) -> Option<Tenant> {
-        let operator = self.user.operator_id.map(Tenant::Operator);
-        operator.or(self.user.firm_id.map(Tenant::Firm))
+        self.user.tenant()
     }
 
-    fn operator(&self) -> Result<OperatorId> {
+    /// Refuses who has not set up the second factor that the operator wants.
+    ///
+    /// # Errors
+    /// When that is so.
+    pub fn must_have_second_factor(&self) -> Result<()> {
         if self.user.lacks_second_factor() {
             return Err(Error::SecondFactorRequired);
         }
+        Ok(())
+    }
+
+    fn operator(&self) -> Result<OperatorId> {
+        self.must_have_second_factor()?;
         let operator = self.user.operator_id;
         operator.ok_or(Error::Forbidden("only an operator's people have a fleet"))
     }
 
     fn party(&self) -> Result<Tenant> {
-        if self.user.lacks_second_factor() {
-            return Err(Error::SecondFactorRequired);
-        }
+        self.must_have_second_factor()?;
         let none = "a platform admin has neither a fleet nor orders";
         self.tenant().ok_or(Error::Forbidden(none))
     }
@@ -155,6 +167,18 @@ impl Caller {
     }
 }
 
+impl Auditor {
+    /// The operator whose lines alone are to be seen.
+    pub fn operator(&self) -> Option<OperatorId> {
+        self.tenant.and_then(Tenant::operator)
+    }
+
+    /// The firm whose lines alone are to be seen.
+    pub fn firm(&self) -> Option<FirmId> {
+        self.tenant.and_then(Tenant::firm)
+    }
+}
+
 impl Platform {
     /// The admin, unless a token limits them to reading: what keys of theirs belong to.
     pub fn who_may_write(&self) -> Result<Tenant> {
@@ -170,6 +194,14 @@ impl FromRequestParts<App> for Caller {
     type Rejection = Error;
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Caller> {
+        let caller = Caller::find(parts, app).await?;
+        audit::acts(&caller);
+        Ok(caller)
+    }
+}
+
+impl Caller {
+    async fn find(parts: &Parts, app: &App) -> Result<Caller> {
         let now = app.clock.now().into();
         if let Some(token) = bearer(parts) {
             return tokens::caller(&app.db, token, now)
@@ -267,6 +299,21 @@ impl FromRequestParts<App> for PartyWriter {
     }
 }
 
+impl FromRequestParts<App> for Auditor {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Auditor> {
+        let caller = Caller::from_request_parts(parts, app).await?;
+        caller.must_have_second_factor()?;
+        if caller.user.role == Role::Viewer {
+            return Err(Error::Forbidden("only an admin may do this"));
+        }
+        Ok(Auditor {
+            tenant: caller.tenant(),
+        })
+    }
+}
+
 impl FromRequestParts<App> for Platform {
     type Rejection = Error;
 
@@ -288,9 +335,11 @@ impl FromRequestParts<App> for Agent {
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Agent> {
         let token = bearer(parts).ok_or(Error::Unauthenticated)?;
         let vessel = secret::vessel_of_token(token).ok_or(Error::Unauthenticated)?;
-        enrolment::find_agent(&app.db, VesselId(vessel), &secret::hash(token))
+        let agent = enrolment::find_agent(&app.db, VesselId(vessel), &secret::hash(token))
             .await?
-            .ok_or(Error::Unauthenticated)
+            .ok_or(Error::Unauthenticated)?;
+        audit::acts(&agent);
+        Ok(agent)
     }
 }
 

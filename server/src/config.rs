@@ -99,6 +99,10 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_PROXIES", default_value_t = 0,
           value_parser = clap::value_parser!(u8).range(0..=8))]
     pub proxies: u8,
+    /// Days that the audit log is kept
+    #[arg(long, env = "BINNACLE_AUDIT_DAYS", default_value_t = 1095,
+          value_parser = clap::value_parser!(u32).range(1..=36_500))]
+    pub audit_days: u32,
     /// Seconds to wait for more batches before a vessel is analysed
     #[arg(long, env = "BINNACLE_ANALYSIS_DELAY_S", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(0..=86_400))]
@@ -123,6 +127,12 @@ impl Serve {
     /// Whether cookies are for https alone.
     pub fn has_secure_cookies(&self) -> bool {
         self.secure_cookies || self.tls_cert.is_some()
+    }
+
+    /// Whether people reach the dashboard by https, as far as is known.
+    pub fn is_on_https(&self) -> bool {
+        let public = self.mail.public_url.as_deref().unwrap_or_default();
+        self.has_secure_cookies() || public.starts_with("https://")
     }
 
     /// Where the certificate is kept, if https is spoken.

@@ -21,6 +21,7 @@ pub mod ids;
 pub mod time;
 
 pub mod access;
+pub mod audit;
 pub mod firms;
 pub mod idempotency;
 pub mod operators;

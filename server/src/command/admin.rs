@@ -11,7 +11,7 @@ use crate::ids::{AgentId, FirmId, OperatorId, VesselId};
 use crate::session::{self, Role};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{enrolment, firms, http, operators, password, secret, users};
+use crate::{audit, enrolment, firms, http, operators, password, secret, users};
 use anyhow::Result;
 use serde_json::json;
 use std::io::Read;
@@ -27,16 +27,37 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
         let db = Db::connect(&arguments.database.database_url).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
-        let made = match arguments.command {
-            AdminCommand::Create { what } => create(&db, what, now).await,
-            AdminCommand::ResetUser { email } => reset_user(&db, &email, now).await,
-            AdminCommand::RevokeAgent { vessel, agent } => {
-                revoke_agent(&db, VesselId(vessel), AgentId(agent), now).await
-            }
-        };
+        let name = name_of(&arguments.command);
+        let made = audit::by_command(name, now, run(&db, arguments.command, now)).await;
         db.close().await;
         answer(made?.map(|made| made.to_string()).map_err(BadInput))
     })
+}
+
+/// What the audit log calls it.
+fn name_of(command: &AdminCommand) -> &'static str {
+    match command {
+        AdminCommand::Create { what } => match what {
+            Create::Operator { .. } => "admin create operator",
+            Create::User { .. } => "admin create user",
+            Create::Firm { .. } => "admin create firm",
+            Create::Adjuster { .. } => "admin create adjuster",
+            Create::PlatformAdmin { .. } => "admin create platform-admin",
+        },
+        AdminCommand::ResetUser { .. } => "admin reset-user",
+        AdminCommand::RevokeAgent { .. } => "admin revoke-agent",
+    }
+}
+
+async fn run(db: &Db, command: AdminCommand, now: Time) -> Made {
+    match command {
+        AdminCommand::Create { what } => create(db, what, now).await,
+        AdminCommand::ResetUser { email } => reset_user(db, &email, now).await,
+        AdminCommand::RevokeAgent { vessel, agent } => {
+            audit::concerns_vessel(VesselId(vessel), None);
+            revoke_agent(db, VesselId(vessel), AgentId(agent), now).await
+        }
+    }
 }
 
 /// What was made, or what was wrong with the request.
@@ -150,6 +171,9 @@ async fn create_user(
         return Ok(Err(missing));
     }
     let created = session::create_user(&mut tx, tenant, &email, &name, role, &hash, now).await;
+    if let Some(tenant) = tenant {
+        audit::concerns(tenant);
+    }
     let id = match created {
         Err(sqlx::Error::Database(error)) if error.is_unique_violation() => {
             return Ok(Err(format!("--email: {email} has an account already")));

@@ -7,7 +7,9 @@ use crate::db::Db;
 use crate::mail::Mailer;
 use crate::peer::Peer;
 use crate::tls::TlsListener;
-use crate::{alerts, analysis, events, http, operations, outbox, schedule, webhooks, work_orders};
+use crate::{
+    alerts, analysis, audit, events, http, operations, outbox, schedule, webhooks, work_orders,
+};
 use anyhow::{Context, Result};
 use axum::extract::connect_info::Connected;
 use axum::serve::{IncomingStream, Listener};
@@ -79,6 +81,7 @@ where
     }
     if app.config.analysis_workers > 0 {
         parts.spawn(alerts::watch(app.clone()));
+        parts.spawn(audit::watch(app.clone()));
         parts.spawn(schedule::run(app.clone()));
         parts.spawn(work_orders::watch(app.clone()));
         match webhooks::Sender::new(app.config.webhooks.reach()) {

@@ -5,6 +5,8 @@
 //! time, which takes the write lock before it reads anything, so that no
 //! transaction fails half-way for another's sake.
 //!
+//! A change that a request makes carries its line of the audit log in its transaction.
+//!
 //! The macros take the SQL as a literal and run it on whichever database is
 //! there: `rows!`, `row!` and `execute!`.
 
@@ -13,6 +15,7 @@ mod queries;
 
 pub(crate) use queries::{execute, row, rows};
 
+use crate::audit;
 use sqlx::{PgPool, Postgres, Sqlite, SqlitePool, Transaction};
 
 /// A result from the database.
@@ -79,11 +82,17 @@ async fn begin_sqlite(writer: &SqlitePool) -> Result<Transaction<'static, Sqlite
 }
 
 impl Tx {
-    /// Makes everything durable, and visible to others, at once.
-    pub async fn commit(self) -> Result<()> {
+    /// Makes everything durable, and visible to others, at once; with it the line that
+    /// the request behind it has in the audit log.
+    pub async fn commit(mut self) -> Result<()> {
+        let written = audit::write_with(&mut self).await?;
         match self {
-            Tx::Sqlite(tx) => tx.commit().await,
-            Tx::Postgres(tx) => tx.commit().await,
+            Tx::Sqlite(tx) => tx.commit().await?,
+            Tx::Postgres(tx) => tx.commit().await?,
         }
+        if written {
+            audit::kept();
+        }
+        Ok(())
     }
 }

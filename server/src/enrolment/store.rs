@@ -3,6 +3,7 @@
 use super::AgentStream;
 use crate::access::Agent;
 use crate::alerts;
+use crate::audit;
 use crate::compasses::Compass;
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::error::{self, Error};
@@ -108,6 +109,7 @@ pub(super) async fn enrol(
         now
     )?;
     let stream = open_stream(&mut tx, agent, now).await?;
+    audit::acts(&agent);
     tx.commit().await?;
     Ok(Enrolled {
         token,

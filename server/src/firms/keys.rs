@@ -108,6 +108,7 @@ async fn list_keys(
     Id(firm): Id<FirmId>,
     page: Page,
 ) -> Result<Json<FirmKeyList>> {
+    caller.must_have_second_factor()?;
     let seen = super::store::find(&app.db, caller.tenant(), firm).await?;
     seen.ok_or(Error::NotFound("firm"))?;
     let found = rows(&app.db, firm, &page).await?;

@@ -64,6 +64,7 @@ struct FirmList {
 #[utoipa::path(get, path = "/firms", tag = "adjusting", params(Page),
     responses((status = 200, body = FirmList), (status = 401, body = Problem)))]
 async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Result<Json<FirmList>> {
+    caller.must_have_second_factor()?;
     let who = caller.tenant();
     let found = store::list(&app.db, who, page.after_id()?, page.fetch()).await?;
     let listed = page.cut(found, |firm| firm.id.to_string());
@@ -109,6 +110,7 @@ async fn find_firm(
     caller: Caller,
     Id(id): Id<FirmId>,
 ) -> Result<Json<Firm>> {
+    caller.must_have_second_factor()?;
     found(&app, caller.tenant(), id).await
 }
 

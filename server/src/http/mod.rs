@@ -2,6 +2,7 @@
 //! the small types that read a request.
 
 mod amended;
+mod cross_site;
 mod docs;
 mod document;
 mod file;

@@ -1,15 +1,15 @@
 //! Every route, the document that describes them, and what surrounds them.
 
-use super::headers;
+use super::{cross_site, headers};
 use crate::app::App;
 use crate::{
-    alerts, binnacles, calendar, card, changes, compasses, dashboard, deviation, deviation_book,
-    enrolment, error, events, firms, fleet, logbook, mail, models, needs, operations, operators,
-    port_calls, samples, schedule, second_factor, session, settings, streams, tokens, users,
-    vessels, webhooks, work_orders,
+    alerts, audit, binnacles, calendar, card, changes, compasses, dashboard, deviation,
+    deviation_book, enrolment, error, events, firms, fleet, logbook, mail, models, needs,
+    operations, operators, port_calls, samples, schedule, second_factor, session, settings,
+    streams, tokens, users, vessels, webhooks, work_orders,
 };
 use axum::Router;
-use axum::extract::DefaultBodyLimit;
+use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
@@ -18,6 +18,7 @@ use tower_http::catch_panic::CatchPanicLayer;
 use tower_http::compression::CompressionLayer;
 use tower_http::timeout::TimeoutLayer;
 use tower_http::trace::TraceLayer;
+use tracing::{Span, debug_span};
 use utoipa::OpenApi;
 use utoipa::openapi::security::{ApiKey, ApiKeyValue, Http, HttpAuthScheme, SecurityScheme};
 use utoipa_axum::router::OpenApiRouter;
@@ -83,6 +84,7 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(second_factor::router())
         .merge(tokens::router())
         .merge(users::router())
+        .merge(audit::router())
         .merge(operators::router())
         .merge(firms::router())
         .merge(fleet::router())
@@ -111,10 +113,12 @@ fn for_people() -> OpenApiRouter<App> {
 
 /// The OpenAPI document.
 pub fn openapi() -> utoipa::openapi::OpenApi {
-    parts().1
+    let (_, _, document) = parts();
+    document
 }
 
-fn parts() -> (Router<App>, utoipa::openapi::OpenApi) {
+/// The routes of agents, those of people, and the document of both.
+fn parts() -> (Router<App>, Router<App>, utoipa::openapi::OpenApi) {
     let (people, described) = OpenApiRouter::with_openapi(Document::openapi())
         .nest("/api/v1", for_people())
         .merge(operations::router())
@@ -132,11 +136,7 @@ fn parts() -> (Router<App>, utoipa::openapi::OpenApi) {
         .fallback_service(get(dashboard::serve))
         .layer(CompressionLayer::new())
         .layer(axum::middleware::from_fn(headers::add));
-    let router = Router::new()
-        .merge(agents)
-        .merge(people)
-        .method_not_allowed_fallback(no_such_method);
-    (router, document)
+    (agents, people, document)
 }
 
 async fn no_such_method() -> error::Error {
@@ -152,10 +152,28 @@ async fn no_such_route() -> error::Error {
     error::Error::NotFound("page")
 }
 
+/// What log lines of a request say of it: never the query, which may hold a secret.
+fn span(request: &Request) -> Span {
+    let route = request.extensions().get::<MatchedPath>();
+    let route = route.map_or("dashboard", MatchedPath::as_str);
+    debug_span!("http", method = %request.method(), route)
+}
+
 /// The whole server.
 pub fn router(app: App) -> Router {
-    parts()
-        .0
+    let (agents, mut people, _) = parts();
+    if app.config.is_on_https() {
+        people = people.layer(axum::middleware::from_fn(headers::add_https_only));
+    }
+    let refuse = axum::middleware::from_fn_with_state(app.clone(), cross_site::refuse);
+    Router::new()
+        .merge(agents)
+        .merge(people.layer(refuse))
+        .method_not_allowed_fallback(no_such_method)
+        .layer(axum::middleware::from_fn_with_state(
+            app.clone(),
+            audit::keep,
+        ))
         .layer(DefaultBodyLimit::max(MAX_JSON_BYTES))
         .layer(TimeoutLayer::with_status_code(
             StatusCode::REQUEST_TIMEOUT,
@@ -163,6 +181,6 @@ pub fn router(app: App) -> Router {
         ))
         .layer(CatchPanicLayer::custom(panicked))
         .layer(axum::middleware::from_fn(operations::measure))
-        .layer(TraceLayer::new_for_http())
+        .layer(TraceLayer::new_for_http().make_span_with(span))
         .with_state(app)
 }

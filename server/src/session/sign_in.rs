@@ -4,6 +4,7 @@ use super::user::{User, normal_email};
 use super::{cookie, store, throttle};
 use crate::access::Caller;
 use crate::app::App;
+use crate::audit::{self, Actor};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
 use crate::peer::Origin;
@@ -84,6 +85,7 @@ async fn judge(app: &App, from: &Origin, request: SignIn) -> Result<User> {
     }
     let email = normal_email(&request.email);
     let user = with_password(app, from, &email, request.password).await?;
+    audit::acts(Actor::user(&user));
     if !user.second_factor {
         return Ok(user);
     }

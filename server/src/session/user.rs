@@ -1,6 +1,7 @@
 //! Who signs in.
 
 use crate::ids::{FirmId, OperatorId, UserId};
+use crate::tenants::Tenant;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -35,6 +36,12 @@ pub struct User {
 }
 
 impl User {
+    /// Whose side the user is on; none for a platform admin.
+    pub fn tenant(&self) -> Option<Tenant> {
+        let operator = self.operator_id.map(Tenant::Operator);
+        operator.or(self.firm_id.map(Tenant::Firm))
+    }
+
     /// Whether nothing is to be had before a second factor is set up.
     pub fn lacks_second_factor(&self) -> bool {
         self.second_factor_required && !self.second_factor

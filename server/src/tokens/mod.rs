@@ -117,9 +117,7 @@ async fn create_token(
 ) -> Result<(StatusCode, Json<MadeToken>)> {
     // One that leaked is not to make others that outlive it.
     caller.must_be_signed_in()?;
-    if caller.user.lacks_second_factor() {
-        return Err(Error::SecondFactorRequired);
-    }
+    caller.must_have_second_factor()?;
     let name = crate::http::text("name", &new.name)?;
     let now = app.clock.now();
     let expires_at = new

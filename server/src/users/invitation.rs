@@ -5,10 +5,12 @@
 
 use crate::access::Writer;
 use crate::app::App;
+use crate::audit::{self, Actor};
 use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
-use crate::ids::UserId;
+use crate::ids::{FirmId, OperatorId, UserId};
+use crate::tenants::Tenant;
 use crate::time::Time;
 use crate::{password, second_factor, secret, session};
 use axum::extract::State;
@@ -74,6 +76,8 @@ struct Invited {
     user_id: UserId,
     email: String,
     name: String,
+    operator_id: Option<OperatorId>,
+    firm_id: Option<FirmId>,
     company: Option<String>,
     expires_at: Time,
 }
@@ -139,6 +143,9 @@ async fn accept_invitation(
     }
     session::set_password(&mut tx, invited.user_id, &hash).await?;
     session::end_all(&mut tx, invited.user_id, None).await?;
+    let tenant = invited.operator_id.map(Tenant::Operator);
+    let tenant = tenant.or(invited.firm_id.map(Tenant::Firm));
+    audit::acts(Actor::person(invited.user_id, &invited.name, tenant));
     tx.commit().await?;
     Ok(Json(Accepted {
         email: invited.email,
@@ -168,13 +175,17 @@ pub async fn reset(db: &Db, email: &str, now: Time) -> Result<Option<(String, Ti
     let mut tx = db.begin().await?;
     let user = row!(
         in &mut tx,
-        (UserId,),
-        "SELECT id FROM users WHERE email = $1 ORDER BY id",
+        (UserId, Option<OperatorId>, Option<FirmId>),
+        "SELECT id, operator_id, firm_id FROM users WHERE email = $1 ORDER BY id",
         session::normal_email(email)
     )?;
-    let Some((user,)) = user else {
+    let Some((user, operator, firm)) = user else {
         return Ok(None);
     };
+    let tenant = operator.map(Tenant::Operator);
+    if let Some(tenant) = tenant.or(firm.map(Tenant::Firm)) {
+        audit::concerns(tenant);
+    }
     session::set_password(&mut tx, user, "").await?;
     session::end_all(&mut tx, user, None).await?;
     second_factor::remove(&mut tx, user).await?;
@@ -205,7 +216,8 @@ async fn find(db: &Db, code_hash: &[u8]) -> Result<Option<Invited>> {
     let found = row!(
         db,
         Invited,
-        "SELECT i.user_id, u.email, u.name, COALESCE(o.name, f.name) AS company, i.expires_at
+        "SELECT i.user_id, u.email, u.name, u.operator_id, u.firm_id,
+                COALESCE(o.name, f.name) AS company, i.expires_at
          FROM invitations i
          JOIN users u ON u.id = i.user_id
          LEFT JOIN operators o ON o.id = u.operator_id

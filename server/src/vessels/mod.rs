@@ -11,6 +11,7 @@ pub use store::{find_row, must_be_in_fleet, names};
 use crate::access::{Reader, Writer};
 use crate::alerts::{self, Severity, Standing};
 use crate::app::App;
+use crate::audit;
 use crate::compasses::{self, Compass};
 use crate::deviation::Worst;
 use crate::error::{Error, Problem, Result};
@@ -168,6 +169,7 @@ async fn create_vessel(
         .once(&mut tx, writer.operator, &request, wanted.0, now)
         .await?;
     if id == wanted.0 {
+        audit::concerns_vessel(wanted, None);
         store::insert(&mut tx, writer.operator, wanted, &new, now).await?;
         compasses::insert_standard(&mut tx, wanted, now).await?;
     }

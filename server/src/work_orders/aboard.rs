@@ -1,7 +1,7 @@
 //! What a firm may read of the ship while an order of hers is open.
 //!
 //! What always holds: a firm reads model and binnacle only of the order's compass, only
-//! from the offer until the adjustment is completed, and each time is noted.
+//! from the offer until the adjustment is completed, and each time is in the audit log.
 
 use super::order::Summary;
 use super::store;
@@ -13,7 +13,6 @@ use crate::http::{Id, Json};
 use crate::ids::OrderId;
 use crate::models::{self, ModelVersion};
 use axum::extract::State as Shared;
-use tracing::info;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -63,14 +62,5 @@ async fn open(app: &App, reader: &PartyReader, id: OrderId, what: &'static str) 
     if reader.tenant.firm().is_some() && !summary.state.is_under_way() {
         return Err(Error::NotFound(what));
     }
-    note_read(reader, &summary, what);
     Ok(summary)
-}
-
-/// Notes that a firm read something of a ship.
-pub(super) fn note_read(reader: &PartyReader, summary: &Summary, what: &'static str) {
-    if let Some(firm) = reader.tenant.firm() {
-        let (user, order, vessel) = (reader.user, summary.id, summary.vessel_id);
-        info!(%firm, %user, %order, %vessel, what, "a firm has read of a ship");
-    }
 }

@@ -1,6 +1,5 @@
 //! What is done at the berth: the reading, the plan, its steps.
 
-use super::aboard::note_read;
 use super::asked::BerthReadingSchema;
 use super::basis::Basis;
 use super::entry::Content;
@@ -135,7 +134,6 @@ async fn find_plan(
     let whole = store::whole(&app.db, reader.tenant, id).await?;
     whole.must_be(&AT_BERTH, "there is nothing to plan")?;
     let prepared = whole.standing().prepared()?;
-    note_read(&reader, &whole.summary, "plan");
     must_still_hold(&app, &whole.summary, &prepared).await?;
     Ok(Json(offer(&app, prepared).await?))
 }

@@ -49,6 +49,7 @@ pub use verification::{after_analysis, alert};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
 use crate::app::App;
+use crate::audit;
 use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, text};
@@ -174,6 +175,7 @@ async fn open(
     // Whom it is offered to stands in entries of their own.
     let offer = new.offer.take();
     let now = app.clock.now().into();
+    audit::concerns_vessel(vessel, Some(id));
     store::insert(&mut tx, id, &new, &author, now).await?;
     let whole = store::lock(&mut tx, vessel, id).await?;
     let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());

@@ -138,6 +138,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read the audit log
+         * @description Every change that was made or tried, and what firms read of work orders. An operator's
+         *     admins see what their people and agents did and what firms did and read of their
+         *     vessels' orders; a firm's people what was done in the firm's name; platform admins see
+         *     all.
+         */
+        get: operations["list_audit"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/audit.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The audit log as CSV */
+        get: operations["audit_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/binnacle-types": {
         parameters: {
             query?: never;
@@ -2606,6 +2646,11 @@ export interface components {
             note?: string | null;
         };
         /**
+         * @description Who did something.
+         * @enum {string}
+         */
+        ActorKind: "user" | "token" | "agent" | "command";
+        /**
          * @description What would cure a refusal.
          * @enum {string}
          */
@@ -2861,6 +2906,59 @@ export interface components {
          * @enum {string}
          */
         AlertState: "raised" | "acknowledged" | "cleared";
+        /** @description Something that was done, or tried. */
+        AuditLine: {
+            /**
+             * Format: uuid
+             * @description The user's or the agent's id.
+             */
+            actor_id: string | null;
+            /** @description Who. */
+            actor_kind: components["schemas"]["ActorKind"];
+            /** @description The name at that time; of an agent, its vessel's. */
+            actor_name: string;
+            /** @description Where from; empty if that is not known. */
+            address: string;
+            /** @description When. */
+            at: components["schemas"]["Time"];
+            /**
+             * Format: uuid
+             * @description The firm whose people did it, or which it was about.
+             */
+            firm_id: string | null;
+            /**
+             * Format: uuid
+             * @description The request's id, as the answer's `X-Request-Id` gave it.
+             */
+            id: string;
+            /** @description What was done: the request's method. Empty for a command on the server itself. */
+            method: string;
+            /**
+             * Format: uuid
+             * @description The operator whose fleet it was about, or whose people did it.
+             */
+            operator_id: string | null;
+            order_id: components["schemas"]["OrderId"] | null;
+            /** @description The route with its ids. */
+            path: string;
+            /** @description The route, as this document names it, or the command. */
+            route: string;
+            /**
+             * Format: int64
+             * @description The status of the answer. None if it was done and the server ended, or the client
+             *     went, before there was one.
+             */
+            status: number | null;
+            token_id: components["schemas"]["TokenId"] | null;
+            vessel_id: components["schemas"]["VesselId"] | null;
+        };
+        /** @description A page of the audit log. */
+        AuditList: {
+            /** @description The newest first. */
+            items: components["schemas"]["AuditLine"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+        };
         /** @description Half the width of the 95 % band over all headings in some waters, degrees. */
         Band: {
             /**
@@ -8164,6 +8262,148 @@ export interface operations {
             };
             /** @description Unsupported Media Type */
             415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_audit: {
+        parameters: {
+            query?: {
+                /** @description Of this user or agent only. */
+                actor?: string;
+                /** @description About this vessel only. */
+                vessel?: components["schemas"]["VesselId"];
+                /** @description About this work order only. */
+                order?: components["schemas"]["OrderId"];
+                /** @description Of this route only, like `/api/v1/work-orders/{id}/model`. */
+                route?: string;
+                /** @description The first instant, RFC 3339. */
+                from?: string;
+                /** @description The instant after the last, RFC 3339. */
+                to?: string;
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    audit_csv: {
+        parameters: {
+            query?: {
+                /** @description Of this user or agent only. */
+                actor?: string;
+                /** @description About this vessel only. */
+                vessel?: components["schemas"]["VesselId"];
+                /** @description About this work order only. */
+                order?: components["schemas"]["OrderId"];
+                /** @description Of this route only, like `/api/v1/work-orders/{id}/model`. */
+                route?: string;
+                /** @description The first instant, RFC 3339. */
+                from?: string;
+                /** @description The instant after the last, RFC 3339. */
+                to?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
                 headers: {
                     [name: string]: unknown;
                 };

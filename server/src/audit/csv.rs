@@ -1,0 +1,56 @@
+//! The log as CSV.
+
+use super::Line;
+use crate::error::{Error, Result};
+
+/// Named as in JSON.
+const COLUMNS: [&str; 15] = [
+    "id",
+    "at",
+    "actor_kind",
+    "actor_id",
+    "actor_name",
+    "token_id",
+    "operator_id",
+    "firm_id",
+    "address",
+    "method",
+    "route",
+    "path",
+    "vessel_id",
+    "order_id",
+    "status",
+];
+
+/// The line that names the columns.
+pub(super) fn head() -> Vec<u8> {
+    format!("{}\n", COLUMNS.join(",")).into_bytes()
+}
+
+pub(super) fn lines(lines: &[Line]) -> Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for line in lines {
+        let fields = serde_json::to_value(line)?;
+        let record = COLUMNS.map(|column| match &fields[column] {
+            serde_json::Value::Null => String::new(),
+            serde_json::Value::String(text) => harmless(text),
+            other => other.to_string(),
+        });
+        writer
+            .write_record(record)
+            .map_err(|error| Error::Internal(error.into()))?;
+    }
+    writer
+        .into_inner()
+        .map_err(|error| Error::Internal(error.into_error().into()))
+}
+
+/// People's names are what they call themselves: a spreadsheet is not to take one for a
+/// formula.
+fn harmless(text: &str) -> String {
+    if text.starts_with(['=', '+', '-', '@']) {
+        format!("'{text}")
+    } else {
+        text.to_owned()
+    }
+}

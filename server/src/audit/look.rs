@@ -1,0 +1,121 @@
+//! Looking into the log.
+
+use super::{Filter, Line, csv, store};
+use crate::access::Auditor;
+use crate::app::App;
+use crate::error::{Problem, Result};
+use crate::http::{Json, Page, Params, file, time};
+use crate::time::Time;
+use axum::body::{Body, Bytes};
+use axum::extract::State;
+use axum::response::Response;
+use futures_util::{StreamExt, stream};
+use serde::Serialize;
+use tracing::error;
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+use uuid::Uuid;
+
+/// Lines that a file is written by.
+const AT_A_TIME: i64 = 1000;
+
+/// The routes of this part.
+pub fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(list_audit))
+        .routes(routes!(audit_csv))
+}
+
+/// A page of the audit log.
+#[derive(Serialize, ToSchema)]
+struct AuditList {
+    /// The newest first.
+    items: Vec<Line>,
+    /// `after` of the next page.
+    #[schema(required)]
+    next: Option<String>,
+}
+
+/// Read the audit log
+///
+/// Every change that was made or tried, and what firms read of work orders. An operator's
+/// admins see what their people and agents did and what firms did and read of their
+/// vessels' orders; a firm's people what was done in the firm's name; platform admins see
+/// all.
+#[utoipa::path(get, path = "/audit", tag = "people", params(Filter, Page),
+    responses((status = 200, body = AuditList), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn list_audit(
+    State(app): State<App>,
+    auditor: Auditor,
+    Params(filter): Params<Filter>,
+    page: Page,
+) -> Result<Json<AuditList>> {
+    let wanted = Wanted::new(auditor, filter)?;
+    let before = page.after_id()?;
+    let found = store::list(&app.db, &wanted, before, page.fetch()).await?;
+    let listed = page.cut(found, |line| line.id.to_string());
+    Ok(Json(AuditList {
+        items: listed.items,
+        next: listed.next,
+    }))
+}
+
+/// The audit log as CSV
+#[utoipa::path(get, path = "/audit.csv", tag = "people", params(Filter),
+    responses((status = 200, content_type = "text/csv", body = String),
+              (status = 401, body = Problem), (status = 403, body = Problem),
+              (status = 422, body = Problem)))]
+async fn audit_csv(
+    State(app): State<App>,
+    auditor: Auditor,
+    Params(filter): Params<Filter>,
+) -> Result<Response> {
+    let wanted = Wanted::new(auditor, filter)?;
+    let head = stream::iter([Ok(Bytes::from(csv::head()))]);
+    let rest = stream::try_unfold((app, wanted, Some(Uuid::max())), next_lines);
+    let body = Body::from_stream(head.chain(rest));
+    Ok(file("text/csv; charset=utf-8", "audit.csv", body))
+}
+
+/// What to look for, and in whose part of the log.
+pub(super) struct Wanted {
+    pub(super) auditor: Auditor,
+    pub(super) filter: Filter,
+    pub(super) from: Option<Time>,
+    pub(super) to: Option<Time>,
+}
+
+impl Wanted {
+    fn new(auditor: Auditor, filter: Filter) -> Result<Wanted> {
+        let from = time("from", filter.from.as_deref())?.map(Time);
+        let to = time("to", filter.to.as_deref())?.map(Time);
+        Ok(Wanted {
+            auditor,
+            filter,
+            from,
+            to,
+        })
+    }
+}
+
+type Rest = (App, Wanted, Option<Uuid>);
+
+async fn next_lines((app, wanted, before): Rest) -> Result<Option<(Bytes, Rest)>> {
+    let Some(before) = before else {
+        return Ok(None);
+    };
+    let lines = async {
+        let found = store::list(&app.db, &wanted, Some(before), AT_A_TIME).await?;
+        let next = found.last().map(|line| line.id);
+        Ok((Bytes::from(csv::lines(&found)?), next))
+    };
+    match lines.await {
+        Ok((lines, next)) => Ok(Some((lines, (app, wanted, next)))),
+        Err(cause) => {
+            error!(error = format!("{cause:?}"), "an audit log was cut off");
+            Err(cause)
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Lines in the database.
+
+use super::Line;
+use super::look::Wanted;
+use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::ids::{OperatorId, OrderId, VesselId};
+use crate::time::Time;
+use uuid::Uuid;
+
+pub(super) async fn insert(tx: &mut Tx, line: &Line) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO audit_lines (id, at, operator_id, firm_id, actor_kind, actor_id, actor_name,
+                                  token_id, address, method, route, path, vessel_id, order_id,
+                                  status)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15)",
+        line.id,
+        line.at,
+        line.operator_id,
+        line.firm_id,
+        line.actor_kind,
+        line.actor_id,
+        line.actor_name.as_str(),
+        line.token_id,
+        line.address.as_str(),
+        line.method.as_str(),
+        line.route.as_str(),
+        line.path.as_str(),
+        line.vessel_id,
+        line.order_id,
+        line.status
+    )?;
+    Ok(())
+}
+
+/// Notes how a request was answered whose line is there.
+pub(super) async fn answered(db: &Db, id: Uuid, status: i64) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "UPDATE audit_lines SET status = $2 WHERE id = $1 AND status IS NULL",
+        id,
+        status
+    )?;
+    tx.commit().await
+}
+
+/// The newest first, from before an id.
+pub(super) async fn list(
+    db: &Db,
+    wanted: &Wanted,
+    before: Option<Uuid>,
+    limit: i64,
+) -> Result<Vec<Line>> {
+    let filter = &wanted.filter;
+    rows!(
+        db,
+        Line,
+        "SELECT id, at, actor_kind, actor_id, actor_name, token_id, operator_id, firm_id, address,
+                method, route, path, vessel_id, order_id, status
+         FROM audit_lines
+         WHERE ($1 IS NULL OR operator_id = $1) AND ($2 IS NULL OR firm_id = $2) AND id < $3
+           AND ($4 IS NULL OR actor_id = $4)
+           AND ($5 IS NULL OR vessel_id = $5)
+           AND ($6 IS NULL OR order_id = $6)
+           AND ($7 IS NULL OR route = $7)
+           AND ($8 IS NULL OR at >= $8)
+           AND ($9 IS NULL OR at < $9)
+         ORDER BY id DESC
+         LIMIT $10",
+        wanted.auditor.operator(),
+        wanted.auditor.firm(),
+        before.unwrap_or(Uuid::max()),
+        filter.actor,
+        filter.vessel,
+        filter.order,
+        filter.route.as_deref(),
+        wanted.from,
+        wanted.to,
+        limit
+    )
+}
+
+pub(super) async fn remove_before(db: &Db, before: Time) -> Result<u64> {
+    let mut tx = db.begin().await?;
+    let removed = execute!(&mut tx, "DELETE FROM audit_lines WHERE at < $1", before)?;
+    tx.commit().await?;
+    Ok(removed)
+}
+
+/// The vessel of an order.
+pub(super) async fn vessel_of(tx: &mut Tx, order: OrderId) -> Result<Option<VesselId>> {
+    let found = row!(
+        in tx,
+        (VesselId,),
+        "SELECT vessel_id FROM work_orders WHERE id = $1 ORDER BY vessel_id",
+        order
+    )?;
+    Ok(found.map(|(vessel,)| vessel))
+}
+
+/// Whose a vessel is, and its name.
+pub(super) async fn owner_of(
+    tx: &mut Tx,
+    vessel: VesselId,
+) -> Result<Option<(OperatorId, String)>> {
+    row!(
+        in tx,
+        (OperatorId, String),
+        "SELECT operator_id, name FROM vessels WHERE id = $1 ORDER BY id",
+        vessel
+    )
+}
