@@ -16,7 +16,10 @@ async fn any_path_but_the_apis_answers_with_a_page() {
                 .starts_with("text/html")
         );
         let policy = page.headers["content-security-policy"].to_str().unwrap();
-        assert!(policy.starts_with("default-src 'self'"), "{policy}");
+        assert!(
+            policy.starts_with("default-src 'none'; script-src 'self';"),
+            "{policy}"
+        );
         assert_eq!(page.headers["x-content-type-options"], "nosniff");
     }
     let missing = shore.http.get(format!("{}/assets/none.js", shore.url));

@@ -18,7 +18,7 @@ on_both!(
 );
 
 /// The authenticator app: RFC 6238 once more, from the base 32 that is typed in.
-fn app_code(secret: &str, unix_s: i64) -> String {
+pub(crate) fn app_code(secret: &str, unix_s: i64) -> String {
     let digits = secret.bytes().map(|letter| match letter {
         b'A'..=b'Z' => letter - b'A',
         _ => letter - b'2' + 26,
@@ -189,9 +189,11 @@ async fn an_operator_may_want_a_factor_of_everyone(shore: Shore) {
     put(&ada).await.good();
     assert_eq!(ada.get("/vessels").await.status, 200);
 
-    let refused = viewer.get("/vessels").await;
-    assert_eq!(refused.problem(), "second-factor-required");
-    assert_eq!(refused.status, 403);
+    for path in ["/vessels", "/firms", "/work-orders"] {
+        let refused = viewer.get(path).await;
+        assert_eq!(refused.problem(), "second-factor-required", "{path}");
+        assert_eq!(refused.status, 403);
+    }
     let by_token = shore.http.get(format!("{}/api/v1/vessels", shore.url));
     let by_token = Answer::of(by_token.bearer_auth(token.as_str().unwrap())).await;
     assert_eq!(by_token.problem(), "second-factor-required");

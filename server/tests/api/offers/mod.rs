@@ -30,8 +30,8 @@ const NEXT_DAY: &str = "2026-11-22T13:00:00Z";
 /// An operator with a ship, and firms that work for it.
 pub(crate) struct Trade {
     pub(crate) ada: Person,
-    vessel: String,
-    compass: String,
+    pub(crate) vessel: String,
+    pub(crate) compass: String,
     pub(crate) firms: Vec<(FirmId, Person)>,
     pub(crate) order: String,
 }

@@ -180,12 +180,16 @@ fn config(url: &str, settings: &[&str]) -> Serve {
         "smtp://localhost:9?tls=none",
         "--mail-from",
         "Binnacle <alerts@binnacle.example>",
-        "--public-url",
-        "https://binnacle.example",
     ];
+    let public: &[&str] = if settings.contains(&"--public-url") {
+        &[]
+    } else {
+        &["--public-url", "https://binnacle.example"]
+    };
     let all = arguments
         .into_iter()
         .chain(more)
+        .chain(public.iter().copied())
         .chain(settings.iter().copied());
     let Command::Serve(serve) = Cli::parse_from(all).command else {
         unreachable!("serve was asked for");

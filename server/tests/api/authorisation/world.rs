@@ -1,0 +1,243 @@
+//! Two operators, each with people, tokens, a firm and a ship, and something of everything.
+
+use crate::binnacles::{binnacle, put};
+use crate::port_calls::call;
+use crate::support::{Answer, PASSWORD, Person, Ship, Shore, attempt};
+use reqwest::{Method, RequestBuilder};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+
+/// In the order of a rule's signs.
+pub(super) const ROLES: [&str; 9] = [
+    "admin",
+    "viewer",
+    "admin's token that reads",
+    "admin's token that writes",
+    "adjuster",
+    "adjuster's token that reads",
+    "agent",
+    "platform admin",
+    "platform admin's token that reads",
+];
+
+/// How someone makes a request.
+#[derive(Clone)]
+pub(super) enum Key {
+    Cookie(String),
+    Token(String),
+}
+
+/// One operator's side of the world.
+pub(super) struct Side {
+    /// In the order of [`ROLES`].
+    pub(super) keys: Vec<Key>,
+    ids: BTreeMap<&'static str, String>,
+    /// What nobody else may ever be told: ids and names.
+    pub(super) marks: Vec<String>,
+}
+
+/// Something that is nowhere.
+const NONE: &str = "019a0000-0000-7000-8000-000000000000";
+
+impl Side {
+    pub(super) async fn new(shore: &Shore, name: &str, root: Option<&[Key]>) -> (Side, Vec<Key>) {
+        let admin = shore.admin(name).await;
+        let viewer = admin.viewer(shore).await;
+        let (firm, adjuster) = admin.adjuster(shore, &format!("firm-{name}")).await;
+        let ship = shore.ship(&admin, &format!("ship-of-{name}")).await;
+        let root = match root {
+            Some(keys) => keys.to_vec(),
+            None => {
+                let root = admin.platform_admin(shore).await;
+                let token = token(&root, "read").await;
+                vec![Key::Cookie(root.cookie), token.1]
+            }
+        };
+        let read = token(&admin, "read").await;
+        let write = token(&admin, "write").await;
+        let firms = token(&adjuster, "read").await;
+        let mut ids = possessions(&admin, &ship, &format!("{firm}")).await;
+        ids.insert("firm", firm.to_string());
+        ids.insert("operator", admin.operator.to_string());
+        ids.insert("token", token(&admin, "read").await.0);
+        attempt(shore, &admin.email, PASSWORD).await.good();
+        let sessions = admin.get("/sessions").await.good();
+        let session = sessions["items"][1]["id"].as_str().unwrap();
+        ids.insert("session", session.to_owned());
+        let keys = vec![
+            Key::Cookie(admin.cookie),
+            Key::Cookie(viewer.cookie),
+            read.1,
+            write.1,
+            Key::Cookie(adjuster.cookie),
+            firms.1,
+            Key::Token(ship.token),
+        ];
+        let keys: Vec<Key> = keys.into_iter().chain(root.clone()).collect();
+        let mut marks: Vec<String> = ids.values().cloned().collect();
+        marks.extend([format!("ship-of-{name}"), format!("{name}@example.com")]);
+        (Side { keys, ids, marks }, root)
+    }
+
+    /// A path of the document with this side's ids, or with such as are nowhere.
+    pub(super) fn fill(&self, path: &str, real: bool) -> String {
+        let first = path.split('/').nth(1).unwrap();
+        let of_id = match first {
+            "vessels" => "vessel",
+            "work-orders" => "order",
+            "webhooks" => "webhook",
+            "mail-recipients" => "recipient",
+            "calendar-feeds" => "feed",
+            "firms" => "firm",
+            "operators" => "operator",
+            "users" => "user",
+            "sessions" => "session",
+            "tokens" => "token",
+            _ => "",
+        };
+        let mut filled = path.to_owned();
+        for name in [
+            "id", "compass", "agent", "stream", "entry", "call", "firm", "key", "delivery", "photo",
+        ] {
+            let key = if name == "id" { of_id } else { name };
+            let id = self.ids.get(key).filter(|_| real);
+            let id = id.map_or(NONE, String::as_str);
+            filled = filled.replace(&format!("{{{name}}}"), id);
+        }
+        filled
+            .replace("{seq}", "1")
+            .replace("{version}", "1")
+            .replace("{n}", "1")
+            .replace("{name}", "none")
+    }
+
+    /// A body for an operation, with this side's ids.
+    pub(super) fn body(&self, operation: &str) -> Value {
+        let (vessel, compass, firm) =
+            (&self.ids["vessel"], &self.ids["compass"], &self.ids["firm"]);
+        match operation {
+            "POST /work-orders" => json!({
+                "vessel_id": vessel, "compass_id": compass, "port": "Bilbao",
+                "planned_at": "2026-11-22T08:00:00Z",
+            }),
+            "POST /calendar-feeds" => json!({ "name": "Fleet" }),
+            "POST /webhooks" | "PUT /webhooks/{id}" => {
+                json!({ "url": "https://erp.example.com/", "kinds": ["alert.raised"] })
+            }
+            "POST /tokens" => json!({ "name": "ERP", "scope": "read" }),
+            "POST /firms" | "POST /operators" => json!({ "name": "New" }),
+            "PUT /me/password" => {
+                json!({ "current": PASSWORD, "new": "seven gulls over the quay" })
+            }
+            "POST /me/second-factor"
+            | "POST /me/second-factor/recovery-codes"
+            | "POST /me/second-factor/remove" => json!({ "password": PASSWORD }),
+            "POST /me/second-factor/confirm" => json!({ "code": "000000" }),
+            "POST /firms/{id}/keys" => json!({
+                "name": "K", "public_key": "0".repeat(64), "proof": "0".repeat(128),
+            }),
+            "POST /work-orders/{id}/offer" => json!({ "firms": [firm] }),
+            "POST /work-orders/{id}/cancel"
+            | "POST /work-orders/{id}/close"
+            | "POST /work-orders/{id}/remarks"
+            | "POST /work-orders/{id}/messages" => {
+                json!({ "text": "x" })
+            }
+            "POST /vessels/{id}/port-calls" => call("NLRTM", 20),
+            "PUT /vessels/{id}/compasses/{compass}/binnacle" => binnacle(),
+            "POST /vessels/{id}/compasses" => json!({ "name": "Aft", "role": "steering" }),
+            _ => json!({}),
+        }
+    }
+}
+
+/// Something of everything that is an operator's.
+async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'static str, String> {
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    let vessel = ship.id.clone();
+    let agents = admin.get(&ship.path("/agents")).await.good();
+    let compasses = admin.get(&ship.path("/compasses")).await.good();
+    let compass = text(&compasses["items"][0]["id"]);
+    let entry = json!({ "kind": "lightning", "from": "2026-11-20T00:00:00Z" });
+    let entry = admin.post(&ship.path("/logbook"), &entry).await.good();
+    let port_call = call("NLRTM", 8);
+    let port_call = admin
+        .post(&ship.path("/port-calls"), &port_call)
+        .await
+        .good();
+    let kept = ship.path(&format!("/compasses/{compass}/binnacle"));
+    put(admin, &kept, &binnacle()).await.good();
+    let order = json!({
+        "vessel_id": vessel, "compass_id": compass, "port": "Bilbao",
+        "planned_at": "2026-11-22T08:00:00Z", "offer": { "firms": [firm] },
+    });
+    let order = admin.post("/work-orders", &order).await.good();
+    let webhook = json!({ "url": "https://erp.example.com/", "kinds": ["alert.raised"] });
+    let webhook = admin.post("/webhooks", &webhook).await.good();
+    let recipient = json!({ "address": format!("office-{vessel}@example.com") });
+    let recipient = admin.post("/mail-recipients", &recipient).await.good();
+    let feed = json!({ "name": "Fleet" });
+    let feed = admin.post("/calendar-feeds", &feed).await.good();
+    let user =
+        json!({ "email": format!("mate-{vessel}@example.com"), "name": "Mate", "role": "viewer" });
+    let user = admin.post("/users", &user).await.good();
+    BTreeMap::from([
+        ("agent", text(&agents["items"][0]["agent_id"])),
+        ("stream", ship.stream.to_string()),
+        ("vessel", vessel),
+        ("compass", compass),
+        ("entry", text(&entry["id"])),
+        ("call", text(&port_call["id"])),
+        ("order", text(&order["id"])),
+        ("webhook", text(&webhook["id"])),
+        ("recipient", text(&recipient["id"])),
+        ("feed", text(&feed["id"])),
+        ("user", text(&user["user"]["id"])),
+    ])
+}
+
+/// A token of a person's: its id, and how it is used.
+async fn token(person: &Person, scope: &str) -> (String, Key) {
+    let new = json!({ "name": "ERP", "scope": scope });
+    let made = person.post("/tokens", &new).await.good();
+    let secret = made["token"].as_str().unwrap().to_owned();
+    (made["id"].as_str().unwrap().to_owned(), Key::Token(secret))
+}
+
+/// A request by someone, or by nobody.
+pub(super) fn request(
+    shore: &Shore,
+    key: Option<&Key>,
+    method: &str,
+    path: &str,
+) -> RequestBuilder {
+    let method = Method::from_bytes(method.as_bytes()).unwrap();
+    let request = shore.http.request(method, format!("{}{path}", shore.url));
+    match key {
+        Some(Key::Cookie(cookie)) => request
+            .header("cookie", cookie)
+            .header("x-binnacle-request", "1"),
+        Some(Key::Token(token)) => request.bearer_auth(token),
+        None => request,
+    }
+}
+
+/// What is answered; of live events, which have no end, only that they begin.
+pub(super) async fn answer(request: RequestBuilder) -> Answer {
+    let response = request.send().await.unwrap();
+    let (status, headers) = (response.status().as_u16(), response.headers().clone());
+    let endless = headers
+        .get("content-type")
+        .is_some_and(|kind| kind == "text/event-stream");
+    let bytes = if endless {
+        Vec::new()
+    } else {
+        response.bytes().await.unwrap().to_vec()
+    };
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    Answer {
+        status,
+        headers,
+        text,
+    }
+}
