@@ -4,7 +4,7 @@ SHELL := /bin/bash
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
 
-.PHONY: help setup web build deb demo test test-rust test-web test-browser lint soak bench bench-link bench-formats bench-peer bench-changes study study-adjust study-changes study-losses methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes study study-adjust study-changes study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -27,7 +27,7 @@ deb: setup ## Make the agent's Debian package
 demo: build ## Sail a simulated fleet and open the dashboard (DAYS=60, PORT=8080)
 	@scripts/demo
 
-test: test-web test-rust test-browser ## Run every test, real PostgreSQL and Chromium included
+test: test-web test-rust test-api test-browser ## Run every test, real PostgreSQL and Chromium included
 
 test-web: web ## Test the dashboard's own functions
 	@scripts/web test
@@ -35,6 +35,10 @@ test-web: web ## Test the dashboard's own functions
 test-rust: web ## Test every crate and, end to end, the real programs on both databases
 	$(CARGO) build --locked --workspace --all-targets
 	@scripts/with-postgres $(CARGO) test --locked --workspace
+
+test-api: web ## Ask the real server all that its document allows, and much that it does not
+	$(CARGO) build --locked --workspace --all-targets
+	@scripts/fuzz-api
 
 test-browser: web ## Drive the dashboard in a real Chromium
 	$(CARGO) build --locked --workspace --all-targets
@@ -46,6 +50,7 @@ lint: web ## Formatter, linters, licences, advisories, documentation
 soak: web ## The long tests: many kills, many voyages
 	$(CARGO) build --locked --workspace --all-targets
 	@BINNACLE_SOAK=1 scripts/with-postgres $(CARGO) test --locked --workspace
+	@PHASES=examples,coverage,fuzzing,stateful CASES=200 scripts/fuzz-api
 
 bench: setup ## Run the benchmarks of BENCHMARKS.md
 	$(CARGO) bench --locked -p binnacle-magnetics -p binnacle-nmea -p binnacle-wire --bench '*'
