@@ -7,6 +7,7 @@
 //! - The same sheet becomes the same bytes: nothing here knows the time.
 
 mod font;
+pub mod paper;
 mod pdf;
 mod svg;
 pub mod words;

@@ -3,16 +3,15 @@
 //! What always holds: it says on each sheet that it is a prediction and no certificate, of
 //! which order it is, and the SHA-256 of the record that it is drawn from.
 
-mod paper;
 mod tables;
 
+use crate::sheet::paper::{LEFT, Paper, RIGHT};
 use crate::sheet::words::{east_west, heading_to_a_tenth, latitude, longitude};
 use crate::sheet::{About, Style, pdf};
 use crate::time::Time;
 use crate::work_orders::entry::sha256_hex;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
-use paper::{LEFT, Paper, RIGHT};
 use serde_json::Value;
 
 /// The record as PDF.

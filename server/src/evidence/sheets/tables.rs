@@ -1,9 +1,9 @@
 //! What of the record stands beside each other: correctors before and after, steps,
 //! deviations foretold, the model's parameters.
 
-use super::paper::{LEFT, Paper, SIZE, VALUE};
 use super::{minute, number, word};
 use crate::binnacles::in_words;
+use crate::sheet::paper::{LEFT, Paper, SIZE, VALUE};
 use crate::sheet::words::{east_west, heading, heading_to_a_tenth, signed};
 use crate::sheet::{Style, cut};
 use binnacle_magnetics::binnacle::{Binnacle, Setting, Shape};

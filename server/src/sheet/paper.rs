@@ -1,23 +1,23 @@
 //! Sheets that are written from the top, one after the other.
 
-use crate::sheet::{Face, MARGIN, Sheet, Style, wrap};
+use super::{Face, MARGIN, Sheet, Style, wrap};
 
-pub(super) const LEFT: f32 = MARGIN + 6.0;
-pub(super) const RIGHT: f32 = 595.28 - MARGIN - 6.0;
+pub const LEFT: f32 = MARGIN + 6.0;
+pub const RIGHT: f32 = 595.28 - MARGIN - 6.0;
 const BOTTOM: f32 = 841.89 - MARGIN - 24.0;
-pub(super) const LINE: f32 = 11.0;
-pub(super) const SIZE: f32 = 8.3;
+pub const LINE: f32 = 11.0;
+pub const SIZE: f32 = 8.3;
 /// Where what is said of something begins.
-pub(super) const VALUE: f32 = LEFT + 96.0;
+pub const VALUE: f32 = LEFT + 96.0;
 
 /// Sheets, and how far the last one is written.
-pub(super) struct Paper {
+pub struct Paper {
     sheets: Vec<Sheet>,
     y: f32,
 }
 
 impl Paper {
-    pub(super) fn new() -> Paper {
+    pub fn new() -> Paper {
         let mut paper = Paper {
             sheets: Vec::new(),
             y: 0.0,
@@ -27,7 +27,7 @@ impl Paper {
     }
 
     /// The sheets, each with these lines at its foot and its number.
-    pub(super) fn finish(mut self, foot: &[String]) -> Vec<Sheet> {
+    pub fn finish(mut self, foot: &[String]) -> Vec<Sheet> {
         let of = self.sheets.len();
         let style = Style::plain(7.0).grey(90);
         for (index, sheet) in self.sheets.iter_mut().enumerate() {
@@ -48,14 +48,14 @@ impl Paper {
     }
 
     /// Turns the page unless so many lines have room on it.
-    pub(super) fn room_for(&mut self, lines: usize) {
+    pub fn room_for(&mut self, lines: usize) {
         if self.y + LINE * lines as f32 > BOTTOM {
             self.turn();
         }
     }
 
     /// Puts a text on the line at hand.
-    pub(super) fn put(&mut self, x: f32, style: Style, text: &str) {
+    pub fn put(&mut self, x: f32, style: Style, text: &str) {
         let y = self.y;
         if let Some(sheet) = self.sheets.last_mut() {
             sheet.text((x, y), style, text);
@@ -63,11 +63,11 @@ impl Paper {
     }
 
     /// Goes on so far.
-    pub(super) fn down(&mut self, points: f32) {
+    pub fn down(&mut self, points: f32) {
         self.y += points;
     }
 
-    pub(super) fn title(&mut self, text: &str) {
+    pub fn title(&mut self, text: &str) {
         self.room_for(4);
         self.y += 7.0;
         self.put(LEFT, Style::bold(10.5), text);
@@ -75,7 +75,7 @@ impl Paper {
     }
 
     /// A text on as many lines as it takes, from `x` on.
-    pub(super) fn lines(&mut self, x: f32, style: Style, text: &str) {
+    pub fn lines(&mut self, x: f32, style: Style, text: &str) {
         for line in wrap(text, style.face, style.size, RIGHT - x) {
             self.room_for(1);
             self.put(x, style, &line);
@@ -84,7 +84,7 @@ impl Paper {
     }
 
     /// What something is called and what is said of it; nothing where there is nothing.
-    pub(super) fn fact(&mut self, label: &str, value: &str) {
+    pub fn fact(&mut self, label: &str, value: &str) {
         if value.is_empty() {
             return;
         }
@@ -102,7 +102,7 @@ impl Paper {
     }
 
     /// Cells that end at places across.
-    pub(super) fn row(&mut self, style: Style, first: &str, cells: &[(f32, String)]) {
+    pub fn row(&mut self, style: Style, first: &str, cells: &[(f32, String)]) {
         self.room_for(1);
         self.put(LEFT, style, first);
         for (x, cell) in cells {
