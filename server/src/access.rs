@@ -142,7 +142,11 @@ impl Caller {
         operator.ok_or(Error::Forbidden("only an operator's people have a fleet"))
     }
 
-    fn party(&self) -> Result<Tenant> {
+    /// Whose side the caller is on.
+    ///
+    /// # Errors
+    /// When on none, or when a second factor is wanting.
+    pub fn party(&self) -> Result<Tenant> {
         self.must_have_second_factor()?;
         let none = "a platform admin has neither a fleet nor orders";
         self.tenant().ok_or(Error::Forbidden(none))

@@ -68,4 +68,5 @@ id!(PhotoId, "A photograph in an order.");
 id!(CallId, "A vessel's call at a port.");
 id!(KeyId, "A public key that a firm signs with.");
 id!(FeedId, "A calendar that is read by its secret address.");
+id!(NotificationId, "Something that a person is told.");
 id!(EventId, "Something a dashboard is told.");

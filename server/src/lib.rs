@@ -65,7 +65,9 @@ pub mod deviation_book;
 pub mod sheet;
 
 pub mod mail;
+pub mod notifications;
 pub mod outbox;
+pub mod reports;
 pub mod webhooks;
 
 pub mod dashboard;

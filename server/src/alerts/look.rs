@@ -20,7 +20,7 @@ use crate::events::{self, Event};
 use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
 use crate::outbox::Kind;
 use crate::time::Time;
-use crate::{mail, webhooks, work_orders};
+use crate::{mail, notifications, webhooks, work_orders};
 use std::time::Duration;
 use tracing::{error, info};
 
@@ -211,6 +211,7 @@ pub(super) async fn tell(
     let event = events::insert(tx, vessel, events::Kind::Alert, now).await?;
     webhooks::announce(tx, event.operator_id, &told, now).await?;
     mail::announce(tx, event.operator_id, &told, now).await?;
+    notifications::tell_of_alerts(tx, event.operator_id, &told, now).await?;
     Ok(Some(event))
 }
 

@@ -8,7 +8,8 @@ use crate::mail::Mailer;
 use crate::peer::Peer;
 use crate::tls::TlsListener;
 use crate::{
-    alerts, analysis, audit, events, http, operations, outbox, schedule, webhooks, work_orders,
+    alerts, analysis, audit, events, http, notifications, operations, outbox, reports, schedule,
+    webhooks, work_orders,
 };
 use anyhow::{Context, Result};
 use axum::extract::connect_info::Connected;
@@ -84,6 +85,8 @@ where
         parts.spawn(audit::watch(app.clone()));
         parts.spawn(schedule::run(app.clone()));
         parts.spawn(work_orders::watch(app.clone()));
+        parts.spawn(notifications::watch(app.clone()));
+        parts.spawn(reports::watch(app.clone()));
         match webhooks::Sender::new(app.config.webhooks.reach()) {
             Ok(sender) => {
                 for _ in 0..WEBHOOK_SENDERS {

@@ -57,6 +57,8 @@ pub enum Kind {
     PortCall,
     /// The schedule has another plan for it.
     Schedule,
+    /// A compass is to be adjusted soon, or sooner than before.
+    Need,
 }
 
 impl Kind {

@@ -5,8 +5,8 @@ use crate::app::App;
 use crate::{
     alerts, audit, binnacles, calendar, card, changes, compasses, dashboard, deviation,
     deviation_book, enrolment, error, events, firms, fleet, logbook, mail, models, needs,
-    operations, operators, port_calls, samples, schedule, second_factor, session, settings,
-    streams, tokens, users, vessels, webhooks, work_orders,
+    notifications, operations, operators, port_calls, reports, samples, schedule, second_factor,
+    session, settings, streams, tokens, users, vessels, webhooks, work_orders,
 };
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
@@ -49,6 +49,7 @@ const PATIENCE: Duration = Duration::from_mins(2);
         (name = "adjusting", description = "Binnacles, port calls and work orders. What is foretold here is \
             a prediction, not a certificate"),
         (name = "alerts", description = "What people must know of, and how they are told"),
+        (name = "notifications", description = "What you yourself are told, and in which ways"),
         (name = "operations", description = "Health and metrics"),
     )
 )]
@@ -105,9 +106,11 @@ fn for_people() -> OpenApiRouter<App> {
         .merge(deviation_book::router())
         .merge(changes::router())
         .merge(samples::router())
+        .merge(reports::router())
         .merge(alerts::router())
         .merge(webhooks::router())
         .merge(mail::router())
+        .merge(notifications::router())
         .merge(events::router())
 }
 

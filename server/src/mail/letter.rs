@@ -1,40 +1,58 @@
 //! What a letter says: plain text, so that every program shows it the same.
 
 use crate::alerts::{Alert, AlertNews, Severity};
-use crate::ids::AlertId;
+use crate::ids::OperatorId;
 use crate::outbox::Kind;
 use serde::{Deserialize, Serialize};
+use uuid::Uuid;
 
 /// Columns that text is wrapped to.
 const WIDTH: usize = 72;
 
 /// A letter as it waits to be sent.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Letter {
+pub struct Letter {
     pub(super) subject: String,
     pub(super) text: String,
     /// The page to look at, below the dashboard's address.
     pub(super) path: String,
-    /// The alert that it is about: mail programs show its letters together.
-    pub(super) alert: Option<AlertId>,
+    /// The alert or the order that it is about: mail programs show its letters together.
+    #[serde(alias = "alert")]
+    pub(super) about: Option<Uuid>,
+    /// The report that goes with it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) report: Option<Attached>,
+}
+
+/// A monthly report that goes with a letter.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Attached {
+    pub(super) operator: OperatorId,
+    pub(super) month: String,
+}
+
+/// Why somebody gets a letter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Why {
+    /// Someone is on the company's list for alerts from a severity on.
+    Listed(Severity),
+    /// It is what a person with an account is told of.
+    Person,
+    /// Someone is on the company's list for monthly reports.
+    Reports,
 }
 
 impl Letter {
     /// What is new about an alert.
     pub(super) fn of(news: &AlertNews) -> Letter {
         let alert = &news.alert;
-        let state = match news.kind {
-            Kind::AlertCleared => "over",
-            _ => name(alert.severity),
-        };
-        let cause = alert.cause.words();
+        let (subject, text) = words_of(news);
         Letter {
-            // A name that looks like an encoded word (RFC 2047, section 2) is none.
-            subject: one_line(&format!("{}: {state}, {cause}", alert.vessel_name))
-                .replace("=?", "= ?"),
-            text: text(alert, news.kind),
+            subject: header(&subject),
+            text,
             path: format!("/vessels/{}", alert.vessel_id),
-            alert: Some(alert.id),
+            about: Some(alert.id.0),
+            report: None,
         }
     }
 
@@ -45,24 +63,58 @@ impl Letter {
             text: "This is a test: alerts of your fleet's compasses reach this address.\n"
                 .to_owned(),
             path: "/mail".to_owned(),
-            alert: None,
+            about: None,
+            report: None,
         }
     }
 
     /// The whole text, with where to look and why the recipient gets it.
-    pub(super) fn text_for(&self, address: &str, least: Severity, public_url: &str) -> String {
-        let why = format!(
-            "You get this because {address} is on your company's list for alerts from {} on. An \
-             administrator takes it off:",
-            name(least)
-        );
+    pub(super) fn text_for(&self, address: &str, why: Why, public_url: &str) -> String {
+        let (why, page) = match why {
+            Why::Listed(least) => (
+                format!(
+                    "You get this because {address} is on your company's list for alerts from {} \
+                     on. An administrator takes it off:",
+                    name(least)
+                ),
+                "/mail",
+            ),
+            Why::Person => (
+                format!("You get this because of what {address} is to be told of. You choose it:"),
+                "/settings",
+            ),
+            Why::Reports => (
+                format!(
+                    "You get this because {address} is on your company's list for monthly reports. \
+                     An administrator takes it off:"
+                ),
+                "/reports",
+            ),
+        };
         format!(
-            "{}\n{public_url}{}\n\n{}\n{public_url}/mail\n",
+            "{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
             self.text,
             self.path,
             wrapped("", &why)
         )
     }
+}
+
+/// What is new about an alert: in a line, and in full.
+pub fn words_of(news: &AlertNews) -> (String, String) {
+    let alert = &news.alert;
+    let state = match news.kind {
+        Kind::AlertCleared => "over",
+        _ => name(alert.severity),
+    };
+    let subject = format!("{}: {state}, {}", alert.vessel_name, alert.cause.words());
+    (one_line(&subject), text(alert, news.kind))
+}
+
+/// A subject as it goes into a header: a name that looks like an encoded word (RFC 2047,
+/// section 2) is none.
+pub(super) fn header(subject: &str) -> String {
+    one_line(subject).replace("=?", "= ?")
 }
 
 fn text(alert: &Alert, kind: Kind) -> String {
@@ -100,7 +152,7 @@ fn name(severity: Severity) -> &'static str {
 }
 
 /// Without anything that could end a line.
-fn one_line(text: &str) -> String {
+pub fn one_line(text: &str) -> String {
     let shown = |c: char| {
         if c.is_control() || "\u{2028}\u{2029}".contains(c) {
             ' '
@@ -113,7 +165,7 @@ fn one_line(text: &str) -> String {
 
 /// Lines of at most [`WIDTH`] columns, the first after `lead`, the others indented
 /// alike.
-fn wrapped(lead: &str, text: &str) -> String {
+pub(super) fn wrapped(lead: &str, text: &str) -> String {
     let mut lines = Vec::new();
     let mut line = lead.to_owned();
     let mut empty = true;

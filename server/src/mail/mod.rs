@@ -10,13 +10,19 @@
 //! - No text of others makes a header: names are encoded, line breaks are taken out.
 
 mod announce;
+mod digest;
 mod letter;
+mod monthly;
 mod recipient;
 mod relay;
 mod send;
 mod store;
 
 pub use announce::announce;
+pub use digest::letter_of;
+pub use letter::{Letter, one_line, words_of};
+pub use monthly::monthly_letter;
+pub use recipient::address;
 pub use relay::Relay;
 pub use send::Mailer;
 
@@ -29,7 +35,6 @@ use crate::ids::{DeliveryId, RecipientId};
 use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter, Kind, Message};
 use axum::extract::State;
 use axum::http::StatusCode;
-use letter::Letter;
 use recipient::{ChangedRecipient, NewRecipient, Recipient, RecipientList};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -205,7 +210,7 @@ async fn send_letter_again(
 
 /// # Errors
 /// [`Error::NotSetUp`] when this server sends no mail.
-fn must_be_set_up(app: &App) -> Result<()> {
+pub fn must_be_set_up(app: &App) -> Result<()> {
     if app.config.mail.is_set_up() {
         return Ok(());
     }

@@ -74,27 +74,37 @@ impl NewRecipient {
     ///
     /// # Errors
     /// When it cannot.
-    pub(super) fn checked(mut self) -> Result<NewRecipient> {
-        let invalid = |detail: &str| {
-            Err(Error::Invalid {
-                field: "address",
-                detail: detail.to_owned(),
-            })
-        };
-        if self.address.len() > MAX_ADDRESS {
-            return invalid("is longer than 254 characters");
-        }
-        // Beyond ASCII an address asks every relay on its way for SMTPUTF8.
-        if !self.address.is_ascii() {
-            return invalid("has letters beyond ASCII");
-        }
-        let Ok(address) = self.address.trim().parse::<Address>() else {
-            return invalid("is not an address like name@example.com");
-        };
-        let domain = address.domain().to_ascii_lowercase();
-        self.address = format!("{}@{domain}", address.user());
-        Ok(self)
+    pub(super) fn checked(self) -> Result<NewRecipient> {
+        Ok(NewRecipient {
+            address: address("address", &self.address)?,
+            ..self
+        })
     }
+}
+
+/// An address that mail can go to, its domain in small letters.
+///
+/// # Errors
+/// When mail cannot go there.
+pub fn address(field: &'static str, given: &str) -> Result<String> {
+    let invalid = |detail: &str| {
+        Err(Error::Invalid {
+            field,
+            detail: detail.to_owned(),
+        })
+    };
+    if given.len() > MAX_ADDRESS {
+        return invalid("is longer than 254 characters");
+    }
+    // Beyond ASCII an address asks every relay on its way for SMTPUTF8.
+    if !given.is_ascii() {
+        return invalid("has letters beyond ASCII");
+    }
+    let Ok(address) = given.trim().parse::<Address>() else {
+        return invalid("is not an address like name@example.com");
+    };
+    let domain = address.domain().to_ascii_lowercase();
+    Ok(format!("{}@{domain}", address.user()))
 }
 
 #[cfg(test)]

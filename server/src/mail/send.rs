@@ -1,16 +1,16 @@
 //! A letter as it goes over the wire (RFC 5322), and its carrier.
 
-use super::letter::Letter;
+use super::letter::{Letter, Why};
+use super::monthly::{self, Files};
 use super::relay::Relay;
 use super::store;
-use crate::alerts::Severity;
 use crate::app::App;
 use crate::config;
 use crate::outbox::{Carrier, Channel, Claimed, Tried};
 use anyhow::{Context, Result};
 use lettre::address::Envelope;
 use lettre::message::header::{ContentType, HeaderName, HeaderValue};
-use lettre::message::{Mailbox, Message};
+use lettre::message::{Attachment, Mailbox, Message, MultiPart, SinglePart};
 use reqwest::Url;
 use std::fs;
 use std::time::{Duration, UNIX_EPOCH};
@@ -57,8 +57,13 @@ impl Mailer {
         }
     }
 
-    fn message(&self, claimed: &Claimed, address: &str, least: Severity) -> Result<Message> {
-        let letter: Letter = serde_json::from_str(&claimed.body)?;
+    fn message(
+        &self,
+        claimed: &Claimed,
+        letter: &Letter,
+        (address, why): (&str, Why),
+        files: Option<Files>,
+    ) -> Result<Message> {
         let domain = self.from.email.domain();
         let written = u64::try_from(claimed.created_at.0.micros())?;
         let mut builder = Message::builder()
@@ -71,13 +76,15 @@ impl Mailer {
                 "<{}.{}@{domain}>",
                 claimed.id,
                 claimed.receiver_id.simple()
-            )))
-            .header(ContentType::TEXT_PLAIN);
-        if let Some(alert) = letter.alert {
-            builder = builder.references(format!("<{alert}@{domain}>"));
+            )));
+        if let Some(about) = letter.about {
+            builder = builder.references(format!("<{about}@{domain}>"));
         }
-        let text = letter.text_for(address, least, &self.public_url);
-        let mut message = builder.body(text)?;
+        let text = letter.text_for(address, why, &self.public_url);
+        let mut message = match files.zip(letter.report.as_ref()) {
+            None => builder.header(ContentType::TEXT_PLAIN).body(text)?,
+            Some((files, report)) => builder.multipart(with_files(text, files, &report.month))?,
+        };
         // Nobody's holiday notice is to answer (RFC 3834, section 5).
         message.headers_mut().insert_raw(HeaderValue::new(
             HeaderName::new_from_ascii_str("Auto-Submitted"),
@@ -87,13 +94,36 @@ impl Mailer {
     }
 }
 
+/// A text and a report's files.
+fn with_files(text: String, files: Files, month: &str) -> MultiPart {
+    let pdf = ContentType::parse("application/pdf").expect("it is a media type");
+    let csv = ContentType::parse("text/csv; charset=utf-8").expect("it is a media type");
+    let name = |what: &str, ending: &str| format!("compass-{what}-{month}.{ending}");
+    let mut letter = MultiPart::mixed()
+        .singlepart(SinglePart::plain(text))
+        .singlepart(Attachment::new(name("report", "pdf")).body(files.pdf, pdf));
+    for (what, table) in [
+        ("due", files.due_csv),
+        ("deviation", files.deviation_csv),
+        ("jobs", files.jobs_csv),
+    ] {
+        letter = letter.singlepart(Attachment::new(name(what, "csv")).body(table, csv.clone()));
+    }
+    letter
+}
+
 impl Carrier for Mailer {
     const CHANNEL: Channel = Channel::Mail;
 
     async fn carry(&self, app: &App, claimed: &Claimed) -> Result<Tried> {
         let found = store::address(&app.db, claimed.receiver_id).await?;
-        let (address, least) = found.context("the recipient was removed")?;
-        let message = self.message(claimed, &address, least)?;
+        let (address, why) = found.context("the recipient was removed or is shut out")?;
+        let letter: Letter = serde_json::from_str(&claimed.body)?;
+        let files = match &letter.report {
+            Some(report) => monthly::files(&app.db, report).await?,
+            None => None,
+        };
+        let message = self.message(claimed, &letter, (&address, why), files)?;
         let envelope = Envelope::new(Some(self.from.email.clone()), vec![address.parse()?])?;
         self.relay.hand_over(&envelope, &message.formatted()).await
     }

@@ -1,5 +1,6 @@
 //! Who gets mail, in the database.
 
+use super::letter::Why;
 use super::recipient::{NewRecipient, Recipient};
 use crate::alerts::Severity;
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
@@ -106,14 +107,34 @@ pub(super) async fn change(
     Ok(())
 }
 
-/// Where a recipient's mail goes; none if it was removed.
-pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Severity)>> {
-    row!(
+/// Where a receiver's mail goes, and why; none if it was removed or shut out.
+pub(super) async fn address(db: &Db, id: Uuid) -> DbResult<Option<(String, Why)>> {
+    let listed = row!(
         db,
         (String, Severity),
         "SELECT address, severity FROM mail_recipients WHERE id = $1 ORDER BY id",
         id
-    )
+    )?;
+    if let Some((address, least)) = listed {
+        return Ok(Some((address, Why::Listed(least))));
+    }
+    let report = row!(
+        db,
+        (String,),
+        "SELECT address FROM report_recipients WHERE id = $1 ORDER BY id",
+        id
+    )?;
+    if let Some((address,)) = report {
+        return Ok(Some((address, Why::Reports)));
+    }
+    // A person is a receiver under their own id.
+    let person = row!(
+        db,
+        (String,),
+        "SELECT email FROM users WHERE id = $1 AND disabled_at IS NULL ORDER BY id",
+        id
+    )?;
+    Ok(person.map(|(email,)| (email, Why::Person)))
 }
 
 /// Whom an operator's alerts are told by mail, and from which severity on.

@@ -20,7 +20,7 @@ use crate::app::App;
 use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Page, Params};
 use crate::ids::{CompassId, OperatorId, VesselId};
-use crate::vessels;
+use crate::{schedule, vessels};
 use axum::extract::State;
 use binnacle_schedule::needs::{Terms, due};
 use binnacle_schedule::rules::shipped;
@@ -78,10 +78,11 @@ async fn listed(
 ) -> Result<Json<NeedList>> {
     let after = page.after_time()?.map(|(day, id)| (day, CompassId(id)));
     let facts = of_fleet(app, operator, vessel).await?;
+    let terms = schedule::terms(&app.db, operator).await?;
     let today = app.clock.now().to_chrono().date_naive();
     let mut needs: Vec<Need> = facts
         .iter()
-        .filter_map(|facts| need(facts, &Terms::default(), today))
+        .filter_map(|facts| need(facts, &terms, today))
         .filter(|need| filter.urgency.is_none_or(|only| need.urgency == only))
         .filter(|need| filter.due_by.is_none_or(|last| need.due_on <= last))
         .filter(|need| after.is_none_or(|after| (day_number(need.due_on), need.compass_id) > after))

@@ -4,7 +4,7 @@
 
 mod store;
 
-pub use store::{create, exists};
+pub use store::{all, create, exists};
 
 use crate::access::Platform;
 use crate::app::App;

@@ -35,6 +35,12 @@ pub async fn exists(tx: &mut Tx, id: OperatorId) -> Result<bool> {
     Ok(found.is_some())
 }
 
+/// All there are.
+pub async fn all(db: &Db) -> Result<Vec<OperatorId>> {
+    let found = rows!(db, (OperatorId,), "SELECT id FROM operators ORDER BY id")?;
+    Ok(found.into_iter().map(|(id,)| id).collect())
+}
+
 pub(super) async fn list(db: &Db, after: Option<Uuid>, limit: i64) -> Result<Vec<Operator>> {
     rows!(
         db,

@@ -83,6 +83,14 @@ pub enum Kind {
     #[serde(rename = "order.cancelled")]
     #[sqlx(rename = "order.cancelled")]
     OrderCancelled,
+    /// What a person is told of by mail: one notification, or several together.
+    #[serde(rename = "notification")]
+    #[sqlx(rename = "notification")]
+    Notification,
+    /// A monthly report by mail.
+    #[serde(rename = "report")]
+    #[sqlx(rename = "report")]
+    Report,
     /// Someone asked for a test.
     #[serde(rename = "test")]
     #[sqlx(rename = "test")]
@@ -98,6 +106,8 @@ impl Kind {
                 | Kind::AlertUpdated
                 | Kind::AlertAcknowledged
                 | Kind::AlertCleared
+                | Kind::Notification
+                | Kind::Report
                 | Kind::Test
         )
     }

@@ -17,5 +17,5 @@ mod worker;
 pub use delivery::{Channel, Delivery, DeliveryList, Filter, Kind, Message};
 pub use history::{list, queue_one, send_again};
 pub use queue::{Claimed, queue};
-pub use receivers::{delete, enable, insert};
+pub use receivers::{delete, enable, ensure, forget, insert};
 pub use worker::{Carrier, Sent, Tried, run, step};

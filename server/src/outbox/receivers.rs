@@ -29,6 +29,27 @@ pub async fn insert(
     Ok(())
 }
 
+/// Makes a receiver that is enabled, unless there is one under the id.
+pub async fn ensure(tx: &mut Tx, tenant: Tenant, id: Uuid, channel: Channel) -> DbResult<()> {
+    execute!(
+        tx,
+        "INSERT INTO receivers (id, operator_id, firm_id, channel, enabled, last_number)
+         VALUES ($1, $2, $3, $4, TRUE, 0)
+         ON CONFLICT (id) DO NOTHING",
+        id,
+        tenant.operator(),
+        tenant.firm(),
+        channel
+    )?;
+    Ok(())
+}
+
+/// Removes a receiver that there may be, with its deliveries.
+pub async fn forget(tx: &mut Tx, id: Uuid) -> DbResult<()> {
+    execute!(tx, "DELETE FROM receivers WHERE id = $1", id)?;
+    Ok(())
+}
+
 /// Has messages sent to a receiver, or kept waiting.
 pub async fn enable(
     tx: &mut Tx,

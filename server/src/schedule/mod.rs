@@ -20,6 +20,7 @@ mod store;
 mod worker;
 
 pub use plan::Plan;
+pub use settings::terms;
 pub use store::ask;
 pub use worker::{run, step};
 

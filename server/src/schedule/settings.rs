@@ -101,6 +101,11 @@ pub(super) async fn find(db: &Db, operator: OperatorId) -> Result<Settings> {
     )?)
 }
 
+/// The terms by which an operator's compasses are due where a rule gives no date.
+pub async fn terms(db: &Db, operator: OperatorId) -> Result<Terms> {
+    Ok(find(db, operator).await?.terms)
+}
+
 impl Settings {
     fn check(&self) -> Result<()> {
         let invalid = |field, detail: String| Err(Error::Invalid { field, detail });

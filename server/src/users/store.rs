@@ -4,6 +4,7 @@ use super::{Person, SignInRules};
 use crate::db::{self, Db, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::ids::{OperatorId, UserId};
+use crate::outbox;
 use crate::session::{self, Role};
 use crate::time::Time;
 use uuid::Uuid;
@@ -133,6 +134,7 @@ pub(super) async fn enable(tx: &mut Tx, id: UserId) -> db::Result<()> {
 }
 
 pub(super) async fn delete(tx: &mut Tx, operator: OperatorId, id: UserId) -> db::Result<bool> {
+    outbox::forget(tx, id.0).await?;
     let deleted = execute!(
         tx,
         "DELETE FROM users WHERE operator_id = $1 AND id = $2",

@@ -95,7 +95,8 @@ impl NewWebhook {
         }
         self.kinds.sort_unstable();
         self.kinds.dedup();
-        self.kinds.retain(|kind| *kind != Kind::Test);
+        self.kinds
+            .retain(|kind| !matches!(kind, Kind::Test | Kind::Notification | Kind::Report));
         if tenant.firm().is_some() && !self.kinds.iter().all(|kind| kind.is_of_order()) {
             return invalid("kinds", "a firm is told of work orders only".to_owned());
         }

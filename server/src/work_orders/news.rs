@@ -5,13 +5,15 @@
 //! order is its own.
 
 use super::entry::{Content, Entry};
+use super::notices;
 use super::offers::{Offer, OfferState, Offers};
 use super::order::{State, Summary};
 use super::store::Whole;
 use crate::db::Tx;
 use crate::error::Result;
 use crate::events::{self, Event};
-use crate::ids::{DeliveryId, FirmId};
+use crate::ids::{DeliveryId, FirmId, UserId};
+use crate::notifications::{self, News};
 use crate::outbox::{Kind, Message};
 use crate::tenants::Tenant;
 use crate::time::Time;
@@ -35,6 +37,13 @@ impl Before {
     }
 }
 
+impl Before {
+    /// How the offer to a firm stood.
+    fn was(&self, firm: FirmId) -> Option<OfferState> {
+        self.offers.of(firm).map(|offer| offer.state)
+    }
+}
+
 /// Tells of what was written since; the live events, to be published after the commit.
 pub(super) async fn tell(
     tx: &mut Tx,
@@ -54,11 +63,17 @@ pub(super) async fn tell(
     }
     let operator = Tenant::Operator(summary.operator_id);
     webhooks::announce_messages(tx, operator, &told, now).await?;
+    let by = author(&new);
+    let notices = new.iter().filter_map(|entry| {
+        let firm = entry.content.between().map(|said| said.firm.firm_id);
+        notices::for_operator(summary, entry, firm.and_then(|firm| before.was(firm)))
+    });
+    notifications::tell(tx, operator, &notices.collect::<Vec<_>>(), by, now).await?;
     let order = (summary.vessel_id, summary.id);
     let mut live = vec![events::insert_of_order(tx, order, None, now).await?];
     // In the order of their ids: no two transactions wait for each other.
     for firm in firms(&before.offers, &offers) {
-        let was = before.offers.of(firm).map(|offer| offer.state);
+        let was = before.was(firm);
         let Some(offer) = offers.of(firm) else {
             continue;
         };
@@ -67,6 +82,8 @@ pub(super) async fn tell(
             continue;
         }
         webhooks::announce_messages(tx, Tenant::Firm(firm), &told, now).await?;
+        let notices = notices_for(summary, offer, was, &new);
+        notifications::tell(tx, Tenant::Firm(firm), &notices, by, now).await?;
         live.push(events::insert_of_order(tx, order, Some(firm), now).await?);
     }
     Ok(live)
@@ -84,25 +101,57 @@ fn messages_for(
     new: &[&Entry],
     now: Time,
 ) -> Vec<Message> {
-    let holds = offer.state == OfferState::Accepted;
     let seen = summary.seen_with(offer);
     let mut told = Vec::new();
-    for entry in new {
-        let between = entry.content.between();
-        let mine = between.is_some_and(|said| said.firm.firm_id == offer.firm_id);
-        let ours = holds && between.is_none();
-        let Some(kind) = kind(&entry.content).filter(|_| mine || ours) else {
-            continue;
-        };
-        told.push(message(kind, &seen, entry, now));
+    for entry in new.iter().filter(|entry| offer.lets_see(entry)) {
+        if let Some(kind) = kind(&entry.content) {
+            told.push(message(kind, &seen, entry, now));
+        }
     }
-    let withdrawn = offer.state == OfferState::Withdrawn && was.is_some_and(OfferState::is_seen);
-    if withdrawn && let Some(last) = new.last() {
+    if offer.is_taken_back(was)
+        && let Some(last) = new.last()
+    {
         // Why is not the firm's business: another may have it.
         let body = json!({ "seq": last.seq, "kind": "withdrawn", "at": last.at });
         told.push(written(Kind::OrderWithdrawn, &seen, &body, now));
     }
     told
+}
+
+/// The same for the firm's people, in words.
+fn notices_for(
+    summary: &Summary,
+    offer: &Offer,
+    was: Option<OfferState>,
+    new: &[&Entry],
+) -> Vec<News> {
+    let seen = summary.seen_with(offer);
+    let theirs = new.iter().filter(|entry| offer.lets_see(entry));
+    let mut told: Vec<News> = theirs
+        .filter_map(|entry| notices::for_firm(&seen, entry, was))
+        .collect();
+    if offer.is_taken_back(was) {
+        told.extend(new.last().map(|last| notices::withdrawn(&seen, last)));
+    }
+    told
+}
+
+impl Offer {
+    /// Whether the firm may know of a new entry.
+    fn lets_see(&self, entry: &Entry) -> bool {
+        let holds = self.state == OfferState::Accepted;
+        let between = entry.content.between();
+        between.map_or(holds, |said| said.firm.firm_id == self.firm_id)
+    }
+
+    fn is_taken_back(&self, was: Option<OfferState>) -> bool {
+        self.state == OfferState::Withdrawn && was.is_some_and(OfferState::is_seen)
+    }
+}
+
+/// Who wrote it; none for the server itself.
+fn author(new: &[&Entry]) -> Option<UserId> {
+    new.last().and_then(|entry| entry.author.id).map(UserId)
 }
 
 fn kind(content: &Content) -> Option<Kind> {

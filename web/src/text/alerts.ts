@@ -100,6 +100,8 @@ export const alerts = {
       'order.failed': 'Adjustment not confirmed at sea',
       'order.closed': 'Work order closed',
       'order.cancelled': 'Work order cancelled',
+      notification: 'Notification',
+      report: 'Monthly report',
       test: 'Test',
     } satisfies Record<MessageKind, string>,
     states: { pending: 'waiting', delivered: 'delivered', dead: 'given up' },

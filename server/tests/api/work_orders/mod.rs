@@ -99,7 +99,7 @@ impl Job {
         order
     }
 
-    async fn complete(&self) -> Value {
+    pub(crate) async fn complete(&self) -> Value {
         self.adjust().await;
         self.post("/complete", &word()).await.good()
     }

@@ -88,6 +88,10 @@ async fn headings_at_sea_verify_an_adjustment(shore: Shore) {
     assert_eq!(more["state"], "verified", "{}", more["verification"]);
     assert_eq!(more["standing"], "verified at sea");
     assert_eq!(job.open_alerts().await, Vec::<Value>::new());
+    let told = job.person.get("/notifications?kind=verified").await.good();
+    let subject = &told["items"][0]["subject"];
+    assert_eq!(subject, "Nao: verified at sea at Bilbao");
+    assert_eq!(told["items"].as_array().unwrap().len(), 1);
     let closed = job.post("/close", &json!({ "text": "done" })).await.good();
     assert_eq!(
         (&closed["state"], &closed["standing"]),
@@ -109,5 +113,9 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(shore: Shore) {
         .find(|alert| alert["cause"] == "adjustment_not_confirmed");
     let ours = ours.unwrap_or_else(|| panic!("{alerts:?}"));
     assert_eq!(ours["severity"], "critical");
+    let path = "/notifications?kind=verification_failed";
+    let told = job.person.get(path).await.good();
+    let text = told["items"][0]["text"].as_str().unwrap();
+    assert!(text.contains("off what was foretold"), "{text}");
     shore.finish().await;
 }

@@ -1,0 +1,117 @@
+//! Telling an operator's people of compasses that are due soon, or sooner than they were.
+//!
+//! What always holds: each step towards the due date is told once, by whichever process
+//! sees it first; a date that is put off is noted and not told.
+
+use super::kind::Kind;
+use super::news::{News, tell};
+use super::store;
+use crate::app::App;
+use crate::error::Result;
+use crate::events;
+use crate::ids::OperatorId;
+use crate::needs::{Need, need, of_fleet};
+use crate::time::Time;
+use crate::{operators, schedule};
+use binnacle_schedule::needs::{CauseKind, Urgency};
+use chrono::NaiveDate;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// Predictions move a due date by a few days each time: that is no news.
+const BROUGHT_FORWARD_DAYS: i64 = 7;
+
+/// Looks through all fleets; how many needs were told of.
+pub async fn look(app: &App) -> Result<usize> {
+    let mut told = 0;
+    for operator in operators::all(&app.db).await? {
+        told += look_at(app, operator).await?;
+    }
+    Ok(told)
+}
+
+async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
+    let now: Time = app.clock.now().into();
+    let facts = of_fleet(app, operator, None).await?;
+    let today = now.0.to_chrono().date_naive();
+    let before = store::needs_told(&app.db, operator).await?.into_iter();
+    let before: BTreeMap<_, _> = before
+        .map(|(vessel, compass, due_on, urgency)| ((vessel, compass), (due_on, urgency)))
+        .collect();
+    let terms = schedule::terms(&app.db, operator).await?;
+    let needs = facts.iter().filter_map(|facts| need(facts, &terms, today));
+    let mut told = 0;
+    for need in needs {
+        let of = (need.vessel_id, need.compass_id);
+        let known = before
+            .get(&of)
+            .map(|(due_on, urgency)| (due_on.as_str(), urgency.as_str()));
+        let stands = (need.due_on.to_string(), word(need.urgency)?);
+        let stands = (stands.0.as_str(), stands.1.as_str());
+        if known == Some(stands) {
+            continue;
+        }
+        let mut tx = app.db.begin().await?;
+        if !store::note_need(&mut tx, of, known, stands).await? {
+            continue;
+        }
+        let mut event = None;
+        if let Some(kind) = kind(&need, known)? {
+            tell(&mut tx, operator, &[news(&need, kind)], None, now).await?;
+            event = Some(events::insert(&mut tx, need.vessel_id, events::Kind::Need, now).await?);
+            told += 1;
+        }
+        tx.commit().await?;
+        if let Some(event) = event {
+            app.publish(event);
+        }
+    }
+    Ok(told)
+}
+
+/// What is to be told of a need, if anything is; `known` is what was.
+fn kind(need: &Need, known: Option<(&str, &str)>) -> Result<Option<Kind>> {
+    let presses = need.urgency > Urgency::Routine;
+    let Some((due_on, urgency)) = known else {
+        return Ok(presses.then_some(Kind::DueSoon));
+    };
+    let urgency: Urgency = serde_json::from_value(Value::String(urgency.to_owned()))?;
+    let due_on: NaiveDate = due_on.parse().map_err(anyhow::Error::from)?;
+    let earlier = (due_on - need.due_on).num_days() > BROUGHT_FORWARD_DAYS;
+    let by = need.causes.first().map(|cause| cause.kind);
+    if earlier && !matches!(by, Some(CauseKind::Interval | CauseKind::NeverAdjusted)) {
+        return Ok(Some(Kind::NeedRaised));
+    }
+    Ok((presses && need.urgency > urgency).then_some(Kind::DueSoon))
+}
+
+fn news(need: &Need, kind: Kind) -> News {
+    let what = match (kind, need.urgency) {
+        (Kind::NeedRaised, _) => "to be adjusted sooner",
+        (_, Urgency::Overdue) => "overdue for adjusting",
+        _ => "to be adjusted soon",
+    };
+    let adjusted = need.adjusted_on.map(|day| day.to_string());
+    let adjusted = adjusted.unwrap_or_else(|| "not on record".to_owned());
+    News {
+        kind,
+        urgent: false,
+        subject: format!(
+            "{}: {} {what}, by {}",
+            need.vessel_name, need.compass_name, need.due_on
+        ),
+        text: format!(
+            "Vessel:   {}\nCompass:  {}\nDue:      {}\nAdjusted: {adjusted}\n\n{}.\n",
+            need.vessel_name, need.compass_name, need.due_on, need.reason
+        ),
+        path: format!("/vessels/{}", need.vessel_id),
+        vessel: need.vessel_id,
+        order: None,
+        alert: None,
+    }
+}
+
+fn word(urgency: Urgency) -> Result<String> {
+    let word = serde_json::to_value(urgency)?;
+    Ok(word.as_str().unwrap_or_default().to_owned())
+}

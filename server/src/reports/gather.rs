@@ -1,0 +1,190 @@
+//! What a report is made of, out of the database.
+
+use super::report::{Deviation, Due, FeeFrom, Job, Report, Saved, UnderWay};
+use super::settings::{self, Settings};
+use crate::app::App;
+use crate::db::{Db, row, rows};
+use crate::error::{Error, Result};
+use crate::firms;
+use crate::ids::{CompassId, OperatorId, OrderId, VesselId};
+use crate::models::{self, StoredModel};
+use crate::needs::{Facts, need, of_fleet};
+use crate::schedule;
+use crate::time::Time;
+use crate::work_orders::{self, Done, State};
+use binnacle_magnetics::time::Timestamp;
+use chrono::{Days, NaiveDate, NaiveTime};
+use std::collections::{BTreeMap, BTreeSet};
+use uuid::Uuid;
+
+/// The report of a fleet, with the jobs from one day to another.
+pub(super) async fn gather(
+    app: &App,
+    operator: OperatorId,
+    (from, to): (NaiveDate, NaiveDate),
+) -> Result<Report> {
+    let made_at: Time = app.clock.now().into();
+    let facts = of_fleet(app, operator, None).await?;
+    let all = (VesselId(Uuid::nil()), VesselId(Uuid::max()));
+    let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
+    let terms = schedule::terms(&app.db, operator).await?;
+    let under_way = under_way(&app.db, operator).await?;
+    let jobs = jobs(&app.db, operator, (from, to)).await?;
+    let settings = settings::find(&app.db, operator).await?;
+    let today = made_at.0.to_chrono().date_naive();
+    let mut due: Vec<Due> = facts
+        .iter()
+        .filter_map(|facts| need(facts, &terms, today))
+        .map(|need| Due {
+            order: under_way.get(&need.compass_id).cloned(),
+            vessel_id: need.vessel_id,
+            vessel_name: need.vessel_name,
+            compass_id: need.compass_id,
+            compass_name: need.compass_name,
+            due_on: need.due_on,
+            urgency: need.urgency,
+            reason: need.reason,
+            adjusted_on: need.adjusted_on,
+        })
+        .collect();
+    due.sort_by_key(|due| (due.due_on, due.compass_id));
+    let vessels: BTreeSet<VesselId> = facts.iter().map(|facts| facts.vessel_id).collect();
+    Ok(Report {
+        operator_name: name(&app.db, operator).await?,
+        from,
+        to,
+        made_at,
+        vessels: vessels.len(),
+        compasses: facts.len(),
+        due,
+        // A thousand models on every heading: not for a thread that others wait for.
+        deviation: tokio::task::spawn_blocking(move || deviations(&facts, &models)).await?,
+        saved: saved(&jobs, &settings),
+        jobs,
+    })
+}
+
+async fn name(db: &Db, operator: OperatorId) -> Result<String> {
+    let found = row!(
+        db,
+        (String,),
+        "SELECT name FROM operators WHERE id = $1 ORDER BY id",
+        operator
+    )?;
+    let (name,) = found.ok_or(Error::NotFound("operator"))?;
+    Ok(name)
+}
+
+/// The order under way of each compass that has one: there is one at most.
+async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, UnderWay>> {
+    let found = rows!(
+        db,
+        (CompassId, OrderId, State, String, Time, Option<String>),
+        "SELECT o.compass_id, o.id, o.state, o.port, o.planned_at, o.firm
+         FROM work_orders o
+         JOIN vessels v ON v.id = o.vessel_id
+         WHERE v.operator_id = $1
+           AND o.state NOT IN ('adjusted', 'verified', 'failed', 'closed', 'cancelled')
+         ORDER BY o.compass_id, o.id",
+        operator
+    )?;
+    let read = |(compass, id, state, port, planned_at, firm)| {
+        let order = UnderWay {
+            id,
+            state,
+            port,
+            planned_at,
+            firm,
+        };
+        (compass, order)
+    };
+    Ok(found.into_iter().map(read).collect())
+}
+
+fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<Deviation> {
+    let models: BTreeMap<CompassId, &StoredModel> = models
+        .iter()
+        .map(|model| (model.compass_id, model))
+        .collect();
+    let of = |facts: &Facts| {
+        let model = models.get(&facts.compass_id);
+        let worst = model.and_then(|model| model.worst());
+        Deviation {
+            vessel_id: facts.vessel_id,
+            vessel_name: facts.vessel_name.clone(),
+            compass_id: facts.compass_id,
+            compass_name: facts.compass_name.clone(),
+            compass_deg: worst.map(|worst| worst.compass_deg),
+            deviation_deg: worst.map(|worst| worst.deviation_deg),
+            band95_deg: worst.and_then(|worst| worst.band95_deg),
+            data_until: model.map(|model| model.data_until),
+        }
+    };
+    let mut all: Vec<Deviation> = facts.iter().map(of).collect();
+    let size = |one: &Deviation| one.deviation_deg.map_or(-1.0, f64::abs);
+    all.sort_by(|one, other| size(other).total_cmp(&size(one)));
+    all
+}
+
+async fn jobs(
+    db: &Db,
+    operator: OperatorId,
+    (from, to): (NaiveDate, NaiveDate),
+) -> Result<Vec<Job>> {
+    let after = midnight("to", to + Days::new(1))?;
+    let done = work_orders::done(db, operator, midnight("from", from)?, after).await?;
+    let terms = firms::of_operator(db, operator).await?;
+    let usual = |job: &Done| {
+        let (_, _, terms) = terms
+            .iter()
+            .find(|(firm, _, _)| job.firm_id == Some(*firm))?;
+        Some((f64::from(terms.as_ref()?.fee_eur), FeeFrom::Terms))
+    };
+    let job = |done: Done| {
+        let fee = done
+            .agreed_eur
+            .map(|eur| (eur, FeeFrom::Agreed))
+            .or_else(|| usual(&done));
+        Job {
+            order_id: done.order_id,
+            vessel_id: done.vessel_id,
+            vessel_name: done.vessel_name,
+            compass_id: done.compass_id,
+            compass_name: done.compass_name,
+            port: done.port,
+            completed_at: done.completed_at,
+            firm: done.firm,
+            state: done.state,
+            fee_eur: fee.map(|(eur, _)| eur),
+            fee_from: fee.map(|(_, from)| from),
+        }
+    };
+    Ok(done.into_iter().map(job).collect())
+}
+
+fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
+    let midnight = day.and_time(NaiveTime::MIN).and_utc();
+    let at = Timestamp::from_micros(midnight.timestamp_micros());
+    at.map(Time).map_err(|error| Error::Invalid {
+        field,
+        detail: error.to_string(),
+    })
+}
+
+fn saved(jobs: &[Job], settings: &Settings) -> Saved {
+    let spared: Vec<&Job> = jobs
+        .iter()
+        .filter(|job| job.state != State::Failed)
+        .collect();
+    let fees_eur: f64 = spared.iter().filter_map(|job| job.fee_eur).sum();
+    let swings = spared.len() as f64;
+    Saved {
+        jobs: spared.len(),
+        swing_eur: settings.swing_eur,
+        swing_h: settings.swing_h,
+        fees_eur,
+        without_fee: spared.iter().filter(|job| job.fee_eur.is_none()).count(),
+        saved_eur: swings * settings.swing_eur - fees_eur,
+        saved_h: swings * settings.swing_h,
+    }
+}

@@ -1,0 +1,174 @@
+//! What people are told of an order, in words, and on which side.
+//!
+//! What always holds: who does something is not told of it by us; what is between the
+//! operator and one firm is told to no other.
+
+use super::entry::{Content, Entry};
+use super::offers::{Between, OfferState};
+use super::order::Summary;
+use crate::mail;
+use crate::notifications::{Kind, News};
+use binnacle_magnetics::adjust::Verification;
+use std::fmt::Write;
+
+/// Who reads it.
+#[derive(Clone, Copy)]
+enum Side {
+    Operator,
+    Firm,
+}
+
+/// What the operator's people are told of an entry; `was` is how the offer to the entry's
+/// firm stood before.
+pub(super) fn for_operator(
+    summary: &Summary,
+    entry: &Entry,
+    was: Option<OfferState>,
+) -> Option<News> {
+    let by_firm = entry.author.firm_id.is_some();
+    let firm = |said: &Between| said.firm.firm_name.clone();
+    let (kind, what) = match &entry.content {
+        Content::Accepted(said) => (Kind::Answered, format!("{} accepts the job", firm(said))),
+        Content::Declined(said) if by_firm && was == Some(OfferState::Accepted) => {
+            (Kind::Answered, format!("{} gives the job back", firm(said)))
+        }
+        Content::Declined(said) if by_firm => {
+            (Kind::Answered, format!("{} declines the job", firm(said)))
+        }
+        Content::Proposed(said) => (
+            Kind::Answered,
+            format!("{} proposes other terms", firm(said)),
+        ),
+        Content::Lapsed(said) if was == Some(OfferState::Proposed) => (
+            Kind::AnswerLate,
+            format!("no answer in time to the terms of {}", firm(said)),
+        ),
+        Content::Lapsed(said) => (
+            Kind::AnswerLate,
+            format!("no answer in time from {}", firm(said)),
+        ),
+        Content::Message(said) if by_firm => (Kind::Message, format!("{} writes", firm(said))),
+        Content::OnBoard(_) => (Kind::OnBoard, "the adjuster is on board".to_owned()),
+        Content::Completion(_) => (Kind::Completed, "adjusted, and signed".to_owned()),
+        content => {
+            let (kind, what) = verified(content)?;
+            (kind, what.to_owned())
+        }
+    };
+    Some(told(
+        kind,
+        &what,
+        facts(summary, Side::Operator),
+        summary,
+        entry,
+    ))
+}
+
+/// What a firm's people are told of an entry that they may see.
+pub(super) fn for_firm(summary: &Summary, entry: &Entry, was: Option<OfferState>) -> Option<News> {
+    let by_firm = entry.author.firm_id.is_some();
+    let (kind, what) = match &entry.content {
+        Content::Asked(_) => (Kind::Offered, "a job is offered to you"),
+        Content::ProposalAccepted(_) => (Kind::Answered, "your terms are agreed to"),
+        Content::ProposalDeclined(_) => (Kind::Answered, "your terms are declined"),
+        Content::Lapsed(_) if was == Some(OfferState::Proposed) => {
+            (Kind::AnswerLate, "no answer in time to your terms")
+        }
+        Content::Lapsed(_) => (Kind::AnswerLate, "you have not answered in time"),
+        Content::Message(_) if !by_firm => (Kind::Message, "the operator writes"),
+        Content::Cancelled(_) => (Kind::Withdrawn, "the job is cancelled"),
+        content => verified(content)?,
+    };
+    Some(told(kind, what, facts(summary, Side::Firm), summary, entry))
+}
+
+/// What a firm's people are told when its offer is taken back; why is not their business.
+pub(super) fn withdrawn(summary: &Summary, last: &Entry) -> News {
+    let facts = facts(summary, Side::Firm);
+    News {
+        text: facts + "\nAnother firm may have it, or it is not to be done.\n",
+        ..told(
+            Kind::Withdrawn,
+            "the offer is withdrawn",
+            String::new(),
+            summary,
+            last,
+        )
+    }
+}
+
+fn verified(content: &Content) -> Option<(Kind, &'static str)> {
+    let Content::Verification(verified) = content else {
+        return None;
+    };
+    match verified.verification {
+        Verification::Passed { .. } => Some((Kind::Verified, "verified at sea")),
+        Verification::Alarm { .. } => Some((
+            Kind::VerificationFailed,
+            "the sea does not confirm the adjustment",
+        )),
+        Verification::MoreNeeded { .. } => None,
+    }
+}
+
+fn told(kind: Kind, what: &str, facts: String, summary: &Summary, entry: &Entry) -> News {
+    let mut text = facts;
+    if let Some(said) = said(&entry.content) {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "\n{}: {said}\n", entry.author.name);
+    }
+    News {
+        kind,
+        urgent: false,
+        subject: format!("{}: {what} at {}", summary.vessel_name, summary.port),
+        text,
+        path: format!("/work-orders/{}", summary.id),
+        vessel: summary.vessel_id,
+        order: Some(summary.id),
+        alert: None,
+    }
+}
+
+/// What is asked for, a fact on each line.
+fn facts(summary: &Summary, reader: Side) -> String {
+    let berth = summary.berth.as_deref();
+    let berth = berth.map_or_else(String::new, |berth| format!(", berth {berth}"));
+    let mut lines = vec![
+        format!("Vessel:    {}", summary.vessel_name),
+        format!("Compass:   {}", summary.compass_name),
+        format!("Port:      {}{berth}", summary.port),
+        format!("Planned:   {}", summary.planned_at.to_the_minute()),
+    ];
+    match (reader, &summary.firm) {
+        (Side::Firm, _) => lines.push(format!("Operator:  {}", summary.operator_name)),
+        (Side::Operator, Some(firm)) => lines.push(format!("Firm:      {firm}")),
+        (Side::Operator, None) => {}
+    }
+    if let Some(by) = summary.answer_by {
+        lines.push(format!("Answer by: {}", by.to_the_minute()));
+    }
+    lines
+        .iter()
+        .map(|line| mail::one_line(line) + "\n")
+        .collect()
+}
+
+/// What was said, and what is proposed, in words.
+fn said(content: &Content) -> Option<String> {
+    if let Content::Verification(verified) = content {
+        return Some(verified.words.clone());
+    }
+    if let Content::Cancelled(said) = content {
+        return Some(said.text.clone());
+    }
+    let said = content.between()?;
+    let terms = said.terms.as_ref().map(|terms| {
+        let berth = terms.berth.as_deref();
+        let berth = berth.map_or_else(String::new, |berth| format!(", berth {berth}"));
+        let fee = terms.fee_eur;
+        let fee = fee.map_or_else(String::new, |eur| format!(", for {eur:.2} euros"));
+        format!("{}{berth}{fee}.", terms.planned_at.to_the_minute())
+    });
+    let words: Vec<String> = terms.into_iter().chain(said.text.clone()).collect();
+    (!words.is_empty()).then(|| words.join(" "))
+}
