@@ -70,6 +70,7 @@ enum Table {
 struct Which {
     /// Which table; `due` if not said.
     #[serde(default)]
+    #[param(inline)]
     table: Table,
 }
 

@@ -2,10 +2,14 @@
 
 use super::{Face, MARGIN, Sheet, Style, wrap};
 
+/// Where text begins.
 pub const LEFT: f32 = MARGIN + 6.0;
+/// Where it ends.
 pub const RIGHT: f32 = 595.28 - MARGIN - 6.0;
 const BOTTOM: f32 = 841.89 - MARGIN - 24.0;
+/// From one line to the next.
 pub const LINE: f32 = 11.0;
+/// The size of text.
 pub const SIZE: f32 = 8.3;
 /// Where what is said of something begins.
 pub const VALUE: f32 = LEFT + 96.0;
@@ -16,7 +20,14 @@ pub struct Paper {
     y: f32,
 }
 
+impl Default for Paper {
+    fn default() -> Paper {
+        Paper::new()
+    }
+}
+
 impl Paper {
+    /// One blank sheet.
     pub fn new() -> Paper {
         let mut paper = Paper {
             sheets: Vec::new(),
@@ -67,6 +78,7 @@ impl Paper {
         self.y += points;
     }
 
+    /// What follows is called.
     pub fn title(&mut self, text: &str) {
         self.room_for(4);
         self.y += 7.0;

@@ -75,6 +75,7 @@ async fn what_is_read_in_quiet_hours_is_not_mailed_after_them(shore: Shore) {
     let listed = trade.ada.get("/notifications").await.good();
     let first = json!({ "until": listed["items"][1]["id"] });
     trade.ada.post("/notifications/read", &first).await;
+    assert_eq!(mailed(&shore, &relay).await.len(), 1);
     shore.advance(2.0 * HOUR_S);
     let all = mailed(&shore, &relay).await;
     assert_eq!(all[1..], ["Nao: the adjuster is on board at Bilbao"]);
