@@ -586,6 +586,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/me/notifications": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See how you are told */
+        get: operations["find_notification_settings"];
+        /**
+         * Say how you want to be told
+         * @description What waits to be mailed follows the new settings.
+         */
+        put: operations["change_notification_settings"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/me/password": {
         parameters: {
             query?: never;
@@ -703,6 +724,63 @@ export interface paths {
         options?: never;
         head?: never;
         patch?: never;
+        trace?: never;
+    };
+    "/api/v1/notifications": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List what you ought to know
+         * @description Notifications are kept for 90 days.
+         */
+        get: operations["list_notifications"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/notifications/read": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Mark notifications as read
+         * @description What is read is not told by mail any more.
+         */
+        post: operations["mark_notifications_read"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/notifications/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        /** Mark a notification as read or unread */
+        patch: operations["change_notification"];
         trace?: never;
     };
     "/api/v1/operators": {
@@ -826,6 +904,86 @@ export interface paths {
          */
         get: operations["search_ports"];
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/reports/fleet": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Report on the fleet
+         * @description What is due and the greatest deviations are as of now; jobs, and what they saved
+         *     against swinging, of the time asked for.
+         */
+        get: operations["find_report"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/reports/fleet.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A table of the fleet's report as CSV */
+        get: operations["report_csv"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/reports/fleet.pdf": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Print the fleet's report
+         * @description Sheets of A4: what is due soon, the greatest deviations, the jobs, and what they saved.
+         */
+        get: operations["report_pdf"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/reports/settings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** See what reports reckon with */
+        get: operations["find_report_settings"];
+        /**
+         * Say what reports reckon with
+         * @description Who is added to `monthly_to` gets the report of the month that goes on, after its end,
+         *     and of each one after it.
+         */
+        put: operations["set_report_settings"];
         post?: never;
         delete?: never;
         options?: never;
@@ -3709,6 +3867,11 @@ export interface components {
             /** @description Of alerts as bad as this or worse. */
             severity: components["schemas"]["Severity"];
         };
+        /** @description What is to be otherwise about a notification. */
+        ChangedNotification: {
+            /** @description Whether you have read it. */
+            read: boolean;
+        };
         /**
          * @description Another password.
          * @example {
@@ -4275,6 +4438,26 @@ export interface components {
              */
             z_nt: number;
         };
+        /** @description When a digest is sent, if there is anything in it. */
+        Digest: {
+            /**
+             * @description At this time of day.
+             * @example 07:00
+             */
+            at: string;
+            /** @enum {string} */
+            every: "day";
+        } | {
+            /**
+             * @description At this time of day.
+             * @example 07:00
+             */
+            at: string;
+            /** @enum {string} */
+            every: "week";
+            /** @description On this day. */
+            on: components["schemas"]["Weekday"];
+        };
         /** @description The acknowledgement, and what the agent does not have. */
         Downlink: {
             card_withdrawn?: components["schemas"]["CardWithdrawn"] | null;
@@ -4361,7 +4544,7 @@ export interface components {
          * @description What happened to a vessel.
          * @enum {string}
          */
-        EventKind: "batch" | "model" | "logbook" | "alert" | "work_order" | "port_call" | "schedule";
+        EventKind: "batch" | "model" | "logbook" | "alert" | "work_order" | "port_call" | "schedule" | "need";
         /**
          * Format: uuid
          * @description A calendar that is read by its secret address.
@@ -4573,6 +4756,41 @@ export interface components {
              * @description Counts the compass's models from 1.
              */
             version: number;
+        };
+        /** @description What a fleet's compasses are due for, how bad they are, and what was done. */
+        FleetReport: {
+            /** @description Their compasses. */
+            compasses: number;
+            /**
+             * @description The greatest deviation of each compass, the greatest first; those of which nothing
+             *     is known last.
+             */
+            deviation: components["schemas"]["ReportDeviation"][];
+            /** @description Every compass that is due some day, the first due first. */
+            due: components["schemas"]["ReportDue"][];
+            /**
+             * Format: date
+             * @description The first day of the time that jobs are counted in, UTC.
+             */
+            from: string;
+            /** @description Adjustments that were completed in the time, in order. */
+            jobs: components["schemas"]["ReportJob"][];
+            /** @description When the report was made: what is due, and how bad, is as of then. */
+            made_at: components["schemas"]["Time"];
+            /**
+             * @description Whose fleet.
+             * @example Naviera Vizcaína
+             */
+            operator_name: string;
+            /** @description What they saved against swinging. */
+            saved: components["schemas"]["ReportSaved"];
+            /**
+             * Format: date
+             * @description The last.
+             */
+            to: string;
+            /** @description Vessels in the fleet. */
+            vessels: number;
         };
         /**
          * @description What one of an operator's people may do.
@@ -5172,7 +5390,7 @@ export interface components {
          * @description What a message tells of.
          * @enum {string}
          */
-        MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "test";
+        MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "notification" | "report" | "test";
         /** @description A fitted model. */
         Model: {
             /**
@@ -5653,6 +5871,117 @@ export interface components {
             /** @description Its name; empty where the code is unknown. */
             port_name: string;
             worst: components["schemas"]["WorstHeading"] | null;
+        };
+        /** @description Something that you ought to know. */
+        Notification: {
+            alert_id: components["schemas"]["AlertId"] | null;
+            /** @description When it happened. */
+            created_at: components["schemas"]["Time"];
+            /** @description The notification's id. */
+            id: components["schemas"]["NotificationId"];
+            /** @description What it is about. */
+            kind: components["schemas"]["NotificationKind"];
+            order_id: components["schemas"]["OrderId"] | null;
+            /**
+             * @description The dashboard's page to look at.
+             * @example /work-orders/0199aa00-0000-7000-8000-000000000001
+             */
+            path: string;
+            read_at: components["schemas"]["Time"] | null;
+            /**
+             * @description In a line.
+             * @example Nao Victoria: Nervión Compass accepts the adjustment at Bilbao
+             */
+            subject: string;
+            /** @description What there is to know, as the letter has it. */
+            text: string;
+            /** @description Whether mail of it waits for nothing. */
+            urgent: boolean;
+            vessel_id: components["schemas"]["VesselId"] | null;
+        };
+        /**
+         * Format: uuid
+         * @description Something that a person is told.
+         */
+        NotificationId: string;
+        /**
+         * @description What a notification is about.
+         * @enum {string}
+         */
+        NotificationKind: "due_soon" | "need_raised" | "offered" | "answered" | "answer_late" | "message" | "on_board" | "completed" | "verified" | "verification_failed" | "withdrawn" | "alert";
+        /** @description A page of notifications. */
+        NotificationList: {
+            /** @description The newest first. */
+            items: components["schemas"]["Notification"][];
+            /** @description `after` of the next page. */
+            next: string | null;
+            /**
+             * Format: int64
+             * @description How many you have not read, on whatever page.
+             */
+            unread: number;
+        };
+        /**
+         * @description How a person wants to be told.
+         * @example {
+         *       "digest": {
+         *         "at": "07:30",
+         *         "every": "week",
+         *         "on": "monday"
+         *       },
+         *       "quiet_hours": {
+         *         "from": "22:00",
+         *         "to": "07:00"
+         *       },
+         *       "time_zone": "Europe/Madrid",
+         *       "ways": {
+         *         "alert": "mail",
+         *         "answered": "mail",
+         *         "due_soon": "digest",
+         *         "on_board": "list"
+         *       }
+         *     }
+         */
+        NotificationSettings: {
+            /** @description When what is told together is sent; each day at 07:00 if not said. */
+            digest?: components["schemas"]["Digest"];
+            quiet_hours: components["schemas"]["QuietHours"] | null;
+            /**
+             * @description The time zone by its IANA name; UTC if not said.
+             * @example Europe/Madrid
+             */
+            time_zone?: string;
+            /** @description How to tell of each kind; what is left out is told in the way that is usual. */
+            ways?: {
+                [key: string]: components["schemas"]["NotificationWay"];
+            };
+        };
+        /** @description How you are told. */
+        NotificationSettingsInForce: {
+            /**
+             * @description Where mail goes: what you sign in with.
+             * @example ada@example.com
+             */
+            address: string;
+            /** @description When the next digest is sent, if there is anything in it. */
+            next_digest_at: components["schemas"]["Time"];
+            /** @description Whether this server was told how to send mail. */
+            sending: boolean;
+            /** @description What you have said. */
+            settings: components["schemas"]["NotificationSettings"];
+            /** @description Every kind that you are told of, with the way in force. */
+            ways: {
+                [key: string]: components["schemas"]["NotificationWay"];
+            };
+        };
+        /**
+         * @description How a person is told of something.
+         * @enum {string}
+         */
+        NotificationWay: "mail" | "digest" | "list" | "off";
+        /** @description Which are read. */
+        NotificationsRead: {
+            until?: components["schemas"]["NotificationId"] | null;
         };
         /** @description A numbered height below the card. */
         NumberedHeight: {
@@ -6491,6 +6820,19 @@ export interface components {
             /** @description What part of the knowledge of each parameter is from the data, 0 to 1. */
             from_data: components["schemas"]["FromData"];
         };
+        /** @description Hours without mail; over midnight if `to` is before `from`. */
+        QuietHours: {
+            /**
+             * @description From then on.
+             * @example 22:00
+             */
+            from: string;
+            /**
+             * @description Until then.
+             * @example 07:00
+             */
+            to: string;
+        };
         /** @description How samples are read. */
         ReadingSettings: {
             /** @description The model of the earth's field. */
@@ -6689,6 +7031,168 @@ export interface components {
         } | {
             /** @enum {string} */
             reason: "not_converged";
+        };
+        /** @description A compass and its greatest deviation, where its model was made. */
+        ReportDeviation: {
+            /**
+             * Format: double
+             * @description Half the width of its 95 % band, degrees.
+             */
+            band95_deg: number | null;
+            /**
+             * Format: double
+             * @description The compass heading with the greatest deviation; none without a model.
+             */
+            compass_deg: number | null;
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Its name. */
+            compass_name: string;
+            data_until: components["schemas"]["Time"] | null;
+            /**
+             * Format: double
+             * @description The deviation there, degrees, east positive.
+             */
+            deviation_deg: number | null;
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+        };
+        /** @description A compass and when it is due. */
+        ReportDue: {
+            /**
+             * Format: date
+             * @description The day of the last adjustment on record.
+             */
+            adjusted_on: string | null;
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Its name. */
+            compass_name: string;
+            /**
+             * Format: date
+             * @description The last day on which it may be adjusted.
+             */
+            due_on: string;
+            order: components["schemas"]["ReportOrder"] | null;
+            /** @description Why, in words. */
+            reason: string;
+            /** @description How much that presses. */
+            urgency: components["schemas"]["Urgency"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+        };
+        /**
+         * @description Where a fee is known from.
+         * @enum {string}
+         */
+        ReportFeeFrom: "agreed" | "terms";
+        /** @description An adjustment that was completed. */
+        ReportJob: {
+            /** @description The compass. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Its name. */
+            compass_name: string;
+            /** @description When it was completed. */
+            completed_at: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description What the firm took, euros; none where that is not known.
+             */
+            fee_eur: number | null;
+            fee_from: components["schemas"]["ReportFeeFrom"] | null;
+            /** @description The firm. */
+            firm: string | null;
+            /** @description The order. */
+            order_id: components["schemas"]["OrderId"];
+            /** @description The port. */
+            port: string;
+            /** @description What has become of it. */
+            state: components["schemas"]["WorkOrderState"];
+            /** @description The vessel. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+        };
+        /** @description A work order that is under way, in short. */
+        ReportOrder: {
+            /** @description The firm that has it. */
+            firm: string | null;
+            /** @description The order. */
+            id: components["schemas"]["OrderId"];
+            /** @description When it is to be done. */
+            planned_at: components["schemas"]["Time"];
+            /** @description The port. */
+            port: string;
+            /** @description How far it has come. */
+            state: components["schemas"]["WorkOrderState"];
+        };
+        /** @description What adjusting at the berth saved against swinging the ship. */
+        ReportSaved: {
+            /**
+             * Format: double
+             * @description What the fees of these jobs come to, as far as they are known, euros.
+             */
+            fees_eur: number;
+            /**
+             * @description Jobs that spared the ship a swing: those completed, but for any that the sea does
+             *     not confirm.
+             */
+            jobs: number;
+            /**
+             * Format: double
+             * @description The swings' cost less the fees, euros; less than nothing if the fees are more.
+             */
+            saved_eur: number;
+            /**
+             * Format: double
+             * @description The ship's hours that swings would have taken.
+             */
+            saved_h: number;
+            /**
+             * Format: double
+             * @description What a swing costs, euros, by the operator's settings.
+             */
+            swing_eur: number;
+            /**
+             * Format: double
+             * @description How long it takes, hours, by the operator's settings.
+             */
+            swing_h: number;
+            /** @description How many of these jobs have no fee that is known. */
+            without_fee: number;
+        };
+        /**
+         * @description What reports reckon with, and who gets one each month.
+         * @example {
+         *       "monthly_to": [
+         *         "superintendent@example.com"
+         *       ],
+         *       "swing_eur": 6000,
+         *       "swing_h": 3
+         *     }
+         */
+        ReportSettings: {
+            /**
+             * @description Who gets the report of a month by mail after its end; at most 20 addresses.
+             * @default []
+             */
+            monthly_to: string[];
+            /**
+             * Format: double
+             * @description What swinging a ship costs, euros: tugs, pilot, adjuster and the ship's time.
+             * @default 6000
+             */
+            swing_eur: number;
+            /**
+             * Format: double
+             * @description How long it takes, hours.
+             * @default 3
+             */
+            swing_h: number;
         };
         /** @description An entry as it is, and as it was. */
         RevisedEntry: components["schemas"]["LogbookEntry"] & {
@@ -7547,6 +8051,11 @@ export interface components {
             /** @description `after` of the next page. */
             next: string | null;
         };
+        /**
+         * @description A day of the week.
+         * @enum {string}
+         */
+        Weekday: "monday" | "tuesday" | "wednesday" | "thursday" | "friday" | "saturday" | "sunday";
         /** @description Why an entry is withdrawn. */
         Withdrawal: {
             /** @description In a few words. */
@@ -10021,6 +10530,113 @@ export interface operations {
             };
         };
     };
+    find_notification_settings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NotificationSettingsInForce"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_notification_settings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NotificationSettings"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NotificationSettingsInForce"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     change_password: {
         parameters: {
             query?: never;
@@ -10535,6 +11151,216 @@ export interface operations {
             };
         };
     };
+    list_notifications: {
+        parameters: {
+            query?: {
+                /** @description Whether only those that you have not read (`true`), or only those that you have. */
+                unread?: boolean;
+                /** @description Only of this kind. */
+                kind?: components["schemas"]["NotificationKind"];
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NotificationList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    mark_notifications_read: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: {
+            content: {
+                "application/json": components["schemas"]["NotificationsRead"] | null;
+            };
+        };
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_notification: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["NotificationId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ChangedNotification"];
+            };
+        };
+        responses: {
+            /** @description No Content */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     list_operators: {
         parameters: {
             query?: {
@@ -11017,6 +11843,334 @@ export interface operations {
             };
             /** @description Forbidden */
             403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_report: {
+        parameters: {
+            query?: {
+                /**
+                 * @description The first day, UTC; the first of the month of `to` if not said.
+                 * @example 2026-11-01
+                 */
+                from?: string;
+                /**
+                 * @description The last day, UTC; today if not said.
+                 * @example 2026-11-30
+                 */
+                to?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FleetReport"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    report_csv: {
+        parameters: {
+            query?: {
+                /**
+                 * @description The first day, UTC; the first of the month of `to` if not said.
+                 * @example 2026-11-01
+                 */
+                from?: string;
+                /**
+                 * @description The last day, UTC; today if not said.
+                 * @example 2026-11-30
+                 */
+                to?: string;
+                /** @description Which table; `due` if not said. */
+                table?: "due" | "deviation" | "jobs";
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    report_pdf: {
+        parameters: {
+            query?: {
+                /**
+                 * @description The first day, UTC; the first of the month of `to` if not said.
+                 * @example 2026-11-01
+                 */
+                from?: string;
+                /**
+                 * @description The last day, UTC; today if not said.
+                 * @example 2026-11-30
+                 */
+                to?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/pdf": number[];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    find_report_settings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReportSettings"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_report_settings: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReportSettings"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ReportSettings"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description The server was not told how to send mail */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
                 headers: {
                     [name: string]: unknown;
                 };
