@@ -228,7 +228,7 @@ fn saved(paper: &mut Paper, report: &Report) {
     paper.room_for(SOME_LINES);
     paper.title("Saved against swinging");
     let failed = report.jobs.len() - saved.jobs;
-    let mut words = format!(
+    let mut sentences = vec![format!(
         "{} adjustments at the berth spared as many swings, of {} euros and {} hours each: {} \
          euros less {} euros of fees leaves {} euros, and {} hours of ships' time.",
         saved.jobs,
@@ -238,14 +238,16 @@ fn saved(paper: &mut Paper, report: &Report) {
         euros(saved.fees_eur),
         euros(saved.saved_eur),
         hours(saved.saved_h)
-    );
+    )];
     if failed > 0 {
-        words += &format!(" {failed} that the sea does not confirm are not counted.");
+        sentences.push(format!(
+            "{failed} that the sea does not confirm are not counted."
+        ));
     }
     if saved.without_fee > 0 {
-        words += &format!(" The fees of {} are not known.", saved.without_fee);
+        sentences.push(format!("The fees of {} are not known.", saved.without_fee));
     }
-    paper.lines(LEFT, Style::plain(SIZE), &words);
+    paper.lines(LEFT, Style::plain(SIZE), &sentences.join(" "));
 }
 
 fn titles(paper: &mut Paper, columns: &[Column]) {
