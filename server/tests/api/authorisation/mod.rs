@@ -14,7 +14,8 @@ use world::{Key, ROLES, Side, answer, request};
 on_both!(every_role_may_do_what_the_table_says_and_nothing_to_others_data);
 
 /// Of these there is none in the test's world, so that whoever may ask finds none.
-const NOT_THERE: [&str; 10] = [
+const NOT_THERE: [&str; 11] = [
+    "/notifications/{id}",
     "/alerts/{id}",
     "/deliveries/{delivery}",
     "/binnacle-types/{name}",

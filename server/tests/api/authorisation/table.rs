@@ -9,6 +9,8 @@ pub(super) const OPEN: &str = "+++++++++";
 const ANYONE: &str = "++++++1++";
 /// The same, but not a token that only reads.
 const ONESELF: &str = "++3++31+3";
+/// The same, for those of an operator or a firm.
+const PARTYS_ONESELF: &str = "++3++3133";
 /// Someone's own, by id: it is the admin's.
 const OWN_BY_ID: &str = "+43+43143";
 /// Someone at a screen: no token.
@@ -73,6 +75,8 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ),
     ("POST /mail-recipients/{id}/test", FLEET_WRITES),
     ("GET /me", ANYONE),
+    ("GET /me/notifications", PARTY_READS),
+    ("PUT /me/notifications", PARTYS_ONESELF),
     ("PUT /me/password", IN_PERSON),
     ("POST /me/second-factor", IN_PERSON),
     ("POST /me/second-factor/confirm", IN_PERSON),
@@ -80,6 +84,9 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /me/second-factor/remove", IN_PERSON),
     ("GET /metrics", OPEN),
     ("GET /needs", FLEET_READS),
+    ("GET /notifications", PARTY_READS),
+    ("PATCH /notifications/{id}", PARTYS_ONESELF),
+    ("POST /notifications/read", PARTYS_ONESELF),
     ("GET /operators", PLATFORM_READS),
     ("POST /operators", PLATFORM_WRITES),
     ("GET /operators/{id}", PLATFORM_READS),
@@ -89,6 +96,11 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /port-calls.csv", FLEET_WRITES),
     ("GET /ports", FLEET_READS),
     ("GET /readyz", OPEN),
+    ("GET /reports/fleet", FLEET_READS),
+    ("GET /reports/fleet.csv", FLEET_READS),
+    ("GET /reports/fleet.pdf", FLEET_READS),
+    ("GET /reports/settings", FLEET_READS),
+    ("PUT /reports/settings", FLEET_WRITES),
     ("GET /schedule", FLEET_READS),
     ("GET /schedule/input", FLEET_READS),
     ("POST /schedule/offer", FLEET_WRITES),

@@ -120,6 +120,7 @@ impl Side {
                 "vessel_id": vessel, "compass_id": compass, "port": "Bilbao",
                 "planned_at": "2026-11-22T08:00:00Z",
             }),
+            "PATCH /notifications/{id}" => json!({ "read": true }),
             "POST /calendar-feeds" => json!({ "name": "Fleet" }),
             "POST /webhooks" | "PUT /webhooks/{id}" => {
                 json!({ "url": "https://erp.example.com/", "kinds": ["alert.raised"] })
