@@ -9,33 +9,18 @@
 //! What always holds: at most [`CAPACITY`] times are kept, their ages spaced
 //! about geometrically; the time of the likeliest copy of every kind is among them.
 
-use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES};
-use crate::estimate::OFFSET_SD_DEG;
-use crate::ship::PARAMETERS;
+use super::filter::{Filter, Measurement, Noise};
+use super::upset::{BURST, Earlier, WILD_DEG, burst_of, calmed, misled, upset};
 use std::collections::VecDeque;
 
 /// Times that are kept.
 const CAPACITY: usize = 16;
 /// A copy older than this is given up, rows.
 const OLDEST: usize = 4320;
-/// Standard deviation of a step in bx and by, in population units (1500 nT), and
-/// in what is induced.
-const STEP: f64 = 0.8;
-const STEP_INDUCED: f64 = 0.3;
-/// Of a step of either reference, degrees, unless the first reading after it is
-/// further off.
-const REFERENCE_DEG: f64 = 5.0;
-/// Of the variation in a storm or over an anomaly, degrees where H is 24 µT, how
-/// long it stays the same, and how long it may go on.
-const BURST_DEG: f64 = 1.2;
-const BURST_MEMORY_S: f64 = 3600.0;
+/// How long a storm may go on.
 pub(super) const BURST_S: f64 = 36.0 * 3600.0;
 /// A burst that leads by less is not worth supposing to be over, nats.
 const WORTH: f64 = 3.0;
-/// How far a ship that is herself again may differ from what she was, in
-/// population units.
-const SLACK: f64 = 0.06;
-
 /// Rivals are awake from when a step leads by this until nothing leads by that, nats;
 /// they know of so many measurements at most.
 const WAKE_NATS: f64 = 7.0;
@@ -68,24 +53,30 @@ pub(super) enum Kind {
     Over,
     /// The satellite compass's error changed.
     Satellite,
+    /// The compass swings by more than any storm makes it.
+    Wild,
 }
 
-pub(super) const KINDS: [Kind; 6] = [
+pub(super) const KINDS: [Kind; 7] = [
     Kind::Step,
     Kind::Reference,
     Kind::Burst,
     Kind::Return,
     Kind::Over,
     Kind::Satellite,
+    Kind::Wild,
 ];
 
-const RIVALS: [Kind; 5] = [
+const RIVALS: [Kind; 6] = [
     Kind::Reference,
     Kind::Burst,
     Kind::Return,
     Kind::Over,
     Kind::Satellite,
+    Kind::Wild,
 ];
+/// Those in which something is astray for hours.
+const PASSING: [Kind; 2] = [Kind::Burst, Kind::Wild];
 /// Those that are upset by as much as the next reading is astray.
 const REFERENCES: [Kind; 2] = [Kind::Reference, Kind::Satellite];
 
@@ -101,25 +92,10 @@ pub(super) struct Spawn {
     /// Boxed, as most are none.
     copies: [Option<Box<Filter>>; KINDS.len()],
     age_s: f64,
+    /// How far the compass was astray since, degrees where H is 24 µT.
+    astray_deg: f64,
     /// Whether the reference's copy is to be upset by the next reading.
     is_fresh: bool,
-}
-
-/// What something was before it changed, and may become again.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Earlier<'a> {
-    Ship(&'a Filter),
-    Reference(&'a Filter),
-}
-
-impl Earlier<'_> {
-    /// The filter with that as it was.
-    pub(super) fn again(self, now: &Filter) -> Filter {
-        match self {
-            Earlier::Ship(before) => set_back(now, before),
-            Earlier::Reference(before) => mended(now, before),
-        }
-    }
 }
 
 impl Spawn {
@@ -135,8 +111,19 @@ impl Spawn {
     }
 
     fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
-        let bursting = (self.age_s < BURST_S).then_some(BURST);
+        let goes_on = self.age_s < BURST_S;
         self.age_s += m.seconds;
+        if let Some(burst) = &self.copies[Kind::Burst as usize] {
+            self.astray_deg = self.astray_deg.max(self.origin.variation_astray_deg(m));
+            if self.astray_deg > WILD_DEG && self.copies[Kind::Wild as usize].is_none() {
+                self.copies[Kind::Wild as usize] = Some(burst.clone());
+            }
+        }
+        let burst = |kind: Kind| match kind {
+            Kind::Burst if goes_on => Some(BURST),
+            Kind::Wild if goes_on => Some(burst_of(self.astray_deg)),
+            _ => None,
+        };
         if kinds.contains(&Kind::Reference) && std::mem::take(&mut self.is_fresh) {
             if m.difference.is_none() {
                 // Of one reference there is nothing that tells which it is.
@@ -149,9 +136,9 @@ impl Spawn {
             }
         }
         for &kind in kinds {
-            let burst = bursting.as_ref().filter(|_| kind == Kind::Burst);
+            let burst = burst(kind);
             if let Some(copy) = &mut self.copies[kind as usize] {
-                copy.take(m, noise, burst);
+                copy.take(m, noise, burst.as_ref());
             }
         }
     }
@@ -206,7 +193,13 @@ impl Bank {
     }
 
     /// New copies of `now`, which are to begin with row `at`.
-    pub(super) fn spawn(&mut self, at: usize, now: &Filter, earlier: Option<Earlier<'_>>) {
+    pub(super) fn spawn(
+        &mut self,
+        at: usize,
+        now: &Filter,
+        noise: &Noise,
+        earlier: Option<Earlier<'_>>,
+    ) {
         self.thin(at, now);
         self.rest(at, now);
         let mut spawn = Spawn {
@@ -215,15 +208,21 @@ impl Bank {
             origin: Box::new(now.clone()),
             copies: [const { None }; KINDS.len()],
             age_s: 0.0,
+            astray_deg: 0.0,
             is_fresh: false,
         };
         spawn.copies[Kind::Step as usize] = Some(Box::new(upset(now, Kind::Step)));
         if self.are_rivals_awake {
             spawn.wake(earlier);
-            let astray = self.lead(Kind::Burst, now).filter(|lead| lead.nats > WORTH);
-            if let Some(astray) = astray.map(|lead| &self.spawns[lead.spawn]) {
+            let astray = self.likeliest(&PASSING, now);
+            if let Some(lead) = astray.filter(|lead| lead.nats > WORTH) {
+                let astray = &self.spawns[lead.spawn];
                 spawn.astray_from = Some(astray.at);
-                spawn.copies[Kind::Over as usize] = astray.copy(Kind::Burst).cloned().map(Box::new);
+                let over = astray.copy(lead.kind).map(|copy| match lead.kind {
+                    Kind::Wild => calmed(copy, noise),
+                    _ => copy.clone(),
+                });
+                spawn.copies[Kind::Over as usize] = over.map(Box::new);
             }
         }
         self.spawns.push(spawn);
@@ -267,6 +266,7 @@ impl Bank {
         for spawn in self.spawns.iter_mut().filter(|s| s.at >= known_from) {
             spawn.wake(earlier);
             spawn.age_s = 0.0;
+            spawn.astray_deg = 0.0;
             for m in self.memory.iter().skip(spawn.at - known_from) {
                 spawn.take(m, noise, &RIVALS);
             }
@@ -310,19 +310,17 @@ impl Bank {
 
     /// The likeliest copy of those in which the field goes or went astray.
     pub(super) fn passing(&self, null: &Filter) -> Option<Lead> {
-        self.likeliest([Kind::Burst, Kind::Over], null)
+        self.likeliest(&[Kind::Burst, Kind::Wild, Kind::Over], null)
     }
 
     /// The likeliest copy of those in which a reference changed.
     pub(super) fn reference(&self, null: &Filter) -> Option<Lead> {
-        self.likeliest(REFERENCES, null)
+        self.likeliest(&REFERENCES, null)
     }
 
-    fn likeliest(&self, kinds: [Kind; 2], null: &Filter) -> Option<Lead> {
-        kinds
-            .into_iter()
-            .filter_map(|kind| self.lead(kind, null))
-            .max_by(|a, b| a.nats.total_cmp(&b.nats))
+    fn likeliest(&self, kinds: &[Kind], null: &Filter) -> Option<Lead> {
+        let leads = kinds.iter().filter_map(|kind| self.lead(*kind, null));
+        leads.max_by(|a, b| a.nats.total_cmp(&b.nats))
     }
 
     /// Makes room for one more.
@@ -342,118 +340,5 @@ impl Bank {
         if let Some(closest) = closest {
             self.spawns.remove(closest);
         }
-    }
-}
-
-pub(super) const BURST: Burst = Burst {
-    variance: BURST_DEG * BURST_DEG,
-    memory_s: BURST_MEMORY_S,
-};
-
-/// The filter with that having happened just now, by how much not being known.
-pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
-    let mut copy = now.clone();
-    let p = &mut copy.covariance;
-    match kind {
-        Kind::Step => {
-            for j in 0..PARAMETERS {
-                let step = if matches!(j, 0 | 2) {
-                    STEP
-                } else {
-                    STEP_INDUCED
-                };
-                p.add(j, j, step * step);
-            }
-        }
-        // It sets in as it goes on: within its memory, not at once.
-        Kind::Burst | Kind::Reference | Kind::Return | Kind::Over | Kind::Satellite => {}
-    }
-    copy
-}
-
-/// The filter with a reference's step having happened just before `next` was read.
-///
-/// A gyro's step moves both its difference from the satellite compass and, by half,
-/// their mean; the satellite compass's moves them in opposite senses; alone, either is
-/// the constant's. The step may be as large as the reading is astray: what is believed
-/// to be impossible is never learnt.
-pub(super) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
-    let mut copy = now.clone();
-    let size = now.astray_deg(next).max(REFERENCE_DEG);
-    let constant = if next.difference.is_some() {
-        size / 2.0
-    } else {
-        size
-    };
-    let sense = if which == Kind::Satellite { -1.0 } else { 1.0 };
-    let steps = [
-        (CONSTANT_STATE, constant),
-        (OFFSET, sense * size / OFFSET_SD_DEG),
-    ];
-    for (n, (i, a)) in steps.into_iter().enumerate() {
-        for (j, b) in &steps[..=n] {
-            copy.covariance.add(i, *j, a * b);
-        }
-    }
-    copy
-}
-
-/// The filter with the references' lasting errors as `before` had them.
-fn mended(now: &Filter, before: &Filter) -> Filter {
-    let mut copy = now.clone();
-    let lasting = [CONSTANT_STATE, OFFSET];
-    for i in lasting {
-        copy.mean[i] = before.mean[i];
-        for j in 0..STATES {
-            let known = if lasting.contains(&j) {
-                before.covariance.at(i, j)
-            } else {
-                0.0
-            };
-            copy.covariance.set(i, j, known);
-        }
-    }
-    copy
-}
-
-/// The filter with the ship's own parameters as `base` had them.
-pub(super) fn set_back(now: &Filter, base: &Filter) -> Filter {
-    let mut copy = now.clone();
-    copy.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
-    for i in 0..PARAMETERS {
-        for j in 0..STATES {
-            let of_the_ship = j < PARAMETERS;
-            let known = if of_the_ship {
-                base.covariance.at(i, j)
-            } else {
-                0.0
-            };
-            copy.covariance.set(i, j, known);
-        }
-    }
-    for j in [0, 2] {
-        copy.covariance.add(j, j, SLACK * SLACK);
-    }
-    copy
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::estimate::{NoiseLevels, Prior};
-
-    #[test]
-    fn a_ship_set_back_is_known_as_she_was_and_no_worse() {
-        let noise = Noise::new(&NoiseLevels::TYPICAL);
-        let mut base = Filter::new(&Prior::population(0.5), &noise);
-        for i in 0..STATES {
-            for j in 0..=i {
-                base.covariance
-                    .add(i, j, 0.01 / (1.0 + i.abs_diff(j) as f64));
-            }
-        }
-        let back = set_back(&upset(&base, Kind::Step), &base);
-        assert!((back.covariance.at(1, 3) - base.covariance.at(1, 3)).abs() < 1e-12);
-        assert!(back.covariance.at(1, CONSTANT_STATE).abs() < 1e-12);
     }
 }

@@ -4,9 +4,10 @@
 //! What always holds: at most [`MOST`] calls and [`BASES`] earlier states are kept,
 //! and what has become unlikely is given up, so that the work a row is bounded.
 
-use super::bank::set_back;
 use super::filter::{Filter, Measurement, Noise};
+use super::upset::set_back;
 use crate::estimate::Unknowns;
+use crate::time::Timestamp;
 
 /// Calls and earlier states that are kept, the latest of each.
 const MOST: usize = 4;
@@ -22,6 +23,23 @@ const RETURN_AFTER_SEA: f64 = 0.01;
 const IS_CARGO: f64 = 0.84;
 const DISCHARGED: f64 = 0.6;
 
+/// She is herself again so likely at a call at which the logbook says that her cargo was
+/// discharged: it is believed at once. And so likely where it says that it stayed.
+const SAID_DISCHARGED: f64 = 0.95;
+const SAID_ON_BOARD: f64 = 0.05;
+
+/// What the logbook tells of cargo at a port call.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Said {
+    Nothing,
+    /// Cargo that had been loaded not before a time was discharged, and none stayed.
+    Discharged {
+        loaded: Timestamp,
+    },
+    /// Some stayed on board.
+    OnBoard,
+}
+
 /// The ship as she was before a step.
 pub(super) struct Base {
     /// The step's place in the list of events.
@@ -29,6 +47,8 @@ pub(super) struct Base {
     pub(super) filter: Filter,
     /// Whether the step began at a port call.
     pub(super) at_port: bool,
+    /// When the step happened at the latest.
+    pub(super) latest: Option<Timestamp>,
     /// Port calls since.
     pub(super) calls: i32,
 }
@@ -92,11 +112,19 @@ impl Calls {
 
     /// The ship lay in port before row `at`; `now` is the filter there, and the
     /// bases are those of steps before `until`, a place in the list of events.
-    pub(super) fn call(&mut self, at: usize, now: &Filter, until: usize) {
+    pub(super) fn call(&mut self, at: usize, now: &Filter, until: usize, said: Said) {
+        let unladen = match said {
+            Said::Discharged { loaded } => self.before_loading(loaded),
+            _ => None,
+        };
         let before = self.bases.iter_mut().filter(|base| base.event < until);
         let returns: Vec<Return> = before
             .map(|base| {
-                let chance = base.chance();
+                let chance = match said {
+                    _ if unladen == Some(base.event) => SAID_DISCHARGED,
+                    Said::OnBoard => SAID_ON_BOARD * base.chance(),
+                    _ => base.chance(),
+                };
                 base.calls += 1;
                 Return {
                     event: base.event,
@@ -113,6 +141,15 @@ impl Calls {
             self.calls.remove(0);
         }
         self.calls.push(Call { at, returns });
+    }
+
+    /// The ship as she was before the first step since her cargo came on board, if nothing
+    /// else has happened to her: the step's place in the list of events.
+    fn before_loading(&self, loaded: Timestamp) -> Option<usize> {
+        let since = |base: &&Base| base.latest.is_some_and(|latest| latest >= loaded);
+        let mut since = self.bases.iter().filter(since);
+        let first = since.next()?;
+        since.all(|base| base.at_port).then_some(first.event)
     }
 
     /// Takes in a row, linearised at what each return has of the ship.

@@ -27,8 +27,13 @@ pub(crate) struct Circumstances {
     pub(crate) ended_at_port: Option<bool>,
     /// By how much what was first taken for a step is likelier than that, nats.
     pub(crate) over_step: f64,
-    /// How long a burst lasted.
+    /// How long a burst lasted, or has lasted yet, and whether it is over.
     pub(crate) burst_s: Option<f64>,
+    pub(crate) is_over: bool,
+    /// How far a burst led the compass astray, degrees where H is 24 µT.
+    pub(crate) astray_deg: Option<f64>,
+    /// Whether there was no second reference.
+    pub(crate) one_reference: bool,
     /// Whether another step at sea, weeks before or after, went the same way.
     pub(crate) creeps: bool,
     /// From the change to the row that told.
@@ -75,6 +80,16 @@ const LASTING: [Kind; 5] = [
 
 /// A vessel-year.
 const ALIGNMENT_RATE: f64 = 0.05;
+const FAULT_RATE: f64 = 0.5;
+/// Of a lone reference that is wild now and then, or swings.
+const REFERENCE_RATE: f64 = 1.0;
+
+/// How far storms, anomalies and a compass that is at fault lead it astray, degrees where H
+/// is 24 µT: the largest storms on record come to some eight, anomalies seldom to that, and
+/// a card that was hit, lost its light or hangs swings by any number.
+const STORM_DEG: f64 = 5.0;
+const ANOMALY_DEG: f64 = 6.0;
+const FAULT_DEG: f64 = 10.0;
 
 /// The odds that a lead stands for.
 pub(crate) fn odds(nats: f64) -> f64 {
@@ -98,12 +113,33 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
     if what == What::Alignment {
         weights.push((Cause::Alignment, ALIGNMENT_RATE * (rival - most).exp()));
     }
-    weights.push((Cause::ReferenceFault, 0.5 * (reference - most).exp()));
     let passing = (burst - most).exp();
-    let length = known.burst_s;
-    let long = length.map_or(0.5, |s| f64::from(u8::from(s > LONG_S)));
-    weights.push((Cause::MagneticStorm, 6.0 * passing * (0.1 + 0.8 * long)));
-    weights.push((Cause::LocalAnomaly, 3.0 * passing * (0.9 - 0.8 * long)));
+    let astray_deg = known.astray_deg.unwrap_or(0.0);
+    let in_storm = (-(astray_deg / STORM_DEG).powi(2)).exp();
+    let over_anomaly = 1.0 / (1.0 + (astray_deg / ANOMALY_DEG).powi(2));
+    let by_fault = astray_deg.powi(2) / (astray_deg.powi(2) + FAULT_DEG.powi(2));
+    weights.push((Cause::CompassFault, FAULT_RATE * passing * by_fault));
+    let swings = if known.one_reference {
+        REFERENCE_RATE * passing * by_fault
+    } else {
+        0.0
+    };
+    let of_reference = 0.5 * (reference - most).exp() + swings;
+    weights.push((Cause::ReferenceFault, of_reference));
+    // What is not over is no shorter than it has been.
+    let long = match known.burst_s {
+        Some(seconds) if seconds > LONG_S => 1.0,
+        Some(_) if known.is_over => 0.0,
+        _ => 0.5,
+    };
+    weights.push((
+        Cause::MagneticStorm,
+        6.0 * passing * in_storm * (0.1 + 0.8 * long),
+    ));
+    weights.push((
+        Cause::LocalAnomaly,
+        3.0 * passing * over_anomaly * (0.9 - 0.8 * long),
+    ));
     let alongside = if known.at_port == Some(true) {
         1.0
     } else {
@@ -111,10 +147,10 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
     };
     weights.push((
         Cause::BerthSteel,
-        3.0 * passing * alongside * (0.9 - 0.8 * long),
+        3.0 * passing * alongside * over_anomaly * (0.9 - 0.8 * long),
     ));
     for (cause, weight) in &mut weights {
-        *weight *= possible(what, *cause);
+        *weight *= possible(what, *cause, known.one_reference);
         if known.reported.contains(cause) {
             *weight *= REPORTED;
         }
@@ -155,13 +191,13 @@ impl Kind {
 }
 
 /// What the search decided is hardly undone by circumstances.
-fn possible(what: What, cause: Cause) -> f64 {
+fn possible(what: What, cause: Cause, one_reference: bool) -> f64 {
     let agrees = match what {
         What::Step | What::Return(_) => cause.is_the_ships(),
         What::Alignment => cause == Cause::Alignment,
         What::Drift => cause == Cause::Drift,
         What::Reference => cause == Cause::ReferenceFault,
-        What::Burst => !cause.is_the_ships() && cause != Cause::ReferenceFault,
+        What::Burst => !cause.is_the_ships() && (one_reference || cause != Cause::ReferenceFault),
     };
     if agrees { 1.0 } else { 0.02 }
 }

@@ -76,6 +76,11 @@ impl Noise {
             drift: squared(levels.drift_nt / POPULATION_SD[0]),
         }
     }
+
+    /// Of the variation, as a rule.
+    pub(super) fn variation(&self) -> f64 {
+        self.stationary[VARIATION - LASTING]
+    }
 }
 
 /// Variation that is off by much more than usual, and otherwise every hour.
@@ -143,6 +148,12 @@ impl Filter {
             (scalar.value - expected).abs()
         };
         off(&m.deviation).max(m.difference.as_ref().map_or(0.0, off))
+    }
+
+    /// The same of the deviation alone, as an error of the variation where H is 24 µT.
+    pub(super) fn variation_astray_deg(&self, m: &Measurement) -> f64 {
+        let Scalar { value, load, .. } = &m.deviation;
+        ((value - dot(load, &self.mean)) / load[VARIATION]).abs()
     }
 
     /// How far the deviation is from what is expected, squared standard deviations.

@@ -57,7 +57,7 @@ pub enum Cause {
     AdjustmentOrRepair,
     /// The ship's magnetism wandered off.
     Drift,
-    /// The magnetic compass sticks or repeats itself.
+    /// The magnetic compass sticks, repeats itself or swings.
     CompassFault,
     /// The compass's zero moved: its lubber line, its seat, or the element that sends its
     /// heading on.

@@ -19,8 +19,9 @@ mod filter;
 mod fleet;
 mod found;
 mod symmetric;
+mod upset;
 
 pub(crate) use cause::{Circumstances, causes, odds};
-pub(crate) use detect::{Event, Given, Perhaps, Snapshot, What, at_port, detect};
+pub(crate) use detect::{Event, Given, Loaded, Perhaps, Snapshot, What, at_port, detect};
 pub use fleet::{Elsewhere, in_fleet};
 pub use found::{Cause, CauseProbability, Change, Step};

@@ -85,11 +85,16 @@ fn since_it_was_dense<T>(spell: &[(usize, Timestamp, T)]) -> Option<&[(usize, Ti
     Some(&spell[first..])
 }
 
-/// Puts reference faults that follow closely on each other, or are found in two
-/// ways, together.
+/// Puts faults of the references that follow closely on each other, or are found in two
+/// ways, together; and those of the compass.
 pub(super) fn merge_faults(found: &mut Found) {
+    merge(found, Cause::ReferenceFault);
+    merge(found, Cause::CompassFault);
+}
+
+fn merge(found: &mut Found, cause: Cause) {
     let mut order: Vec<usize> = (0..found.changes.len())
-        .filter(|&i| found.changes[i].cause == Cause::ReferenceFault)
+        .filter(|&i| found.changes[i].cause == cause)
         .filter(|&i| found.boundaries.iter().all(|b| b.change != i))
         .collect();
     order.sort_by_key(|&i| found.changes[i].from);
@@ -106,15 +111,19 @@ pub(super) fn merge_faults(found: &mut Found) {
             {
                 earlier.ended = match (earlier.ended, ended) {
                     (Some(a), Some(b)) => Some(a.max(b)),
-                    // A step has no end of its own; what it was part of may.
-                    (one, other) => one.or(other),
+                    // A reference's step has no end of its own; what it was part of may.
+                    (one, other) if cause == Cause::ReferenceFault => one.or(other),
+                    _ => None,
                 };
                 let detected_at = found.changes[i].detected_at;
                 let told = found.changes[i].evidence.clone();
                 if let Some(earlier) = into.map(|into| &mut found.changes[into]) {
                     earlier.detected_at = earlier.detected_at.min(detected_at);
-                    earlier.evidence.extend(told);
-                    earlier.evidence.dedup();
+                    for line in told {
+                        if !earlier.evidence.contains(&line) {
+                            earlier.evidence.push(line);
+                        }
+                    }
                 }
                 gone.push(i);
             }

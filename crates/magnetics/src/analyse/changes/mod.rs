@@ -11,7 +11,7 @@ use super::SampleReason;
 use super::epoch::Reference;
 use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
-use crate::change::{Cause, Change, Given, What, detect};
+use crate::change::{Cause, Change, Given, Loaded, What, detect};
 use crate::estimate::{NoiseLevels, Prior};
 use crate::fit::Observation;
 use crate::time::Timestamp;
@@ -95,18 +95,13 @@ pub(super) fn find(
         .into_iter()
         .filter_map(|index| Some((index, reference.observations[index]?)))
         .unzip();
-    let reported: Vec<Timestamp> = logbook
-        .iter()
-        .filter(|entry| cause_of(entry.kind).is_some())
-        .flat_map(|entry| [Some(entry.from), entry.to])
-        .flatten()
-        .collect();
     let told = detect(
         &observations,
         &Given {
             prior: known.prior,
             levels: known.levels,
-            reported: &reported,
+            reported: &reported(logbook),
+            cargo: &cargo(logbook),
         },
     );
     let events = told.events;
@@ -166,6 +161,25 @@ pub(super) fn find(
     });
     merge_faults(&mut found);
     found
+}
+
+/// Times at which people say that something happened.
+fn reported(logbook: &[LogbookEntry]) -> Vec<Timestamp> {
+    let told = logbook.iter().filter(|e| cause_of(e.kind).is_some());
+    told.flat_map(|entry| [Some(entry.from), entry.to])
+        .flatten()
+        .collect()
+}
+
+/// Cargo that moves the compass.
+fn cargo(logbook: &[LogbookEntry]) -> Vec<Loaded> {
+    let told = logbook.iter();
+    told.filter(|e| e.kind == LogbookKind::MagneticCargo)
+        .map(|entry| Loaded {
+            from: entry.from,
+            to: entry.to,
+        })
+        .collect()
 }
 
 /// What an entry of the logbook is a report of.

@@ -2,7 +2,9 @@
 
 use crate::analyse::Epoch;
 use crate::analyse::reading::Reading;
+use crate::angle::wrap_180;
 use crate::change::{Cause, Change, Event, Snapshot, Step};
+use crate::fit::Observation;
 use crate::model::{Model, Parameters};
 use crate::ship::EarthField;
 
@@ -21,6 +23,32 @@ pub(super) fn worst_change(before: &Parameters, after: &Parameters, earth: Earth
         })
         .fold(0.0, f64::max)
         .to_degrees()
+}
+
+/// Where H is so much, what disturbs the field is told in degrees, nT.
+const USUAL_H_NT: f64 = 24_000.0;
+/// This share of the readings is less far astray: a wild one is of no account.
+const LESS_ASTRAY: f64 = 0.75;
+
+/// How far the compass was astray from what the ship had been, in degrees as they would
+/// be where H is 24 µT.
+pub(super) fn astray_deg(before: &Snapshot, readings: &[Observation]) -> f64 {
+    let off = |o: &Observation| {
+        let magnetic = o.compass.degrees() + o.deviation.degrees_east() - before.constant_deg;
+        let earth = EarthField {
+            h_nt: o.h_nt,
+            z_nt: o.z_nt,
+        };
+        let field = before
+            .parameters
+            .field_over_lambda(magnetic.to_radians(), earth);
+        let expected = crate::ship::compass_rad(field[0], field[1]).to_degrees();
+        wrap_180(o.compass.degrees() - expected).abs() * o.h_nt / USUAL_H_NT
+    };
+    let mut astray: Vec<f64> = readings.iter().map(off).collect();
+    astray.sort_by(f64::total_cmp);
+    let place = (LESS_ASTRAY * astray.len() as f64) as usize;
+    astray.get(place).copied().unwrap_or(0.0)
 }
 
 /// By how much the compass's zero moved, degrees.

@@ -17,6 +17,8 @@ const LOADED_BEFORE_S: f64 = 6.0 * 3600.0;
 /// than that, are of one drift.
 const CREEPS_S: f64 = 45.0 * 86_400.0;
 const SAME_WAY: f64 = 0.7;
+/// What is further astray is worth a word, degrees where H is 24 µT.
+const WILD_DEG: f64 = 8.0;
 /// What is less likely than this makes no band wider.
 const SELDOM: f64 = 0.02;
 
@@ -81,6 +83,10 @@ impl Teller<'_> {
         }
     }
 
+    fn rows_of_burst(&self, index: usize) -> &[Observation] {
+        &self.observations[self.events[index].first..=self.last_spoilt(index)]
+    }
+
     fn is_mended(&self, event: &Event) -> bool {
         match event.what {
             What::Return(of) => self.events[of].what == What::Reference,
@@ -110,9 +116,14 @@ impl Teller<'_> {
             leads: event.leads,
             at_port,
             ended_at_port: back.and_then(|later| self.began_at_port(later)),
-            burst_s: event
-                .last
-                .map(|last| self.time(last).seconds_since(self.time(event.first))),
+            burst_s: (event.what == What::Burst).then(|| {
+                let last = self.time(self.last_spoilt(index));
+                last.seconds_since(self.time(event.first))
+            }),
+            is_over: event.last.is_some(),
+            astray_deg: matches!(event.what, What::Burst)
+                .then(|| size::astray_deg(&event.before, self.rows_of_burst(index))),
+            one_reference: self.one_reference(),
             creeps: self.creeps(index),
             over_step: event.over_step,
             told_after_s: self.time(event.told).seconds_since(from),
@@ -268,7 +279,15 @@ fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String>
     if known.creeps {
         told.push("another change within weeks went the same way".to_owned());
     }
-    if let Some(seconds) = known.burst_s {
+    if let Some(degrees) = known.astray_deg.filter(|degrees| *degrees > WILD_DEG) {
+        told.push(format!(
+            "it was astray by {degrees:.0} degrees, which few storms and anomalies come to"
+        ));
+        if known.one_reference {
+            told.push("compass or reference: there is no other reference to tell which".to_owned());
+        }
+    }
+    if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
         told.push(format!("it lasted {:.1} hours", seconds / 3600.0));
     }
     if !known.reported.is_empty() {

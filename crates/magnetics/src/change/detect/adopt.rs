@@ -5,9 +5,10 @@ use super::event::snapshot;
 use super::learn::Lesson;
 use super::unsettled::Unsettled;
 use super::{EVERY, Event, Leads, Search, What};
-use crate::change::bank::{Kind, Lead, upset};
+use crate::change::bank::{Kind, Lead};
 use crate::change::calls::{Base, Candidate};
 use crate::change::filter::Filter;
+use crate::change::upset::upset;
 
 /// A change that is gone again within this, away from port, is none of the ship's.
 const BRIEF_S: f64 = 24.0 * 3600.0;
@@ -84,18 +85,23 @@ impl Search<'_> {
         let base = Base {
             event,
             filter: before.clone(),
-            at_port: self.began_at_call(dated),
+            at_port: self.began_at_call(dated) || self.is_said_loaded(dated.between),
+            latest: self.observations[dated.between.1].time,
             calls: 0,
         };
         self.calls.step(base);
         let at = dated.filter.unknowns();
-        if self.is_call(dated.first) {
-            self.calls.call(dated.first, before, event);
+        let is_call = |row: usize| self.is_call(row) || self.is_said_discharged(row);
+        let calls: Vec<usize> = (dated.first..=k).filter(|row| is_call(*row)).collect();
+        if calls.first() == Some(&dated.first) {
+            let said = self.said_at(dated.first);
+            self.calls.call(dated.first, before, event, said);
         }
         let mut since = upset(before, Kind::Step);
         for row in dated.first..=k {
-            if row > dated.first && self.is_call(row) {
-                self.calls.call(row, &since, usize::MAX);
+            if row > dated.first && calls.contains(&row) {
+                let said = self.said_at(row);
+                self.calls.call(row, &since, usize::MAX, said);
             }
             let m = self.measure(row, &at);
             since.take(&m, &self.noise, None);

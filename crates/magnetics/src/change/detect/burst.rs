@@ -1,8 +1,9 @@
 //! When a passing disturbance is over.
 
 use super::Search;
-use crate::change::bank::{BURST, BURST_S, Kind, upset};
+use crate::change::bank::{BURST_S, Kind};
 use crate::change::filter::VARIATION;
+use crate::change::upset::{burst_of, upset};
 
 /// And by this than a change for the filter to be that of the burst.
 const BURST_FOR_CERTAIN: f64 = 6.0;
@@ -55,12 +56,15 @@ impl Search<'_> {
         let Some(spawn) = self.bank.spawns.iter().rfind(|s| s.at <= first) else {
             return first;
         };
-        let mut filter = upset(spawn.origin(), Kind::Burst);
         let at = self.null.unknowns();
+        let measured: Vec<_> = (spawn.at..k).map(|row| self.measure(row, &at)).collect();
+        let astray_deg = |m| spawn.origin().variation_astray_deg(m);
+        let most_deg = measured.iter().map(astray_deg).fold(0.0, f64::max);
+        let burst = burst_of(most_deg);
+        let mut filter = upset(spawn.origin(), Kind::Burst);
         let mut last = first;
-        for row in spawn.at..k {
-            let m = self.measure(row, &at);
-            filter.take(&m, &self.noise, Some(&BURST));
+        for (row, m) in (spawn.at..k).zip(&measured) {
+            filter.take(m, &self.noise, Some(&burst));
             if row >= first && filter.mean[VARIATION].abs() > ASTRAY_DEG {
                 last = row;
             }

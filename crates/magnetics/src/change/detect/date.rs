@@ -1,8 +1,9 @@
 //! When a change happened, to the row.
 
 use super::{Search, earlier};
-use crate::change::bank::{Kind, misled, upset};
+use crate::change::bank::Kind;
 use crate::change::filter::{Filter, Measurement};
+use crate::change::upset::{misled, upset};
 
 /// Times tried for the date of a change, in each of two rounds.
 const DATES: usize = 40;
@@ -12,7 +13,7 @@ const DATE_NATS: f64 = 1.92;
 /// A step is dated at one of the port calls within so many rows of its own, if that is less likely than the likeliest row by no more, nats.
 const CALLS: usize = 3;
 const CALL_ROWS: usize = 144;
-const CALL_NATS: f64 = 5.0;
+const CALL_NATS: f64 = 8.0;
 
 /// A change with its date.
 pub(super) struct Dated {

@@ -1,5 +1,6 @@
 //! What the search is told, and what it tells.
 
+use super::Loaded;
 use crate::change::filter::{CONSTANT_STATE, Filter};
 use crate::estimate::{NoiseLevels, POPULATION_SD, Prior};
 use crate::model::{Covariance, Parameters};
@@ -13,6 +14,8 @@ pub(crate) struct Given<'a> {
     pub(crate) levels: Option<&'a NoiseLevels>,
     /// Times at which people say that something happened.
     pub(crate) reported: &'a [Timestamp],
+    /// What people say of cargo that moves the compass.
+    pub(crate) cargo: &'a [Loaded],
 }
 
 /// The ship's seven parameters as a filter had them.

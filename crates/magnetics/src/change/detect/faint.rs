@@ -1,7 +1,7 @@
 //! Disturbances that the ship alone cannot be sure of: other ships may speak for them.
 
 use super::{Leads, Search, What};
-use crate::change::bank::{BURST_S, Kind};
+use crate::change::bank::{BURST_S, Kind, Lead};
 
 /// A disturbance that leads by this is noted, nats.
 const FAINT_NATS: f64 = 7.0;
@@ -19,7 +19,9 @@ pub(super) struct Faint {
 impl Search<'_> {
     /// Keeps in mind what leads by too little to be told.
     pub(super) fn note_faint(&mut self, k: usize, leads: Leads, over_lasting: f64) {
-        let Some(lead) = leads[Kind::Burst as usize].filter(|_| self.burst.is_none()) else {
+        // What is wild and faint is a few wild readings.
+        let is_news = |lead: &Lead| self.burst.is_none() && lead.kind != Kind::Wild;
+        let Some(lead) = leads[Kind::Burst as usize].filter(is_news) else {
             return;
         };
         let most = self

@@ -28,10 +28,13 @@ const LOADED_RETURN_AT_SEA_NATS: f64 = 30.0;
 /// than a step to something else by no more than that, nats.
 const RETURNED: f64 = 0.9;
 const RETURN_BELOW_STEP: f64 = 6.0;
-/// A step that is certain is one, if it began within so many rows of the call and the
-/// return is likelier than not.
-const LIKELY: f64 = 0.5;
-const NEAR_CALL: usize = 18;
+/// A step that is certain is one, if it is dated no more than so many rows before the call
+/// or after it, the return is as likely as this against none, and unlikelier than the step
+/// by no more than that, nats: so soon after a call another step is far the rarer.
+const LIKELY: f64 = 0.3;
+const BEFORE_CALL: usize = 18;
+const AFTER_CALL: usize = 72;
+const CERTAIN_RETURN_BELOW_STEP: f64 = 10.0;
 /// A burst is unlikelier beforehand than a return at a port call by about this, nats.
 const BURST_BELOW_RETURN: f64 = 3.0;
 /// With one reference a step of the ship and one of the reference must differ by
@@ -101,8 +104,9 @@ impl Search<'_> {
                 }
             };
         if is_told {
-            if let Some(back) = self.candidate(&leads).filter(|_| kind == Kind::Step)
-                && self.is_at_call(&leads, &back)
+            let back = self.candidate_below(&leads, CERTAIN_RETURN_BELOW_STEP);
+            if let Some(back) = back.filter(|back| self.is_at_call(&leads, back))
+                && kind == Kind::Step
             {
                 return self.adopt_call(k, back, leads);
             }
@@ -119,6 +123,7 @@ impl Search<'_> {
         if self.burst.is_none()
             && burst > BURST_NATS + self.unlearnt_nats(k)
             && burst - lasting > BURST_OVER_STEP
+            && leads[Kind::Burst as usize].is_some_and(|lead| self.is_no_few_readings(k, lead))
         {
             let Some(lead) = leads[Kind::Burst as usize] else {
                 return;
@@ -136,6 +141,11 @@ impl Search<'_> {
         } else {
             self.note_faint(k, leads, burst - lasting);
         }
+    }
+
+    /// A few wild readings swing no compass.
+    fn is_no_few_readings(&self, k: usize, lead: Lead) -> bool {
+        lead.kind != Kind::Wild || k + 1 >= self.bank.spawns[lead.spawn].at + STEP_ROWS
     }
 
     /// And while she drifts, for a drift goes on.
@@ -195,16 +205,21 @@ impl Search<'_> {
     /// The likeliest return at a port call, if a step to something else is not
     /// likelier by far.
     pub(super) fn candidate(&self, leads: &Leads) -> Option<Candidate> {
+        self.candidate_below(leads, RETURN_BELOW_STEP)
+    }
+
+    fn candidate_below(&self, leads: &Leads, below: f64) -> Option<Candidate> {
         let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         let rival = (nats(Kind::Burst) - BURST_BELOW_RETURN).max(0.0);
         let likeliest = self.calls.likeliest(&self.null, rival)?;
-        (likeliest.nats > nats(Kind::Step) - RETURN_BELOW_STEP).then_some(likeliest)
+        (likeliest.nats > nats(Kind::Step) - below).then_some(likeliest)
     }
 
     /// Whether a step that is certain may as well be a return at this call.
     fn is_at_call(&self, leads: &Leads, back: &Candidate) -> bool {
         let step = leads[Kind::Step as usize].map(|lead| self.bank.spawns[lead.spawn].at);
-        back.probability > LIKELY && step.is_some_and(|at| at.abs_diff(back.at) <= NEAR_CALL)
+        let near = back.at.saturating_sub(BEFORE_CALL)..=back.at + AFTER_CALL;
+        back.probability > LIKELY && step.is_some_and(|at| near.contains(&at))
     }
 
     /// Whether both references were read lately.

@@ -11,16 +11,19 @@ mod event;
 mod faint;
 mod judge;
 mod learn;
+mod logged;
 mod port;
 mod rival;
 mod unsettled;
 
 pub(crate) use event::{Event, Given, Perhaps, Snapshot, Told, What};
+pub(crate) use logged::Loaded;
 pub(crate) use port::at_port;
 
-use super::bank::{Bank, Earlier, Kind, Lead};
+use super::bank::{Bank, Kind, Lead};
 use super::calls::Calls;
 use super::filter::{Filter, Measurement, Noise, measurement};
+use super::upset::Earlier;
 use crate::estimate::{
     NoiseLevels, Point, Prior, Station, USUAL_FUSION, Unknowns, are_times_believed, row, stations,
 };
@@ -72,6 +75,7 @@ struct Search<'a> {
     observations: &'a [Observation],
     stations: Vec<Station>,
     reported: &'a [Timestamp],
+    cargo: &'a [Loaded],
     prior: &'a Prior,
     /// Whether the sizes of noise were known before the rows.
     is_known: bool,
@@ -109,6 +113,7 @@ impl<'a> Search<'a> {
             observations,
             stations: stations(observations),
             reported: given.reported,
+            cargo: given.cargo,
             prior: given.prior,
             is_known: given.levels.is_some(),
             null: Filter::new(given.prior, &learnt.noise),
@@ -146,11 +151,12 @@ impl<'a> Search<'a> {
         let m = self.measure(k, &at);
         if is_due || (k >= FIRST_PASSING && self.is_astray(k, &m)) {
             let earlier = earlier(self.misled.as_ref(), &self.calls);
-            self.bank.spawn(k, &self.null, earlier);
+            self.bank.spawn(k, &self.null, &self.noise, earlier);
             self.spawned = k;
         }
-        if self.is_call(k) {
-            self.calls.call(k, &self.null, usize::MAX);
+        if self.is_call(k) || self.is_said_discharged(k) {
+            let said = self.said_at(k);
+            self.calls.call(k, &self.null, usize::MAX, said);
         }
         let surprise = self.null.take(&m, &self.noise, None);
         let mut calls = std::mem::take(&mut self.calls);

@@ -3,7 +3,8 @@
 //! One that repeats itself is stuck as soon as the compass turns. One that only
 //! trembles about one heading may be that of a ship that keeps her course, so that
 //! the compass must have gone round by then: a steel cargo or lightning moves a
-//! compass from one heading to another, and wild readings are few.
+//! compass from one heading to another, and wild readings are few. Where the other
+//! reference keeps steady, too, it is the compass that swings.
 
 use super::{HeadingReading, Trust};
 use crate::angle::{TrueHeading, wrap_180};
@@ -24,6 +25,9 @@ const TREMBLE_SD_DEG: f64 = 5.0;
 const TREMBLING_ROW: usize = 12;
 const ROUND_SECTORS: usize = 4;
 const OF_A_SECTOR: f64 = 0.06;
+/// The other reference is steady when this part of its readings is so near to their middle.
+const STEADY_DEG: f64 = 2.0;
+const STEADY_PART: f64 = 0.8;
 
 /// Believes every reference but where it was stuck; `order` is that of time.
 pub(super) fn trust(readings: &[HeadingReading], order: &[usize]) -> Vec<Trust> {
@@ -33,11 +37,11 @@ pub(super) fn trust(readings: &[HeadingReading], order: &[usize]) -> Vec<Trust> 
     };
     let mut trust = vec![both; readings.len()];
     let gyro = |r: &HeadingReading| r.gyro.map(TrueHeading::degrees);
-    for index in stuck(readings, order, gyro) {
+    let satellite = |r: &HeadingReading| r.satellite.map(TrueHeading::degrees);
+    for index in stuck(readings, order, gyro, satellite) {
         trust[index].gyro = false;
     }
-    let satellite = |r: &HeadingReading| r.satellite.map(TrueHeading::degrees);
-    for index in stuck(readings, order, satellite) {
+    for index in stuck(readings, order, satellite, gyro) {
         trust[index].satellite = false;
     }
     trust
@@ -48,6 +52,7 @@ fn stuck(
     readings: &[HeadingReading],
     order: &[usize],
     reference: impl Fn(&HeadingReading) -> Option<f64>,
+    other: impl Fn(&HeadingReading) -> Option<f64>,
 ) -> Vec<usize> {
     let there = order
         .iter()
@@ -58,12 +63,32 @@ fn stuck(
         .filter(|row| row.len() >= ROW && turned(readings, row));
     let whole = [there.as_slice()].into_iter();
     let trembling = rows_within(&there, TREMBLE_DEG)
+        .filter(|row| {
+            !is_steady(
+                row.iter().filter_map(|&(i, _)| other(&readings[i])),
+                row.len(),
+            )
+        })
         .chain(whole.filter(|all| circular_sd_deg(all) < TREMBLE_SD_DEG))
         .filter(|row| row.len() >= TREMBLING_ROW && went_round(readings, row));
     repeating
         .chain(trembling)
         .flat_map(|row| row.iter().map(|&(index, _)| index))
         .collect()
+}
+
+/// Whether the ship kept her course by headings that were read at most of `of` times.
+fn is_steady(headings: impl Iterator<Item = f64>, of: usize) -> bool {
+    let mut first = None;
+    let mut off: Vec<f64> = headings
+        .map(|heading| wrap_180(heading - *first.get_or_insert(heading)))
+        .collect();
+    off.sort_by(f64::total_cmp);
+    let Some(middle) = off.get(off.len() / 2).copied() else {
+        return false;
+    };
+    let near = off.iter().filter(|off| (*off - middle).abs() < STEADY_DEG);
+    2 * off.len() > of && near.count() as f64 >= STEADY_PART * off.len() as f64
 }
 
 /// Rows of readings as near as this to the first of their row.

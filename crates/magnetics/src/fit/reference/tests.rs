@@ -185,3 +185,18 @@ fn readings_without_any_reference_are_refused_by_name() {
         Err(FitError::NoReference { readings: 30 })
     );
 }
+
+#[test]
+fn a_compass_that_swings_over_a_steady_ship_costs_no_reference() {
+    let mut readings = readings(200, |i| (wobble(i), wobble(i + 3)));
+    for (i, reading) in readings.iter_mut().enumerate().skip(100).take(24) {
+        let wobble = wobble(i as u32);
+        reading.gyro = TrueHeading::new(90.0 + wobble);
+        reading.satellite = TrueHeading::new(90.2 - wobble);
+        let swung = 90.0 + 70.0 * (0.7 * i as f64).sin();
+        reading.compass = CompassHeading::new(swung).unwrap();
+    }
+    let referred = refer(&readings, 0.5).unwrap();
+    let both = |o: &Option<Observation>| o.is_some_and(|o| o.gyro_less_satellite_deg.is_some());
+    assert!(referred.observations[100..124].iter().all(both));
+}

@@ -1,0 +1,178 @@
+//! What may have happened to ship, references or field, done to a filter.
+//!
+//! What always holds: what is upset is known less afterwards, never better, but for what
+//! is again as it was known to be before.
+
+use super::bank::Kind;
+use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES, VARIATION};
+use crate::estimate::OFFSET_SD_DEG;
+use crate::ship::PARAMETERS;
+
+/// Standard deviation of a step in bx and by, in population units (1500 nT), and
+/// in what is induced.
+const STEP: f64 = 0.8;
+const STEP_INDUCED: f64 = 0.3;
+/// Of a step of either reference, degrees, unless the first reading after it is
+/// further off.
+const REFERENCE_DEG: f64 = 5.0;
+/// Of the variation in a storm or over an anomaly, degrees where H is 24 µT, how
+/// long it stays the same, and how long it may go on.
+const BURST_DEG: f64 = 1.2;
+const BURST_MEMORY_S: f64 = 3600.0;
+/// A compass that is further astray than this, degrees where H is 24 µT, may go wild.
+pub(super) const WILD_DEG: f64 = 3.5;
+/// How far a ship that is herself again may differ from what she was, in
+/// population units.
+const SLACK: f64 = 0.06;
+
+/// What something was before it changed, and may become again.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Earlier<'a> {
+    Ship(&'a Filter),
+    Reference(&'a Filter),
+}
+
+impl Earlier<'_> {
+    /// The filter with that as it was.
+    pub(super) fn again(self, now: &Filter) -> Filter {
+        match self {
+            Earlier::Ship(before) => set_back(now, before),
+            Earlier::Reference(before) => mended(now, before),
+        }
+    }
+}
+
+pub(super) const BURST: Burst = Burst {
+    variance: BURST_DEG * BURST_DEG,
+    memory_s: BURST_MEMORY_S,
+};
+
+/// The filter with that having happened just now, by how much not being known.
+pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
+    let mut copy = now.clone();
+    let p = &mut copy.covariance;
+    // All else sets in as it goes on: within its memory, not at once.
+    if kind == Kind::Step {
+        for j in 0..PARAMETERS {
+            let step = if matches!(j, 0 | 2) {
+                STEP
+            } else {
+                STEP_INDUCED
+            };
+            p.add(j, j, step * step);
+        }
+    }
+    copy
+}
+
+/// The filter with a reference's step having happened just before `next` was read.
+///
+/// A gyro's step moves both its difference from the satellite compass and, by half,
+/// their mean; the satellite compass's moves them in opposite senses; alone, either is
+/// the constant's. The step may be as large as the reading is astray: what is believed
+/// to be impossible is never learnt.
+pub(super) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
+    let mut copy = now.clone();
+    let size = now.astray_deg(next).max(REFERENCE_DEG);
+    let constant = if next.difference.is_some() {
+        size / 2.0
+    } else {
+        size
+    };
+    let sense = if which == Kind::Satellite { -1.0 } else { 1.0 };
+    let steps = [
+        (CONSTANT_STATE, constant),
+        (OFFSET, sense * size / OFFSET_SD_DEG),
+    ];
+    for (n, (i, a)) in steps.into_iter().enumerate() {
+        for (j, b) in &steps[..=n] {
+            copy.covariance.add(i, *j, a * b);
+        }
+    }
+    copy
+}
+
+/// The filter with the references' lasting errors as `before` had them.
+fn mended(now: &Filter, before: &Filter) -> Filter {
+    let mut copy = now.clone();
+    let lasting = [CONSTANT_STATE, OFFSET];
+    for i in lasting {
+        copy.mean[i] = before.mean[i];
+        for j in 0..STATES {
+            let known = if lasting.contains(&j) {
+                before.covariance.at(i, j)
+            } else {
+                0.0
+            };
+            copy.covariance.set(i, j, known);
+        }
+    }
+    copy
+}
+
+/// The filter with the ship's own parameters as `base` had them.
+pub(super) fn set_back(now: &Filter, base: &Filter) -> Filter {
+    let mut copy = now.clone();
+    copy.mean[..PARAMETERS].copy_from_slice(&base.mean[..PARAMETERS]);
+    for i in 0..PARAMETERS {
+        for j in 0..STATES {
+            let of_the_ship = j < PARAMETERS;
+            let known = if of_the_ship {
+                base.covariance.at(i, j)
+            } else {
+                0.0
+            };
+            copy.covariance.set(i, j, known);
+        }
+    }
+    for j in [0, 2] {
+        copy.covariance.add(j, j, SLACK * SLACK);
+    }
+    copy
+}
+
+/// A burst in which the furthest reading was so far astray: a wild one is as large.
+pub(super) fn burst_of(astray_deg: f64) -> Burst {
+    let deg = if astray_deg > WILD_DEG {
+        astray_deg
+    } else {
+        BURST_DEG
+    };
+    Burst {
+        variance: deg * deg,
+        ..BURST
+    }
+}
+
+/// The filter with the variation as if it had never been astray: what swung wildly is
+/// itself again at once.
+pub(super) fn calmed(now: &Filter, noise: &Noise) -> Filter {
+    let mut copy = now.clone();
+    copy.mean[VARIATION] = 0.0;
+    for j in 0..STATES {
+        copy.covariance.set(VARIATION, j, 0.0);
+    }
+    copy.covariance.set(VARIATION, VARIATION, noise.variation());
+    copy
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::{NoiseLevels, Prior};
+
+    #[test]
+    fn a_ship_set_back_is_known_as_she_was_and_no_worse() {
+        let noise = Noise::new(&NoiseLevels::TYPICAL);
+        let mut base = Filter::new(&Prior::population(0.5), &noise);
+        for i in 0..STATES {
+            for j in 0..=i {
+                base.covariance
+                    .add(i, j, 0.01 / (1.0 + i.abs_diff(j) as f64));
+            }
+        }
+        let back = set_back(&upset(&base, Kind::Step), &base);
+        assert!((back.covariance.at(1, 3) - base.covariance.at(1, 3)).abs() < 1e-12);
+        assert!(back.covariance.at(1, CONSTANT_STATE).abs() < 1e-12);
+    }
+}
