@@ -1,24 +1,89 @@
 //! What becomes of the base model after cargo is discharged, and of what stays.
 
-use crate::voyages::fleet::{Event, Log, Name, Plan, START, sail_log};
-use crate::voyages::{predicted, true_deviation};
-use crate::{DAY_S, alarms, each, near, planned, run, seeds, share, variety};
-use binnacle_magnetics::analyse::Analysis;
+use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, START, sail_log};
+use crate::voyages::lorden::nats_of_discharge;
+use crate::voyages::{gauss, predicted, true_deviation};
+use crate::{DAY_S, HOUR_S, alarms, each, near, planned, run, seeds, share, variety};
+use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookEntry, LogbookKind, analyse};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::change::Cause;
 use binnacle_magnetics::time::Timestamp;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 /// How often what stays is looked at for being taken for a return, days after it.
 const LOOKS_DAYS: [f64; 4] = [1.0, 4.0, 10.0, 30.0];
 
-/// What becomes of the base model after cargo is discharged.
+/// Officers write down when cargo came and went within so many hours, a standard
+/// deviation.
+const WRITTEN_H: f64 = 3.0;
+
+/// What becomes of the base model after cargo is discharged, by samples alone and with
+/// the officers' report.
 pub(crate) fn returns(ships: u64) {
+    returned("nobody having reported it", ships, |_, _| Vec::new());
+    returned("reported", ships, |seed, cargo| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x10C);
+        let mut about = |time: Timestamp| time.plus_seconds(WRITTEN_H * HOUR_S * gauss(&mut rng));
+        let (from, to) = (about(cargo.from), cargo.to.map(about));
+        vec![LogbookEntry {
+            from,
+            to: to.map(|to| to.max(from)),
+            kind: LogbookKind::MagneticCargo,
+            cargo: None,
+            note: String::new(),
+        }]
+    });
+    ideal(ships);
+}
+
+/// How often a day's samples would tell that the cargo is gone to one who knew the ship
+/// with cargo and without, and the sizes of all noise, but not which she is.
+fn ideal(ships: u64) {
+    let nats = each(seeds(400_000, ships), |seed| {
+        let mut plan = Plan::of(Event::Cargo, variety(seed));
+        plan.days = 130.0;
+        nats_of_discharge(&sail_log(seed, &plan))
+    });
+    let nats: Vec<f64> = nats.into_iter().flatten().collect();
+    let mean = |of: fn(f64) -> f64| {
+        100.0 * nats.iter().map(|nats| of(*nats)).sum::<f64>() / nats.len() as f64
+    };
+    // The log of the likelihoods' ratio is Gaussian about the information, with twice
+    // that as its variance.
+    println!(
+        "an observer who knows both ships and all noise: rather without cargo than with, a day          after sailing, {:.0} % of {} ships; nine times likelier {:.0} %; a day tells less than 3          nats on {:.0} %",
+        mean(|nats| normal((nats / 2.0).sqrt())),
+        nats.len(),
+        mean(|nats| normal((nats - 9.0_f64.ln()) / (2.0 * nats).sqrt())),
+        share(&nats, |nats| *nats < 3.0),
+    );
+}
+
+/// The normal distribution [Abramowitz & Stegun 1964, 26.2.17].
+fn normal(x: f64) -> f64 {
+    let t = 1.0 / (1.0 + 0.231_641_9 * x.abs());
+    let series = [
+        0.319_381_530,
+        -0.356_563_782,
+        1.781_477_937,
+        -1.821_255_978,
+        1.330_274_429,
+    ];
+    let tail = series.iter().rev().fold(0.0, |sum, b| t * (b + sum));
+    let tail = tail * (-x * x / 2.0).exp() / std::f64::consts::TAU.sqrt();
+    if x < 0.0 { tail } else { 1.0 - tail }
+}
+
+fn returned(how: &str, ships: u64, logbook: impl Fn(u64, &Happened) -> Vec<LogbookEntry> + Sync) {
     let found = each(seeds(400_000, ships), |seed| {
         let mut plan = Plan::of(Event::Cargo, variety(seed));
         plan.days = 130.0;
         let log = sail_log(seed, &plan);
-        let discharged = planned(&log, Name::Cargo)?.to?;
-        let then = after(seed, &plan, &log, discharged, 1.0)?;
+        let cargo = planned(&log, Name::Cargo)?;
+        let discharged = cargo.to?;
+        let known = logbook(seed, &cargo);
+        let then = after(seed, &plan, (&log, &known), discharged, 1.0)?;
         let noticed = then
             .analysis
             .changes
@@ -37,7 +102,7 @@ pub(crate) fn returns(ships: u64) {
     let is_base = |of: Of| of != Of::Another;
     let left: Vec<_> = found.iter().filter(|f| f.0 != Of::NeverLeft).collect();
     println!(
-        "cargo, {} ships: noticed {:.0} %; a day after sailing from discharge the base model is in \
+        "cargo, {how}, {} ships: noticed {:.0} %; a day after sailing from discharge the base model is in \
          force or the likelier of two {:.0} % (of the {} that had left it {:.0} %, for certain {:.0} %), and holds the truth on 9 headings in 10 \
          {:.0} %; the band in force holds it on {:.1} % of all headings",
         found.len(),
@@ -92,12 +157,18 @@ impl Then {
     }
 }
 
-fn after(seed: u64, plan: &Plan, log: &Log, port: Timestamp, days: f64) -> Option<Then> {
+fn after(
+    seed: u64,
+    plan: &Plan,
+    (log, logbook): (&Log, &[LogbookEntry]),
+    port: Timestamp,
+    days: f64,
+) -> Option<Then> {
     let sailed = log.samples.iter().find(|s| s.time > port)?.time;
     let until = log
         .samples
         .partition_point(|s| s.time.seconds_since(sailed) < days * DAY_S);
-    let analysis = run(&log.samples[..until]);
+    let analysis = analyse(&log.samples[..until], logbook, &AnalysisSettings::default());
     // The same ship, as she was at that time.
     let begun = Timestamp::parse(START).unwrap();
     let last = log.samples[until - 1].time;
@@ -148,7 +219,7 @@ pub(crate) fn permanent(ships: u64) {
         let told = alarms(&analysis).find(|c| near(&refit, c));
         let looks: Vec<Then> = LOOKS_DAYS
             .iter()
-            .filter_map(|days| after(seed, &plan, &log, refit.from, *days))
+            .filter_map(|days| after(seed, &plan, (&log, &[]), refit.from, *days))
             .collect();
         let ever = looks.iter().any(|then| then.of == Of::Resumed);
         let at_last = told.is_some_and(|c| c.ended.is_some());
@@ -194,7 +265,7 @@ pub(crate) fn lightning(ships: u64) {
             after(
                 seed,
                 &plan,
-                &log,
+                (&log, &[]),
                 struck.plus_seconds(7.0 * DAY_S * weeks),
                 1.0,
             )

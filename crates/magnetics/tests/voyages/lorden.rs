@@ -83,6 +83,22 @@ pub(crate) fn rows_needed(log: &Log, ln_run_length: f64) -> Option<usize> {
     Some(reached + 1 - first)
 }
 
+/// The information of the first day's rows after cargo was discharged for the ship
+/// without it, against the ship with it, nats.
+pub(crate) fn nats_of_discharge(log: &Log) -> Option<f64> {
+    let [before, laden] = log.changed?;
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo)?;
+    let at = cargo.to?;
+    let sailed = log.samples.partition_point(|s| s.time <= at);
+    let until = log.samples.get(sailed)?.time.plus_seconds(86_400.0);
+    let begin = at.plus_seconds(-RUN_UP_S);
+    let place = |time: Timestamp| log.samples.partition_point(|s| s.time < time);
+    let samples = &log.samples[place(begin)..place(until)];
+    let rows = rows(samples, log.start, at, &[laden, before]);
+    let told = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
+    told.last().copied()
+}
+
 fn rows(
     samples: &[Sample],
     start: Timestamp,
