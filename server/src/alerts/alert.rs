@@ -17,7 +17,7 @@ pub enum Cause {
     DeviationOverLimit,
     /// Gyro and satellite compass contradict each other.
     ReferenceFault,
-    /// The magnetic compass sticks or repeats itself.
+    /// The magnetic compass sticks, repeats itself or swings.
     CompassFault,
     /// A strike, or a heavy blow to the hull.
     LightningOrShock,
@@ -285,7 +285,7 @@ impl Cause {
         match self {
             Cause::DeviationOverLimit => "deviation over the limit",
             Cause::ReferenceFault => "gyro and satellite compass disagree",
-            Cause::CompassFault => "the compass sticks",
+            Cause::CompassFault => "a fault of the compass",
             Cause::LightningOrShock => "lightning or a shock",
             Cause::MagneticCargo => "magnetic cargo",
             Cause::Drift => "drift of the ship's magnetism",

@@ -22,6 +22,8 @@ const WORTH_A_WORD_DEG: f64 = 0.5;
 const NEWS_S: f64 = 7.0 * 86_400.0;
 /// A model of fewer days than this after a change may yet turn out wrong, seconds.
 const SETTLED_S: f64 = 86_400.0;
+/// A compass as likely at fault as this is not to be trusted.
+const COMPASS_SUSPECTED: f64 = 0.1;
 /// Causes less likely than this are not worth a word.
 const UNLIKELY: f64 = 0.01;
 
@@ -148,7 +150,11 @@ fn alert(
         since: change.from.into(),
         dated,
         summary: summary(found, stage),
-        advice: advice(change.cause, stage),
+        advice: if is_compass_or_gyro(change) {
+            COMPASS_OR_GYRO
+        } else {
+            advice(change.cause, stage)
+        },
         evidence: Evidence(evidence),
     }
 }
@@ -196,7 +202,7 @@ fn summary(found: &FoundChange, stage: Stage) -> String {
     let since = Time(change.from).to_the_minute();
     let cause = words(change.cause);
     if change.cause == change::Cause::CompassFault {
-        return format!("Since about {since} the compass stands still while the ship turns.");
+        return format!("Since about {since} the compass does not follow the ship.");
     }
     let mut size = found
         .size_deg
@@ -221,6 +227,20 @@ fn summary(found: &FoundChange, stage: Stage) -> String {
             format!("Since about {since} the deviation is another{size}; most likely {cause}.")
         }
     }
+}
+
+const COMPASS_OR_GYRO: &str = "Compass or gyro swings, and there is no third to tell which. Trust \
+     neither: take an azimuth now and each watch, compare both with a steady course over ground, \
+     and look at compass, sensor and cables. The samples taken meanwhile are left out of the model.";
+
+/// Whether a fault of the only reference may as well be one of the compass.
+fn is_compass_or_gyro(change: &change::Change) -> bool {
+    let of_the_compass = change::Cause::CompassFault;
+    change.cause == change::Cause::ReferenceFault
+        && change
+            .causes
+            .iter()
+            .any(|c| c.cause == of_the_compass && c.probability > COMPASS_SUSPECTED)
 }
 
 fn advice(cause: change::Cause, stage: Stage) -> &'static str {

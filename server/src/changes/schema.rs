@@ -17,7 +17,7 @@ pub(super) enum CauseSchema {
     AdjustmentOrRepair,
     /// The ship's magnetism wandered off.
     Drift,
-    /// The magnetic compass sticks or repeats itself.
+    /// The magnetic compass sticks, repeats itself or swings.
     CompassFault,
     /// The compass's zero moved: its lubber line, its seat, or the element that sends its
     /// heading on.

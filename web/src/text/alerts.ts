@@ -19,7 +19,7 @@ export const alerts = {
     cause: {
       deviation_over_limit: 'Deviation over the limit',
       reference_fault: 'Gyro and satellite compass disagree',
-      compass_fault: 'The compass sticks',
+      compass_fault: 'The compass is at fault',
       lightning_or_shock: 'Magnetism changed: lightning or a shock',
       magnetic_cargo: 'Magnetism changed: magnetic cargo',
       drift: 'Magnetism drifts',

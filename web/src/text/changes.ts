@@ -15,7 +15,7 @@ export const changes = {
       adjustment_or_repair: 'Adjustment or repair',
       drift: 'Slow drift',
       alignment: 'The compass’s zero moved',
-      compass_fault: 'The compass sticks',
+      compass_fault: 'The compass is at fault',
       reference_fault: 'Gyro or satellite compass at fault',
       local_anomaly: 'Local anomaly',
       magnetic_storm: 'Magnetic storm',
