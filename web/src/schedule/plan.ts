@@ -1,6 +1,7 @@
 /** A plan as people look at it: a row for each vessel, what changed, what it costs. */
 
 import type { AdjustmentNeed, PlanChange, PlannedJob, PortCall, SchedulePlan } from '../api/types';
+import { text } from '../text';
 
 /** A vessel of the schedule: when she is in port, what is planned and what is due. */
 export interface Row {
@@ -58,12 +59,39 @@ export const jobKey = (job: { compasses: readonly { compass_id: string }[] }): s
 
 export const paid = (job: PlannedJob): number => job.fee_eur + job.travel_eur;
 
-/** What changed, without what stayed as it was; the moved and dropped first. */
-export function realChanges(changes: readonly PlanChange[]): PlanChange[] {
+/**
+ * What changed against the plan that was looked at, the moved and dropped first. A job that
+ * a person pinned elsewhere is kept for the server, which plans around it; for who looked at
+ * the plan before it has moved.
+ */
+export function realChanges(before: SchedulePlan | null, plan: SchedulePlan): PlanChange[] {
   const order = ['dropped', 'moved', 'new'];
-  return changes
-    .filter((change) => change.what !== 'kept')
-    .sort((a, b) => order.indexOf(a.what) - order.indexOf(b.what));
+  const told = plan.changes.filter((change) => change.what !== 'kept');
+  const known = new Set(told.map(jobKey));
+  const were = new Map(before?.jobs.map((job) => [jobKey(job), job]));
+  const pinned = plan.jobs.flatMap((job) => {
+    const was = were.get(jobKey(job));
+    return was && !known.has(jobKey(job)) && !samePlace(was, job) ? [movedBy(was, job)] : [];
+  });
+  return [...told, ...pinned].sort((a, b) => order.indexOf(a.what) - order.indexOf(b.what));
+}
+
+const samePlace = (a: PlannedJob, b: PlannedJob): boolean =>
+  a.call_id === b.call_id && a.day === b.day && a.firm_id === b.firm_id;
+
+function movedBy(was: PlannedJob, job: PlannedJob): PlanChange {
+  const place = (at: PlannedJob) => ({
+    call_id: at.call_id,
+    day: at.day,
+    firm_id: at.firm_id,
+    firm_name: at.firm_name,
+    port_name: at.port_name,
+    paid_eur: paid(at),
+  });
+  const { compasses, vessel_id, vessel_name } = job;
+  const why = job.pinned ? text.schedule.changes.pinned : '';
+  const places = { from: place(was), to: place(job) };
+  return { compasses, vessel_id, vessel_name, what: 'moved', why, ...places };
 }
 
 const hourMs = 3_600_000;

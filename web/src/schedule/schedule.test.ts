@@ -95,10 +95,41 @@ describe('the vessels of a plan', () => {
       'Late',
     ]);
   });
+});
 
-  test('have changes without what stayed, dropped jobs first', () => {
-    const change = (what: string) => ({ what }) as SchedulePlan['changes'][number];
-    const found = realChanges(['kept', 'new', 'moved', 'dropped'].map(change));
+describe('what changed', () => {
+  const job = (compass: string, day: string, pinned = false) =>
+    ({
+      compasses: [{ compass_id: compass }],
+      call_id: 'c',
+      firm_id: 'f',
+      day,
+      pinned,
+    }) as PlannedJob;
+  const change = (compass: string, what: string) =>
+    ({ compasses: [{ compass_id: compass }], what }) as SchedulePlan['changes'][number];
+  const plan = (jobs: PlannedJob[], changes: SchedulePlan['changes'] = []) =>
+    ({ jobs, changes }) as unknown as SchedulePlan;
+
+  test('is without what stayed, dropped jobs first', () => {
+    const changes = ['kept', 'new', 'moved', 'dropped'].map((what) => change(what, what));
+    const found = realChanges(null, plan([], changes));
     expect(found.map((line) => line.what)).toEqual(['dropped', 'moved', 'new']);
+  });
+
+  test('has a job that was pinned elsewhere, which the server calls kept', () => {
+    const before = plan([job('a', '2026-12-01'), job('b', '2026-12-01')]);
+    const now = [job('a', '2026-12-08', true), job('b', '2026-12-01')];
+    const found = realChanges(before, plan(now, [change('a', 'kept'), change('b', 'kept')]));
+    expect(found.map((line) => [line.what, line.from?.day, line.to?.day])).toEqual([
+      ['moved', '2026-12-01', '2026-12-08'],
+    ]);
+  });
+
+  test('has a job once, in the server’s words where it has them', () => {
+    const told = { ...change('a', 'moved'), why: 'the call is cancelled' };
+    const before = plan([job('a', '2026-12-01')]);
+    const found = realChanges(before, plan([job('a', '2026-12-08')], [told]));
+    expect(found).toEqual([told]);
   });
 });

@@ -152,6 +152,7 @@ export const schedule = {
       moved: (n: number) =>
         n === 0 ? 'no job moved' : n === 1 ? '1 job moved' : `${n} jobs moved`,
       none: 'Every job stays as it was.',
+      pinned: 'pinned there',
       what: { kept: 'Kept', moved: 'Moved', new: 'New', dropped: 'Dropped' },
       place: (day: string, port: string, firm: string) => `${day}, ${port}, ${firm}`,
       gone: 'a call that is not known any more',
