@@ -91,7 +91,6 @@ pub(super) enum Digest {
 /// A day of the week.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-
 pub(super) enum Weekday {
     Monday,
     Tuesday,

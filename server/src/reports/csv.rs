@@ -1,7 +1,7 @@
 //! A report's tables as CSV: named as in JSON, a line for each compass or job.
 
 use super::Table;
-use super::report::{Deviation, Due, Job, Report};
+use super::report::{DueCompass, Job, Report, WorstDeviation};
 use crate::error::{Error, Result};
 use serde_json::Value;
 
@@ -63,7 +63,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
     }
 }
 
-fn due(due: &Due) -> Result<Value> {
+fn due(due: &DueCompass) -> Result<Value> {
     let mut fields = serde_json::to_value(due)?;
     let order = fields["order"].take();
     for field in ["state", "port", "planned_at", "firm"] {
@@ -72,7 +72,7 @@ fn due(due: &Due) -> Result<Value> {
     Ok(fields)
 }
 
-fn deviation(deviation: &Deviation) -> Result<Value> {
+fn deviation(deviation: &WorstDeviation) -> Result<Value> {
     Ok(serde_json::to_value(deviation)?)
 }
 

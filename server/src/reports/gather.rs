@@ -1,6 +1,6 @@
 //! What a report is made of, out of the database.
 
-use super::report::{Deviation, Due, FeeFrom, Job, Report, Saved, UnderWay};
+use super::report::{DueCompass, FeeFrom, Job, Report, Saving, UnderWay, WorstDeviation};
 use super::settings::{self, Settings};
 use crate::app::App;
 use crate::db::{Db, row, rows};
@@ -32,10 +32,10 @@ pub(super) async fn gather(
     let jobs = jobs(&app.db, operator, (from, to)).await?;
     let settings = settings::find(&app.db, operator).await?;
     let today = made_at.0.to_chrono().date_naive();
-    let mut due: Vec<Due> = facts
+    let mut due: Vec<DueCompass> = facts
         .iter()
         .filter_map(|facts| need(facts, &terms, today))
-        .map(|need| Due {
+        .map(|need| DueCompass {
             order: under_way.get(&need.compass_id).cloned(),
             vessel_id: need.vessel_id,
             vessel_name: need.vessel_name,
@@ -101,7 +101,7 @@ async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, 
     Ok(found.into_iter().map(read).collect())
 }
 
-fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<Deviation> {
+fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
     let models: BTreeMap<CompassId, &StoredModel> = models
         .iter()
         .map(|model| (model.compass_id, model))
@@ -109,7 +109,7 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<Deviation> {
     let of = |facts: &Facts| {
         let model = models.get(&facts.compass_id);
         let worst = model.and_then(|model| model.worst());
-        Deviation {
+        WorstDeviation {
             vessel_id: facts.vessel_id,
             vessel_name: facts.vessel_name.clone(),
             compass_id: facts.compass_id,
@@ -120,8 +120,8 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<Deviation> {
             data_until: model.map(|model| model.data_until),
         }
     };
-    let mut all: Vec<Deviation> = facts.iter().map(of).collect();
-    let size = |one: &Deviation| one.deviation_deg.map_or(-1.0, f64::abs);
+    let mut all: Vec<WorstDeviation> = facts.iter().map(of).collect();
+    let size = |one: &WorstDeviation| one.deviation_deg.map_or(-1.0, f64::abs);
     all.sort_by(|one, other| size(other).total_cmp(&size(one)));
     all
 }
@@ -171,14 +171,14 @@ fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
     })
 }
 
-fn saved(jobs: &[Job], settings: &Settings) -> Saved {
+fn saved(jobs: &[Job], settings: &Settings) -> Saving {
     let spared: Vec<&Job> = jobs
         .iter()
         .filter(|job| job.state != State::Failed)
         .collect();
     let fees_eur: f64 = spared.iter().filter_map(|job| job.fee_eur).sum();
     let swings = spared.len() as f64;
-    Saved {
+    Saving {
         jobs: spared.len(),
         swing_eur: settings.swing_eur,
         swing_h: settings.swing_h,

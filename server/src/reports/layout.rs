@@ -1,6 +1,6 @@
 //! A report on sheets of A4.
 
-use super::report::{Due, FeeFrom, Job, Report};
+use super::report::{DueCompass, FeeFrom, Job, Report};
 use crate::sheet::paper::{LEFT, LINE, Paper, RIGHT, SIZE};
 use crate::sheet::words::{east_west, heading};
 use crate::sheet::{Face, Sheet, Style, cut};
@@ -124,7 +124,8 @@ fn saved_in_short(report: &Report) -> String {
 fn due(paper: &mut Paper, report: &Report) {
     paper.room_for(SOME_LINES);
     paper.title("Due within the terms for \"soon\", and overdue");
-    let (now, later): (Vec<&Due>, Vec<&Due>) = report.due.iter().partition(|due| due.presses());
+    let (now, later): (Vec<&DueCompass>, Vec<&DueCompass>) =
+        report.due.iter().partition(|due| due.presses());
     if now.is_empty() {
         paper.lines(LEFT, Style::plain(SIZE), "No compass.");
     } else {

@@ -27,20 +27,20 @@ pub(super) struct Report {
     /// Their compasses.
     pub(super) compasses: usize,
     /// Every compass that is due some day, the first due first.
-    pub(super) due: Vec<Due>,
+    pub(super) due: Vec<DueCompass>,
     /// The greatest deviation of each compass, the greatest first; those of which nothing
     /// is known last.
-    pub(super) deviation: Vec<Deviation>,
+    pub(super) deviation: Vec<WorstDeviation>,
     /// Adjustments that were completed in the time, in order.
     pub(super) jobs: Vec<Job>,
     /// What they saved against swinging.
-    pub(super) saved: Saved,
+    pub(super) saved: Saving,
 }
 
 /// A compass and when it is due.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = ReportDue)]
-pub(super) struct Due {
+pub(super) struct DueCompass {
     /// The vessel.
     pub(super) vessel_id: VesselId,
     /// Her name.
@@ -64,7 +64,7 @@ pub(super) struct Due {
     pub(super) order: Option<UnderWay>,
 }
 
-impl Due {
+impl DueCompass {
     /// Whether it is due soon, or should have been done.
     pub(super) fn presses(&self) -> bool {
         self.urgency > Urgency::Routine
@@ -91,7 +91,7 @@ pub(super) struct UnderWay {
 /// A compass and its greatest deviation, where its model was made.
 #[derive(Clone, Debug, Serialize, ToSchema)]
 #[schema(as = ReportDeviation)]
-pub(super) struct Deviation {
+pub(super) struct WorstDeviation {
     /// The vessel.
     pub(super) vessel_id: VesselId,
     /// Her name.
@@ -159,7 +159,7 @@ pub(super) enum FeeFrom {
 /// What adjusting at the berth saved against swinging the ship.
 #[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
 #[schema(as = ReportSaved)]
-pub(super) struct Saved {
+pub(super) struct Saving {
     /// Jobs that spared the ship a swing: those completed, but for any that the sea does
     /// not confirm.
     pub(super) jobs: usize,

@@ -45,13 +45,12 @@ impl Side {
         let viewer = admin.viewer(shore).await;
         let (firm, adjuster) = admin.adjuster(shore, &format!("firm-{name}")).await;
         let ship = shore.ship(&admin, &format!("ship-of-{name}")).await;
-        let root = match root {
-            Some(keys) => keys.to_vec(),
-            None => {
-                let root = admin.platform_admin(shore).await;
-                let token = token(&root, "read").await;
-                vec![Key::Cookie(root.cookie), token.1]
-            }
+        let root = if let Some(keys) = root {
+            keys.to_vec()
+        } else {
+            let root = admin.platform_admin(shore).await;
+            let token = token(&root, "read").await;
+            vec![Key::Cookie(root.cookie), token.1]
         };
         let read = token(&admin, "read").await;
         let write = token(&admin, "write").await;
