@@ -21,6 +21,7 @@ on_both!(
     work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert,
     two_ships_in_one_storm_name_it_and_one_alone_does_not,
     an_alert_follows_what_other_ships_show_without_another_fit,
+    however_far_the_needle_swings_one_alert_says_so,
 );
 
 const A_WHILE_S: f64 = 10.0;
@@ -347,7 +348,7 @@ async fn work_that_the_logbook_tells_of_opens_an_epoch_without_an_alert(shore: S
 }
 
 /// Thirty days at sea, the needle astray for some hours so long before the end.
-fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: fn(f64) -> f64) -> Vec<Sample> {
+fn astray(place: (f64, f64), from_h: usize, to_h: usize, deg: Swing) -> Vec<Sample> {
     let mut samples = days_in(place, &truth(), "2026-10-21T00:00:00Z", 30.0);
     let place = |hours| samples.len() - 6 * hours;
     let (from, to) = (place(from_h), place(to_h));
@@ -365,7 +366,7 @@ fn passed(place: (f64, f64), hours_ago: usize) -> Vec<Sample> {
 
 /// To and fro, for the last six hours.
 fn passing(place: (f64, f64)) -> Vec<Sample> {
-    astray(place, 6, 0, |i| 3.0 * (0.7 * i).sin())
+    astray(place, 6, 0, |i| 6.0 * (0.7 * i).sin())
 }
 
 async fn last_change(person: &Person, ship: &Ship) -> Value {
@@ -433,6 +434,35 @@ async fn an_alert_follows_what_other_ships_show_without_another_fit(shore: Shore
         shore.work().await,
         [],
         "they do not wake each other for ever"
+    );
+    shore.finish().await;
+}
+
+/// Degrees by the number of the reading.
+type Swing = fn(f64) -> f64;
+
+async fn however_far_the_needle_swings_one_alert_says_so(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let swings: [(&str, Swing); 4] = [
+        ("Pinta", |i| 6.0 * (0.7 * i).sin()),
+        ("Nina", |i| 10.0 * (0.7 * i).sin()),
+        ("Trinidad", |i| 20.0 * (0.7 * i).sin()),
+        ("Victoria", |i| 40.0 * (0.7 * i).sin()),
+    ];
+    let mut causes = Vec::new();
+    for (name, swing) in swings {
+        let ship = shore.ship(&ada, name).await;
+        send(&shore, &ship, 1, &astray((48.0, -6.0), 6, 0, swing)).await;
+        let open = open_alerts(&ada).await;
+        let of_her: Vec<&Value> = open.iter().filter(|a| a["vessel_name"] == name).collect();
+        assert_eq!(of_her.len(), 1, "{name}: {open:?}");
+        causes.push(of_her[0]["cause"].as_str().unwrap().to_owned());
+    }
+    assert!(causes[0] != "compass_fault", "{causes:?}");
+    assert_eq!(
+        causes[2..],
+        ["compass_fault", "compass_fault"],
+        "{causes:?}"
     );
     shore.finish().await;
 }
