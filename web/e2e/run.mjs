@@ -19,6 +19,7 @@ import { papers } from './scenarios/papers.mjs';
 import { people } from './scenarios/people.mjs';
 import { schedule } from './scenarios/schedule.mjs';
 import { session } from './scenarios/session.mjs';
+import { told } from './scenarios/told.mjs';
 import { vessel } from './scenarios/vessel.mjs';
 
 /** What a user must be able to do, each in a browser of its own; later ones of a group
@@ -33,6 +34,7 @@ const groups = {
   adjusting,
   schedule,
   people,
+  told,
   access,
 };
 

@@ -29,6 +29,12 @@ const pages = [
     path: '/firms',
     ready: (page) => page.getByRole('heading', { level: 3 }).first(),
   },
+  { name: 'reports', path: '/reports', ready: (page) => page.getByTestId('report-deviation') },
+  {
+    name: 'notifications',
+    path: '/notifications',
+    ready: (page) => page.getByLabel('Time zone'),
+  },
   { name: 'settings', path: '/settings', ready: (page) => page.getByText('this browser') },
   { name: 'people', path: '/settings/people', ready: (page) => page.getByTestId('users') },
   { name: 'agents', path: '/settings/agents', ready: (page) => page.getByLabel('Vessel') },

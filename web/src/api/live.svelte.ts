@@ -15,7 +15,7 @@ export interface News {
   kind: (typeof kinds)[number] | 'all';
 }
 
-const kinds = ['batch', 'model', 'logbook', 'alert', 'work_order', 'port_call'] as const;
+const kinds = ['batch', 'model', 'logbook', 'alert', 'work_order', 'port_call', 'need'] as const;
 
 type Listener = (news: News) => void;
 

@@ -1,7 +1,16 @@
 /** Which page the address names, and moving between pages without reloading. */
 
 /** Pages that are known by the first word of their address alone. */
-const plain = ['alerts', 'mail', 'webhooks', 'schedule', 'firms', 'invitation'] as const;
+const plain = [
+  'alerts',
+  'mail',
+  'webhooks',
+  'schedule',
+  'firms',
+  'reports',
+  'notifications',
+  'invitation',
+] as const;
 
 /** The settings' pages, by the second word. */
 const ofSettings = {
@@ -44,6 +53,8 @@ export const mailPath = '/mail';
 export const webhooksPath = '/webhooks';
 export const schedulePath = '/schedule';
 export const firmsPath = '/firms';
+export const reportsPath = '/reports';
+export const notificationsPath = '/notifications';
 export const settingsPath = '/settings';
 /** The pages of the settings besides one's own. */
 export const settingsPaths = Object.entries(ofSettings).map(([word, page]) => ({

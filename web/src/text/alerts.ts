@@ -54,6 +54,7 @@ export const alerts = {
     clearedTitle: 'Cleared lately',
     toMail: 'Mail',
     toWebhooks: 'Webhooks',
+    toNotifications: 'Notifications',
   },
 
   webhooks: {

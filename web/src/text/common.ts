@@ -86,6 +86,8 @@ export const common = {
     schedule: 'Schedule · Binnacle',
     firms: 'Firms · Binnacle',
     home: 'My orders · Binnacle',
+    reports: 'Reports · Binnacle',
+    notifications: 'Notifications · Binnacle',
     settings: 'Settings · Binnacle',
     people: 'People · Binnacle',
     aboard: 'Agents · Binnacle',

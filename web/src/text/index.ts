@@ -11,9 +11,11 @@ import { common } from './common';
 import { deviation } from './deviation';
 import { firms } from './firms';
 import { fleet } from './fleet';
+import { notifications } from './notifications';
 import { offers } from './offers';
 import { orders } from './orders';
 import { papers } from './papers';
+import { reports } from './reports';
 import { schedule } from './schedule';
 import { settings } from './settings';
 import { trust } from './trust';
@@ -31,6 +33,8 @@ export const text = {
   ...offers,
   ...orders,
   ...schedule,
+  ...reports,
+  ...notifications,
   ...firms,
   ...settings,
   ...berth,
