@@ -178,17 +178,18 @@ export const people = {
 
       await signInAs(page, adjuster(settings), 'My orders');
       await page.getByRole('heading', { name: 'Waiting for an answer' }).waitFor();
-      await page.getByRole('link', { name: vessel.name }).waitFor();
+      const asked = page.getByRole('region', { name: 'Waiting for an answer' });
+      await asked.getByRole('link', { name: vessel.name }).waitFor();
       const taken = await page.request.post(`/api/v1/work-orders/${id}/accept`, {
         headers,
         data: { adjuster_name: 'R. Sáez', adjuster_licence: 'ES-CA-114' },
       });
       assert.ok(taken.ok(), await taken.text());
-      await page.getByRole('heading', { name: 'Today’s ships' }).waitFor();
-      await page.getByText(/UTC · \d+ \w+, \d\d:\d\d by this device’s clock/).waitFor();
+      const today = page.getByRole('region', { name: 'Today’s ships' });
+      await today.getByText(/UTC · \d+ \w+, \d\d:\d\d by this device’s clock/).waitFor();
       await fitsItsWidth(page);
       await shoot('home-phone', { fullPage: true });
-      const way = page.getByRole('link', { name: 'Go to the binnacle' });
+      const way = today.getByRole('link', { name: 'Go to the binnacle' });
       assert.equal(await way.getAttribute('href'), `/work-orders/${id}`);
       await office.close();
     },
