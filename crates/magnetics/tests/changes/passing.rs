@@ -1,0 +1,105 @@
+//! What passes: gales, storms, anomalies and magnets that are gone again.
+
+use crate::voyages::fleet::{Event, Log, Name, sail_log};
+use crate::voyages::gauss;
+use crate::{HOUR_S, began, calm, certain, is_sound, of_the_ship, run};
+use binnacle_magnetics::analyse::SampleReason;
+use binnacle_magnetics::angle::CompassHeading;
+use binnacle_magnetics::change::Cause;
+use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// Five days of gale from day 20 on: the card swings twice as far, and most windows are
+/// lost.
+fn in_a_gale(log: &mut Log, seed: u64) {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let since_days = |time: Timestamp| time.seconds_since(log.start) / 86_400.0;
+    let in_it = |s: &&mut Sample| (20.0..25.0).contains(&since_days(s.time));
+    for sample in log.samples.iter_mut().filter(in_it) {
+        let off = 0.12 * 2.2 * gauss(&mut rng);
+        sample.compass = CompassHeading::new(sample.compass.degrees() + off).unwrap();
+        sample.windows = 20;
+        sample.spread_deg = Some(0.8);
+    }
+}
+
+#[test]
+fn a_gale_is_no_disturbance_of_the_field() {
+    let mut taken_for_one_without_the_scatter = 0;
+    for seed in 101..105 {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        in_a_gale(&mut log, seed);
+        let analysis = run(&log.samples);
+        assert_eq!(certain(&analysis), 0, "seed {seed}");
+        for sample in &mut log.samples {
+            (sample.windows, sample.spread_deg) = (60, Some(0.4));
+        }
+        taken_for_one_without_the_scatter += certain(&run(&log.samples));
+    }
+    assert!(taken_for_one_without_the_scatter > 0);
+}
+
+#[test]
+fn a_storm_is_no_step_and_its_samples_are_left_out() {
+    let mut plan = calm(Event::Nothing);
+    plan.faults.storms_per_month = 6.0;
+    let mut stormy = 0;
+    for seed in 20..23 {
+        let log = sail_log(seed, &plan);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
+        let causes = analysis.changes.iter().map(|c| c.cause);
+        stormy += causes
+            .filter(|cause| *cause == Cause::MagneticStorm)
+            .count();
+        let left_out = analysis.samples.iter();
+        let left_out = left_out.filter(|s| s.reason == Some(SampleReason::Disturbance));
+        assert!(left_out.count() > 0, "seed {seed}");
+    }
+    assert!(stormy > 3, "{stormy}");
+}
+
+#[test]
+fn what_is_gone_within_hours_at_sea_is_no_strike() {
+    for (seed, event) in [
+        (1, Event::Magnet(3000.0)),
+        (2, Event::Magnet(3000.0)),
+        (1, Event::Astray(4.0)),
+        (2, Event::Astray(8.0)),
+        (3, Event::Astray(8.0)),
+    ] {
+        let log = sail_log(seed, &calm(event));
+        let began = began(&log, Name::Brief);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        assert!(of_the_ship(&analysis).is_empty(), "{:?}", analysis.changes);
+        let told = analysis.changes.iter().find(|c| c.detected_at >= began);
+        let told = told.unwrap_or_else(|| panic!("seed {seed}: {event:?} went unnoticed"));
+        assert_eq!(told.cause, Cause::LocalAnomaly, "seed {seed}: {told:?}");
+        let lasted_h = told.ended.unwrap().seconds_since(told.from) / HOUR_S;
+        assert!((0.5..5.0).contains(&lasted_h), "seed {seed}: {lasted_h} h");
+        assert_eq!(analysis.epochs.len(), 1);
+        let during = log
+            .samples
+            .iter()
+            .zip(&analysis.samples)
+            .filter(|(s, _)| s.time > told.from && Some(s.time) <= told.ended);
+        let reasons = during.map(|(_, s)| s.reason).collect::<Vec<_>>();
+        assert!(reasons.contains(&Some(SampleReason::Disturbance)));
+    }
+}
+
+#[test]
+fn a_step_that_was_told_and_is_gone_again_says_so_and_stays_one_change() {
+    let log = sail_log(2, &calm(Event::Astray(8.0)));
+    let analysis = run(&log.samples);
+    let told = &analysis.changes[0];
+    assert!(told.evidence[1].contains("at first taken for"), "{told:?}");
+    // In between it had been.
+    let before = log.samples.partition_point(|s| s.time <= told.detected_at);
+    let then = run(&log.samples[..before]);
+    assert_eq!(of_the_ship(&then).len(), 1, "{:?}", then.changes);
+}
