@@ -101,6 +101,54 @@ export const vessel = {
     },
   },
 
+  'the ship is dragged on the map, and curve, worst deviation and card follow': {
+    allowedErrors: [notSignedIn, /status of 409 .*\/card\.json/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      const panel = page.getByRole('region', { name: 'Deviation', exact: true });
+      const card = page.getByRole('region', { name: 'Deviation card' });
+      await card.getByRole('button', { name: 'Make the card' }).click();
+      await card.getByTestId('card').waitFor();
+      const before = await curve(page).getAttribute('d');
+      const worst = panel.getByTestId('worst-there');
+      const here = await worst.innerText();
+      const ship = panel.getByTestId('ship');
+      await ship.scrollIntoViewIfNeeded();
+      const from = await ship.boundingBox();
+      await page.mouse.move(from.x + 22, from.y + 22);
+      await page.mouse.down();
+      await page.mouse.move(from.x + 10, from.y - 30, { steps: 3 });
+      // Before she is let go.
+      await panel.getByRole('button', { name: 'Choose another place' }).waitFor();
+      await page.waitForFunction(
+        ([was]) => !document.querySelector('[data-testid=worst-there]').innerText.includes(was),
+        [here],
+      );
+      await page.mouse.up();
+      await worst.getByText('Largest deviation there').waitFor();
+      const to = await ship.boundingBox();
+      assert.ok(Math.abs(to.y - (from.y - 52)) < 6, 'she is where she was let go');
+      assert.notEqual(await curve(page).getAttribute('d'), before);
+      await card.getByText('For the place and day chosen above').waitFor();
+      await card.getByTestId('card').or(card.getByRole('alert')).waitFor();
+
+      const place = panel.getByText(/^At \d\d° /).first();
+      const dragged = await place.innerText();
+      await ship.focus();
+      await page.keyboard.press('ArrowDown');
+      await page.keyboard.press('Shift+ArrowLeft');
+      await page.waitForFunction(
+        (was) => ![...document.querySelectorAll('#deviation p')].some((p) => p.innerText === was),
+        dragged,
+      );
+      await shoot('vessel-elsewhere', {}, panel);
+      await panel.getByRole('button', { name: 'Back to the last position' }).click();
+      await worst.getByText('Largest deviation where she is').waitFor();
+      assert.equal(await curve(page).getAttribute('d'), before);
+    },
+  },
+
   'cargo is reported, discharged and withdrawn': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {

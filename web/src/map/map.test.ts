@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import { land } from 'virtual:land';
 import { marks, nearest, towards, trackPath } from './marks';
 import { near, placeOf, pointOf, wrapped } from './mercator';
+import { keyed, placeAt } from './moving';
 import { fitted, panned, pointAt, revealing, screenOf, viewBox, zoomed, type View } from './view';
 
 const world: View = { x: 0, y: 0, width: 360 };
@@ -100,5 +101,24 @@ describe('marks', () => {
     expect(nearest(fleet, at, 0.1)).toBeNull();
     expect(towards(fleet, suva, 'right')?.id).toBe('apia');
     expect(towards(fleet, suva, 'left')).toBeNull();
+  });
+});
+
+describe('a ship that is moved by hand', () => {
+  it('is where the pointer is, and at the edge when it leaves the map', () => {
+    const view = fitted([bilbao], 0.6);
+    const middle = placeAt(view, 0.6, 0.5, 0.5);
+    expect(middle.lat).toBeCloseTo(bilbao.lat, 1);
+    expect(middle.lon).toBeCloseTo(bilbao.lon, 1);
+    expect(placeAt(view, 0.6, 5, 0.5)).toEqual(placeAt(view, 0.6, 1, 0.5));
+    expect(placeAt({ ...view, x: 179 }, 0.6, 1, 0.5).lon).toBeLessThan(0);
+  });
+
+  it('goes by the arrow keys: north is up, east is right, across the antimeridian', () => {
+    expect(keyed(bilbao, 'ArrowUp', false)).toEqual({ lat: 44.3, lon: -3 });
+    expect(keyed(bilbao, 'ArrowRight', true)).toEqual({ lat: 43.3, lon: 7 });
+    expect(keyed(suva, 'ArrowRight', true)).toEqual({ lat: -18.1, lon: -171.6 });
+    expect(keyed({ lat: 78, lon: 0 }, 'ArrowUp', true)).toEqual({ lat: 80, lon: 0 });
+    expect(keyed(bilbao, 'Enter', false)).toBeNull();
   });
 });

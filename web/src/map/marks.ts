@@ -32,6 +32,10 @@ export function trackPath(track: readonly Place[], view: View): string {
   return `M${points.join('L')}`;
 }
 
+/** A track as the server has it: pairs of degrees north and east. */
+export const placesOf = (track: readonly (readonly number[])[]): Place[] =>
+  track.flatMap(([lat, lon]) => (lat === undefined || lon === undefined ? [] : [{ lat, lon }]));
+
 const round = (value: number): number => Math.round(value * 1000) / 1000;
 
 /** The vessel nearest to a point of the map, if it is as near as `within` units. */

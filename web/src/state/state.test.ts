@@ -1,6 +1,9 @@
 import { describe, expect, test, vi } from 'vitest';
 import { gathered, parseNews } from '../api/live.svelte';
 import { Problem } from '../api/problem';
+import type { Place } from '../api/client';
+import type { DeviationTable } from '../api/types';
+import { PlacedDeviation } from './placed.svelte';
 import { kept, Resource } from './resource.svelte';
 import { parseRoute } from './route.svelte';
 
@@ -102,5 +105,49 @@ describe('news', () => {
     vi.advanceTimersByTime(5000);
     expect(act).toHaveBeenCalledTimes(1);
     vi.useRealTimers();
+  });
+});
+
+describe('a ship put elsewhere', () => {
+  const at = (lon: number): Place => ({ lat: 50, lon, at: '2026-05-01T12:00:00Z' });
+  const table = (lon: number) => ({ ...at(lon), rows: [] }) as unknown as DeviationTable;
+
+  test('is asked about one place at a time, and about the last one always', async () => {
+    const waiting: ((lon: number) => void)[] = [];
+    const asked: number[] = [];
+    const placed = new PlacedDeviation((place) => {
+      asked.push(place?.lon ?? 0);
+      return new Promise((done) =>
+        waiting.push((lon) => {
+          done(table(lon));
+        }),
+      );
+    });
+    placed.move(at(1));
+    placed.move(at(2));
+    placed.put(at(3));
+    expect(asked).toEqual([1]);
+    waiting[0]?.(1);
+    await vi.waitFor(() => {
+      expect(asked).toEqual([1, 3]);
+    });
+    waiting[1]?.(3);
+    await vi.waitFor(() => {
+      expect(placed.shown.value?.lon).toBe(3);
+    });
+    placed.reset();
+    expect(placed.shown).toBe(placed.here);
+  });
+
+  test('has no curve where there is none, not that of another place', async () => {
+    const placed = new PlacedDeviation((place) =>
+      place ? Promise.reject(new Problem(422, 'x', 'no answer')) : Promise.resolve(table(0)),
+    );
+    await placed.load();
+    placed.put(at(9));
+    await vi.waitFor(() => {
+      expect(placed.shown.problem?.message).toBe('no answer');
+    });
+    expect(placed.shown.value).toBeUndefined();
   });
 });
