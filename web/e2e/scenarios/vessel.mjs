@@ -1,6 +1,15 @@
 /** A vessel: her curve, her cargo, her agents. */
 import assert from 'node:assert/strict';
-import { phone, notSignedIn, signIn, openVessel, chart, curve, fitsItsWidth } from '../helpers.mjs';
+import {
+  phone,
+  notSignedIn,
+  signIn,
+  openVessel,
+  chart,
+  curve,
+  fitsItsWidth,
+  struck,
+} from '../helpers.mjs';
 
 export const vessel = {
   'an officer signs in, opens a vessel and sees the curve with its samples': {
@@ -146,6 +155,32 @@ export const vessel = {
       await panel.getByRole('button', { name: 'Back to the last position' }).click();
       await worst.getByText('Largest deviation where she is').waitFor();
       assert.equal(await curve(page).getAttribute('d'), before);
+    },
+  },
+
+  'what happened stands on one axis with the residuals, for the keyboard too': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const hit = await struck(page);
+      await page.goto(`/vessels/${hit.id}`);
+      const panel = page.getByRole('region', { name: 'Residuals over time' });
+      const lanes = panel.getByTestId('time-lanes');
+      const epoch = lanes.getByRole('button', { name: /^Epoch 1, / });
+      await epoch.focus();
+      await page.keyboard.press('ArrowRight');
+      await panel.getByRole('status').getByText('Epoch 2').waitFor();
+      await page.keyboard.press('ArrowDown');
+      const said = panel.getByRole('status');
+      await said.getByText('Lightning or a shock').waitFor();
+      assert.match(await said.innerText(), /Nov|UTC/);
+      await panel.getByText('What happened as a table').press('Enter');
+      await panel
+        .getByRole('row')
+        .filter({ hasText: /Lightning or a shock\s*Change/ })
+        .waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessel-time', {}, panel);
     },
   },
 

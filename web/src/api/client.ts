@@ -153,6 +153,26 @@ export async function listLogbook(
   return { items: found.items, truncated: found.next !== null };
 }
 
+/** What stands in the logbook since an instant, withdrawn entries too. */
+export const listLogbookSince = (id: string, from: string) =>
+  everyPage((after) =>
+    answer(
+      client.GET('/api/v1/vessels/{id}/logbook', {
+        params: { path: { id }, query: { from, ...page(longestPage, after) } },
+      }),
+    ),
+  );
+
+/** A vessel's port calls that had not ended before an instant. */
+export const listCallsSince = (id: string, from: string) =>
+  everyPage((after) =>
+    answer(
+      client.GET('/api/v1/vessels/{id}/port-calls', {
+        params: { path: { id }, query: { from, ...page(longestPage, after) } },
+      }),
+    ),
+  );
+
 /** A key that no other request has; `randomUUID` is for pages over TLS only. */
 export function newKey(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(16));

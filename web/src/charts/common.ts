@@ -9,6 +9,8 @@ export const colours = {
   unused: 'var(--ink-faint)',
   grid: 'var(--line)',
   axis: 'var(--line-strong)',
+  bad: 'var(--bad)',
+  notable: 'var(--notable)',
   surface: 'var(--surface)',
 } as const;
 

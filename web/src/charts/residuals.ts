@@ -1,20 +1,32 @@
-/** Residuals over time, with the mean of each day or week. */
+/** Residuals over time, with the mean of each day or week, and when what changed. */
 
 import * as Plot from '@observablehq/plot';
 import { day } from '../format';
 import type { Interval, Residual } from '../science/residuals';
 import { text } from '../text';
+import type { Mark, Range } from '../timeline';
 import { colours, sideTick, spanned } from './common';
 
 export const residualsHeight = (width: number): number => (width < 520 ? 220 : 260);
+
+/** What the axis holds besides residuals. */
+export interface Axis {
+  range: Range;
+  /** Changes that were found. */
+  steps: Mark[];
+  /** What is looked at. */
+  shown: Mark | undefined;
+}
 
 export function drawResiduals(
   residuals: Residual[],
   intervals: Interval[],
   width: number,
+  { range, steps, shown }: Axis,
 ): Element {
   const middle = (interval: Interval) =>
     new Date((interval.from.getTime() + interval.to.getTime()) / 2);
+  const span = range.toMs - range.fromMs;
   return Plot.plot({
     width,
     height: residualsHeight(width),
@@ -25,6 +37,7 @@ export function drawResiduals(
     style: { fontSize: '12px', fontVariant: 'tabular-nums' },
     x: {
       type: 'utc',
+      domain: [new Date(range.fromMs), new Date(range.toMs)],
       label: null,
       ticks: Math.max(2, Math.floor(width / 130)),
       tickFormat: (date: Date) => day(date).replace(/ \d{4}$/, ''),
@@ -44,8 +57,20 @@ export function drawResiduals(
       labelArrow: 'none',
     },
     marks: [
+      Plot.rectX(shown ? [shown] : [], {
+        x1: (mark: Mark) => new Date(mark.fromMs),
+        x2: (mark: Mark) => new Date(Math.max(mark.toMs, mark.fromMs + leastShown * span)),
+        fill: colours.curve,
+        fillOpacity: 0.12,
+      }),
       Plot.gridY({ ticks: 5, stroke: colours.grid, strokeOpacity: 1 }),
       Plot.ruleY([0], { stroke: colours.axis }),
+      Plot.ruleX(steps, {
+        x: (mark: Mark) => new Date(mark.fromMs),
+        stroke: (mark: Mark) => (mark.grave ? colours.bad : colours.notable),
+        strokeWidth: 1.5,
+        strokeDasharray: '5 3',
+      }),
       Plot.dot(
         residuals.filter((residual) => residual.used),
         {
@@ -82,3 +107,6 @@ export function drawResiduals(
     ],
   });
 }
+
+/** An instant that is looked at is drawn so wide, as a share of the axis. */
+const leastShown = 0.004;

@@ -71,6 +71,25 @@ export const changes = {
     reported: (what: string) => `Reported: ${what}`,
   },
 
+  timeAxis: {
+    label: 'Epochs, changes, reports and port calls over time',
+    hint: 'Choose a mark to read what happened; arrow keys go from one to the next.',
+    lanes: { epochs: 'Epochs', changes: 'Changes', reports: 'Logbook', calls: 'Port calls' },
+    kinds: { epochs: 'Epoch', changes: 'Change', reports: 'Logbook', calls: 'Port call' },
+    epoch: (n: number) => `Epoch ${n}`,
+    fromTheStart: 'from the first sample on',
+    since: (day: string) => `from ${day} on`,
+    fromTo: (from: string, to: string) => `${from} to ${to}`,
+    toMore: 'More of it below',
+    toSchedule: 'To the schedule',
+    table: 'What happened as a table',
+    caption: 'Epochs, changes, reports and port calls, the latest first',
+    what: 'What',
+    kind: 'Kind',
+    when: 'When',
+    more: 'More',
+  },
+
   logbook: {
     title: 'Logbook',
     lead: 'What bears on the ship’s magnetism, reported ashore or on board. What was wrong is withdrawn and stays readable.',
