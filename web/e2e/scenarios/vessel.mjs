@@ -48,6 +48,9 @@ export const vessel = {
       }
 
       await page.getByTestId('residual-chart').locator('svg circle').first().waitFor();
+      const rose = page.getByTestId('coverage-rose');
+      assert.match(await rose.getAttribute('aria-label'), /^Samples by compass heading/);
+      assert.ok((await rose.locator('path.cell').count()) >= 24, 'the rose has its sectors');
       await page.getByTestId('coverage-table').waitFor();
       const advice = await page.getByTestId('sail-next').innerText();
       assert.match(advice, /(would narrow the band|narrows the band by more than) .*\d\.\d/);

@@ -3,6 +3,7 @@ import type { Coverage, Model, Sample } from '../api/types';
 import { coefficientErrors, exactCoefficients } from './coefficients';
 import { headingRange, latitudeRange, widths } from './advice';
 import { coverageTable, gaps } from './coverage';
+import { arcs, pointAt, rings, sectorPath, shade } from './rose';
 import { closed, deviationAt, everyStep, extremes, grade } from './curve';
 import { basisOf, parameterRows } from './parameters';
 import { byInterval, residualsOf, thinned } from './residuals';
@@ -247,5 +248,47 @@ describe('what to sail next', () => {
   test('latitudes have their side, the equator none', () => {
     expect(latitudeRange(-60, 0)).toBe('Between 60° S and 0°, magnetic latitude');
     expect(latitudeRange(-10, 20)).toBe('Between 10° S and 20° N, magnetic latitude');
+  });
+});
+
+describe('the coverage rose', () => {
+  const table = coverageTable({
+    heading_step_deg: 15,
+    magnetic_latitude_step_deg: 10,
+    cells: [
+      { magnetic_latitude_from_deg: 30, heading_from_deg: 90, samples: 5 },
+      { magnetic_latitude_from_deg: 20, heading_from_deg: 0, samples: 1 },
+    ],
+  } as unknown as Coverage);
+
+  test('has north up and east to the right', () => {
+    expect(pointAt(0, 100)).toBe('0 -100');
+    expect(pointAt(90, 100)).toBe('100 0');
+    expect(pointAt(180, 100)).toBe('0 100');
+    expect(pointAt(270, 100)).toBe('-100 0');
+  });
+
+  test('has the northernmost band outside, and every sector in each', () => {
+    const [outside, inside] = rings(table);
+    expect([outside?.fromDeg, outside?.outer, outside?.inner]).toEqual([30, 100, 65]);
+    expect([inside?.fromDeg, inside?.outer, inside?.inner]).toEqual([20, 65, 30]);
+    expect(outside?.cells).toHaveLength(24);
+    expect(outside?.cells[6]?.samples).toBe(5);
+  });
+
+  test('draws advice through north the short way, and a whole turn as a turn', () => {
+    const range = (heading_from_deg: number, heading_to_deg: number) => ({
+      heading_from_deg,
+      heading_to_deg,
+    });
+    expect(arcs([range(345, 15)], 90, 100)[0]).toContain('0 0 1');
+    expect(arcs([range(15, 345)], 90, 100)[0]).toContain('0 1 1');
+    expect(sectorPath(0, 360, 90, 100).match(/M/g)).toHaveLength(2);
+  });
+
+  test('shades the fullest cell whole, a single sample a little, none not at all', () => {
+    expect(shade(0, 100)).toBe(0);
+    expect(shade(100, 100)).toBeCloseTo(1);
+    expect(shade(1, 100)).toBeGreaterThan(0.18);
   });
 });

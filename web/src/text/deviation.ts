@@ -103,6 +103,10 @@ export const deviation = {
       `All headings are covered; ${bands === 1 ? 'one band' : `${bands} bands`} of magnetic latitude.`,
     summaryGaps: (gaps: string) => `No samples yet on compass headings ${gaps}.`,
     none: 'No samples yet.',
+    rose: 'Samples by compass heading, north up, and by magnetic latitude, the northernmost ring outside. The table below has the figures.',
+    ring: (from: string, to: string) => `${from} – ${to}`,
+    density: 'from none to most samples',
+    advised: 'worth sailing next',
     oneBand:
       'All samples are from one band of magnetic latitude: permanent and induced magnetism cannot be told apart yet, and the curve at a distant place rests on experience with other ships.',
     north: (v: string) => `${v} N`,
