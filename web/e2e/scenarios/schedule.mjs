@@ -162,6 +162,45 @@ export const schedule = {
     },
   },
 
+  'the month is a calendar for the keyboard, and a list of days on a phone': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const hit = await struck(page);
+      await page.goto('/schedule');
+      await page.getByText('Calendar', { exact: true }).click();
+      const month = page.getByTestId('month');
+      const first = await month.getAttribute('aria-label');
+      await month.locator('td[tabindex="0"]').focus();
+      const day = iso(monday()).slice(0, 10);
+      for (
+        let at = iso(Date.now()).slice(0, 10);
+        at < day;
+        at = iso(Date.parse(at) + dayMs).slice(0, 10)
+      ) {
+        await page.keyboard.press('ArrowRight');
+      }
+      const list = page.getByTestId('day');
+      await list.getByText('In Rotterdam from').waitFor();
+      assert.match(
+        await month.locator('td[tabindex="0"]').getAttribute('aria-label'),
+        /1 vessel in port/,
+      );
+      await fitsItsWidth(page);
+      await shoot('schedule-month', {}, page.locator('#line'));
+      await page.keyboard.press('PageDown');
+      await page.keyboard.press('PageDown');
+      assert.notEqual(await month.getAttribute('aria-label'), first);
+      await page.keyboard.press('PageUp');
+      await page.keyboard.press('PageUp');
+      await page.setViewportSize(phone);
+      await page.getByTestId('agenda').getByText(`${hit.name}: job at`).first().click();
+      await page.locator('#job').waitFor();
+      await fitsItsWidth(page);
+      await shoot('schedule-agenda', {}, page.locator('#line'));
+    },
+  },
+
   'a planned job is offered to its firm': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {

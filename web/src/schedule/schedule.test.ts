@@ -1,6 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { AdjustmentNeed, PlannedJob, PortCall, SchedulePlan } from '../api/types';
 import { atX, shown, spanFrom, ticks, xOf } from './axis';
+import { daysWith, inMonth, keyedDay, weeksOf } from './month';
 import { callAt, daysOf, instantOf, realChanges, rowsOf } from './plan';
 
 const dayMs = 86_400_000;
@@ -131,5 +132,43 @@ describe('what changed', () => {
     const before = plan([job('a', '2026-12-01')]);
     const found = realChanges(before, plan([job('a', '2026-12-08')], [told]));
     expect(found).toEqual([told]);
+  });
+});
+
+describe('the month', () => {
+  test('has whole weeks from Monday on', () => {
+    const weeks = weeksOf('2026-11');
+    expect(weeks).toHaveLength(6);
+    expect(weeks[0]?.[0]).toBe('2026-10-26');
+    expect(weeks.at(-1)?.[0]).toBe('2026-11-30');
+    expect(weeksOf('2027-02')).toHaveLength(4);
+  });
+
+  test('is walked by keys, by its last day where another month is shorter', () => {
+    expect(keyedDay('2026-11-30', 'ArrowRight')).toBe('2026-12-01');
+    expect(keyedDay('2026-11-22', 'ArrowUp')).toBe('2026-11-15');
+    expect(keyedDay('2026-11-18', 'Home')).toBe('2026-11-16');
+    expect(keyedDay('2026-11-22', 'End')).toBe('2026-11-22');
+    expect(keyedDay('2026-11-22', 'Enter')).toBeNull();
+    expect(inMonth('2027-01-31', 1)).toBe('2027-02-28');
+    expect(inMonth('2026-12-15', 1)).toBe('2027-01-15');
+    expect(inMonth('2027-01-15', -1)).toBe('2026-12-15');
+  });
+
+  test('has a call on each of its days, the first as an arrival, and only what falls into it', () => {
+    const call = { id: 'c', eta: '2026-11-20T22:00:00Z', etd: '2026-11-22T03:00:00Z' } as PortCall;
+    const long = { id: 'l', eta: '2026-10-01T00:00:00Z', etd: '2026-11-20T03:00:00Z' } as PortCall;
+    const row = {
+      calls: [call, long],
+      needs: [{ due_on: '2026-11-21' }, { due_on: '2026-12-21' }] as AdjustmentNeed[],
+      jobs: [{ day: '2026-11-22' }] as PlannedJob[],
+    };
+    const found = daysWith([row as never], '2026-11-20', '2026-11-30');
+    expect([...found.keys()].sort()).toEqual(['2026-11-20', '2026-11-21', '2026-11-22']);
+    expect(found.get('2026-11-20')?.arriving).toEqual([call]);
+    expect(found.get('2026-11-20')?.inPort).toEqual([long]);
+    expect(found.get('2026-11-21')?.inPort).toEqual([call]);
+    expect(found.get('2026-11-21')?.dues).toHaveLength(1);
+    expect(found.get('2026-11-22')?.jobs).toHaveLength(1);
   });
 });

@@ -1,5 +1,10 @@
 /** The schedule: who adjusts which compass where and when, and what it costs. */
 
+const months =
+  'January February March April May June July August September October November December'.split(
+    ' ',
+  );
+
 export const schedule = {
   schedule: {
     title: 'Schedule',
@@ -51,6 +56,34 @@ export const schedule = {
         pinned: 'pinned',
         due: 'due',
       },
+    },
+
+    month: {
+      view: 'View',
+      line: 'Time line',
+      month: 'Calendar',
+      name: (month: string) => `${months[Number(month.slice(5)) - 1] ?? ''} ${month.slice(0, 4)}`,
+      label: (month: string) =>
+        `${month}: arrow keys go from day to day, Page Up and Page Down from month to month`,
+      weekdays: ['Mon', 'Tue', 'Wed', 'Thu', 'Fri', 'Sat', 'Sun'],
+      dayName: (day: string, dues: number, jobs: number, calls: number) =>
+        [
+          day,
+          dues === 0 ? '' : `${dues} due`,
+          jobs === 0 ? '' : jobs === 1 ? '1 job' : `${jobs} jobs`,
+          calls === 0 ? '' : calls === 1 ? '1 vessel in port' : `${calls} vessels in port`,
+        ]
+          .filter((part) => part !== '')
+          .join(', '),
+      due: (compass: string) => `${compass} is due`,
+      dueShort: (vessel: string) => `${vessel} due`,
+      job: (vessel: string, port: string, firm: string) => `${vessel}: job at ${port} by ${firm}`,
+      jobShort: (vessel: string) => `${vessel}: job`,
+      callShort: (vessel: string, port: string) => `${vessel}, ${port}`,
+      staysShort: (vessel: string, port: string) => `${vessel}, in ${port}`,
+      more: (n: number) => `and ${n} more`,
+      nothing: 'Nothing on this day.',
+      empty: 'No port call, job or due date falls into this month.',
     },
 
     list: {
