@@ -81,6 +81,23 @@ describe('positions', () => {
   });
 });
 
+describe('times where a ship is', () => {
+  const at = '2026-11-14T23:30:00Z';
+
+  test('are UTC’s, hers, or both, with the day where it is another one there', () => {
+    expect(format.atSea(at, 2, 'utc')).toBe('14 Nov 2026, 23:30 UTC');
+    expect(format.atSea(at, 2, 'ship')).toBe('15 Nov 2026, 01:30 UTC+2');
+    expect(format.atSea(at, 2, 'both')).toBe('14 Nov 2026, 23:30 UTC (15 Nov, 01:30 UTC+2)');
+    expect(format.atSea(at, -5, 'both')).toBe('14 Nov 2026, 23:30 UTC (18:30 UTC−5)');
+  });
+
+  test('are UTC’s where her clocks are not known or show the same', () => {
+    expect(format.atSea(at, undefined, 'ship')).toBe('14 Nov 2026, 23:30 UTC');
+    expect(format.atSea(at, 0, 'both')).toBe('14 Nov 2026, 23:30 UTC');
+    expect(format.atSea(null, 3, 'both')).toBe('–');
+  });
+});
+
 describe('times and counts', () => {
   test('times are UTC whatever the zone of the reader', () => {
     expect(format.time('2026-11-14T08:30:59Z')).toBe('14 Nov 2026, 08:30 UTC');

@@ -110,12 +110,27 @@ export function zone(hoursAhead: number): string {
   return `UTC${hoursAhead < 0 ? '−' : '+'}${Math.abs(hoursAhead)}`;
 }
 
-/** An instant by the ship's clocks: `14 Nov 2026, 10:30 (UTC+2)`. */
-export function shipsTime(value: string | Date | null | undefined, hoursAhead: number): string {
+/** By which clocks an instant is written where the ship's are known. */
+export type Clocks = 'utc' | 'ship' | 'both';
+
+/**
+ * An instant where the ship's clocks are `hoursAhead` of UTC: `14 Nov 2026, 08:30 UTC`,
+ * `14 Nov 2026, 10:30 UTC+2`, or both, with the day where it is another one there:
+ * `14 Nov 2026, 23:30 UTC (15 Nov, 01:30 UTC+2)`.
+ */
+export function atSea(
+  value: string | Date | null | undefined,
+  hoursAhead: number | undefined,
+  clocks: Clocks,
+): string {
   const date = toDate(value);
   if (!date) return unknown;
+  if (!hoursAhead || clocks === 'utc') return time(date);
   const there = new Date(date.getTime() + hoursAhead * 3_600_000);
-  return `${day(there)}, ${there.toISOString().slice(11, 16)} (${zone(hoursAhead)})`;
+  const hour = `${there.toISOString().slice(11, 16)} ${zone(hoursAhead)}`;
+  if (clocks === 'ship') return `${day(there)}, ${hour}`;
+  const on = `${there.getUTCDate()} ${months[there.getUTCMonth()] ?? ''}, `;
+  return `${time(date)} (${day(there) === day(date) ? '' : on}${hour})`;
 }
 
 /** The nautical zone of a longitude: hours ahead of UTC. */

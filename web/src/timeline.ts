@@ -43,13 +43,14 @@ export function marksIn(
   timeline: Timeline | undefined,
   entries: readonly LogbookEntry[],
   calls: readonly PortCall[],
+  at: (value: string, where: { port: string }) => string = time,
 ): Mark[] {
   const found = [
     ...(timeline ? [...epochMarks(timeline, range), ...changeMarks(timeline)] : []),
     ...entries
       .filter((entry) => entry.withdrawn_at === null)
       .map((entry) => reportMark(entry, range)),
-    ...calls.filter((call) => call.withdrawn_at === null).map(callMark),
+    ...calls.filter((call) => call.withdrawn_at === null).map((call) => callMark(call, at)),
   ];
   return found
     .filter((mark) => mark.toMs >= range.fromMs && mark.fromMs <= range.toMs)
@@ -112,14 +113,14 @@ function reportMark(entry: LogbookEntry, range: Range): Mark {
   };
 }
 
-function callMark(call: PortCall): Mark {
+function callMark(call: PortCall, at: (value: string, where: { port: string }) => string): Mark {
   return {
     key: `call ${call.id}`,
     lane: 'calls',
     fromMs: Date.parse(call.eta),
     toMs: Date.parse(call.etd),
     title: call.port_name || call.port,
-    when: t.fromTo(time(call.eta), time(call.etd)),
+    when: t.fromTo(at(call.eta, call), at(call.etd, call)),
     more: '',
     at: '/schedule',
     grave: false,

@@ -186,7 +186,7 @@ export const people = {
       });
       assert.ok(taken.ok(), await taken.text());
       const today = page.getByRole('region', { name: 'Today’s ships' });
-      await today.getByText(/UTC · \d+ \w+, \d\d:\d\d by this device’s clock/).waitFor();
+      await today.getByText(/UTC[^·]* · \d+ \w+, \d\d:\d\d by this device’s clock/).waitFor();
       await fitsItsWidth(page);
       await shoot('home-phone', { fullPage: true });
       const way = today.getByRole('link', { name: 'Go to the binnacle' });

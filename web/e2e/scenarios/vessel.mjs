@@ -187,6 +187,24 @@ export const vessel = {
     },
   },
 
+  'times are written by the clocks that the reader chose': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      const { id, last_position: last } = await struck(page);
+      const zone = Math.round(last.lon / 15);
+      const position = page.locator('dl').first().locator('div', { hasText: 'Last position' });
+      await page.goto(`/vessels/${id}`);
+      // Both at first; where her clocks show UTC there is nothing to add.
+      await position.getByText(zone === 0 ? /UTC$/ : /UTC \(.*UTC[+−]\d+\)$/).waitFor();
+      await page.goto('/settings');
+      await page.getByText('Ship’s time', { exact: true }).click();
+      await page.getByText(/two hours ahead: .*, \d\d:\d\d UTC\+2 /).waitFor();
+      await page.goto(`/vessels/${id}`);
+      await position.getByText(zone === 0 ? /\d UTC$/ : /\d UTC[+−]\d+$/).waitFor();
+    },
+  },
+
   'cargo is reported, discharged and withdrawn': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {

@@ -59,6 +59,8 @@ export const schedule = {
     },
 
     month: {
+      title: 'Calendar',
+      lead: 'What falls on each day, a call on its days in UTC. Arrow keys go from day to day; a job is opened from the day’s list.',
       view: 'View',
       line: 'Time line',
       month: 'Calendar',
@@ -123,7 +125,6 @@ export const schedule = {
       } as Record<string, string>,
       when: 'When',
       window: (from: string, to: string) => `${from} to ${to}`,
-      utc: (from: string, to: string) => `${from} to ${to}`,
       firm: 'Firm',
       why: 'Why',
       due: (day: string, urgency: string) => `due by ${day} · ${urgency}`,

@@ -15,6 +15,15 @@ export const settings = {
     remove: 'Remove',
     sure: 'Are you sure?',
 
+    clocks: {
+      title: 'Times',
+      lead: 'How times are written where a ship is or calls. Her clocks follow the nautical zone of her longitude; legal time ashore may differ by an hour or two. Everything else is in UTC.',
+      label: 'Times are written in',
+      names: { utc: 'UTC', ship: 'Ship’s time', both: 'Both' },
+      example: (time: string) => `Now, where ships are two hours ahead: ${time}`,
+      kept: 'Kept in this browser.',
+    },
+
     password: {
       title: 'Password',
       current: 'Password now',
