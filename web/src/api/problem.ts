@@ -1,6 +1,7 @@
 /** What went wrong with a call, as RFC 9457 problem documents say it. */
 
 import { text } from '../text';
+import { invalidInWords } from './invalid';
 import type { AdjustmentRefusal, CardWithdrawn, LeftOut, Refusal } from './types';
 
 /** What the server refused, or `offline` when it could not be reached. */
@@ -35,7 +36,9 @@ export function readProblem(status: number, body: unknown): Problem {
     'detail' in about && typeof about.detail === 'string' && about.detail !== ''
       ? about.detail
       : text.problem.unexpected(status);
-  return new Problem(status, type.split('/').at(-1) ?? '', detail, ...reasonsIn(about));
+  const kind = type.split('/').at(-1) ?? '';
+  const words = kind === 'invalid' ? invalidInWords(detail) : detail;
+  return new Problem(status, kind, words, ...reasonsIn(about));
 }
 
 function reasonsIn(

@@ -9,6 +9,7 @@ import { binnacles } from './binnacles';
 import { changes } from './changes';
 import { common } from './common';
 import { deviation } from './deviation';
+import { fields } from './fields';
 import { firms } from './firms';
 import { fleet } from './fleet';
 import { notifications } from './notifications';
@@ -35,6 +36,7 @@ export const text = {
   ...schedule,
   ...reports,
   ...notifications,
+  ...fields,
   ...firms,
   ...settings,
   ...berth,
