@@ -5,13 +5,16 @@ export const phone = { width: 390, height: 844 };
 /** Chromium reports every 4xx answer in the console; these are asked for. */
 export const notSignedIn = /status of 401 .*\/api\/v1\/me\b/;
 
-export async function signIn(page, { email, password }) {
+/** As anyone; `heading` is that of their first page. */
+export async function signInAs(page, email, password, heading) {
   await page.goto('/');
   await page.getByLabel('E-mail').fill(email);
   await page.getByLabel('Password').fill(password);
   await page.getByRole('button', { name: 'Sign in' }).click();
-  await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
+  await page.getByRole('heading', { name: heading, level: 1 }).waitFor();
 }
+
+export const signIn = (page, { email, password }) => signInAs(page, email, password, 'Fleet');
 
 /** Opens the first vessel of the list that has a model; answers her name. */
 export async function openVessel(page) {

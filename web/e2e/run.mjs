@@ -3,7 +3,8 @@
  *
  * Environment: BINNACLE_URL, BINNACLE_EMAIL, BINNACLE_PASSWORD (an admin whose
  * fleet has at least one vessel with a model), BINNACLE_ADJUSTER (the e-mail of one of
- * a firm that works for it, with the same password), BINNACLE_CHROMIUM (else the
+ * a firm that works for it, with the same password), BINNACLE_PLATFORM (the e-mail of who
+ * runs the platform, with the same password), BINNACLE_CHROMIUM (else the
  * system's). Screenshots go to tests/artefacts. Exit code 1 on the first failure.
  */
 import { mkdir } from 'node:fs/promises';
@@ -17,6 +18,7 @@ import { fleet } from './scenarios/fleet.mjs';
 import { link } from './scenarios/link.mjs';
 import { papers } from './scenarios/papers.mjs';
 import { people } from './scenarios/people.mjs';
+import { platform } from './scenarios/platform.mjs';
 import { schedule } from './scenarios/schedule.mjs';
 import { session } from './scenarios/session.mjs';
 import { told } from './scenarios/told.mjs';
@@ -34,6 +36,7 @@ const groups = {
   adjusting,
   schedule,
   people,
+  platform,
   told,
   access,
 };
@@ -46,6 +49,7 @@ const settings = {
   email: required('BINNACLE_EMAIL'),
   password: required('BINNACLE_PASSWORD'),
   adjuster: process.env.BINNACLE_ADJUSTER,
+  platform: process.env.BINNACLE_PLATFORM,
 };
 
 /** All of them, those of a group, or those with the words in their names: `npm run e2e -- fleet`. */

@@ -1,7 +1,15 @@
 /** Every page, by day and by night, on a desk and on a phone: axe finds nothing. */
 import assert from 'node:assert/strict';
 import { findings } from '../axe.mjs';
-import { curve, fitsItsWidth, notSignedIn, phone, signIn, withModel } from '../helpers.mjs';
+import {
+  curve,
+  fitsItsWidth,
+  notSignedIn,
+  phone,
+  signIn,
+  signInAs,
+  withModel,
+} from '../helpers.mjs';
 
 /** The latest order there is. */
 async function anOrder(vessel, page) {
@@ -71,13 +79,47 @@ const looks = [
   { look: 'phone-night', colorScheme: 'dark', viewport: phone },
 ];
 
+/** An adjuster's pages and the platform's; their addresses, and what shows that they are there. */
+const others = [
+  {
+    who: 'adjuster',
+    home: 'My orders',
+    paths: ['/', '/work-orders', '/settings', '/notifications'],
+  },
+  { who: 'platform', home: 'Platform', paths: ['/', '/settings'] },
+];
+
+async function eachOf({ page, settings, shoot }, { who, home, paths }, look) {
+  const found = [];
+  await signInAs(page, settings[who], settings.password, home);
+  for (const path of paths) {
+    await page.goto(path);
+    await page.getByRole('heading', { level: 1 }).waitFor();
+    await page.waitForTimeout(400);
+    found.push(...(await findings(page)).map((line) => `${who} ${path}: ${line}`));
+    await fitsItsWidth(page);
+    await shoot(`page-${who}${path.replaceAll('/', '-')}-${look}`, { fullPage: true });
+  }
+  assert.deepEqual(found, []);
+}
+
 export const access = Object.fromEntries(
-  looks.map(({ look, ...screen }) => [
-    `axe finds nothing on any page, ${look.replace('-', ' by ')}`,
-    {
-      ...screen,
-      allowedErrors: [notSignedIn],
-      run: (tools) => each(tools, look),
-    },
+  looks.flatMap(({ look, ...screen }) => [
+    [
+      `axe finds nothing on any page, ${look.replace('-', ' by ')}`,
+      {
+        ...screen,
+        allowedErrors: [notSignedIn],
+        run: (tools) => each(tools, look),
+      },
+    ],
+    ...others.map((other) => [
+      `axe finds nothing on the ${other.who}’s pages, ${look.replace('-', ' by ')}`,
+      {
+        ...screen,
+        allowedErrors: [notSignedIn],
+        run: (tools) => eachOf(tools, other, look),
+      },
+    ]),
   ]),
 );

@@ -27,6 +27,11 @@ class SessionState {
     return this.me?.role === 'adjuster';
   }
 
+  /** Whether the reader runs the platform: then there is neither fleet nor orders. */
+  get isPlatformAdmin(): boolean {
+    return this.me?.role === 'platform_admin';
+  }
+
   /** Whether the reader may work at the binnacle: the ship's own people, or a firm's. */
   get mayAdjust(): boolean {
     return this.isAdmin || this.isAdjuster;

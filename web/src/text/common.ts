@@ -86,6 +86,7 @@ export const common = {
     schedule: 'Schedule · Binnacle',
     firms: 'Firms · Binnacle',
     home: 'My orders · Binnacle',
+    platform: 'Platform · Binnacle',
     reports: 'Reports · Binnacle',
     notifications: 'Notifications · Binnacle',
     settings: 'Settings · Binnacle',

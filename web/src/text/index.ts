@@ -16,6 +16,7 @@ import { notifications } from './notifications';
 import { offers } from './offers';
 import { orders } from './orders';
 import { papers } from './papers';
+import { platform } from './platform';
 import { reports } from './reports';
 import { schedule } from './schedule';
 import { settings } from './settings';
@@ -34,6 +35,7 @@ export const text = {
   ...offers,
   ...orders,
   ...schedule,
+  ...platform,
   ...reports,
   ...notifications,
   ...fields,
