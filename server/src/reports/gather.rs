@@ -11,17 +11,19 @@ use crate::models::{self, StoredModel};
 use crate::needs::{Facts, need, of_fleet};
 use crate::schedule;
 use crate::time::Time;
-use crate::work_orders::{self, Done, State};
+use crate::work_orders::{self, Done, Span, State};
 use binnacle_magnetics::time::Timestamp;
 use chrono::{Days, NaiveDate, NaiveTime};
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
 
-/// The report of a fleet, with the jobs from one day to another.
+/// The report of a fleet, with the jobs from one day to another; also those of before that
+/// the server heard of after `late_since`.
 pub(super) async fn gather(
     app: &App,
     operator: OperatorId,
     (from, to): (NaiveDate, NaiveDate),
+    late_since: Option<Time>,
 ) -> Result<Report> {
     let made_at: Time = app.clock.now().into();
     let facts = of_fleet(app, operator, None).await?;
@@ -29,7 +31,13 @@ pub(super) async fn gather(
     let models = models::current_of_fleet(&app.db, operator, all.0, all.1).await?;
     let terms = schedule::terms(&app.db, operator).await?;
     let under_way = under_way(&app.db, operator).await?;
-    let jobs = jobs(&app.db, operator, (from, to)).await?;
+    let span = Span {
+        from: midnight("from", from)?,
+        until: midnight("to", to + Days::new(1))?,
+        late_since,
+        known_at: made_at,
+    };
+    let jobs = jobs(&app.db, operator, span).await?;
     let settings = settings::find(&app.db, operator).await?;
     let today = made_at.0.to_chrono().date_naive();
     let mut due: Vec<DueCompass> = facts
@@ -126,13 +134,8 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
     all
 }
 
-async fn jobs(
-    db: &Db,
-    operator: OperatorId,
-    (from, to): (NaiveDate, NaiveDate),
-) -> Result<Vec<Job>> {
-    let after = midnight("to", to + Days::new(1))?;
-    let done = work_orders::done(db, operator, midnight("from", from)?, after).await?;
+async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
+    let done = work_orders::done(db, operator, span).await?;
     let terms = firms::of_operator(db, operator).await?;
     let usual = |job: &Done| {
         let (_, _, terms) = terms

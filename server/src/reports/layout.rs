@@ -3,7 +3,7 @@
 use super::report::{DueCompass, FeeFrom, Job, Report};
 use crate::sheet::paper::{LEFT, LINE, Paper, RIGHT, SIZE};
 use crate::sheet::words::{east_west, heading};
-use crate::sheet::{Face, Sheet, Style, cut};
+use crate::sheet::{Face, Sheet, Style, cut, wrap};
 use binnacle_schedule::needs::Urgency;
 
 /// More compasses than these are in the CSV.
@@ -260,13 +260,25 @@ fn titles(paper: &mut Paper, columns: &[Column]) {
 }
 
 fn row(paper: &mut Paper, columns: &[Column], cells: &[(String, Style)]) {
-    paper.room_for(1);
-    for (index, ((_, x), (text, style))) in columns.iter().zip(cells).enumerate() {
-        let end = columns.get(index + 1).map_or(RIGHT, |(_, next)| next - GAP);
-        let text = cut(text, style.face, style.size, end - x);
-        paper.put(*x, *style, &text);
+    let wrapped: Vec<Vec<String>> = columns
+        .iter()
+        .zip(cells)
+        .enumerate()
+        .map(|(index, ((_, x), (text, style)))| {
+            let end = columns.get(index + 1).map_or(RIGHT, |(_, next)| next - GAP);
+            wrap(text, style.face, style.size, end - x)
+        })
+        .collect();
+    let lines = wrapped.iter().map(Vec::len).max().unwrap_or(0).max(1);
+    paper.room_for(lines);
+    for line in 0..lines {
+        for (((_, x), (_, style)), cell) in columns.iter().zip(cells).zip(&wrapped) {
+            if let Some(text) = cell.get(line) {
+                paper.put(*x, *style, text);
+            }
+        }
+        paper.down(LINE);
     }
-    paper.down(LINE);
 }
 
 /// Whole euros, in groups of three.
@@ -288,6 +300,22 @@ fn hours(hours: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_long_reason_is_printed_whole() {
+        let reason = "24 months after the adjustment of 2025-01-15 (ISO 25862:2019, Annex G, \
+                      read second-hand), brought forward by welding near the compass";
+        let plain = |text: &str| (text.to_owned(), Style::plain(SIZE));
+        let cells = ["Nao", "Standard compass", "2026-12-20", reason, "none"].map(plain);
+        let mut paper = Paper::new();
+        row(&mut paper, &DUE, &cells);
+        row(&mut paper, &DUE, &cells);
+        let printed = crate::sheet::svg(&paper.finish(&[])[0], "");
+        for word in reason.split_whitespace() {
+            assert!(printed.contains(word), "{word}: {printed}");
+        }
+        assert!(!printed.contains('…'), "{printed}");
+    }
 
     #[test]
     fn money_is_written_in_groups_with_its_sign() {

@@ -138,7 +138,7 @@ impl Range {
         if (to - from).num_days() > LONGEST_DAYS {
             return invalid(format!("{from} is more than ten years before {to}"));
         }
-        gather::gather(app, reader.operator, (from, to)).await
+        gather::gather(app, reader.operator, (from, to), None).await
     }
 }
 

@@ -8,7 +8,7 @@ use super::gather::gather;
 use super::report::Report;
 use super::{Table, csv};
 use crate::app::App;
-use crate::db::{Tx, execute, rows};
+use crate::db::{Tx, execute, row, rows};
 use crate::error::Result;
 use crate::ids::{DeliveryId, OperatorId, RecipientId};
 use crate::mail;
@@ -68,7 +68,8 @@ pub async fn look(app: &App) -> Result<usize> {
 /// False when another process was faster.
 async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) -> Result<bool> {
     let last = month_after(month) - Days::new(1);
-    let report = gather(app, operator, (month, last)).await?;
+    let before = last_made(app, operator, month).await?;
+    let report = gather(app, operator, (month, last), before).await?;
     let letter = mail::monthly_letter(&report.words(), operator, &name(month));
     let tables = [Table::Due, Table::Deviation, Table::Jobs];
     let [due, deviation, jobs] = tables.map(|table| csv::table(&report, table));
@@ -103,6 +104,22 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
     }
     tx.commit().await?;
     Ok(true)
+}
+
+/// When the last report before a month's was made: what was done earlier and came later is
+/// in the next one.
+async fn last_made(app: &App, operator: OperatorId, month: NaiveDate) -> Result<Option<Time>> {
+    let found = row!(
+        &app.db,
+        (Time,),
+        "SELECT made_at FROM monthly_reports
+         WHERE operator_id = $1 AND month < $2
+         ORDER BY month DESC
+         LIMIT 1",
+        operator,
+        name(month)
+    )?;
+    Ok(found.map(|(made_at,)| made_at))
 }
 
 /// Those who were on the list before the month ended, in the order of their ids.

@@ -233,7 +233,8 @@ pub(super) async fn complete(
     let port = change.whole.summary.port.clone();
     write_logbook(change, completed.logbook_entry, at, &port).await?;
     let summary = change.whole.summary.clone();
-    store::complete(&mut change.tx, &summary, at, &record).await?;
+    let when = (at, change.now);
+    store::complete(&mut change.tx, &summary, when, &record).await?;
     change
         .append(Content::Completion(Box::new(completed)))
         .await?;

@@ -35,18 +35,37 @@ pub struct Done {
     pub agreed_eur: Option<f64>,
 }
 
-/// An operator's orders that were completed from a time until another, in order.
-pub async fn done(db: &Db, operator: OperatorId, from: Time, until: Time) -> Result<Vec<Done>> {
+/// Which adjustments that were completed.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// From this time on.
+    pub from: Time,
+    /// Until this.
+    pub until: Time,
+    /// Those of before too that reached the server after this: the last report that there
+    /// was did not know of them.
+    pub late_since: Option<Time>,
+    /// As was known at this time.
+    pub known_at: Time,
+}
+
+/// An operator's orders that were completed within a time, in order.
+pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>> {
     let found = rows!(
         db,
         (OrderId,),
         "SELECT o.id FROM work_orders o
          JOIN vessels v ON v.id = o.vessel_id
-         WHERE v.operator_id = $1 AND o.completed_at >= $2 AND o.completed_at < $3
+         WHERE v.operator_id = $1 AND o.completed_at < $3
+           AND (o.completed_at >= $2
+                OR COALESCE(o.completion_received_at, o.completed_at) > $4)
+           AND COALESCE(o.completion_received_at, o.completed_at) <= $5
          ORDER BY o.completed_at, o.id",
         operator,
-        from,
-        until
+        span.from,
+        span.until,
+        span.late_since.map_or(i64::MAX, |time| time.0.micros()),
+        span.known_at
     )?;
     let mut done = Vec::with_capacity(found.len());
     for (order,) in found {

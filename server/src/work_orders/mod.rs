@@ -44,7 +44,7 @@ mod view;
 
 pub use completed::{AtSea, CompletedOrder, completed};
 pub use deadlines::{lapse, watch};
-pub use done::{Done, done};
+pub use done::{Done, Span, done};
 pub use offering::NewOffer;
 pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};

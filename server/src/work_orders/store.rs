@@ -256,13 +256,14 @@ async fn write_offers(tx: &mut Tx, whole: &Whole, offers: &Offers) -> Result<()>
 pub(super) async fn complete(
     tx: &mut Tx,
     summary: &Summary,
-    completed_at: Time,
+    (completed_at, received_at): (Time, Time),
     record: &str,
 ) -> Result<()> {
     execute!(
         tx,
         "UPDATE work_orders
-         SET completed_at = $3, record = $4, adjuster_name = $5, adjuster_licence = $6, firm = $7
+         SET completed_at = $3, record = $4, adjuster_name = $5, adjuster_licence = $6, firm = $7,
+             completion_received_at = $8
          WHERE vessel_id = $1 AND id = $2",
         summary.vessel_id,
         summary.id,
@@ -270,7 +271,8 @@ pub(super) async fn complete(
         record,
         summary.adjuster_name.as_deref(),
         summary.adjuster_licence.as_deref(),
-        summary.firm.as_deref()
+        summary.firm.as_deref(),
+        received_at
     )?;
     Ok(())
 }

@@ -15,6 +15,7 @@ on_both!(
     a_job_is_reckoned_against_a_swing,
     the_files_say_what_the_report_says,
     the_report_of_a_month_goes_once_to_those_who_were_on_the_list,
+    a_job_that_was_sent_after_its_month_is_in_the_next_report,
     settings_and_times_that_make_no_sense_are_refused,
     another_operators_fleet_is_in_no_report,
 );
@@ -212,6 +213,38 @@ async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(shore: Sh
     assert!(due.contains("Nao,Standard compass,2026-12-20"), "{due}");
     assert_eq!(read["files"].as_object().unwrap().len(), 4);
     other.db.close().await;
+    shore.finish().await;
+}
+
+async fn a_job_that_was_sent_after_its_month_is_in_the_next_report(shore: Shore) {
+    let relay = Relay::start().await;
+    let job = Job::begin(&shore).await;
+    let ada = &job.person;
+    let wanted = json!({ "monthly_to": ["b@example.com"] });
+    put(ada, "/reports/settings", &wanted).await.good();
+    job.complete().await;
+    assert_eq!(report(ada, "").await["jobs"][0]["order_id"], job.order);
+    // As if the phone had kept it until the second of December, 00:00 UTC.
+    shore
+        .sql(
+            "UPDATE work_orders SET completion_received_at = 1796169600000000
+             WHERE completion_received_at >= completed_at",
+        )
+        .await;
+    let mut told = Vec::new();
+    // The first of December, of January and of February.
+    for days in [10.0, 31.0, 31.0] {
+        shore.advance(days * DAY_S);
+        assert_eq!(look(&shore.app).await.unwrap(), 1);
+        deliver(&shore, &relay).await;
+        let letter = relay.got().pop().unwrap();
+        let files = parts(&letter.text)["files"].clone();
+        let jobs = files.as_object().unwrap().iter();
+        let mut jobs = jobs.filter(|(name, _)| name.starts_with("compass-jobs"));
+        let csv = jobs.next().unwrap().1[1].as_str().unwrap().to_owned();
+        told.push(csv.lines().count() - 1);
+    }
+    assert_eq!(told, [0, 1, 0]);
     shore.finish().await;
 }
 
