@@ -1,28 +1,23 @@
-//! Orders as iCalendar events (RFC 5545).
+//! Orders, port calls and due dates as iCalendar events (RFC 5545).
 //!
-//! What always holds: an order keeps its UID, and its SEQUENCE grows with its log; times
-//! are UTC; the same orders make the same octets.
+//! What always holds: each keeps its UID, and its SEQUENCE grows with an order's log, a
+//! call's revisions or the versions of a due date; times are UTC, due dates days; the same
+//! make the same octets.
 
-use super::store::Appointment;
+use super::store::{Appointment, Call, Due};
 use crate::time::Time;
 use crate::work_orders::State;
 use anyhow::Context;
-use chrono::{DateTime, TimeDelta, Utc};
+use binnacle_schedule::ports::{self, PortCode};
+use chrono::{DateTime, NaiveDate, TimeDelta, Utc};
 use icalendar::{Calendar, Component, Event, EventLike, EventStatus, Property};
 use serde::Deserialize;
 
 /// An adjustment at the berth takes about so long.
 const TAKES: TimeDelta = TimeDelta::hours(2);
 
-/// The calendar of these orders.
-///
-/// # Errors
-/// When an order's time is beyond the calendar's.
-pub(super) fn write(
-    name: &str,
-    appointments: &[Appointment],
-    public_url: Option<&str>,
-) -> anyhow::Result<String> {
+/// The calendar of these events.
+pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
     let mut calendar = Calendar {
         properties: Vec::new(),
         components: Vec::new(),
@@ -37,10 +32,114 @@ pub(super) fn write(
     ] {
         calendar.append_property(Property::new(key, value));
     }
-    for appointment in appointments {
-        calendar.push(event(appointment, public_url)?);
+    for event in events {
+        calendar.push(event);
     }
-    Ok(calendar.to_string())
+    calendar.to_string()
+}
+
+/// Work orders as events.
+///
+/// # Errors
+/// When a time is beyond the calendar's, here and below.
+pub(super) fn orders(
+    orders: &[Appointment],
+    public_url: Option<&str>,
+) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = orders.iter().map(|one| event(one, public_url)).collect();
+    Ok(all?.into_iter())
+}
+
+/// Port calls as events.
+pub(super) fn calls(calls: &[Call]) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = calls.iter().map(call).collect();
+    Ok(all?.into_iter())
+}
+
+/// Due dates as days.
+pub(super) fn due_dates(
+    due: &[Due],
+    public_url: Option<&str>,
+) -> anyhow::Result<impl Iterator<Item = Event>> {
+    let all: anyhow::Result<Vec<Event>> = due.iter().map(|one| day(one, public_url)).collect();
+    Ok(all?.into_iter())
+}
+
+fn call(call: &Call) -> anyhow::Result<Event> {
+    let port = PortCode::parse(&call.port).ok().and_then(ports::find);
+    let port = port.map_or_else(
+        || call.port.clone(),
+        |port| format!("{} ({})", port.name, call.port),
+    );
+    let place = match &call.berth {
+        Some(berth) => format!("{port}, {berth}"),
+        None => port.clone(),
+    };
+    let at = utc(call
+        .withdrawn_at
+        .or(call.revised_at)
+        .unwrap_or(call.created_at))?;
+    // Withdrawing is no revision, and comes after the revision that it withdraws.
+    let sequence = 2 * call.revision + i64::from(call.withdrawn_at.is_some());
+    let mut lines = vec![
+        expected("ETA", call.eta, call.eta_uncertainty_h),
+        expected("ETD", call.etd, call.etd_uncertainty_h),
+    ];
+    if call.withdrawn_at.is_some() {
+        let why = call.withdrawal_reason.as_deref();
+        lines.push(why.map_or_else(|| "Withdrawn".to_owned(), |why| format!("Withdrawn: {why}")));
+    }
+    let mut event = Event::new();
+    event
+        .uid(&format!("call-{}@binnacle", call.id))
+        .add_property("SEQUENCE", sequence.to_string())
+        .timestamp(at)
+        .last_modified(at)
+        .starts(utc(call.eta)?)
+        .ends(utc(call.etd)?)
+        .summary(&format!("{} at {port}", call.vessel_name))
+        .location(&place)
+        .description(&lines.join("\n"))
+        .add_property("TRANSP", "TRANSPARENT")
+        .status(if call.withdrawn_at.is_some() {
+            EventStatus::Cancelled
+        } else {
+            EventStatus::Tentative
+        });
+    Ok(event.done())
+}
+
+fn expected(what: &str, at: Time, uncertainty_h: f64) -> String {
+    let at = at.to_the_minute();
+    if uncertainty_h > 0.0 {
+        format!("{what}: {at}, within {uncertainty_h} h nineteen times in twenty")
+    } else {
+        format!("{what}: {at}")
+    }
+}
+
+fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
+    let on: NaiveDate = due.due_on.parse().context("a stored due date")?;
+    let at = utc(due.changed_at)?;
+    let mut event = Event::new();
+    event
+        .uid(&format!("due-{}@binnacle", due.compass_id))
+        .add_property("SEQUENCE", due.version.to_string())
+        .timestamp(at)
+        .last_modified(at)
+        .starts(on)
+        .summary(&format!(
+            "{}, {}: adjustment due ({})",
+            due.vessel_name, due.compass_name, due.urgency
+        ))
+        .description(&due.reason)
+        .add_property("TRANSP", "TRANSPARENT")
+        .status(EventStatus::Confirmed);
+    if let Some(url) = public_url {
+        let url = url.trim_end_matches('/');
+        event.url(&format!("{url}/vessels/{}", due.vessel_id));
+    }
+    Ok(event.done())
 }
 
 /// What an entry of the log says of itself.
@@ -62,6 +161,7 @@ fn event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event>
         .uid(&format!("{}@binnacle", order.id))
         .add_property("SEQUENCE", order.last_seq.to_string())
         .timestamp(utc(written.at)?)
+        .last_modified(utc(written.at)?)
         .starts(starts)
         .ends(starts + TAKES)
         .summary(&format!(

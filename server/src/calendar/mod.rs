@@ -1,7 +1,9 @@
-//! Calendars: work orders where people keep their appointments (RFC 5545).
+//! Calendars: work orders, port calls and due dates where people keep their appointments
+//! (RFC 5545).
 //!
 //! What always holds: a feed's address is its secret, shown once and stored as a hash; it
-//! shows what its operator or firm sees now, and nothing once it is removed.
+//! shows what its operator or firm sees now, and nothing once it is removed. Port calls and
+//! due dates are the operator's own: no firm's calendar has them.
 
 mod ics;
 mod store;
@@ -105,8 +107,8 @@ async fn list_feeds(
 
 /// Make a calendar
 ///
-/// Of all your work orders, or of one vessel's. The answer shows its secret address, this
-/// once.
+/// Of all your work orders, or of one vessel's; for an operator with port calls and due
+/// dates. The answer shows its secret address, this once.
 #[utoipa::path(post, path = "/calendar-feeds", tag = "adjusting", request_body = NewFeed,
     responses((status = 201, body = MadeFeed), (status = 401, body = Problem),
               (status = 403, body = Problem),
@@ -194,18 +196,31 @@ impl FromRequestParts<App> for Subscriber {
     }
 }
 
-/// Read a calendar of work orders
+/// Read a calendar
 ///
-/// iCalendar (RFC 5545), by a calendar's secret address or as any other route. What is
-/// offered or planned is tentative, what a firm has is confirmed.
+/// iCalendar (RFC 5545), by a calendar's secret address or as any other route. Of work
+/// orders what is offered or planned is tentative, what a firm has is confirmed. An
+/// operator's calendar has port calls too, and each compass's due date as a day, as it was
+/// looked at within the last quarter of an hour. Each event keeps its `UID`, and its
+/// `SEQUENCE` grows; what is cancelled or withdrawn stays for a season and says so.
 #[utoipa::path(get, path = "/calendar.ics", tag = "adjusting", params(Address),
     responses((status = 200, content_type = "text/calendar", body = String),
               (status = 401, body = Problem)))]
 async fn calendar(State(app): State<App>, subscriber: Subscriber) -> Result<Response> {
     let now = app.clock.now().into();
     let found = store::appointments(&app.db, subscriber.tenant, subscriber.vessel, now).await?;
+    let (calls, due) = match subscriber.tenant {
+        Tenant::Firm(_) => (Vec::new(), Vec::new()),
+        Tenant::Operator(operator) => (
+            store::calls(&app.db, operator, subscriber.vessel, now).await?,
+            store::due_dates(&app.db, operator, subscriber.vessel).await?,
+        ),
+    };
     let public_url = app.config.mail.public_url.as_deref();
-    let text = ics::write(&subscriber.name, &found, public_url)?;
+    let events = ics::orders(&found, public_url)?
+        .chain(ics::calls(&calls)?)
+        .chain(ics::due_dates(&due, public_url)?);
+    let text = ics::write(&subscriber.name, events);
     let headers = [
         (CONTENT_TYPE, "text/calendar; charset=utf-8"),
         (CACHE_CONTROL, "private, max-age=300"),

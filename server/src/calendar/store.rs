@@ -2,7 +2,7 @@
 
 use super::{Feed, Subscriber};
 use crate::db::{Db, Result, Tx, execute, row, rows};
-use crate::ids::{FeedId, FirmId, OperatorId, OrderId, VesselId};
+use crate::ids::{CallId, CompassId, FeedId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 use crate::work_orders::State;
@@ -10,8 +10,43 @@ use uuid::Uuid;
 
 /// Orders of so long ago are shown no more.
 const SHOWN_FOR_S: f64 = 400.0 * 86_400.0;
+/// Port calls and due dates of so long ago are shown no more.
+const OVER_FOR_S: f64 = 90.0 * 86_400.0;
 /// As many as a calendar takes, the latest.
 const MOST: i64 = 2000;
+const MOST_CALLS: i64 = 10_000;
+
+/// A port call as a calendar shows it.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub(super) struct Call {
+    pub id: CallId,
+    pub vessel_name: String,
+    pub port: String,
+    pub berth: Option<String>,
+    pub eta: Time,
+    pub eta_uncertainty_h: f64,
+    pub etd: Time,
+    pub etd_uncertainty_h: f64,
+    pub revision: i64,
+    pub created_at: Time,
+    pub revised_at: Option<Time>,
+    pub withdrawn_at: Option<Time>,
+    pub withdrawal_reason: Option<String>,
+}
+
+/// A due date as a calendar shows it.
+#[derive(Clone, Debug, sqlx::FromRow)]
+pub(super) struct Due {
+    pub vessel_id: VesselId,
+    pub vessel_name: String,
+    pub compass_id: CompassId,
+    pub compass_name: String,
+    pub due_on: String,
+    pub urgency: String,
+    pub reason: String,
+    pub version: i64,
+    pub changed_at: Time,
+}
 
 /// An order as a calendar shows it.
 #[derive(Clone, Debug, sqlx::FromRow)]
@@ -135,5 +170,51 @@ pub(super) async fn appointments(
         vessel,
         Time(now.0.plus_seconds(-SHOWN_FOR_S)),
         MOST
+    )
+}
+
+/// Port calls of a fleet, or of one vessel of it; those that were withdrawn lately too.
+pub(super) async fn calls(
+    db: &Db,
+    operator: OperatorId,
+    vessel: Option<VesselId>,
+    now: Time,
+) -> Result<Vec<Call>> {
+    rows!(
+        db,
+        Call,
+        "SELECT c.id, v.name AS vessel_name, c.port, c.berth, c.eta, c.eta_uncertainty_h, c.etd,
+                c.etd_uncertainty_h, c.revision, c.created_at, c.revised_at, c.withdrawn_at,
+                c.withdrawal_reason
+         FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE v.operator_id = $1 AND ($2 IS NULL OR c.vessel_id = $2) AND c.etd > $3
+         ORDER BY c.eta DESC, c.id DESC
+         LIMIT $4",
+        operator,
+        vessel,
+        Time(now.0.plus_seconds(-OVER_FOR_S)),
+        MOST_CALLS
+    )
+}
+
+/// Due dates of a fleet, or of one vessel of it, as they were last looked at.
+pub(super) async fn due_dates(
+    db: &Db,
+    operator: OperatorId,
+    vessel: Option<VesselId>,
+) -> Result<Vec<Due>> {
+    rows!(
+        db,
+        Due,
+        "SELECT n.vessel_id, v.name AS vessel_name, n.compass_id, c.name AS compass_name,
+                n.due_on, n.urgency, n.reason, n.version, n.changed_at
+         FROM needs_told n
+         JOIN vessels v ON v.id = n.vessel_id
+         JOIN compasses c ON c.vessel_id = n.vessel_id AND c.id = n.compass_id
+         WHERE v.operator_id = $1 AND ($2 IS NULL OR n.vessel_id = $2)
+         ORDER BY n.due_on, n.compass_id",
+        operator,
+        vessel
     )
 }

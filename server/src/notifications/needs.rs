@@ -1,15 +1,16 @@
 //! Telling an operator's people of compasses that are due soon, or sooner than they were.
 //!
 //! What always holds: each step towards the due date is told once, by whichever process
-//! sees it first; a date that is put off is noted and not told.
+//! sees it first; a date that is put off is noted and not told. What is noted is what
+//! calendars show.
 
 use super::kind::Kind;
 use super::news::{News, tell};
-use super::store;
+use super::store::{self, Noted};
 use crate::app::App;
 use crate::error::Result;
 use crate::events;
-use crate::ids::OperatorId;
+use crate::ids::{CompassId, OperatorId};
 use crate::needs::{Need, need, of_fleet};
 use crate::time::Time;
 use crate::{operators, schedule};
@@ -34,29 +35,26 @@ async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
     let now: Time = app.clock.now().into();
     let facts = of_fleet(app, operator, None).await?;
     let today = now.0.to_chrono().date_naive();
-    let before = store::needs_told(&app.db, operator).await?.into_iter();
-    let before: BTreeMap<_, _> = before
-        .map(|(vessel, compass, due_on, urgency)| ((vessel, compass), (due_on, urgency)))
+    let mut before: BTreeMap<CompassId, Noted> = store::needs_told(&app.db, operator)
+        .await?
+        .into_iter()
+        .map(|noted| (noted.compass_id, noted))
         .collect();
     let terms = schedule::terms(&app.db, operator).await?;
     let needs = facts.iter().filter_map(|facts| need(facts, &terms, today));
     let mut told = 0;
     for need in needs {
-        let of = (need.vessel_id, need.compass_id);
-        let known = before
-            .get(&of)
-            .map(|(due_on, urgency)| (due_on.as_str(), urgency.as_str()));
-        let stands = (need.due_on.to_string(), word(need.urgency)?);
-        let stands = (stands.0.as_str(), stands.1.as_str());
-        if known == Some(stands) {
+        let known = before.remove(&need.compass_id);
+        let stands = noted(&need)?;
+        if known.as_ref() == Some(&stands) {
             continue;
         }
         let mut tx = app.db.begin().await?;
-        if !store::note_need(&mut tx, of, known, stands).await? {
+        if !store::note_need(&mut tx, known.as_ref(), &stands, now).await? {
             continue;
         }
         let mut event = None;
-        if let Some(kind) = kind(&need, known)? {
+        if let Some(kind) = kind(&need, known.as_ref())? {
             tell(&mut tx, operator, &[news(&need, kind)], None, now).await?;
             event = Some(events::insert(&mut tx, need.vessel_id, events::Kind::Need, now).await?);
             told += 1;
@@ -66,17 +64,33 @@ async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
             app.publish(event);
         }
     }
+    for (_, gone) in before {
+        let mut tx = app.db.begin().await?;
+        store::forget_need(&mut tx, &gone).await?;
+        tx.commit().await?;
+    }
     Ok(told)
 }
 
+/// How a need stands, to be noted.
+fn noted(need: &Need) -> Result<Noted> {
+    Ok(Noted {
+        vessel_id: need.vessel_id,
+        compass_id: need.compass_id,
+        due_on: need.due_on.to_string(),
+        urgency: word(need.urgency)?,
+        reason: need.reason.clone(),
+    })
+}
+
 /// What is to be told of a need, if anything is; `known` is what was.
-fn kind(need: &Need, known: Option<(&str, &str)>) -> Result<Option<Kind>> {
+fn kind(need: &Need, known: Option<&Noted>) -> Result<Option<Kind>> {
     let presses = need.urgency > Urgency::Routine;
-    let Some((due_on, urgency)) = known else {
+    let Some(known) = known else {
         return Ok(presses.then_some(Kind::DueSoon));
     };
-    let urgency: Urgency = serde_json::from_value(Value::String(urgency.to_owned()))?;
-    let due_on: NaiveDate = due_on.parse().map_err(anyhow::Error::from)?;
+    let urgency: Urgency = serde_json::from_value(Value::String(known.urgency.clone()))?;
+    let due_on: NaiveDate = known.due_on.parse().map_err(anyhow::Error::from)?;
     let earlier = (due_on - need.due_on).num_days() > BROUGHT_FORWARD_DAYS;
     let by = need.causes.first().map(|cause| cause.kind);
     if earlier && !matches!(by, Some(CauseKind::Interval | CauseKind::NeverAdjusted)) {

@@ -215,15 +215,22 @@ pub(super) async fn prune(db: &Db, now: Time) -> DbResult<()> {
     tx.commit().await
 }
 
-/// What was last told of an operator's compasses' needs: due date and urgency.
-pub(super) async fn needs_told(
-    db: &Db,
-    operator: OperatorId,
-) -> DbResult<Vec<(VesselId, CompassId, String, String)>> {
+/// What was last noted of a compass's need.
+#[derive(Clone, Debug, PartialEq, sqlx::FromRow)]
+pub(super) struct Noted {
+    pub(super) vessel_id: VesselId,
+    pub(super) compass_id: CompassId,
+    pub(super) due_on: String,
+    pub(super) urgency: String,
+    pub(super) reason: String,
+}
+
+/// What was last noted of an operator's compasses' needs.
+pub(super) async fn needs_told(db: &Db, operator: OperatorId) -> DbResult<Vec<Noted>> {
     rows!(
         db,
-        (VesselId, CompassId, String, String),
-        "SELECT t.vessel_id, t.compass_id, t.due_on, t.urgency FROM needs_told t
+        Noted,
+        "SELECT t.vessel_id, t.compass_id, t.due_on, t.urgency, t.reason FROM needs_told t
          JOIN vessels v ON v.id = t.vessel_id
          WHERE v.operator_id = $1
          ORDER BY t.vessel_id, t.compass_id",
@@ -231,35 +238,54 @@ pub(super) async fn needs_told(
     )
 }
 
-/// Notes what is told of a compass's need; false when another process has meanwhile.
+/// Notes how a compass's need stands; false when another process has meanwhile.
 pub(super) async fn note_need(
     tx: &mut Tx,
-    of: (VesselId, CompassId),
-    before: Option<(&str, &str)>,
-    now: (&str, &str),
+    before: Option<&Noted>,
+    stands: &Noted,
+    now: Time,
 ) -> DbResult<bool> {
     let noted = match before {
         None => execute!(
             tx,
-            "INSERT INTO needs_told (vessel_id, compass_id, due_on, urgency)
-             VALUES ($1, $2, $3, $4)
+            "INSERT INTO needs_told (vessel_id, compass_id, due_on, urgency, reason, version,
+                                     changed_at)
+             VALUES ($1, $2, $3, $4, $5, 1, $6)
              ON CONFLICT (vessel_id, compass_id) DO NOTHING",
-            of.0,
-            of.1,
-            now.0,
-            now.1
+            stands.vessel_id,
+            stands.compass_id,
+            stands.due_on.as_str(),
+            stands.urgency.as_str(),
+            stands.reason.as_str(),
+            now
         )?,
         Some(before) => execute!(
             tx,
-            "UPDATE needs_told SET due_on = $5, urgency = $6
-             WHERE vessel_id = $1 AND compass_id = $2 AND due_on = $3 AND urgency = $4",
-            of.0,
-            of.1,
-            before.0,
-            before.1,
-            now.0,
-            now.1
+            "UPDATE needs_told
+             SET due_on = $6, urgency = $7, reason = $8, version = version + 1, changed_at = $9
+             WHERE vessel_id = $1 AND compass_id = $2
+               AND due_on = $3 AND urgency = $4 AND reason = $5",
+            stands.vessel_id,
+            stands.compass_id,
+            before.due_on.as_str(),
+            before.urgency.as_str(),
+            before.reason.as_str(),
+            stands.due_on.as_str(),
+            stands.urgency.as_str(),
+            stands.reason.as_str(),
+            now
         )?,
     };
     Ok(noted > 0)
+}
+
+/// Forgets the need of a compass that has none any more.
+pub(super) async fn forget_need(tx: &mut Tx, of: &Noted) -> DbResult<()> {
+    execute!(
+        tx,
+        "DELETE FROM needs_told WHERE vessel_id = $1 AND compass_id = $2",
+        of.vessel_id,
+        of.compass_id
+    )?;
+    Ok(())
 }

@@ -1,10 +1,16 @@
 //! Work orders in people's calendars.
 
+use crate::logbook::patch;
 use crate::offers::Trade;
 use crate::on_both;
+use crate::planning::{compass_of, due_vessel, enter};
+use crate::port_calls;
 use crate::support::{Answer, Person, Shore};
+use binnacle_server::notifications::look;
+use icalendar::{CalendarComponent, CalendarDateTime, Component, DatePerhapsTime};
 use reqwest::Method;
 use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 on_both!(
     a_calendar_is_read_by_its_secret_address_until_it_is_removed,
@@ -12,6 +18,8 @@ on_both!(
     a_firms_calendar_shows_what_the_firm_sees,
     a_vessels_calendar_shows_that_vessel,
     long_and_strange_words_come_through,
+    a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them,
+    a_fleets_calendar_has_every_vessels_and_a_firms_none,
 );
 
 /// The lines of a calendar, unfolded, after checking their form.
@@ -184,5 +192,107 @@ async fn long_and_strange_words_come_through(shore: Shore) {
     let escaped = port.trim().replace(';', "\\;").replace(',', "\\,");
     let place = format!("LOCATION:{escaped}\\, A5");
     assert!(calendar.contains(&place), "{calendar:?}");
+    shore.finish().await;
+}
+
+/// The events of a calendar as a reader of its own has them, by their UIDs.
+fn events(text: &str) -> BTreeMap<String, icalendar::Event> {
+    let calendar: icalendar::Calendar = text.parse().unwrap();
+    let all = calendar.components.into_iter().map(|component| {
+        let CalendarComponent::Event(event) = component else {
+            panic!("{component:?} is no event")
+        };
+        (event.get_uid().unwrap().to_owned(), event)
+    });
+    all.collect()
+}
+
+fn instant(time: Option<DatePerhapsTime>) -> String {
+    match time {
+        Some(DatePerhapsTime::DateTime(CalendarDateTime::Utc(time))) => time.to_rfc3339(),
+        Some(DatePerhapsTime::Date(day)) => day.to_string(),
+        other => panic!("{other:?} is no time in UTC, and no day"),
+    }
+}
+
+fn sequence(event: &icalendar::Event) -> u32 {
+    event.property_value("SEQUENCE").unwrap().parse().unwrap()
+}
+
+async fn a_vessels_calendar_has_her_calls_and_due_dates_and_follows_them(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let call = enter(&ada, &nao, "NLRTM", 8).await;
+    look(&shore.app).await.unwrap();
+    let made = feed(&ada, &json!({ "name": "Nao", "vessel_id": nao["id"] })).await;
+    let before = events(&read(&shore, &made).await.text);
+    let call_uid = format!("call-{}@binnacle", call["id"].as_str().unwrap());
+    let due_uid = format!("due-{}@binnacle", compass_of(&nao));
+    assert_eq!(before.keys().collect::<Vec<_>>(), [&call_uid, &due_uid]);
+    let (was, due) = (&before[&call_uid], &before[&due_uid]);
+    assert_eq!(was.get_summary(), Some("Nao at Rotterdam (NLRTM)"));
+    assert_eq!(instant(was.get_start()), "2026-12-08T06:00:00+00:00");
+    assert_eq!(instant(was.get_end()), "2026-12-09T18:00:00+00:00");
+    assert_eq!(instant(due.get_start()), "2026-12-20");
+    assert_eq!(due.get_end(), None, "a day without an end is one day");
+    let why = due.get_description().unwrap();
+    assert!(why.contains("24 months after the adjustment"), "{why}");
+    assert_eq!(due.property_value("TRANSP"), Some("TRANSPARENT"));
+
+    // She is late, and not sure of it; and was adjusted meanwhile.
+    shore.advance(3600.0);
+    let one = call["id"].as_str().unwrap();
+    let one = format!("{}/{one}", port_calls::path(&nao));
+    let later = json!({ "eta": "2026-12-08T12:00:00Z", "eta_uncertainty_h": 12 });
+    patch(&ada, &one, &later).await.good();
+    let path = format!("/vessels/{}/logbook", nao["id"].as_str().unwrap());
+    let adjusted = json!({ "kind": "adjustment", "from": "2026-11-20T08:00:00Z" });
+    ada.post(&path, &adjusted).await.good();
+    look(&shore.app).await.unwrap();
+    let after = events(&read(&shore, &made).await.text);
+    let (is, due_now) = (&after[&call_uid], &after[&due_uid]);
+    assert_eq!(instant(is.get_start()), "2026-12-08T12:00:00+00:00");
+    let said = is.get_description().unwrap();
+    assert!(
+        said.contains("ETA: 2026-12-08 12:00 UTC, within 12 h"),
+        "{said}"
+    );
+    assert_eq!(instant(due_now.get_start()), "2028-11-20");
+    for (before, after) in [(was, is), (due, due_now)] {
+        assert!(sequence(after) > sequence(before));
+        assert!(after.get_last_modified() > before.get_last_modified());
+    }
+    // Nothing has changed: the same octets, for whoever asks again.
+    look(&shore.app).await.unwrap();
+    let again = read(&shore, &made).await.text;
+    assert_eq!(again, read(&shore, &made).await.text);
+    assert_eq!(sequence(&events(&again)[&due_uid]), sequence(due_now));
+
+    let why = json!({ "reason": "ice" });
+    ada.post(&format!("{one}/withdraw"), &why).await.good();
+    let gone = events(&read(&shore, &made).await.text);
+    let gone = &gone[&call_uid];
+    assert_eq!(gone.property_value("STATUS"), Some("CANCELLED"));
+    assert!(gone.get_description().unwrap().contains("Withdrawn: ice"));
+    assert!(sequence(gone) > sequence(is));
+    shore.finish().await;
+}
+
+async fn a_fleets_calendar_has_every_vessels_and_a_firms_none(shore: Shore) {
+    let trade = Trade::offered(&shore, 1).await;
+    let pinta = due_vessel(&trade.ada, "Pinta").await;
+    enter(&trade.ada, &pinta, "BEANR", 8).await;
+    let eve = shore.admin("eve").await;
+    let hers = due_vessel(&eve, "Nina").await;
+    enter(&eve, &hers, "NLRTM", 8).await;
+    look(&shore.app).await.unwrap();
+    let fleet = events(&trade.ada.get("/calendar.ics").await.text);
+    let kinds = |begin: &str| fleet.keys().filter(|uid| uid.starts_with(begin)).count();
+    assert_eq!(kinds("call-"), 1);
+    // Of the one vessel nothing is known, and all binds her.
+    assert_eq!(kinds("due-"), 2);
+    assert_eq!(fleet.len(), 4);
+    let firms = events(&trade.firms[0].1.get("/calendar.ics").await.text);
+    assert_eq!(firms.len(), 1, "{:?}", firms.keys());
     shore.finish().await;
 }
