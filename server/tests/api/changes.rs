@@ -161,6 +161,17 @@ async fn a_struck_ship_raises_one_alert_that_follows_what_is_known(shore: Shore)
     assert_eq!(later[0]["id"], raised[0]["id"], "updated, not repeated");
     assert_eq!(later[0]["severity"], "warning", "{later:?}");
     assert!(told(&later[0], "advice").contains("Put up a new card"));
+    // A compass that lightning has changed is to be adjusted.
+    let needs = ada.get(&nao.path("/needs")).await.good();
+    let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();
+    let change = causes.find(|cause| cause["kind"] == "change");
+    let change = change.unwrap_or_else(|| panic!("{needs}"));
+    let reason = told(change, "reason");
+    assert!(
+        reason.contains("magnetism changed on 2026-11-08"),
+        "{reason}"
+    );
+    assert_eq!(change["due_on"], "2026-12-08");
     shore.finish().await;
 }
 

@@ -14,6 +14,7 @@ on_both!(
     predicted_deviation_at_a_port_ahead_brings_a_need_forward,
     particulars_are_checked_and_ones_own,
     a_cancelled_order_is_no_adjustment,
+    an_operators_own_terms_are_what_counts,
 );
 
 fn path(vessel: &Value, rest: &str) -> String {
@@ -184,6 +185,37 @@ async fn particulars_are_checked_and_ones_own(shore: Shore) {
     assert_eq!(read["gross_tonnage"], json!(null));
     let written = put(&viewer, &particulars, &json!({})).await;
     assert_eq!(written.problem(), "forbidden");
+    shore.finish().await;
+}
+
+async fn an_operators_own_terms_are_what_counts(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let docked = json!({ "kind": "dry_docking", "from": "2026-11-10T00:00:00Z" });
+    ada.post(&path(&nao, "/logbook"), &docked).await.good();
+    let usual = need(&ada, &nao).await;
+    assert_eq!(
+        (&usual["due_on"], &usual["urgency"]),
+        (&json!("2026-12-10"), &json!("soon"))
+    );
+    let own = json!({ "terms": { "after_event_days": 14, "urgent_days": 7 } });
+    put(&ada, "/schedule/settings", &own).await.good();
+    let sooner = need(&ada, &nao).await;
+    assert_eq!(
+        (&sooner["due_on"], &sooner["urgency"]),
+        (&json!("2026-11-24"), &json!("urgent"))
+    );
+    let own = json!({ "terms": { "after_event_days": 90, "soon_days": 20 } });
+    put(&ada, "/schedule/settings", &own).await.good();
+    let later = need(&ada, &nao).await;
+    assert_eq!(
+        (&later["due_on"], &later["urgency"]),
+        (&json!("2026-12-20"), &json!("routine"))
+    );
+    // Another operator's stay the usual ones.
+    let eve = shore.admin("eve").await;
+    let nina = due_vessel(&eve, "Nina").await;
+    assert_eq!(need(&eve, &nina).await["urgency"], "soon");
     shore.finish().await;
 }
 

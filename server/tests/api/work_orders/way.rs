@@ -117,5 +117,13 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(shore: Shore) {
     let told = job.person.get(path).await.good();
     let text = told["items"][0]["text"].as_str().unwrap();
     assert!(text.contains("off what was foretold"), "{text}");
+    // And the compass is to be adjusted once more.
+    let needs = job.person.get("/needs").await.good();
+    let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();
+    let cause = causes.find(|cause| cause["kind"] == "failed_verification");
+    let cause = cause.unwrap_or_else(|| panic!("{needs}"));
+    assert_eq!(cause["due_on"], "2026-12-22");
+    let reason = cause["reason"].as_str().unwrap();
+    assert!(reason.contains("failed: headings are"), "{reason}");
     shore.finish().await;
 }
