@@ -16,7 +16,7 @@ pub enum Kind {
     DueSoon,
     /// A due date was brought forward.
     NeedRaised,
-    /// Your firm is asked to do an order.
+    /// Your firm is asked to do an order, or to do one at another time.
     Offered,
     /// The other side of an order accepts, declines, or proposes other terms.
     Answered,
@@ -24,6 +24,8 @@ pub enum Kind {
     AnswerLate,
     /// Someone of the other side wrote about an order.
     Message,
+    /// The port call of an order has moved, or is withdrawn.
+    CallMoved,
     /// The adjuster is on board.
     OnBoard,
     /// The adjuster has finished and signed.
@@ -56,13 +58,14 @@ pub(super) enum Way {
 
 impl Kind {
     /// All of them.
-    pub(super) const ALL: [Kind; 12] = [
+    pub(super) const ALL: [Kind; 13] = [
         Kind::DueSoon,
         Kind::NeedRaised,
         Kind::Offered,
         Kind::Answered,
         Kind::AnswerLate,
         Kind::Message,
+        Kind::CallMoved,
         Kind::OnBoard,
         Kind::Completed,
         Kind::Verified,

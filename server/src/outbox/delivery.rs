@@ -59,6 +59,14 @@ pub enum Kind {
     #[serde(rename = "order.message")]
     #[sqlx(rename = "order.message")]
     OrderMessage,
+    /// The operator asks the firm that has an order for another time.
+    #[serde(rename = "order.retime_proposed")]
+    #[sqlx(rename = "order.retime_proposed")]
+    OrderRetimeProposed,
+    /// The port call of an order has moved, or is withdrawn.
+    #[serde(rename = "order.call_moved")]
+    #[sqlx(rename = "order.call_moved")]
+    OrderCallMoved,
     /// Something was done at the berth, or added.
     #[serde(rename = "order.updated")]
     #[sqlx(rename = "order.updated")]

@@ -4,6 +4,8 @@
 //!
 //! - Calls of one vessel do not overlap, and none is entered when it is over. Whoever
 //!   changes a vessel's calls holds her row until the transaction ends.
+//! - Who is to come to a call that moves is told in the same transaction; the orders are
+//!   held before the calls are written.
 //! - A call is never removed and no revision of it is lost: it is amended, or withdrawn
 //!   and kept.
 //! - A file is taken whole or not at all, and the same file again changes nothing.
@@ -11,24 +13,26 @@
 mod call;
 mod file;
 mod heading;
+mod moving;
 mod ports;
 mod store;
 mod upload;
 
 pub use call::{Content, LearntFrom, LearntHeading, PortCall, Source};
 pub use heading::{Earlier, heading};
-pub use store::{Row, ahead, lies};
+pub use store::{Row, ahead, alongside, lies};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
-use crate::events;
+use crate::events::{self, Event};
 use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone, optional_text};
 use crate::idempotency::{self, Key};
 use crate::ids::{CallId, OperatorId, VesselId};
 use crate::time::Time;
 use crate::vessels;
+use crate::work_orders::calls_move;
 use axum::extract::State;
 use axum::http::StatusCode;
 use binnacle_schedule::calls::overlap;
@@ -125,7 +129,7 @@ async fn enter_port_call(
         must_fit(&known, None, &call)?;
         let author = Author::of(&mut tx, writer.user, now).await?;
         store::insert(&mut tx, vessel, wanted, &call, Source::Api, &author).await?;
-        commit(&app, tx, &[vessel], now).await?;
+        commit(&app, tx, &[vessel], Vec::new(), now).await?;
     }
     let shown = shown(&app, writer.operator, vessel, CallId(made)).await?;
     Ok((StatusCode::CREATED, Json(shown)))
@@ -181,8 +185,10 @@ async fn amend_port_call(
     }
     must_fit(&known, Some(id), &amended)?;
     let author = Author::of(&mut tx, writer.user, now).await?;
+    let moving = moving::amended(current, &amended)?;
+    let told = calls_move(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
     store::revise(&mut tx, current, &amended, Source::Api, &author).await?;
-    commit(&app, tx, &[vessel], now).await?;
+    commit(&app, tx, &[vessel], told, now).await?;
     Ok(Json(shown(&app, writer.operator, vessel, id).await?))
 }
 
@@ -208,8 +214,10 @@ async fn withdraw_port_call(
     let current = current.ok_or(Error::NotFound("port call"))?;
     if current.withdrawn_at.is_none() {
         let author = Author::of(&mut tx, writer.user, now).await?;
+        let moving = [moving::withdrawn(current)?];
+        let told = calls_move(&mut tx, vessel, &moving, &author.name, now).await?;
         store::withdraw(&mut tx, current, reason.as_deref(), &author).await?;
-        commit(&app, tx, &[vessel], now).await?;
+        commit(&app, tx, &[vessel], told, now).await?;
     } else {
         drop(tx);
     }
@@ -222,9 +230,15 @@ async fn shown(app: &App, operator: OperatorId, vessel: VesselId, id: CallId) ->
     row.shown(&earlier)
 }
 
-/// Makes changes of some vessels' calls durable, and tells the dashboards.
-async fn commit(app: &App, mut tx: Tx, vessels: &[VesselId], now: Time) -> Result<()> {
-    let mut told = Vec::new();
+/// Makes changes of some vessels' calls durable, and tells the dashboards, also of what they
+/// brought to work orders.
+async fn commit(
+    app: &App,
+    mut tx: Tx,
+    vessels: &[VesselId],
+    mut told: Vec<Event>,
+    now: Time,
+) -> Result<()> {
     for vessel in vessels {
         told.push(events::insert(&mut tx, *vessel, events::Kind::PortCall, now).await?);
     }

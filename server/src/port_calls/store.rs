@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::ids::{CallId, OperatorId, UserId, VesselId};
 use crate::session;
 use crate::time::Time;
+use crate::work_orders::Alongside;
 use anyhow::Context;
 use binnacle_schedule::ports::{self, PortCode};
 use uuid::Uuid;
@@ -68,6 +69,15 @@ impl Row {
             etd_uncertainty_h: self.etd_uncertainty_h,
             berth_heading_deg: self.berth_heading_deg,
         })
+    }
+
+    /// Where and when she is alongside, as a work order has it.
+    ///
+    /// # Errors
+    /// As [`Row::content`] has it.
+    pub fn alongside(&self) -> Result<Alongside> {
+        let port = PortCode::parse(&self.port).context("a stored port")?;
+        Ok(Alongside::new(port, self.eta, self.etd))
     }
 
     pub(super) fn shown(self, earlier: &Earlier) -> Result<PortCall> {
@@ -151,6 +161,21 @@ pub(super) async fn ahead_of(db: &Db, vessel: VesselId, now: Time) -> Result<Vec
          ORDER BY c.eta",
         vessel,
         now
+    )?)
+}
+
+/// The call that a vessel is in at some time, within a transaction.
+pub async fn alongside(tx: &mut Tx, vessel: VesselId, at: Time) -> Result<Option<Row>> {
+    Ok(row!(
+        in tx,
+        Row,
+        "SELECT c.*, v.name AS vessel_name FROM port_calls c
+         JOIN vessels v ON v.id = c.vessel_id
+         WHERE c.vessel_id = $1 AND c.eta <= $2 AND c.etd > $2 AND c.withdrawn_at IS NULL
+         ORDER BY c.eta, c.id
+         LIMIT 1",
+        vessel,
+        at
     )?)
 }
 

@@ -3,6 +3,7 @@
 use super::call::Source;
 use super::commit;
 use super::file::{OfVessel, Taken, by_vessel, whole};
+use super::moving;
 use super::store::{self, Author};
 use crate::access::{Reader, Writer};
 use crate::app::App;
@@ -11,6 +12,7 @@ use crate::http::{Id, Json, Params, file, file_name};
 use crate::ids::{CallId, VesselId};
 use crate::time::Time;
 use crate::vessels;
+use crate::work_orders::calls_move;
 use axum::body::Body;
 use axum::extract::State;
 use axum::response::Response;
@@ -166,18 +168,21 @@ async fn take(
         over,
         ..Uploaded::default()
     };
-    let mut changed = Vec::new();
+    let (mut changed, mut told) = (Vec::new(), Vec::new());
     let mut tx = app.db.begin().await?;
     let author = Author::of(&mut tx, writer.user, now).await?;
     // In the order of their ids: two files at once wait for one another only one way.
     for (vessel, hers) in found {
         let known = store::lock(&mut tx, writer.operator, vessel).await?;
+        let taken = hers.against(&known, source, replaces, now)?;
+        let new: Vec<_> = taken.new.iter().map(|call| (CallId::new(), call)).collect();
+        let moving = moving::taken(&taken, &new)?;
         let Taken {
-            new,
+            new: _,
             amended,
             unchanged,
             withdrawn,
-        } = hers.against(&known, source, replaces, now)?;
+        } = &taken;
         if new.len() + amended.len() + withdrawn.len() > 0 {
             changed.push(vessel);
         }
@@ -185,17 +190,18 @@ async fn take(
         done.amended += amended.len();
         done.unchanged += unchanged;
         done.withdrawn += withdrawn.len();
-        for call in &new {
-            store::insert(&mut tx, vessel, CallId::new(), call, source, &author).await?;
+        for (id, call) in &new {
+            store::insert(&mut tx, vessel, *id, call, source, &author).await?;
         }
-        for (row, call) in &amended {
+        told.extend(calls_move(&mut tx, vessel, &moving, &author.name, now).await?);
+        for (row, call) in amended {
             store::revise(&mut tx, row, call, source, &author).await?;
         }
         for row in withdrawn {
             store::withdraw(&mut tx, row, Some("not in the file any more"), &author).await?;
         }
     }
-    commit(app, tx, &changed, now).await?;
+    commit(app, tx, &changed, told, now).await?;
     Ok(Json(done))
 }
 

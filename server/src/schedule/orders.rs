@@ -91,9 +91,37 @@ pub(super) async fn at_call(
     Ok(())
 }
 
+/// Notes that an order is to be done at a call from now on.
+pub async fn link(tx: &mut Tx, vessel: VesselId, order: OrderId, call: CallId) -> Result<()> {
+    execute!(
+        tx,
+        "INSERT INTO schedule_orders (vessel_id, order_id, call_id) VALUES ($1, $2, $3)
+         ON CONFLICT (vessel_id, order_id) DO UPDATE SET call_id = excluded.call_id",
+        vessel,
+        order,
+        call
+    )?;
+    Ok(())
+}
+
+/// The port of the call that an order is to be done at, where that was noted.
+pub async fn linked_port(tx: &mut Tx, vessel: VesselId, order: OrderId) -> Result<Option<String>> {
+    let found = row!(
+        in tx,
+        (String,),
+        "SELECT c.port FROM schedule_orders l
+         JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
+         WHERE l.vessel_id = $1 AND l.order_id = $2
+         ORDER BY c.id",
+        vessel,
+        order
+    )?;
+    Ok(found.map(|(port,)| port))
+}
+
 /// How many other ships a firm is to see on some day by an operator's orders. Whoever
 /// offers it more meanwhile waits.
-pub(super) async fn other_ships(
+pub async fn other_ships(
     tx: &mut Tx,
     operator: OperatorId,
     firm: FirmId,

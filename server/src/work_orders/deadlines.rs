@@ -3,7 +3,7 @@
 use super::change::Change;
 use super::entry::Content;
 use super::offering::ask_next;
-use super::offers::Between;
+use super::offers::{Between, OfferState};
 use super::store;
 use crate::app::App;
 use crate::error::Result;
@@ -57,8 +57,14 @@ async fn lapse_of(app: &App, vessel: VesselId, order: OrderId) -> Result<bool> {
         return Ok(false);
     }
     for offer in overdue {
+        let between = Between::with(offer.firm());
+        // Who has the order has it, whether or not another time is agreed on.
+        let lapsed = if offer.state == OfferState::Accepted {
+            Content::RetimeLapsed(between)
+        } else {
+            Content::Lapsed(between)
+        };
         info!(%order, firm = %offer.firm_id, "an offer has lapsed");
-        let lapsed = Content::Lapsed(Between::with(offer.firm()));
         change.append(lapsed).await?;
     }
     ask_next(&mut change).await?;

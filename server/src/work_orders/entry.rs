@@ -5,6 +5,7 @@
 //! names it. So a log can be checked with nothing but SHA-256.
 
 use super::completion::{Completed, SignedBy};
+use super::moved::CallMoved;
 use super::offering::Boarded;
 use super::offers::{Between, Offered};
 use super::order::Opened;
@@ -88,6 +89,16 @@ pub enum Content {
     ProposalDeclined(Between),
     /// There was no answer in time.
     Lapsed(Between),
+    /// The operator asks the firm that has it for another time.
+    RetimeProposed(Between),
+    /// The firm agrees.
+    RetimeAccepted(Between),
+    /// The firm does not, or the operator thinks better of it.
+    RetimeDeclined(Between),
+    /// The firm did not answer in time: what was agreed stands.
+    RetimeLapsed(Between),
+    /// The port call at which it is to be done has moved, or is withdrawn.
+    CallMoved(Box<CallMoved>),
     /// A message between the operator and a firm.
     Message(Between),
     /// The adjuster is on board.
@@ -134,7 +145,12 @@ impl Content {
             | Content::ProposalAccepted(said)
             | Content::ProposalDeclined(said)
             | Content::Lapsed(said)
+            | Content::RetimeProposed(said)
+            | Content::RetimeAccepted(said)
+            | Content::RetimeDeclined(said)
+            | Content::RetimeLapsed(said)
             | Content::Message(said) => Some(said),
+            Content::CallMoved(moved) => Some(&moved.said),
             _ => None,
         }
     }
@@ -147,8 +163,10 @@ impl Content {
 
     /// Whether offers may stand otherwise after it.
     pub fn is_about_offers(&self) -> bool {
-        let said = self.between().is_some() && !matches!(self, Content::Message(_));
-        said || matches!(self, Content::Offered(_) | Content::Cancelled(_))
+        let said = self.between().is_some()
+            && !matches!(self, Content::Message(_) | Content::CallMoved(_));
+        let ends = matches!(self, Content::OnBoard(_) | Content::Cancelled(_));
+        said || ends || matches!(self, Content::Offered(_))
     }
 }
 

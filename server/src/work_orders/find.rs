@@ -22,7 +22,7 @@ macro_rules! summary_sql {
                                  ELSE o.state END AS state,
                     o.port, o.berth, o.planned_at, o.adjuster_name, o.adjuster_licence, o.firm,
                     o.firm_id, o.created_at, o.created_by, o.completed_at, o.last_seq,
-                    o.last_sha256,
+                    o.last_sha256, o.call_fit,
                     CASE WHEN f.firm_id IS NULL THEN o.answer_by ELSE f.answer_by END
                         AS answer_by
              FROM work_orders o

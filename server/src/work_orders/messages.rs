@@ -72,7 +72,7 @@ struct MessageList {
 
 /// List the messages about a work order
 ///
-/// A firm reads its own only.
+/// A firm reads its own only. That the port call has moved is among them, from `Binnacle`.
 #[utoipa::path(get, path = "/work-orders/{id}/messages", tag = "adjusting",
     params(("id" = OrderId, Path), Page),
     responses((status = 200, body = MessageList), (status = 401, body = Problem),
@@ -87,8 +87,10 @@ async fn list_messages(
     let whole = store::whole(&app.db, reader.tenant, id).await?;
     let mine = |firm: FirmId| reader.tenant.firm().is_none_or(|mine| mine == firm);
     let sent = whole.log.into_iter().filter_map(|entry| {
-        let Content::Message(said) = entry.content else {
-            return None;
+        let said = match entry.content {
+            Content::Message(said) => said,
+            Content::CallMoved(moved) => moved.said,
+            _ => return None,
         };
         (entry.seq > after && mine(said.firm.firm_id)).then(|| Sent {
             seq: entry.seq,

@@ -25,6 +25,7 @@ mod find;
 mod finish;
 mod keys;
 mod messages;
+mod moved;
 mod news;
 mod notices;
 mod offering;
@@ -35,6 +36,7 @@ mod plan;
 mod reading;
 mod record;
 mod refusal;
+mod retime;
 mod schema;
 mod standing;
 mod steps;
@@ -45,6 +47,7 @@ mod view;
 pub use completed::{AtSea, CompletedOrder, completed};
 pub use deadlines::{lapse, watch};
 pub use done::{Done, Span, done};
+pub use moved::{Alongside, Moving, calls_move};
 pub use offering::NewOffer;
 pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};
@@ -85,6 +88,7 @@ pub fn router() -> OpenApiRouter<App> {
         .routes(routes!(close_work_order))
         .merge(at_berth::router())
         .merge(answers::router())
+        .merge(retime::router())
         .merge(messages::router())
         .merge(aboard::router())
 }

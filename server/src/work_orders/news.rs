@@ -54,9 +54,15 @@ pub(super) async fn tell(
     let summary = &whole.summary;
     let new = |entry: &&Entry| entry.seq > before.last_seq;
     let new: Vec<&Entry> = whole.log.iter().filter(new).collect();
+    // The operator is told once of what several firms are told.
+    let once = new.iter().copied().enumerate().filter(|(at, entry)| {
+        let moved = |entry: &Entry| matches!(entry.content, Content::CallMoved(_));
+        !moved(entry) || !new[..*at].iter().any(|earlier| moved(earlier))
+    });
+    let once: Vec<&Entry> = once.map(|(_, entry)| entry).collect();
     let offers = whole.standing().offers;
     let mut told = Vec::new();
-    for entry in &new {
+    for entry in &once {
         if let Some(kind) = kind(&entry.content) {
             told.push(message(kind, summary, entry, now));
         }
@@ -64,7 +70,7 @@ pub(super) async fn tell(
     let operator = Tenant::Operator(summary.operator_id);
     webhooks::announce_messages(tx, operator, &told, now).await?;
     let by = author(&new);
-    let notices = new.iter().filter_map(|entry| {
+    let notices = once.iter().filter_map(|entry| {
         let firm = entry.content.between().map(|said| said.firm.firm_id);
         notices::for_operator(summary, entry, firm.and_then(|firm| before.was(firm)))
     });
@@ -162,8 +168,12 @@ fn kind(content: &Content) -> Option<Kind> {
         | Content::Declined(_)
         | Content::Proposed(_)
         | Content::ProposalAccepted(_)
-        | Content::ProposalDeclined(_) => Kind::OrderAnswered,
-        Content::Lapsed(_) => Kind::OrderLapsed,
+        | Content::ProposalDeclined(_)
+        | Content::RetimeAccepted(_)
+        | Content::RetimeDeclined(_) => Kind::OrderAnswered,
+        Content::Lapsed(_) | Content::RetimeLapsed(_) => Kind::OrderLapsed,
+        Content::RetimeProposed(_) => Kind::OrderRetimeProposed,
+        Content::CallMoved(_) => Kind::OrderCallMoved,
         Content::Message(_) => Kind::OrderMessage,
         Content::Completion(_) => Kind::OrderCompleted,
         Content::Verification(verified) => match verified.verification {
@@ -189,11 +199,16 @@ fn message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
     let said = entry.content.between();
     let what = serde_json::to_value(&entry.content).ok();
     let what = what.and_then(|value| value.get("kind").cloned());
+    let call = match &entry.content {
+        Content::CallMoved(moved) => Some(&moved.call),
+        _ => None,
+    };
     let entry = json!({
         "seq": entry.seq, "kind": what, "at": entry.at, "by": entry.author.name,
         "firm_id": said.map(|said| said.firm.firm_id),
         "terms": said.and_then(|said| said.terms.as_ref()),
         "text": said.and_then(|said| said.text.as_ref()),
+        "call": call,
     });
     written(kind, summary, &entry, now)
 }
@@ -209,7 +224,7 @@ fn written(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
             "operator_name": summary.operator_name,
             "vessel_id": summary.vessel_id, "vessel_name": summary.vessel_name,
             "compass_name": summary.compass_name, "port": summary.port, "berth": summary.berth,
-            "planned_at": summary.planned_at,
+            "planned_at": summary.planned_at, "call_fit": summary.call_fit,
         },
         "entry": entry,
     });

@@ -4,6 +4,7 @@
 //! operator and one firm is told to no other.
 
 use super::entry::{Content, Entry};
+use super::moved::{CallFit, CallMoved};
 use super::offers::{Between, OfferState};
 use super::order::Summary;
 use crate::mail;
@@ -47,6 +48,19 @@ pub(super) fn for_operator(
             Kind::AnswerLate,
             format!("no answer in time from {}", firm(said)),
         ),
+        Content::RetimeAccepted(said) => (
+            Kind::Answered,
+            format!("{} agrees to another time", firm(said)),
+        ),
+        Content::RetimeDeclined(said) if by_firm => (
+            Kind::Answered,
+            format!("{} does not agree to another time", firm(said)),
+        ),
+        Content::RetimeLapsed(said) => (
+            Kind::AnswerLate,
+            format!("no answer in time from {} to another time", firm(said)),
+        ),
+        Content::CallMoved(moved) => (Kind::CallMoved, call_moved(moved).to_owned()),
         Content::Message(said) if by_firm => (Kind::Message, format!("{} writes", firm(said))),
         Content::OnBoard(_) => (Kind::OnBoard, "the adjuster is on board".to_owned()),
         Content::Completion(_) => (Kind::Completed, "adjusted, and signed".to_owned()),
@@ -75,6 +89,15 @@ pub(super) fn for_firm(summary: &Summary, entry: &Entry, was: Option<OfferState>
             (Kind::AnswerLate, "no answer in time to your terms")
         }
         Content::Lapsed(_) => (Kind::AnswerLate, "you have not answered in time"),
+        Content::RetimeProposed(_) => (Kind::Offered, "another time is asked of you"),
+        Content::RetimeDeclined(_) if !by_firm => {
+            (Kind::Answered, "another time is asked of you no more")
+        }
+        Content::RetimeLapsed(_) => (
+            Kind::AnswerLate,
+            "you have not answered in time to another time",
+        ),
+        Content::CallMoved(moved) => (Kind::CallMoved, call_moved(moved)),
         Content::Message(_) if !by_firm => (Kind::Message, "the operator writes"),
         Content::Cancelled(_) => (Kind::Withdrawn, "the job is cancelled"),
         content => verified(content)?,
@@ -94,6 +117,16 @@ pub(super) fn withdrawn(summary: &Summary, last: &Entry) -> News {
             summary,
             last,
         )
+    }
+}
+
+fn call_moved(moved: &CallMoved) -> &'static str {
+    match (&moved.call.is, moved.call.fit) {
+        (None, _) => "the port call is withdrawn",
+        (_, CallFit::Fits) => "the port call has moved",
+        (_, CallFit::OtherHour) => "the port call has moved, another hour is needed",
+        (_, CallFit::NeedsNewDay) => "the port call has moved, a new day is needed",
+        (_, CallFit::NoCall) => "the port call is at another port now",
     }
 }
 

@@ -4,6 +4,7 @@ use super::change::Change;
 use super::entry::Content;
 use super::offers::{Asked, Between, OfferState, Offered, Terms};
 use super::order::State;
+use super::retime::at_its_call;
 use crate::db::Tx;
 use crate::error::{Error, Result};
 use crate::firms;
@@ -15,7 +16,7 @@ use utoipa::ToSchema;
 
 /// So many firms at most.
 const MOST_FIRMS: usize = 20;
-const LONGEST_H: u32 = 720;
+pub(super) const LONGEST_H: u32 = 720;
 const HOUR_S: f64 = 3600.0;
 const MOST_EUR: f64 = 1e6;
 /// Longest text of a message, in characters.
@@ -43,7 +44,7 @@ pub struct NewOffer {
     pub text: Option<String>,
 }
 
-fn two_days() -> u32 {
+pub(super) fn two_days() -> u32 {
     48
 }
 
@@ -212,7 +213,7 @@ pub(super) fn message(said: &str) -> Result<String> {
 }
 
 /// When an answer to what is asked now is due.
-fn due(change: &Change<'_>, hours: u32) -> Time {
+pub(super) fn due(change: &Change<'_>, hours: u32) -> Time {
     Time(change.now.0.plus_seconds(f64::from(hours) * HOUR_S))
 }
 
@@ -261,7 +262,7 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
     if offer.state != OfferState::Open && !gives_back && !takes_back {
         return wrong(offer.state.why_not());
     }
-    if offer.answer_by.is_some_and(|by| by < change.now) {
+    if !gives_back && offer.answer_by.is_some_and(|by| by < change.now) {
         return wrong(OfferState::Lapsed.why_not());
     }
     let asked = offer.firm();
@@ -322,6 +323,9 @@ pub(super) async fn operator_says(
         ..Between::with(offer.firm())
     };
     if yes {
+        if let Some(terms) = &between.terms {
+            at_its_call(change, terms.planned_at).await?;
+        }
         return change.append(Content::ProposalAccepted(between)).await;
     }
     change.append(Content::ProposalDeclined(between)).await?;

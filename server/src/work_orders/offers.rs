@@ -113,6 +113,10 @@ pub(super) struct Offer {
     /// What the firm proposes, or what was agreed on.
     #[schema(required)]
     pub terms: Option<Terms>,
+    /// Another time that the operator asks of the firm that has the order: what was agreed
+    /// stands until it says yes.
+    #[schema(required)]
+    pub new_terms: Option<Terms>,
     /// What was said last, in words.
     #[schema(required)]
     pub text: Option<String>,
@@ -141,7 +145,21 @@ impl Offers {
             }
             Content::Proposed(said) => self.set(said, OfferState::Proposed),
             Content::Lapsed(said) => self.set(said, OfferState::Lapsed),
-            Content::Cancelled(_) => self.withdraw_unless(|_| false),
+            Content::RetimeProposed(said) => self.ask_anew(said),
+            Content::RetimeAccepted(said) => self.set(said, OfferState::Accepted),
+            Content::RetimeDeclined(said) | Content::RetimeLapsed(said) => {
+                // What was agreed stands.
+                let agreed = Between {
+                    terms: None,
+                    ..said.clone()
+                };
+                self.set(&agreed, OfferState::Accepted);
+            }
+            Content::OnBoard(_) => self.ask_no_more(),
+            Content::Cancelled(_) => {
+                self.ask_no_more();
+                self.withdraw_unless(|_| false);
+            }
             _ => {}
         }
     }
@@ -161,17 +179,43 @@ impl Offers {
             state: OfferState::Waiting,
             answer_by: None,
             terms: None,
+            new_terms: None,
             text: offered.text.clone(),
         });
         self.all.extend(waiting);
     }
 
-    fn set(&mut self, said: &Between, state: OfferState) {
+    fn to(&mut self, firm: FirmId) -> Option<&mut Offer> {
         let mut offers = self.all.iter_mut();
-        let Some(offer) = offers.find(|offer| offer.firm_id == said.firm.firm_id) else {
+        offers.find(|offer| offer.firm_id == firm)
+    }
+
+    /// Asks the firm that has the order for another time.
+    fn ask_anew(&mut self, said: &Between) {
+        if let Some(offer) = self.to(said.firm.firm_id) {
+            offer.answer_by = said.answer_by;
+            offer.new_terms.clone_from(&said.terms);
+            offer.text.clone_from(&said.text);
+        }
+    }
+
+    /// Another time is not waited for any more.
+    fn ask_no_more(&mut self) {
+        for offer in self
+            .all
+            .iter_mut()
+            .filter(|offer| offer.new_terms.is_some())
+        {
+            (offer.new_terms, offer.answer_by) = (None, None);
+        }
+    }
+
+    fn set(&mut self, said: &Between, state: OfferState) {
+        let Some(offer) = self.to(said.firm.firm_id) else {
             return;
         };
         offer.state = state;
+        offer.new_terms = None;
         offer.answer_by = said.answer_by;
         offer.terms = said.terms.clone().or(offer.terms.take());
         offer.text = said.text.clone().or(offer.text.take());

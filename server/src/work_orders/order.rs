@@ -2,6 +2,7 @@
 
 use super::asked::{BerthReadingSchema, LimitsSchema};
 use super::completion::{Completed, KnownKey, SignedBy};
+use super::moved::{CallChange, CallFit};
 use super::offering::NewOffer;
 use super::offers::{Offer, OfferState};
 use super::photos::PhotoTaken;
@@ -175,10 +176,13 @@ pub(super) struct Summary {
     /// The firm that has accepted the order.
     #[schema(required)]
     pub firm_id: Option<FirmId>,
-    /// Until when an answer is waited for: the firm's to an offer, or the operator's to a
-    /// proposal.
+    /// Until when an answer is waited for: the firm's to an offer or to another time, or the
+    /// operator's to a proposal.
     #[schema(required)]
     pub answer_by: Option<Time>,
+    /// How its time lies in its port call, where that has moved since the time was agreed.
+    #[schema(required)]
+    pub call_fit: Option<CallFit>,
     /// When it was written.
     pub created_at: Time,
     /// Who wrote it.
@@ -220,6 +224,9 @@ pub(super) struct Order {
     /// In a line.
     #[serde(flatten)]
     pub summary: Summary,
+    /// What became of its port call since its time was agreed; none where it has not moved.
+    #[schema(required)]
+    pub call_change: Option<CallChange>,
     /// What its figures are: predictions, until headings at sea agree.
     #[schema(example = "predicted, not a certificate")]
     pub standing: &'static str,
@@ -320,6 +327,7 @@ impl Order {
                 _ if verified => "verified at sea",
                 _ => NOT_A_CERTIFICATE,
             },
+            call_change: standing.call,
             limits: standing.limits,
             next_step,
             setting,

@@ -5,6 +5,7 @@
 
 use super::completion::{Completed, SignedBy};
 use super::entry::Content;
+use super::moved::CallChange;
 use super::offers::Offers;
 use super::order::State;
 use super::photos::PhotoTaken;
@@ -22,6 +23,10 @@ pub(super) struct Standing {
     pub state: State,
     /// What became of its offers to firms.
     pub offers: Offers,
+    /// What became of its port call since its time was agreed.
+    pub call: Option<CallChange>,
+    /// The port that it is for, where its call has ever moved.
+    pub port: Option<String>,
     /// What a plan must keep to.
     pub limits: Limits,
     /// The last reading that was taken.
@@ -55,6 +60,8 @@ impl Standing {
         let mut standing = Standing {
             state: State::Planned,
             offers: Offers::default(),
+            call: None,
+            port: None,
             limits: Limits::default(),
             read: None,
             binnacle: None,
@@ -77,6 +84,13 @@ impl Standing {
     /// Goes on by an entry.
     pub(super) fn take(&mut self, content: &Content) {
         self.offers.take(content);
+        if matches!(
+            content,
+            Content::ProposalAccepted(_) | Content::RetimeAccepted(_)
+        ) {
+            // Another time was agreed, as the call is now.
+            self.call = None;
+        }
         match content {
             Content::Offered(_)
             | Content::Asked(_)
@@ -86,6 +100,14 @@ impl Standing {
             | Content::ProposalAccepted(_)
             | Content::ProposalDeclined(_)
             | Content::Lapsed(_) => self.state = self.offers.state(),
+            Content::RetimeProposed(_)
+            | Content::RetimeAccepted(_)
+            | Content::RetimeDeclined(_)
+            | Content::RetimeLapsed(_) => {}
+            Content::CallMoved(moved) => {
+                self.port.get_or_insert_with(|| moved.call.was.port.clone());
+                self.call = Some(moved.call.clone());
+            }
             Content::OnBoard(_) => self.state = State::OnBoard,
             Content::Photo(photo) => self.photos.push(photo.clone()),
             Content::Signature(signature) => self.signatures.push(signature.clone()),

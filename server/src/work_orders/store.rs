@@ -2,7 +2,7 @@
 
 use super::entry::{Author, Content, Entry, canonical, sha256_hex};
 pub(super) use super::find::{lines, list, lock, overdue, summary, vessel_of_asked, whole};
-use super::offers::Offers;
+use super::offers::{Between, Offers};
 use super::order::{NewOrder, State, Summary};
 use super::standing::Standing;
 use crate::db::{Db, Tx, execute, row};
@@ -28,6 +28,7 @@ impl Whole {
         let summary = &mut self.summary;
         summary.state = standing.state;
         summary.answer_by = standing.offers.answer_by();
+        summary.call_fit = standing.call.as_ref().map(|call| call.fit);
         let holder = standing.offers.holder().map(|offer| offer.firm_id);
         if summary.firm_id.is_some() && holder.is_none() && !summary.state.is_over() {
             (
@@ -46,12 +47,20 @@ impl Whole {
             Some(Content::ProposalAccepted(said)) => {
                 summary.firm = Some(said.firm.firm_name.clone());
                 (summary.adjuster_name, summary.adjuster_licence) = (None, None);
-                if let Some(terms) = &said.terms {
-                    summary.planned_at = terms.planned_at;
-                    summary.berth = terms.berth.clone().or(summary.berth.take());
-                }
+                summary.agree(said);
             }
+            Some(Content::RetimeAccepted(said)) => summary.agree(said),
             _ => {}
+        }
+    }
+}
+
+impl Summary {
+    /// Is to be done as was agreed on.
+    fn agree(&mut self, said: &Between) {
+        if let Some(terms) = &said.terms {
+            self.planned_at = terms.planned_at;
+            self.berth = terms.berth.clone().or(self.berth.take());
         }
     }
 }
@@ -209,7 +218,8 @@ pub(super) async fn append(
         &mut *tx,
         "UPDATE work_orders
          SET state = $3, last_seq = $4, last_sha256 = $5, firm_id = $6, answer_by = $7,
-             planned_at = $8, berth = $9, adjuster_name = $10, adjuster_licence = $11, firm = $12
+             planned_at = $8, berth = $9, adjuster_name = $10, adjuster_licence = $11, firm = $12,
+             call_fit = $13
          WHERE vessel_id = $1 AND id = $2",
         summary.vessel_id,
         summary.id,
@@ -222,7 +232,8 @@ pub(super) async fn append(
         summary.berth.as_deref(),
         summary.adjuster_name.as_deref(),
         summary.adjuster_licence.as_deref(),
-        summary.firm.as_deref()
+        summary.firm.as_deref(),
+        summary.call_fit
     )?;
     if whole
         .log

@@ -227,8 +227,8 @@ export interface paths {
         put?: never;
         /**
          * Make a calendar
-         * @description Of all your work orders, or of one vessel's. The answer shows its secret address, this
-         *     once.
+         * @description Of all your work orders, or of one vessel's; for an operator with port calls and due
+         *     dates. The answer shows its secret address, this once.
          */
         post: operations["create_feed"];
         delete?: never;
@@ -265,9 +265,12 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read a calendar of work orders
-         * @description iCalendar (RFC 5545), by a calendar's secret address or as any other route. What is
-         *     offered or planned is tentative, what a firm has is confirmed.
+         * Read a calendar
+         * @description iCalendar (RFC 5545), by a calendar's secret address or as any other route. Of work
+         *     orders what is offered or planned is tentative, what a firm has is confirmed. An
+         *     operator's calendar has port calls too, and each compass's due date as a day, as it was
+         *     looked at within the last quarter of an hour. Each event keeps its `UID`, and its
+         *     `SEQUENCE` grows; what is cancelled or withdrawn stays for a season and says so.
          */
         get: operations["calendar"];
         put?: never;
@@ -2479,7 +2482,7 @@ export interface paths {
         };
         /**
          * List the messages about a work order
-         * @description A firm reads its own only.
+         * @description A firm reads its own only. That the port call has moved is among them, from `Binnacle`.
          */
         get: operations["list_messages"];
         put?: never;
@@ -2663,6 +2666,67 @@ export interface paths {
         put?: never;
         /** Say something of a work order */
         post: operations["remark"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/retime": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask the firm that has an order for another time
+         * @description For the operator, before the adjuster is on board. What was agreed stands until the firm
+         *     accepts; asked again, the firm answers what was asked last.
+         */
+        post: operations["propose_retime"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/retime/accept": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Agree to another time
+         * @description For the firm that has the order.
+         */
+        post: operations["accept_retime"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/retime/decline": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Do not agree to another time
+         * @description What was agreed stands. The operator takes its question back in the same way.
+         */
+        post: operations["decline_retime"];
         delete?: never;
         options?: never;
         head?: never;
@@ -5390,7 +5454,7 @@ export interface components {
          * @description What a message tells of.
          * @enum {string}
          */
-        MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "notification" | "report" | "test";
+        MessageKind: "alert.raised" | "alert.updated" | "alert.acknowledged" | "alert.cleared" | "order.offered" | "order.answered" | "order.lapsed" | "order.withdrawn" | "order.message" | "order.retime_proposed" | "order.call_moved" | "order.updated" | "order.completed" | "order.verified" | "order.failed" | "order.closed" | "order.cancelled" | "notification" | "report" | "test";
         /** @description A fitted model. */
         Model: {
             /**
@@ -5740,6 +5804,27 @@ export interface components {
             reference?: string | null;
         };
         /**
+         * @description Another time for an order that a firm has.
+         * @example {
+         *       "answer_within_hours": 24,
+         *       "terms": {
+         *         "planned_at": "2026-12-10T08:00:00Z"
+         *       },
+         *       "text": "She is two days late."
+         *     }
+         */
+        NewRetime: {
+            /**
+             * Format: int32
+             * @description So long the firm has for an answer, 1 to 720 hours; what was agreed stands after it.
+             */
+            answer_within_hours?: number;
+            /** @description The time, and the berth if another. */
+            terms: components["schemas"]["WorkOrderTerms"];
+            /** @description In words. */
+            text?: string | null;
+        };
+        /**
          * @description A planned job to be offered to its firm.
          * @example {
          *       "answer_within_hours": 48,
@@ -5908,7 +5993,7 @@ export interface components {
          * @description What a notification is about.
          * @enum {string}
          */
-        NotificationKind: "due_soon" | "need_raised" | "offered" | "answered" | "answer_late" | "message" | "on_board" | "completed" | "verified" | "verification_failed" | "withdrawn" | "alert";
+        NotificationKind: "due_soon" | "need_raised" | "offered" | "answered" | "answer_late" | "message" | "call_moved" | "on_board" | "completed" | "verified" | "verification_failed" | "withdrawn" | "alert";
         /** @description A page of notifications. */
         NotificationList: {
             /** @description The newest first. */
@@ -8064,6 +8149,7 @@ export interface components {
         /** @description An order, and all that the next thing to do depends on. */
         WorkOrder: components["schemas"]["WorkOrderSummary"] & {
             berth_check: components["schemas"]["BerthCheck"] | null;
+            call_change: components["schemas"]["WorkOrderCallChange"] | null;
             /**
              * Format: double
              * @description What the compass read last at the berth, degrees.
@@ -8095,6 +8181,42 @@ export interface components {
             steps_done: number;
             verification: components["schemas"]["OrderVerification"] | null;
         };
+        /** @description Where and when a vessel is alongside. */
+        WorkOrderAlongside: {
+            /** @description When she is expected alongside. */
+            eta: components["schemas"]["Time"];
+            /**
+             * @description The ETA in ship's time, the nautical zone of the port.
+             * @example 2026-12-08T07:00:00+01:00
+             */
+            eta_local: string;
+            /** @description When she is expected to leave. */
+            etd: components["schemas"]["Time"];
+            /**
+             * @description The ETD in ship's time.
+             * @example 2026-12-10T19:00:00+01:00
+             */
+            etd_local: string;
+            /** @description UN/LOCODE of the port. */
+            port: string;
+        };
+        /** @description What became of a port call. */
+        WorkOrderCallChange: {
+            /** @description Who moved it. */
+            by: string;
+            /** @description The call. */
+            call_id: components["schemas"]["CallId"];
+            /** @description How the agreed time lies in it now. */
+            fit: components["schemas"]["WorkOrderCallFit"];
+            is: components["schemas"]["WorkOrderAlongside"] | null;
+            /** @description As it was. */
+            was: components["schemas"]["WorkOrderAlongside"];
+        };
+        /**
+         * @description How an order's time lies in its port call.
+         * @enum {string}
+         */
+        WorkOrderCallFit: "fits" | "other_hour" | "needs_new_day" | "no_call";
         /** @description An entry of an order's log: a line of canonical JSON with its hash. */
         WorkOrderEntry: {
             /** @description What happened: `kind`, `at`, `author`, `previous_sha256` and `content`. */
@@ -8128,6 +8250,7 @@ export interface components {
             firm_id: components["schemas"]["FirmId"];
             /** @description Its name when it was offered. */
             firm_name: string;
+            new_terms: components["schemas"]["WorkOrderTerms"] | null;
             /** @description How it stands. */
             state: components["schemas"]["OfferState"];
             terms: components["schemas"]["WorkOrderTerms"] | null;
@@ -8156,6 +8279,7 @@ export interface components {
             answer_by: components["schemas"]["Time"] | null;
             /** @description The berth. */
             berth: string | null;
+            call_fit: components["schemas"]["WorkOrderCallFit"] | null;
             /** @description The compass. */
             compass_id: components["schemas"]["CompassId"];
             /** @description Its name. */
@@ -20005,6 +20129,309 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    propose_retime: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewRetime"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description No firm has it, the work has begun, she is not alongside then, or the firm has no team left that day */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    accept_retime: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OfferAnswer"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nothing is asked, or not any more, or the call has moved meanwhile */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    decline_retime: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OfferAnswer"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Nothing is asked, or not any more */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -95,6 +95,8 @@ export const alerts = {
       'order.lapsed': 'Offer lapsed',
       'order.withdrawn': 'Offer withdrawn',
       'order.message': 'Message about a work order',
+      'order.retime_proposed': 'Another time asked for',
+      'order.call_moved': 'Port call of a work order moved',
       'order.updated': 'Work order went on',
       'order.completed': 'Adjustment completed',
       'order.verified': 'Adjustment verified at sea',

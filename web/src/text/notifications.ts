@@ -31,6 +31,7 @@ export const notifications = {
         answered: 'The other side answered',
         answer_late: 'No answer came in time',
         message: 'The other side wrote',
+        call_moved: 'A job’s port call moves, or is withdrawn',
         on_board: 'The adjuster is on board',
         completed: 'A job is finished and signed',
         verified: 'Headings at sea agree',

@@ -229,6 +229,9 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /work-orders/{id}/propose", PARTY_WRITES),
     ("GET /work-orders/{id}/record.json", PARTY_READS),
     ("POST /work-orders/{id}/remarks", PARTY_WRITES),
+    ("POST /work-orders/{id}/retime", FLEET_WRITES),
+    ("POST /work-orders/{id}/retime/accept", PARTY_WRITES),
+    ("POST /work-orders/{id}/retime/decline", PARTY_WRITES),
     ("POST /work-orders/{id}/signatures", PARTY_WRITES),
     ("POST /work-orders/{id}/steps/{n}", PARTY_WRITES),
 ];

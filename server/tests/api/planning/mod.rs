@@ -2,6 +2,7 @@
 
 mod concurrent;
 mod firms;
+mod moved;
 mod needs;
 mod offers;
 mod pins;

@@ -16,7 +16,7 @@ on_both!(
 );
 
 /// A firm with terms, and its adjuster.
-async fn firm(shore: &Shore, person: &Person, name: &str) -> (String, Person) {
+pub(super) async fn firm(shore: &Shore, person: &Person, name: &str) -> (String, Person) {
     let (id, adjuster) = person.adjuster(shore, name).await;
     let path = format!("/firms/{id}/terms");
     put(person, &path, &terms()).await.good();
@@ -28,7 +28,7 @@ fn offer_of(plan: &Value, vessel: &Value) -> Value {
 }
 
 /// Offers the vessel's job of the plan; the order's path.
-async fn offer(person: &Person, plan: &Value, vessel: &Value) -> String {
+pub(super) async fn offer(person: &Person, plan: &Value, vessel: &Value) -> String {
     let offered = person
         .post("/schedule/offer", &offer_of(plan, vessel))
         .await;
@@ -37,7 +37,7 @@ async fn offer(person: &Person, plan: &Value, vessel: &Value) -> String {
     format!("/work-orders/{}", order.as_str().unwrap())
 }
 
-async fn alerts(person: &Person) -> Vec<Value> {
+pub(super) async fn alerts(person: &Person) -> Vec<Value> {
     let list = person.get("/alerts?open=true").await.good();
     let all = list["items"].as_array().unwrap().iter();
     all.filter(|alert| alert["cause"] == "agreed_job_at_risk")

@@ -1,0 +1,293 @@
+//! Another time for an order that a firm has: the operator asks, the firm says yes or no.
+//!
+//! What always holds: what was agreed stands until the firm says yes. The new time lies in
+//! a call of the vessel's at the order's port, for as long as a job takes, and on a day on
+//! which the firm has a team left by its terms: when it is asked, and when it says yes.
+
+use super::change::Change;
+use super::entry::Content;
+use super::moved::{CallFit, day_of};
+use super::offering::{Answer, LONGEST_H, Proposal, due, two_days};
+use super::offers::{Between, Offer, Terms};
+use super::order::{Order, State};
+use super::store;
+use super::{request, shown};
+use crate::access::{PartyWriter, Writer};
+use crate::app::App;
+use crate::error::{Error, Problem, Result};
+use crate::firms;
+use crate::http::{Id, Json, Valid, ValidOrNone};
+use crate::idempotency::Key;
+use crate::ids::{FirmId, OperatorId, OrderId};
+use crate::port_calls;
+use crate::schedule;
+use crate::tenants::Tenant;
+use crate::time::Time;
+use axum::extract::State as Shared;
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+use utoipa_axum::router::OpenApiRouter;
+use utoipa_axum::routes;
+
+pub(super) fn router() -> OpenApiRouter<App> {
+    OpenApiRouter::new()
+        .routes(routes!(propose_retime))
+        .routes(routes!(accept_retime))
+        .routes(routes!(decline_retime))
+}
+
+/// Another time for an order that a firm has.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = NewRetime, example = json!({
+    "terms": { "planned_at": "2026-12-10T08:00:00Z" }, "answer_within_hours": 24,
+    "text": "She is two days late."
+}))]
+struct Retime {
+    /// The time, and the berth if another.
+    terms: Terms,
+    /// So long the firm has for an answer, 1 to 720 hours; what was agreed stands after it.
+    #[serde(default = "two_days")]
+    #[schema(minimum = 1, maximum = 720)]
+    answer_within_hours: u32,
+    /// In words.
+    #[serde(default)]
+    #[schema(max_length = 200)]
+    text: Option<String>,
+}
+
+/// Ask the firm that has an order for another time
+///
+/// For the operator, before the adjuster is on board. What was agreed stands until the firm
+/// accepts; asked again, the firm answers what was asked last.
+#[utoipa::path(post, path = "/work-orders/{id}/retime", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Retime,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "No firm has it, the work has begun, she is not \
+                             alongside then, or the firm has no team left that day", body = Problem),
+              (status = 422, body = Problem)))]
+async fn propose_retime(
+    Shared(app): Shared<App>,
+    writer: Writer,
+    Id(id): Id<OrderId>,
+    key: Key,
+    Valid(retime): Valid<Retime>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "retime", &retime)?;
+    let (whole, done) = request.look().await?;
+    if done.is_some() {
+        return shown(&app, writer.operator, id).await;
+    }
+    let hours = retime.answer_within_hours;
+    if !(1..=LONGEST_H).contains(&hours) {
+        return Err(Error::Invalid {
+            field: "answer_within_hours",
+            detail: format!("{hours} is outside 1 to {LONGEST_H}"),
+        });
+    }
+    let asked = Proposal {
+        terms: retime.terms,
+        text: retime.text,
+    };
+    let asked = asked.checked(app.clock.now().into())?;
+    whole.must_be(&[State::Accepted], "a firm that has it is asked")?;
+    let jobs = jobs_a_day(&app, writer.operator, whole.summary.firm_id).await?;
+    if let Some(mut change) = request.begin(&whole).await? {
+        let holder = holder(&change)?;
+        must_be_possible(&mut change, holder.firm_id, &asked.terms, jobs).await?;
+        let between = Between {
+            answer_by: Some(due(&change, hours)),
+            terms: Some(asked.terms),
+            text: asked.text,
+            ..Between::with(holder.firm())
+        };
+        change.append(Content::RetimeProposed(between)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.operator, id).await
+}
+
+/// Agree to another time
+///
+/// For the firm that has the order.
+#[utoipa::path(post, path = "/work-orders/{id}/retime/accept", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Answer,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Nothing is asked, or not any more, or the call has \
+                             moved meanwhile", body = Problem),
+              (status = 422, body = Problem)))]
+async fn accept_retime(
+    Shared(app): Shared<App>,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(answer): ValidOrNone<Answer>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "yes to another time", &answer)?;
+    let answer = answer.checked()?;
+    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    let Tenant::Firm(firm) = writer.tenant else {
+        return Err(Error::WrongState(
+            "the firm that has the order answers what it is asked".to_owned(),
+        ));
+    };
+    let jobs = jobs_a_day(&app, summary.operator_id, Some(firm)).await?;
+    if let Some(mut change) = request.begin_on(summary.vessel_id).await? {
+        let offer = holder(&change)?;
+        if offer.firm_id != firm {
+            return Err(Error::NotFound("work order"));
+        }
+        let terms = asked_terms(&change, &offer)?;
+        must_be_possible(&mut change, firm, &terms, jobs).await?;
+        at_its_call(&mut change, terms.planned_at).await?;
+        let agreed = Between {
+            terms: Some(terms),
+            text: answer.text,
+            ..Between::with(offer.firm())
+        };
+        change.append(Content::RetimeAccepted(agreed)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+/// Do not agree to another time
+///
+/// What was agreed stands. The operator takes its question back in the same way.
+#[utoipa::path(post, path = "/work-orders/{id}/retime/decline", tag = "adjusting",
+    params(("id" = OrderId, Path), Key), request_body = Answer,
+    responses((status = 200, body = Order), (status = 401, body = Problem),
+              (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "Nothing is asked, or not any more", body = Problem),
+              (status = 422, body = Problem)))]
+async fn decline_retime(
+    Shared(app): Shared<App>,
+    writer: PartyWriter,
+    Id(id): Id<OrderId>,
+    key: Key,
+    ValidOrNone(answer): ValidOrNone<Answer>,
+) -> Result<Json<Order>> {
+    let request = request(&app, writer, id, key, "no to another time", &answer)?;
+    let answer = answer.checked()?;
+    let summary = store::summary(&app.db, writer.tenant, id).await?;
+    if let Some(mut change) = request.begin_on(summary.vessel_id).await? {
+        let offer = holder(&change)?;
+        if writer
+            .tenant
+            .firm()
+            .is_some_and(|firm| firm != offer.firm_id)
+        {
+            return Err(Error::NotFound("work order"));
+        }
+        asked_terms(&change, &offer)?;
+        let between = Between {
+            text: answer.text,
+            ..Between::with(offer.firm())
+        };
+        change.append(Content::RetimeDeclined(between)).await?;
+        change.commit().await?;
+    }
+    shown(&app, writer.tenant, id).await
+}
+
+/// The firm that has an order whose work has not begun.
+fn holder(change: &Change<'_>) -> Result<Offer> {
+    change
+        .whole
+        .must_be(&[State::Accepted], "a firm that has it is asked")?;
+    let offers = change.whole.standing().offers;
+    let holder = offers.holder().cloned();
+    holder.ok_or_else(|| Error::WrongState("no firm has the order".to_owned()))
+}
+
+/// What the firm is asked.
+fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
+    let wrong = |why: &str| Err(Error::WrongState(why.to_owned()));
+    let Some(terms) = offer.new_terms.clone() else {
+        return wrong("no other time is asked for");
+    };
+    if offer.answer_by.is_some_and(|by| by < change.now) {
+        return wrong("the question has lapsed: what was agreed stands");
+    }
+    Ok(terms)
+}
+
+/// How many ships a day a firm sees for an operator; none where nobody has said.
+async fn jobs_a_day(app: &App, operator: OperatorId, firm: Option<FirmId>) -> Result<Option<i64>> {
+    let all = firms::of_operator(&app.db, operator).await?;
+    let terms = all.into_iter().find(|(id, _, _)| Some(*id) == firm);
+    let terms = terms.and_then(|(_, _, terms)| terms);
+    Ok(terms.map(|terms| i64::from(terms.teams) * i64::from(terms.jobs_a_team_day)))
+}
+
+/// The port that an order is for, where its call is known.
+async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
+    if let Some(port) = change.whole.standing().port {
+        return Ok(Some(port));
+    }
+    let (vessel, planned_at) = (
+        change.whole.summary.vessel_id,
+        change.whole.summary.planned_at,
+    );
+    let id = change.whole.summary.id;
+    if let Some(port) = schedule::linked_port(&mut change.tx, vessel, id).await? {
+        return Ok(Some(port));
+    }
+    let call = port_calls::alongside(&mut change.tx, vessel, planned_at).await?;
+    Ok(call.map(|call| call.port))
+}
+
+/// Notes at which call an order is to be done whose time is another now.
+pub(super) async fn at_its_call(change: &mut Change<'_>, at: Time) -> Result<()> {
+    let (vessel, id) = (change.whole.summary.vessel_id, change.whole.summary.id);
+    if let Some(call) = port_calls::alongside(&mut change.tx, vessel, at).await? {
+        schedule::link(&mut change.tx, vessel, id, call.id).await?;
+    }
+    Ok(())
+}
+
+/// Refuses a time at which the ship is not there, or the firm has no team.
+///
+/// # Errors
+/// [`Error::WrongState`], which says what is in the way.
+async fn must_be_possible(
+    change: &mut Change<'_>,
+    firm: FirmId,
+    terms: &Terms,
+    jobs: Option<i64>,
+) -> Result<()> {
+    // Without any call nobody knows where she will be: the firm judges for itself.
+    let Some(port) = order_port(change).await? else {
+        return Ok(());
+    };
+    let at = terms.planned_at;
+    let (vessel, operator) = (
+        change.whole.summary.vessel_id,
+        change.whole.summary.operator_id,
+    );
+    let call = port_calls::alongside(&mut change.tx, vessel, at).await?;
+    let fit = match &call {
+        Some(call) => call.alongside()?.fit(&port, at),
+        None => CallFit::NoCall,
+    };
+    if fit != CallFit::Fits {
+        return Err(Error::WrongState(format!(
+            "she has no call at {port} that lasts for three hours from {}",
+            at.to_the_minute()
+        )));
+    }
+    let Some(jobs) = jobs else {
+        return Ok(());
+    };
+    let day = day_of(at, &port);
+    let others = schedule::other_ships(&mut change.tx, operator, firm, vessel, day).await?;
+    if others >= jobs {
+        return Err(Error::WrongState(format!(
+            "the firm has no team left on the day of {}",
+            at.to_the_minute()
+        )));
+    }
+    Ok(())
+}
