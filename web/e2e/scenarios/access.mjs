@@ -51,6 +51,7 @@ const pages = [
     path: '/settings/schedule',
     ready: (page) => page.getByLabel('Hours that a job takes on board'),
   },
+  { name: 'audit', path: '/settings/audit', ready: (page) => page.getByTestId('audit') },
   { name: 'nothing', path: '/no-such', ready: (page) => page.getByRole('heading', { level: 1 }) },
 ];
 

@@ -144,6 +144,42 @@ export const people = {
     },
   },
 
+  'who did what is found in the audit log, by deed and by day': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByRole('link', { name: 'Settings' }).click();
+      await page.getByRole('link', { name: 'Audit log' }).click();
+      const lines = page.getByTestId('audit').locator('tbody tr');
+      await lines.first().waitFor();
+      await page.getByRole('combobox', { name: 'What' }).selectOption('Signed in · Signed out');
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await lines
+        .filter({ hasNotText: /Signed (in|out)/ })
+        .first()
+        .waitFor({ state: 'detached' });
+      await lines.filter({ hasText: 'Signed in' }).filter({ hasText: 'done' }).first().waitFor();
+      const csv = page.getByRole('link', { name: 'Download as CSV' });
+      const answer = await page.request.get(await csv.getAttribute('href'));
+      const file = (await answer.text()).trim().split('\n');
+      assert.ok(file.length > 1 && file.slice(1).every((line) => line.includes('/api/v1/session')));
+      await shoot('audit', { fullPage: true });
+
+      await page.getByLabel(/^From/).fill('2099-01-02');
+      await page.getByLabel('To, with that day').fill('2099-01-01');
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByRole('alert').getByText('after the last').waitFor();
+      await page.getByLabel('To, with that day').fill('2099-01-02');
+      await page.getByRole('button', { name: 'Show', exact: true }).click();
+      await page.getByText('Nothing noted is like that').waitFor();
+      await page.getByRole('button', { name: 'Show everything' }).click();
+      await lines.first().waitFor();
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('audit-phone');
+    },
+  },
+
   'an adjuster signs in on a phone and finds today’s ship': {
     viewport: phone,
     allowedErrors: [notSignedIn],

@@ -1,6 +1,7 @@
 /** The calls about people: oneself, one's company, and what may act for them. */
 
 import { answer, client, everyPage, longestPage, page } from './client';
+import type { AuditQuery } from '../audit';
 import type { ChangedUser, NewToken, NewUser } from './types';
 
 const all = { query: page(longestPage) };
@@ -61,3 +62,11 @@ export const findSignInRules = () => answer(client.GET('/api/v1/sign-in-rules'))
 
 export const setSignInRules = (second_factor_required: boolean) =>
   answer(client.PUT('/api/v1/sign-in-rules', { body: { second_factor_required } }));
+
+/** So many lines of the audit log are shown at once. */
+const auditPage = 50;
+
+export const listAudit = (query: AuditQuery, after?: string) =>
+  answer(
+    client.GET('/api/v1/audit', { params: { query: { ...query, ...page(auditPage, after) } } }),
+  );

@@ -101,6 +101,7 @@ export type ScheduleSettings = Schemas['ScheduleSettings'];
 export type UnscheduledNeed = Schemas['UnscheduledNeed'];
 export type Urgency = Schemas['Urgency'];
 export type Pin = Schemas['Pin'];
+export type AuditLine = Schemas['AuditLine'];
 export type ChangedUser = Schemas['ChangedUser'];
 export type FirmKey = Schemas['FirmKey'];
 export type Invitation = Schemas['Invitation'];

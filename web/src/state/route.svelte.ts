@@ -17,6 +17,7 @@ const ofSettings = {
   people: 'people',
   agents: 'aboard',
   schedule: 'schedule-rules',
+  audit: 'audit',
 } as const;
 
 export type Route =

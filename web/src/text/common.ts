@@ -92,6 +92,7 @@ export const common = {
     settings: 'Settings · Binnacle',
     people: 'People · Binnacle',
     aboard: 'Agents · Binnacle',
+    audit: 'Audit log · Binnacle',
     scheduleRules: 'Schedule rules · Binnacle',
     newOrder: 'Order an adjustment · Binnacle',
     order: (vessel: string) => `Adjustment of ${vessel} · Binnacle`,

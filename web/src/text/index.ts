@@ -4,6 +4,7 @@
  */
 
 import { alerts } from './alerts';
+import { audit } from './audit';
 import { berth } from './berth';
 import { binnacles } from './binnacles';
 import { changes } from './changes';
@@ -26,6 +27,7 @@ import { vessels } from './vessels';
 export const text = {
   ...common,
   ...alerts,
+  ...audit,
   ...vessels,
   ...fleet,
   ...deviation,

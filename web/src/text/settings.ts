@@ -9,6 +9,7 @@ export const settings = {
       people: 'People',
       aboard: 'Agents',
       'schedule-rules': 'Schedule rules',
+      audit: 'Audit log',
     },
     mail: 'Mail',
     webhooks: 'Webhooks',
