@@ -16,6 +16,7 @@ import { adjusting } from './scenarios/adjusting.mjs';
 import { alerts } from './scenarios/alerts.mjs';
 import { fleet } from './scenarios/fleet.mjs';
 import { link } from './scenarios/link.mjs';
+import { live } from './scenarios/live.mjs';
 import { papers } from './scenarios/papers.mjs';
 import { people } from './scenarios/people.mjs';
 import { platform } from './scenarios/platform.mjs';
@@ -33,6 +34,7 @@ const groups = {
   papers,
   alerts,
   session,
+  live,
   adjusting,
   schedule,
   people,

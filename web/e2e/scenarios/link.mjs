@@ -1,6 +1,6 @@
 /** What a slow and dear link carries before the fleet can be seen. */
 import assert from 'node:assert/strict';
-import { fleetIsShown, notSignedIn, signIn, withModel } from '../helpers.mjs';
+import { fleetIsShown, notSignedIn, signIn } from '../helpers.mjs';
 import { wireTo } from '../wire.mjs';
 
 /** Sign-in, the fleet's page, coasts and data, compressed as they cross the wire. */
@@ -29,41 +29,6 @@ export const link = {
         console.log(`     ${shown} octets until the fleet is shown, ${wire.octets} in all`);
         assert.ok(shown >= leastOctets, `only ${shown} octets crossed: the wire was not watched`);
         assert.ok(wire.octets <= mostOctets, `${wire.octets} octets crossed the wire`);
-      } finally {
-        await context.close();
-        wire.close();
-      }
-    },
-  },
-
-  'what happened while the connection was cut is shown when it is back, without a reload': {
-    async run({ browser, settings, shoot }) {
-      const wire = await wireTo(settings.url);
-      const context = await browser.newContext({ baseURL: wire.url });
-      try {
-        const page = await context.newPage();
-        await signIn(page, settings);
-        const { id } = await withModel(page);
-        await page.goto(`/vessels/${id}`);
-        const logbook = page.getByRole('region', { name: 'Logbook' });
-        await logbook.getByRole('button', { name: 'Report' }).waitFor();
-        const banner = page.getByRole('banner');
-        await banner.getByText('Live', { exact: true }).waitFor();
-        await page.evaluate(() => (window.sameDocument = true));
-        wire.cut();
-        await banner.getByText('Not live').waitFor();
-        // Past the relay, as from another desk.
-        const answer = await page.request.post(`${settings.url}/api/v1/vessels/${id}/logbook`, {
-          headers: { 'X-Binnacle-Request': '1' },
-          data: { kind: 'note', from: new Date().toISOString(), note: 'While you were away' },
-        });
-        assert.ok(answer.ok(), await answer.text());
-        assert.equal(await logbook.getByText('While you were away').count(), 0);
-        await shoot('not-live', {}, page);
-        wire.mend();
-        await banner.getByText('Live', { exact: true }).waitFor({ timeout: 40_000 });
-        await logbook.getByText('While you were away').waitFor();
-        assert.ok(await page.evaluate(() => window.sameDocument), 'the page was loaded anew');
       } finally {
         await context.close();
         wire.close();

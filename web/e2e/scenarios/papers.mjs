@@ -49,7 +49,7 @@ export const papers = {
       await signIn(page, settings);
       await openVessel(page);
       await page.getByRole('button', { name: 'Choose another place' }).click();
-      await page.getByLabel('Latitude').fill('48 S');
+      await page.getByLabel('Latitude', { exact: true }).fill('48 S');
       await page.getByLabel('Longitude').fill('020 E');
       await page.getByRole('button', { name: 'Show', exact: true }).click();
       const card = cardOf(page);

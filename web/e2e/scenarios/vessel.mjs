@@ -92,10 +92,10 @@ export const vessel = {
       await openVessel(page);
       const before = await curve(page).getAttribute('d');
       await page.getByRole('button', { name: 'Choose another place' }).click();
-      await page.getByLabel('Latitude').fill('95 N');
+      await page.getByLabel('Latitude', { exact: true }).fill('95 N');
       await page.getByRole('button', { name: 'Show', exact: true }).click();
       await page.getByRole('alert').filter({ hasText: 'Latitude' }).waitFor();
-      await page.getByLabel('Latitude').fill('62 30.5 N');
+      await page.getByLabel('Latitude', { exact: true }).fill('62 30.5 N');
       await page.getByLabel('Longitude').fill('005 12 E');
       await page.getByRole('button', { name: 'Show', exact: true }).click();
       await page.getByText('At 62° 30.5′ N, 005° 12.0′ E', { exact: false }).first().waitFor();
