@@ -1,6 +1,6 @@
 //! The tables of BENCHMARKS.md on adjusting at the berth: how often the band of a plan
 //! holds the true residual and how large the worst one is; what becomes of steps that are
-//! done wrong; and how soon headings at sea tell right from wrong.
+//! done wrong, with and without a second reading of the magnetometer; and how soon headings at sea tell right from wrong.
 //!
 //! `make study-adjust`, or
 //! `cargo run --release -p binnacle-magnetics --example adjust_study [SHIPS] [PART]`
@@ -23,7 +23,7 @@ mod sea;
 mod tally;
 
 use adjusting::knowledge::{FLUXGATE, PHONE};
-use hands::{Hands, Slip};
+use hands::{Ending, Hands, Slip};
 use sea::Sea;
 use tally::Tally;
 
@@ -49,7 +49,12 @@ fn main() {
             Slip::Moment(0.85),
             Slip::Moment(0.7),
         ] {
-            println!("{slip:?}: {}", Hands::of(0..ships, slip));
+            for ending in [Ending::ByCompass, Ending::ReadAgain] {
+                println!(
+                    "{slip:?}, {ending:?}: {}",
+                    Hands::of(0..ships, slip, ending)
+                );
+            }
         }
     }
     if wanted("sea") {

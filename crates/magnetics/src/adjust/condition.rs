@@ -14,6 +14,8 @@ use crate::ship::{EarthField, PARAMETERS, ShipMagnetism};
 
 const LAMBDA: usize = PARAMETERS + 1;
 
+type JointRow = [f64; LAMBDA + 1];
+
 pub(super) struct Condition<'a> {
     pub(super) binnacle: &'a Binnacle,
     model: &'a Model,
@@ -163,16 +165,9 @@ impl<'a> Condition<'a> {
         after: &Parameters,
         ship: &ShipMagnetism,
     ) -> Covariance {
-        let before = self.model.parameters_over_lambda.to_array();
         let after = after.to_array();
         let new_lambda = ship.lambda();
-        // Rows of the slopes of the eight by the nine.
-        let mut slopes = [[0.0; LAMBDA + 1]; LAMBDA];
-        for (index, row) in slopes.iter_mut().enumerate().take(PARAMETERS) {
-            row[index] = self.lambda / new_lambda;
-            row[LAMBDA] = (before[index] - after[index]) / new_lambda;
-        }
-        slopes[PARAMETERS][PARAMETERS] = 1.0;
+        let slopes = self.slopes(&after, new_lambda);
         let mut covariance = [[0.0; LAMBDA]; LAMBDA];
         for (row, by) in slopes.iter().enumerate() {
             for (column, with) in slopes.iter().enumerate() {
@@ -180,12 +175,7 @@ impl<'a> Condition<'a> {
             }
         }
         for error in errors_of(self.binnacle, setting) {
-            let error = error.as_ship(self.reference_h_nt);
-            let way = seven(&error);
-            let lambda = error.lambda() - 1.0;
-            let way: Vec<f64> = (0..PARAMETERS)
-                .map(|i| (way[i] - after[i] * lambda) / new_lambda)
-                .collect();
+            let way = self.way(&error, &after, new_lambda);
             for (row, one) in way.iter().enumerate() {
                 for (column, other) in way.iter().enumerate() {
                     covariance[row][column] += one * other;
@@ -193,6 +183,93 @@ impl<'a> Condition<'a> {
             }
         }
         covariance
+    }
+
+    /// Rows of the slopes of the eight that hold then by the nine that were measured.
+    fn slopes(&self, after: &[f64; PARAMETERS], new_lambda: f64) -> [JointRow; LAMBDA] {
+        let before = self.model.parameters_over_lambda.to_array();
+        let mut slopes = [[0.0; LAMBDA + 1]; LAMBDA];
+        for (index, row) in slopes.iter_mut().enumerate().take(PARAMETERS) {
+            row[index] = self.lambda / new_lambda;
+            row[LAMBDA] = (before[index] - after[index]) / new_lambda;
+        }
+        slopes[PARAMETERS][PARAMETERS] = 1.0;
+        slopes
+    }
+
+    /// What an effect that comes on top makes of the eight.
+    fn way(&self, effect: &Effect, after: &[f64; PARAMETERS], new_lambda: f64) -> [f64; LAMBDA] {
+        let effect = effect.as_ship(self.reference_h_nt);
+        let way = seven(&effect);
+        let lambda = effect.lambda() - 1.0;
+        std::array::from_fn(|i| match way.get(i) {
+            Some(way) => (way - after[i] * lambda) / new_lambda,
+            None => 0.0,
+        })
+    }
+
+    /// All that is known of the ship with a setting, for what is read then.
+    pub(super) fn known_with(&self, setting: &Setting) -> Result<Known<'_>, DeviationError> {
+        let effect = effect(self.binnacle, setting);
+        let ship = self.aboard(&effect, self.reference_h_nt);
+        let model = self.model_with(setting)?;
+        let after = model.parameters_over_lambda.to_array();
+        let slopes = self.slopes(&after, ship.lambda());
+        Ok(Known {
+            condition: self,
+            setting: setting.clone(),
+            effect,
+            model,
+            after,
+            new_lambda: ship.lambda(),
+            slopes,
+        })
+    }
+}
+
+/// The ship with a setting, as she is known before anything is read of her then.
+pub(super) struct Known<'c> {
+    condition: &'c Condition<'c>,
+    pub(super) setting: Setting,
+    pub(super) effect: Effect,
+    pub(super) model: Model,
+    after: [f64; PARAMETERS],
+    new_lambda: f64,
+    slopes: [JointRow; LAMBDA],
+}
+
+impl Known<'_> {
+    /// What an effect that comes on top makes of the model's eight.
+    pub(super) fn way(&self, effect: &Effect) -> [f64; LAMBDA] {
+        self.condition.way(effect, &self.after, self.new_lambda)
+    }
+
+    /// Slopes of the model's eight by the eight that were measured and, last, by λ.
+    pub(super) fn slopes(&self) -> &[JointRow; LAMBDA] {
+        &self.slopes
+    }
+}
+
+impl Condition<'_> {
+    pub(super) fn lambda(&self) -> f64 {
+        self.lambda
+    }
+
+    /// Of the eight that were measured and, last, λ, the magnetometer's scale included.
+    pub(super) fn joint(&self) -> &JointCovariance {
+        &self.joint
+    }
+
+    /// What the correctors did while the ship was measured.
+    pub(super) fn then(&self) -> &Effect {
+        &self.then
+    }
+
+    /// The horizontal field at the card without bowl and needles, nT, with correctors of
+    /// this effect in a field of the earth in ship axes.
+    pub(super) fn field(&self, effect: &Effect, earth: [f64; 3]) -> [f64; 2] {
+        let [x, y, _] = self.aboard(effect, f64::INFINITY).field_aboard(earth);
+        [x, y]
     }
 }
 

@@ -5,7 +5,7 @@
 //! all its errors, and waters; else the complaint names the field.
 
 use super::read::ReadingForm;
-use super::{Adjustment, Circumstances, Limits, VerticalReading, Water};
+use super::{Adjustment, AgainForm, Circumstances, Limits, VerticalReading, Water};
 use crate::angle::Variation;
 use crate::berth::{BerthError, BerthReading};
 use crate::binnacle::Binnacle;
@@ -68,6 +68,25 @@ pub struct WaterForm {
     pub lon: Option<f64>,
     /// How much of her time she is there.
     pub weight: f64,
+}
+
+/// What was done at the berth after a plan, and what the magnetometer read then.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AfterForm {
+    /// Which of the plans was followed, from 1.
+    #[serde(default = "recommended")]
+    pub plan: usize,
+    /// By how much the compass turned at each of its steps, degrees; none where it was not
+    /// read, or was too little to be told.
+    #[serde(default)]
+    pub turned_deg: Vec<Option<f64>>,
+    /// What was read.
+    pub reading: AgainForm,
+}
+
+fn recommended() -> usize {
+    1
 }
 
 /// Names the field of the form, and what is wrong with it.
@@ -172,6 +191,27 @@ impl BerthForm {
             },
             limits: self.limits,
         })
+    }
+
+    /// The second reading that is meant, all else as at this berth.
+    ///
+    /// # Errors
+    /// Names the field of it that cannot be.
+    pub fn read_after(&self, after: &AfterForm) -> Result<Berth, FormError> {
+        let reading = after.reading.as_reading(&self.reading);
+        let reading =
+            reading.map_err(|error| wrong(format!("reading.{}", error.field), error.what))?;
+        for (index, turned_deg) in after.turned_deg.iter().enumerate() {
+            if turned_deg.is_some_and(|deg| !(-180.0..=180.0).contains(&deg)) {
+                let what = "is not between -180 and 180";
+                return Err(wrong(format!("turned_deg[{index}]"), what));
+            }
+        }
+        BerthForm {
+            reading,
+            ..self.clone()
+        }
+        .read()
     }
 
     /// The mistake that alone makes the reading fit the model, if there is one.

@@ -1,5 +1,6 @@
 //! Mistakes at the berth that would explain a reading that does not fit.
 
+use super::heeling::VerticalReading;
 use super::read::Unit;
 use crate::angle::MagneticHeading;
 use crate::berth::{Alignment, BerthReading, ReadingErrors, lambda_at_berth};
@@ -34,7 +35,7 @@ pub enum Mistake {
 }
 
 impl Mistake {
-    const ALL: [Mistake; 8] = [
+    pub(super) const ALL: [Mistake; 8] = [
         Mistake::Nanotesla,
         Mistake::Microtesla,
         Mistake::Gauss,
@@ -78,10 +79,32 @@ impl Mistake {
             Mistake::ForwardReversed => (degrees, [-x, y]),
             Mistake::HeadingReversed => (degrees + 180.0, [x, y]),
             _ => {
-                let times = self.unit().map_or(1.0, |unit| unit.nt() / named.nt());
+                let times = self.times(named);
                 (degrees, [x * times, y * times])
             }
         }
+    }
+
+    /// How many times what was said in another unit is.
+    fn times(self, named: Unit) -> f64 {
+        self.unit().map_or(1.0, |unit| unit.nt() / named.nt())
+    }
+
+    /// A whole reading if this was done wrong; none when no ship has such a field.
+    pub(super) fn undone_reading(
+        self,
+        reading: &BerthReading,
+        vertical: Option<VerticalReading>,
+        named: Unit,
+    ) -> Option<(BerthReading, Option<VerticalReading>)> {
+        let (degrees, field_nt) =
+            self.undone(reading.magnetic().degrees(), reading.field_nt(), named);
+        let heading = MagneticHeading::new(degrees)?;
+        let undone = BerthReading::new(heading, field_nt, reading.errors(), reading.alignment());
+        let vertical = vertical.map(|vertical| VerticalReading {
+            down_nt: vertical.down_nt * self.times(named),
+        });
+        Some((undone.ok()?, vertical))
     }
 }
 

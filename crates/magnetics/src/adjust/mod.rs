@@ -7,6 +7,7 @@
 //! λ and correctors together, and where that is not good enough there is no plan but a
 //! refusal that says what would cure it. Nothing here is a certificate.
 
+mod again;
 mod berth;
 mod candidates;
 mod condition;
@@ -24,8 +25,9 @@ mod search;
 mod tolerance;
 mod verify;
 
+pub use again::{Again, AgainForm, Done, Learnt, Part, Slip, Verdict, read_again};
 pub use berth::{BerthCheck, Seen};
-pub use form::{Berth, BerthForm, FieldForm, FormError, WaterForm};
+pub use form::{AfterForm, Berth, BerthForm, FieldForm, FormError, WaterForm};
 pub use heeling::{HeelingPlan, VerticalReading};
 pub use instructions::{Action, Corrector, Place, Step};
 pub use mistakes::{Mistake, mistakes};

@@ -5,6 +5,8 @@ use super::{AdjustError, Adjustment, Water};
 use crate::angle::CompassHeading;
 use crate::binnacle::Setting;
 use crate::deviation::DeviationError;
+use crate::model::Model;
+use crate::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
 /// One compass heading.
@@ -51,16 +53,26 @@ pub(super) fn tables(
     condition: &Condition<'_>,
     setting: &Setting,
 ) -> Result<Vec<PredictedTable>, AdjustError> {
+    let model = condition.model_with(setting)?;
+    tables_by(adjustment, |earth| {
+        condition.model_at(&model, setting, earth)
+    })
+}
+
+/// The same by a model that may be another in each field.
+pub(super) fn tables_by(
+    adjustment: &Adjustment<'_>,
+    model_at: impl Fn(EarthField) -> Result<Model, DeviationError>,
+) -> Result<Vec<PredictedTable>, AdjustError> {
     let berth = Water {
         name: "berth".to_owned(),
         h_nt: adjustment.earth.h_nt,
         z_nt: adjustment.earth.z_nt,
         weight: 0.0,
     };
-    let model = condition.model_with(setting)?;
     let places = std::iter::once(&berth).chain(adjustment.waters);
     let tables = places.map(|water| {
-        let model = condition.model_at(&model, setting, water.earth())?;
+        let model = model_at(water.earth())?;
         let rows: Result<Vec<PredictedRow>, DeviationError> = (0..HEADINGS)
             .map(|index| {
                 let compass_deg = f64::from(index) * 360.0 / f64::from(HEADINGS);

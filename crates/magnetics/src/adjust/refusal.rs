@@ -6,6 +6,7 @@ use super::read::Unit;
 use super::{AdjustError, Adjustment, Plan, PredictedTable, Refused};
 use crate::berth::{BerthError, Consistency};
 use crate::deviation::Coefficients;
+use crate::model::Model;
 use crate::ship::EarthField;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -296,11 +297,20 @@ pub(super) fn afterwards(
     condition: &Condition<'_>,
     plans: &[Plan],
 ) -> Vec<Refusal> {
-    let Some(plan) = plans.first() else {
-        return Vec::new();
-    };
+    plans.first().map_or_else(Vec::new, |plan| {
+        beyond_limits(adjustment, condition, &plan.after, &plan.model_after)
+    })
+}
+
+/// What is wrong with residuals foretold by a model.
+pub(super) fn beyond_limits(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    after: &[PredictedTable],
+    model: &Model,
+) -> Vec<Refusal> {
     let limits = &adjustment.limits;
-    let counted = plan.after.iter().enumerate().filter(|(index, _)| {
+    let counted = after.iter().enumerate().filter(|(index, _)| {
         // The berth stands first, and is not where she trades.
         index
             .checked_sub(1)
@@ -326,7 +336,7 @@ pub(super) fn afterwards(
                 reach_deg,
                 worst_deg,
                 limit_deg: limits.residual_deg,
-                mostly: mostly(plan, table),
+                mostly: mostly(model, table),
             });
         }
     }
@@ -345,12 +355,11 @@ pub(super) fn afterwards(
 }
 
 /// The greatest of the exact coefficients, the model's constant with A.
-fn mostly(plan: &Plan, table: &PredictedTable) -> Coefficient {
+fn mostly(model: &Model, table: &PredictedTable) -> Coefficient {
     let earth = EarthField {
         h_nt: table.h_nt,
         z_nt: table.z_nt,
     };
-    let model = &plan.model_after;
     let Ok(found) = Coefficients::new(&model.parameters_over_lambda, earth) else {
         return Coefficient::A;
     };

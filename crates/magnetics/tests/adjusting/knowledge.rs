@@ -183,7 +183,14 @@ pub(crate) struct Berthed {
     pub(crate) reading: BerthReading,
     pub(crate) down_nt: f64,
     pub(crate) magnetic_deg: f64,
+    /// What the magnetometer makes of one.
+    scale: f64,
+    told_deg: f64,
+    noise_nt: [f64; 3],
 }
+
+/// Half of the noise's variance is steel that does not go away.
+const STEEL_SHARE: f64 = 0.5;
 
 /// A reading at the berth on a heading from ashore.
 pub(crate) fn reading(
@@ -202,14 +209,46 @@ pub(crate) fn reading(
     let scale = 1.0 + instruments.scale_sd * rng.gaussian();
     let turned = [x * cos + y * sin, y * cos - x * sin];
     let noise = |rng: &mut Random| errors.field_sd_nt * rng.gaussian();
-    let read_nt = [0, 1].map(|axis| scale * (turned[axis] + tilt[axis] * z) + noise(rng));
+    let across_nt = [noise(rng), noise(rng)];
+    let read_nt = [0, 1].map(|axis| scale * (turned[axis] + tilt[axis] * z) + across_nt[axis]);
     let told = heading + errors.heading_sd_deg * rng.gaussian();
     let upright = z - tilt[0] * x - tilt[1] * y;
+    let down_nt = noise(rng);
     Berthed {
         reading: read(read_nt, told, instruments),
-        down_nt: scale * upright + noise(rng),
+        down_nt: scale * upright + down_nt,
         magnetic_deg: heading,
+        scale,
+        told_deg: told,
+        noise_nt: [across_nt[0], across_nt[1], down_nt],
     }
+}
+
+/// What the same magnetometer reads on the same heading when it is put there again, the
+/// correctors standing otherwise: forward, to starboard and down, nT.
+pub(crate) fn again(
+    rng: &mut Random,
+    truth: &Standing,
+    place: Place,
+    instruments: Instruments,
+    first: &Berthed,
+) -> (BerthReading, f64) {
+    let errors = errors(instruments);
+    let [x, y, z] = truth.field(place, first.magnetic_deg);
+    let tilt = [0, 1].map(|_| (errors.tilt_sd_deg * rng.gaussian()).to_radians());
+    let turned = (errors.alignment_sd_deg * rng.gaussian()).to_radians();
+    let (sin, cos) = turned.sin_cos();
+    let tilted = [
+        x * cos + y * sin + tilt[0] * z,
+        y * cos - x * sin + tilt[1] * z,
+        z - tilt[0] * x - tilt[1] * y,
+    ];
+    let new = (1.0 - STEEL_SHARE * STEEL_SHARE).sqrt() * errors.field_sd_nt;
+    let [forward, starboard, down] = [0, 1, 2].map(|axis| {
+        first.scale * tilted[axis] + STEEL_SHARE * first.noise_nt[axis] + new * rng.gaussian()
+    });
+    let reading = read([forward, starboard], first.told_deg, instruments);
+    (reading, down)
 }
 
 /// A reading that says this.

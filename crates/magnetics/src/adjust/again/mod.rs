@@ -1,0 +1,345 @@
+//! The magnetometer read once more, after the steps: what the compass on one heading cannot
+//! show, the field can.
+//!
+//! With the bowl out again the same magnetometer lies in the same place. What it reads less
+//! what was foretold is told apart into errors that were to be expected, which sharpen the
+//! model, and slips of the hand, which are named. What always holds: a reading that fits
+//! makes the band no narrower than all that may still be wrong together leaves it; one that
+//! a slip explains better names the step; one that nothing explains confirms nothing
+//! (docs/science.md, §11).
+
+mod doubts;
+mod form;
+mod news;
+
+pub use form::AgainForm;
+
+use super::condition::{Condition, Known};
+use super::heeling::VerticalReading;
+use super::instructions::Step;
+use super::mistakes::Mistake;
+use super::predicted::{PredictedTable, tables_by};
+use super::read::Unit;
+use super::refusal::beyond_limits;
+use super::{AdjustError, Adjustment, Outcome, Refused, plan};
+use crate::berth::BerthReading;
+use crate::binnacle::{Binnacle, Setting};
+use crate::deviation::DeviationError;
+use crate::model::{Model, Parameters};
+use crate::ship::PARAMETERS;
+use doubts::{Weighed, What, weigh};
+use nalgebra::SMatrix;
+use news::{EIGHT, Eight, News};
+use serde::{Deserialize, Serialize};
+
+/// Of a hundred right readings one is read again: χ² of two parts, and of three.
+const CHI_SQUARED_99: [f64; 2] = [9.210, 11.345];
+/// With more belief than this a slip is named.
+const LIKELY: f64 = 0.5;
+
+/// A step that was done.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Done {
+    /// The step.
+    pub step: Step,
+    /// By how much the compass turned, degrees, where it was read.
+    pub turned_deg: Option<f64>,
+}
+
+/// What the second reading came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Again {
+    /// Forward, to starboard and, where it was read both times, down.
+    pub parts: Vec<Part>,
+    /// What to make of it.
+    #[serde(flatten)]
+    pub verdict: Verdict,
+}
+
+/// One part of the field.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// What was foretold, nT.
+    pub expected_nt: f64,
+    /// What was read, nT.
+    pub read_nt: f64,
+    /// Standard error of the difference, nT.
+    pub standard_error_nt: f64,
+}
+
+/// What to make of a second reading.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "verdict", rename_all = "snake_case")]
+pub enum Verdict {
+    /// The correctors do what they were to do.
+    AsPlanned {
+        /// What is foretold now.
+        learnt: Box<Learnt>,
+    },
+    /// They do, but what is foretold now is beyond the limits: there is a plan from here.
+    Replan {
+        /// What is foretold now.
+        learnt: Box<Learnt>,
+        /// What of it is beyond the limits.
+        refusals: Vec<Refused>,
+        /// The binnacle with its correctors as they stand.
+        binnacle: Box<Binnacle>,
+        /// A plan from there.
+        outcome: Box<Outcome>,
+    },
+    /// A step was done otherwise: look at it.
+    Slip {
+        /// Its place among those that were done, from 1.
+        step: u32,
+        /// What is suspected.
+        slip: Slip,
+        /// Belief in that step's slip, 0 to 1.
+        share: f64,
+        /// How the correctors would stand.
+        setting: Setting,
+        /// A plan from there.
+        outcome: Box<Outcome>,
+    },
+    /// Nothing explains it: read again.
+    Unexplained {
+        /// Mistakes each of which alone would explain it.
+        mistakes: Vec<Mistake>,
+    },
+}
+
+/// How a step was done instead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "slip", rename_all = "snake_case")]
+pub enum Slip {
+    /// The magnets went in with the wrong end.
+    WrongEnd,
+    /// They went into another hole or position.
+    OtherHole {
+        /// Its number.
+        hole: u16,
+    },
+    /// It was not done.
+    NotDone,
+}
+
+/// What is foretold after the second reading.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Learnt {
+    /// The model that holds from now on, with covariance.
+    pub model_after: Model,
+    /// Residuals at the berth and in the waters.
+    pub after: Vec<PredictedTable>,
+    /// The greatest residual in any of them, degrees.
+    pub worst_residual_deg: f64,
+    /// The widest 95 % band in any of them, degrees.
+    pub widest_band_deg: f64,
+}
+
+/// Judges a second reading by the same magnetometer, the correctors standing as
+/// `adjustment.now` says after these steps. `named` is the unit that its figures were said
+/// to be in.
+///
+/// # Errors
+/// When the adjustment itself cannot be.
+pub fn read_again(
+    adjustment: &Adjustment<'_>,
+    done: &[Done],
+    reading: &BerthReading,
+    vertical: Option<VerticalReading>,
+    named: Unit,
+) -> Result<Again, AdjustError> {
+    super::check(adjustment)?;
+    if let Some(vertical) = vertical {
+        vertical.must_be_a_field()?;
+    }
+    let condition = Condition::new(adjustment)?;
+    let known = condition.known_with(adjustment.standing())?;
+    let news = News::new(adjustment, &condition, &known, reading, vertical);
+    let weighed = weigh(adjustment, &condition, &known, &news, done);
+    let verdict = Judge {
+        adjustment,
+        condition: &condition,
+        known: &known,
+        reading,
+        vertical,
+        named,
+    }
+    .verdict(&news, &weighed)?;
+    Ok(Again {
+        parts: parts(&news),
+        verdict,
+    })
+}
+
+fn parts(news: &News) -> Vec<Part> {
+    let count = if news.is_vertical_known { 3 } else { 2 };
+    let part = |axis: usize| Part {
+        expected_nt: news.expected[axis],
+        read_nt: news.read[axis],
+        standard_error_nt: news.spread[(axis, axis)].sqrt(),
+    };
+    (0..count).map(part).collect()
+}
+
+/// All that a verdict leans on.
+struct Judge<'a> {
+    adjustment: &'a Adjustment<'a>,
+    condition: &'a Condition<'a>,
+    known: &'a Known<'a>,
+    reading: &'a BerthReading,
+    vertical: Option<VerticalReading>,
+    named: Unit,
+}
+
+impl Judge<'_> {
+    fn verdict(&self, news: &News, weighed: &[Weighed]) -> Result<Verdict, AdjustError> {
+        let fits = weighed
+            .iter()
+            .any(|one| one.what != What::Elsewhere && one.squared <= greatest(news));
+        let share_of = |wanted: fn(&What) -> bool| {
+            let those = weighed.iter().filter(|one| wanted(&one.what));
+            those.map(|one| one.share).sum::<f64>()
+        };
+        if !fits || share_of(|what| *what == What::Elsewhere) > LIKELY {
+            return Ok(Verdict::Unexplained {
+                mistakes: self.mistakes(),
+            });
+        }
+        if share_of(|what| matches!(what, What::Step(..))) > LIKELY {
+            return self.slip(weighed);
+        }
+        let learnt = Box::new(self.learnt(weighed)?);
+        let beyond = beyond_limits(
+            self.adjustment,
+            self.condition,
+            &learnt.after,
+            &learnt.model_after,
+        );
+        if beyond.is_empty() {
+            return Ok(Verdict::AsPlanned { learnt });
+        }
+        let standing = self.known.setting.clone();
+        let binnacle = Box::new(self.condition.binnacle.with_setting(standing)?);
+        let outcome = plan(&Adjustment {
+            model: &learnt.model_after,
+            reading: self.reading,
+            vertical: self.vertical,
+            binnacle: &binnacle,
+            now: None,
+            ..self.adjustment.clone()
+        })?;
+        Ok(Verdict::Replan {
+            learnt,
+            refusals: beyond
+                .into_iter()
+                .map(|refusal| refusal.with_cures())
+                .collect(),
+            binnacle,
+            outcome: Box::new(outcome),
+        })
+    }
+
+    /// The step that is doubted most, and the likeliest way in which it was done.
+    fn slip(&self, weighed: &[Weighed]) -> Result<Verdict, AdjustError> {
+        let share_of = |wanted: u32| {
+            let those = weighed
+                .iter()
+                .filter(|one| matches!(one.what, What::Step(number, ..) if number == wanted));
+            those.map(|one| one.share).sum::<f64>()
+        };
+        let mut best: Option<(f64, &Weighed, u32, Slip, &Setting)> = None;
+        for one in weighed {
+            let What::Step(number, slip, setting) = &one.what else {
+                continue;
+            };
+            let rank = share_of(*number) + one.share;
+            if best.as_ref().is_none_or(|(most, ..)| rank > *most) {
+                best = Some((rank, one, *number, *slip, setting));
+            }
+        }
+        let Some((_, _, step, slip, setting)) = best else {
+            return Ok(Verdict::Unexplained {
+                mistakes: Vec::new(),
+            });
+        };
+        let outcome = plan(&Adjustment {
+            now: Some(setting),
+            compass_deg: None,
+            ..self.adjustment.clone()
+        })?;
+        Ok(Verdict::Slip {
+            step,
+            slip,
+            share: share_of(step),
+            setting: setting.clone(),
+            outcome: Box::new(outcome),
+        })
+    }
+
+    /// The mean of all that may be, and its spread.
+    fn learnt(&self, weighed: &[Weighed]) -> Result<Learnt, AdjustError> {
+        let mean: Eight = weighed.iter().map(|one| one.correction * one.share).sum();
+        let mut spread = SMatrix::<f64, EIGHT, EIGHT>::zeros();
+        for one in weighed {
+            let apart = one.correction - mean;
+            spread += (one.covariance + apart * apart.transpose()) * one.share;
+        }
+        let spread = (spread + spread.transpose()) / 2.0;
+        let model_after = corrected(&self.known.model, &mean, &spread);
+        let after = tables_by(self.adjustment, |earth| {
+            let foretold =
+                self.condition
+                    .model_at(&self.known.model, &self.known.setting, earth)?;
+            Ok::<Model, DeviationError>(corrected(&foretold, &mean, &spread))
+        })?;
+        let greatest = |of: fn(&PredictedTable) -> Option<f64>| {
+            after.iter().filter_map(of).fold(0.0, f64::max)
+        };
+        Ok(Learnt {
+            worst_residual_deg: greatest(|table| table.worst_deg),
+            widest_band_deg: greatest(|table| table.widest_band_deg),
+            model_after,
+            after,
+        })
+    }
+
+    /// What done otherwise with the magnetometer would make it as planned.
+    fn mistakes(&self) -> Vec<Mistake> {
+        let explains = |mistake: &Mistake| {
+            let undone = mistake.undone_reading(self.reading, self.vertical, self.named);
+            undone.is_some_and(|(reading, vertical)| {
+                let news = News::new(
+                    self.adjustment,
+                    self.condition,
+                    self.known,
+                    &reading,
+                    vertical,
+                );
+                let solved = news
+                    .spread
+                    .cholesky()
+                    .map(|spread| spread.solve(&news.off()));
+                solved.is_some_and(|solved| news.off().dot(&solved) <= greatest(&news))
+            })
+        };
+        Mistake::ALL.into_iter().filter(explains).collect()
+    }
+}
+
+fn greatest(news: &News) -> f64 {
+    CHI_SQUARED_99[usize::from(news.is_vertical_known)]
+}
+
+fn corrected(model: &Model, correction: &Eight, covariance: &SMatrix<f64, EIGHT, EIGHT>) -> Model {
+    let parameters = model.parameters_over_lambda.to_array();
+    let parameters = std::array::from_fn(|i| parameters[i] + correction[i]);
+    Model {
+        parameters_over_lambda: Parameters::from_array(parameters),
+        constant_deg: model.constant_deg + correction[PARAMETERS],
+        covariance: Some(covariance.transpose().into()),
+        ..model.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests;
