@@ -4,6 +4,7 @@ use crate::clock::Clock;
 use crate::config::Serve;
 use crate::db::Db;
 use crate::events::Live;
+use crate::oidc::Provider;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
 use tokio::sync::{Notify, Semaphore};
@@ -26,6 +27,8 @@ pub struct App {
     pub hashing: Arc<Semaphore>,
     /// Plans being made at once: each takes a core for a second or two.
     pub planning: Arc<Semaphore>,
+    /// Who else's word one may sign in by, as far as is known.
+    pub provider: Arc<Provider>,
     /// Cancelled when the server is to stop.
     pub stopping: CancellationToken,
     /// Where `/metrics` reads.
@@ -43,6 +46,7 @@ impl App {
             work: Arc::new(Notify::new()),
             hashing: Arc::new(Semaphore::new(2)),
             planning: Arc::new(Semaphore::new(2)),
+            provider: Arc::default(),
             stopping: CancellationToken::new(),
             metrics,
         }

@@ -117,6 +117,9 @@ pub struct Serve {
     /// How mail is sent.
     #[command(flatten)]
     pub mail: Mail,
+    /// By whose word people may sign in.
+    #[command(flatten)]
+    pub oidc: Oidc,
     /// Log as JSON lines
     #[arg(long, env = "BINNACLE_LOG_JSON", default_value_t = false,
           num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
@@ -189,6 +192,49 @@ impl Mail {
     }
 }
 
+/// By whose word people may sign in.
+#[derive(Clone, Debug, Default, Args)]
+pub struct Oidc {
+    /// Let people who are users here sign in by this OpenID Connect provider as well, like
+    /// `https://login.example.com`
+    #[arg(long, env = "BINNACLE_OIDC_ISSUER", value_parser = issuer,
+          requires_all = ["oidc_client_id", "public_url"])]
+    pub oidc_issuer: Option<String>,
+    /// What the provider knows this server by
+    #[arg(long, env = "BINNACLE_OIDC_CLIENT_ID", requires = "oidc_issuer")]
+    pub oidc_client_id: Option<String>,
+    /// The secret that goes with it, unless the provider gave none
+    #[arg(
+        long,
+        env = "BINNACLE_OIDC_CLIENT_SECRET",
+        hide_env_values = true,
+        requires = "oidc_issuer"
+    )]
+    pub oidc_client_secret: Option<String>,
+    /// What people call the provider: "Sign in with …"
+    #[arg(long, env = "BINNACLE_OIDC_NAME", default_value = "OpenID Connect")]
+    pub oidc_name: String,
+}
+
+impl Oidc {
+    /// Whether there is a provider.
+    pub fn is_set_up(&self) -> bool {
+        self.oidc_issuer.is_some()
+    }
+}
+
+/// A provider's address: what it says must not be changed on the way.
+fn issuer(text: &str) -> Result<String, String> {
+    let url = reqwest::Url::parse(text).map_err(|error| error.to_string())?;
+    let host = url.host_str().unwrap_or_default();
+    let is_here = ["localhost", "127.0.0.1", "[::1]"].contains(&host);
+    match url.scheme() {
+        "https" => Ok(text.to_owned()),
+        "http" if is_here => Ok(text.to_owned()),
+        _ => Err("must be https, unless it is this machine".to_owned()),
+    }
+}
+
 /// `admin`.
 #[derive(Debug, Args)]
 pub struct Admin {
@@ -210,7 +256,7 @@ pub enum AdminCommand {
         what: Create,
     },
     /// Give someone who lost password or telephone a one-time code to begin anew with:
-    /// password, second factor and sessions are gone
+    /// password, second factor, sessions and whom a sign-in provider means are gone
     ResetUser {
         /// What the person signs in with
         #[arg(long)]

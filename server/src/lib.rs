@@ -24,6 +24,7 @@ pub mod access;
 pub mod audit;
 pub mod firms;
 pub mod idempotency;
+pub mod oidc;
 pub mod operators;
 pub mod password;
 pub mod peer;

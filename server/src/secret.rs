@@ -25,6 +25,12 @@ pub fn new_token() -> String {
     base64url(&random::<32>())
 }
 
+/// A token that is always the same for a secret and a purpose, and does not lead back to
+/// the secret.
+pub fn derived(purpose: &str, secret: &str) -> String {
+    base64url(&hash(&format!("{purpose} {secret}")))
+}
+
 /// A new token that names the vessel it belongs to: 128 bits of the vessel's id
 /// and 128 random ones. Short, because it crosses the satellite link with every
 /// batch.

@@ -6,6 +6,7 @@ use crate::app::App;
 use crate::db::{self, Tx};
 use crate::error::Error;
 use crate::ids::{OrderId, UserId, VesselId};
+use crate::oidc;
 use crate::peer::Origin;
 use crate::session::User;
 use crate::tenants::Tenant;
@@ -163,7 +164,8 @@ pub async fn keep(State(app): State<App>, request: Request, next: Next) -> Respo
         address: from.address_text(),
         method: parts.method.as_str().to_owned(),
         path: filled(&route, &mut parts).await,
-        is_change: is_ours && !parts.method.is_safe(),
+        // Whoever comes back from the provider signs in.
+        is_change: is_ours && (!parts.method.is_safe() || route == oidc::CALLBACK),
         known: Mutex::default(),
         route,
     });

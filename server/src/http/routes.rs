@@ -5,8 +5,8 @@ use crate::app::App;
 use crate::{
     alerts, audit, binnacles, calendar, card, changes, compasses, dashboard, deviation,
     deviation_book, enrolment, error, events, firms, fleet, logbook, mail, models, needs,
-    notifications, operations, operators, port_calls, reports, samples, schedule, second_factor,
-    session, settings, streams, tokens, users, vessels, webhooks, work_orders,
+    notifications, oidc, operations, operators, port_calls, reports, samples, schedule,
+    second_factor, session, settings, streams, tokens, users, vessels, webhooks, work_orders,
 };
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
@@ -82,6 +82,7 @@ fn for_agents() -> OpenApiRouter<App> {
 fn for_people() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(session::router())
+        .merge(oidc::router())
         .merge(second_factor::router())
         .merge(tokens::router())
         .merge(users::router())

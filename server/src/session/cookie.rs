@@ -1,7 +1,7 @@
-//! The session's cookie.
+//! The session's cookie, and what every cookie of ours is like.
 //!
-//! What always holds: scripts cannot read it, other sites' requests do not carry it,
-//! and where it is for https alone its name begins with `__Host-`, so that no other
+//! What always holds: scripts cannot read it, other sites' requests do not carry the
+//! session's, and where it is for https alone its name begins with `__Host-`, so that no other
 //! host of the domain can plant one (RFC 6265bis, section 4.1.3.2).
 
 use crate::config::Serve;
@@ -23,8 +23,12 @@ pub fn name(config: &Serve) -> &'static str {
 
 /// The token in a request's cookie.
 pub fn token<'a>(parts: &'a Parts, config: &Serve) -> Option<&'a str> {
-    let wanted = name(config);
-    let values = parts.headers.get_all(COOKIE).iter();
+    value(&parts.headers, name(config))
+}
+
+/// The value of a request's cookie.
+pub fn value<'a>(headers: &'a HeaderMap, wanted: &str) -> Option<&'a str> {
+    let values = headers.get_all(COOKIE).iter();
     values
         .filter_map(|value| value.to_str().ok())
         .flat_map(|value| value.split(';'))
@@ -34,14 +38,35 @@ pub fn token<'a>(parts: &'a Parts, config: &Serve) -> Option<&'a str> {
 
 /// The header that gives a browser its cookie; an empty token takes it away.
 pub(super) fn set(config: &Serve, token: &str, max_age_s: u64) -> HeaderMap {
-    let name = name(config);
+    let header = header(config, name(config), token, max_age_s, SameSite::Strict);
+    HeaderMap::from_iter([(SET_COOKIE, header)])
+}
+
+/// Which requests of other sites' carry a cookie.
+#[derive(Clone, Copy, Debug)]
+pub enum SameSite {
+    /// Following a link does.
+    Lax,
+    /// None does.
+    Strict,
+}
+
+/// The value of the header that gives a browser a cookie, or, when empty, takes it away.
+#[allow(clippy::missing_panics_doc, reason = "it cannot: see the message")]
+pub fn header(
+    config: &Serve,
+    name: &str,
+    value: &str,
+    max_age_s: u64,
+    same_site: SameSite,
+) -> HeaderValue {
     let secure = if config.has_secure_cookies() {
         "; Secure"
     } else {
         ""
     };
-    let cookie =
-        format!("{name}={token}; Path=/; HttpOnly; SameSite=Strict; Max-Age={max_age_s}{secure}");
-    let value = HeaderValue::try_from(cookie).expect("base64url and digits fit into a header");
-    HeaderMap::from_iter([(SET_COOKIE, value)])
+    let cookie = format!(
+        "{name}={value}; Path=/; HttpOnly; SameSite={same_site:?}; Max-Age={max_age_s}{secure}"
+    );
+    HeaderValue::try_from(cookie).expect("base64url and digits fit into a header")
 }

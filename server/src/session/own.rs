@@ -40,6 +40,9 @@ pub(super) struct Session {
     address: String,
     /// What the browser called itself.
     user_agent: String,
+    /// By whose word it was opened; none if by your password.
+    #[schema(required, example = json!(null))]
+    provider: Option<String>,
     /// Whether this request came with it.
     current: bool,
 }

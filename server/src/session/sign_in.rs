@@ -50,12 +50,31 @@ async fn sign_in(
     Valid(request): Valid<SignIn>,
 ) -> Result<(HeaderMap, Json<User>)> {
     let user = judge(&app, &from, request).await?;
+    Ok((open(&app, &from, &user, None).await?, Json(user)))
+}
+
+/// Opens a session by the word of a provider, or by a password; the header gives the browser
+/// its cookie.
+///
+/// # Errors
+/// When the database does.
+pub async fn open(
+    app: &App,
+    from: &Origin,
+    user: &User,
+    provider: Option<&str>,
+) -> Result<HeaderMap> {
     let now = app.clock.now();
     let token = secret::new_token();
     let lasts_s = u64::from(app.config.session_hours) * 3600;
-    let expires_at = now.plus_seconds(lasts_s as f64).into();
-    store::open(&app.db, &user, &token, &from, now.into(), expires_at).await?;
-    Ok((cookie::set(&app.config, &token, lasts_s), Json(user)))
+    let new = store::NewSession {
+        token: &token,
+        provider,
+        now: now.into(),
+        expires_at: now.plus_seconds(lasts_s as f64).into(),
+    };
+    store::open(&app.db, user, from, &new).await?;
+    Ok(cookie::set(&app.config, &token, lasts_s))
 }
 
 /// Sign out
@@ -95,8 +114,7 @@ async fn judge(app: &App, from: &Origin, request: SignIn) -> Result<User> {
     if second_factor::use_code(&app.db, user.user_id, &code, now).await? {
         return Ok(user);
     }
-    let email = &email;
-    throttle::note_failure(&app.db, &Subjects { email, from }, now).await?;
+    throttle::note_failure(&app.db, &Subjects::person(&email, from), now).await?;
     Err(Error::WrongCode)
 }
 
@@ -106,7 +124,7 @@ async fn with_password(app: &App, from: &Origin, email: &str, password: String) 
         return Err(Error::WrongPassword);
     }
     let now = app.clock.now();
-    let subjects = Subjects { email, from };
+    let subjects = Subjects::person(email, from);
     throttle::check(&app.db, &subjects, now).await?;
     let place = password::place(app).await?;
     // Others may have failed while this attempt waited. Each keeps its place until

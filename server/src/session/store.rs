@@ -94,15 +94,18 @@ pub(super) async fn find_by_email(db: &Db, email: &str) -> Result<Option<(User, 
     Ok(stored.map(|stored| (stored.user, stored.password_hash)))
 }
 
+/// A session to be opened.
+pub(super) struct NewSession<'a> {
+    pub(super) token: &'a str,
+    /// By whose word; none: by a password.
+    pub(super) provider: Option<&'a str>,
+    pub(super) now: Time,
+    pub(super) expires_at: Time,
+}
+
 /// Opens a session; clears away those that ended, and the e-mail's failures.
-pub(super) async fn open(
-    db: &Db,
-    user: &User,
-    token: &str,
-    from: &Origin,
-    now: Time,
-    expires_at: Time,
-) -> Result<()> {
+pub(super) async fn open(db: &Db, user: &User, from: &Origin, new: &NewSession<'_>) -> Result<()> {
+    let now = new.now;
     let mut tx = db.begin().await?;
     execute!(&mut tx, "DELETE FROM sessions WHERE expires_at <= $1", now)?;
     execute!(
@@ -113,15 +116,16 @@ pub(super) async fn open(
     execute!(
         &mut tx,
         "INSERT INTO sessions (id, user_id, token_hash, created_at, last_seen_at, expires_at,
-                               address, user_agent)
-         VALUES ($1, $2, $3, $4, $4, $5, $6, $7)",
+                               address, user_agent, provider)
+         VALUES ($1, $2, $3, $4, $4, $5, $6, $7, $8)",
         SessionId::new(),
         user.user_id,
-        secret::hash(token),
+        secret::hash(new.token),
         now,
-        expires_at,
+        new.expires_at,
         from.address_text(),
-        from.program.as_str()
+        from.program.as_str(),
+        new.provider
     )?;
     tx.commit().await
 }
@@ -137,7 +141,8 @@ pub(super) async fn list(
     rows!(
         db,
         Session,
-        "SELECT id, created_at, last_seen_at, expires_at, address, user_agent, FALSE AS current
+        "SELECT id, created_at, last_seen_at, expires_at, address, user_agent, provider,
+                FALSE AS current
          FROM sessions
          WHERE user_id = $1 AND expires_at > $2 AND last_seen_at > $3 AND id > $4
          ORDER BY id

@@ -22,18 +22,31 @@ const FORGET_AFTER_S: f64 = 86_400.0;
 
 /// Whose failures are counted.
 pub struct Subjects<'a> {
-    /// The e-mail that is tried, as it is stored.
-    pub email: &'a str,
+    /// The e-mail that is tried, as it is stored; none where nobody says it.
+    email: Option<&'a str>,
     /// From where.
-    pub from: &'a Origin,
+    from: &'a Origin,
 }
 
-impl Subjects<'_> {
-    fn hashes(&self) -> [(Vec<u8>, i64); 2] {
-        [
-            (secret::hash(self.email), FREE_FOR_EMAIL),
-            (secret::hash(&self.from.network()), FREE_FOR_ADDRESS),
-        ]
+impl<'a> Subjects<'a> {
+    /// An e-mail, and where the attempt comes from.
+    pub fn person(email: &'a str, from: &'a Origin) -> Subjects<'a> {
+        let email = Some(email);
+        Subjects { email, from }
+    }
+
+    /// Only where the attempt comes from.
+    pub fn address(from: &'a Origin) -> Subjects<'a> {
+        Subjects { email: None, from }
+    }
+
+    fn hashes(&self) -> Vec<(Vec<u8>, i64)> {
+        let email = self.email.map(|email| (email.to_owned(), FREE_FOR_EMAIL));
+        let all = email
+            .into_iter()
+            .chain([(self.from.network(), FREE_FOR_ADDRESS)]);
+        all.map(|(subject, free)| (secret::hash(&subject), free))
+            .collect()
     }
 }
 
@@ -42,7 +55,9 @@ impl Subjects<'_> {
 /// # Errors
 /// Saying how long to wait.
 pub async fn check(db: &Db, subjects: &Subjects<'_>, now: Timestamp) -> Result<()> {
-    let [(email, _), (address, _)] = subjects.hashes();
+    let hashes = subjects.hashes();
+    let (first, last) = (hashes.first(), hashes.last());
+    let hash = |subject: Option<&(Vec<u8>, i64)>| subject.map(|(hash, _)| hash.clone());
     let locked = row!(
         db,
         (Time,),
@@ -50,8 +65,8 @@ pub async fn check(db: &Db, subjects: &Subjects<'_>, now: Timestamp) -> Result<(
          WHERE subject_hash = $1 OR subject_hash = $2
          ORDER BY locked_until DESC
          LIMIT 1",
-        email,
-        address
+        hash(first),
+        hash(last)
     )?;
     let Some((Time(until),)) = locked.filter(|(until,)| until.0 > now) else {
         return Ok(());

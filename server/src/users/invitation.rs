@@ -12,7 +12,7 @@ use crate::http::{Id, Json, Valid};
 use crate::ids::{FirmId, OperatorId, UserId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{password, second_factor, secret, session};
+use crate::{oidc, password, second_factor, secret, session};
 use axum::extract::State;
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
@@ -166,7 +166,8 @@ pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitat
     })
 }
 
-/// Begins a user anew: password, second factor and sessions are gone, and the code
+/// Begins a user anew: password, second factor, sessions and whom a sign-in provider means
+/// are gone, and the code
 /// sets another password; none when nobody has the e-mail.
 ///
 /// # Errors
@@ -189,6 +190,7 @@ pub async fn reset(db: &Db, email: &str, now: Time) -> Result<Option<(String, Ti
     session::set_password(&mut tx, user, "").await?;
     session::end_all(&mut tx, user, None).await?;
     second_factor::remove(&mut tx, user).await?;
+    oidc::forget(&mut tx, user).await?;
     let made = insert(&mut tx, user, now).await?;
     tx.commit().await?;
     Ok(Some(made))

@@ -14,7 +14,8 @@ macro_rules! person_sql {
     () => {
         "SELECT u.id, u.email, u.name, u.role,
                 CASE WHEN u.disabled_at IS NOT NULL THEN 'disabled'
-                     WHEN u.password_hash = '' THEN 'invited'
+                     WHEN u.password_hash = '' AND NOT EXISTS
+                          (SELECT 1 FROM identities n WHERE n.user_id = u.id) THEN 'invited'
                      ELSE 'active' END AS state,
                 y.confirmed_at IS NOT NULL AS second_factor, u.created_at,
                 (SELECT MAX(s.last_seen_at) FROM sessions s WHERE s.user_id = u.id)

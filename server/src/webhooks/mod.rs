@@ -15,7 +15,7 @@ mod webhook;
 
 pub use address::is_public;
 pub use announce::{announce, announce_messages};
-pub use send::{Reach, SIGNATURE_HEADER, Sender};
+pub use send::{Reach, SIGNATURE_HEADER, Sender, check_url, client};
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;

@@ -47,18 +47,8 @@ impl Sender {
     /// # Errors
     /// When this machine has no certificates to check others by.
     pub fn new(reach: Reach) -> anyhow::Result<Sender> {
-        let mut client = Client::builder()
-            .redirect(Policy::none())
-            .no_proxy()
-            .timeout(PATIENCE)
-            .user_agent(concat!("Binnacle/", env!("CARGO_PKG_VERSION")));
-        if reach == Reach::Public {
-            client = client.dns_resolver(Arc::new(PublicOnly));
-        }
-        Ok(Sender {
-            client: client.build()?,
-            reach,
-        })
+        let client = client(reach)?;
+        Ok(Sender { client, reach })
     }
 
     /// Sends a body; answers with the status, whatever it is.
@@ -98,11 +88,27 @@ impl Carrier for Sender {
     }
 }
 
+/// What asks others' servers: patient, but not for long, and led nowhere else.
+///
+/// # Errors
+/// When this machine has no certificates to check others by.
+pub fn client(reach: Reach) -> anyhow::Result<Client> {
+    let mut client = Client::builder()
+        .redirect(Policy::none())
+        .no_proxy()
+        .timeout(PATIENCE)
+        .user_agent(concat!("Binnacle/", env!("CARGO_PKG_VERSION")));
+    if reach == Reach::Public {
+        client = client.dns_resolver(Arc::new(PublicOnly));
+    }
+    Ok(client.build()?)
+}
+
 /// An address that may be sent to, as far as it tells by itself.
 ///
 /// # Errors
 /// When it is none.
-pub(super) fn check_url(text: &str, reach: Reach) -> anyhow::Result<Url> {
+pub fn check_url(text: &str, reach: Reach) -> anyhow::Result<Url> {
     if text.len() > MAX_URL {
         bail!("is longer than {MAX_URL} characters");
     }

@@ -48,6 +48,7 @@ mod second_factor;
 mod secrets;
 mod sessions;
 mod ship_alerts;
+mod sign_in_provider;
 mod tenants;
 mod tls;
 mod webhooks;

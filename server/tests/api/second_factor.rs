@@ -40,7 +40,7 @@ pub(crate) fn app_code(secret: &str, unix_s: i64) -> String {
     )
 }
 
-fn now_s(shore: &Shore) -> i64 {
+pub(crate) fn now_s(shore: &Shore) -> i64 {
     shore.app.clock.now().micros() / 1_000_000
 }
 
@@ -50,7 +50,7 @@ fn password() -> Value {
 
 /// Sets a factor up and gives its secret and recovery codes; the clock goes on, so that
 /// the next code is another.
-async fn set_up(shore: &Shore, person: &Person) -> (String, Vec<String>) {
+pub(crate) async fn set_up(shore: &Shore, person: &Person) -> (String, Vec<String>) {
     let begun = person.post("/me/second-factor", &password()).await.good();
     let secret = begun["secret"].as_str().unwrap().to_owned();
     assert!(begun["uri"].as_str().unwrap().contains(&secret));

@@ -1,6 +1,7 @@
 //! Nothing secret is in the log, not even in the most talkative one that can be asked for.
 
 use crate::second_factor::app_code;
+use crate::support::{CLIENT_SECRET, Provider, client};
 use binnacle_server::clock::Clock;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read};
@@ -16,12 +17,13 @@ struct Program {
 }
 
 impl Program {
-    fn start(folder: &Path, log: &str) -> Program {
+    fn start(folder: &Path, log: &str, more: &[&str]) -> Program {
         let mut child = binnacle(folder)
             .args(["serve", "--listen", "127.0.0.1:0", "--webhooks-to-private"])
             .args(["--smtp-url", "smtp://relay:smtp-pass-word@localhost:9"])
             .args(["--mail-from", "alerts@binnacle.example"])
             .args(["--public-url", "http://127.0.0.1"])
+            .args(more)
             .env("BINNACLE_LOG", log)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -92,6 +94,30 @@ impl Drive {
         panic!("nothing was sent to {receiver}");
     }
 
+    /// Keeps the cookies, and what stands in addresses.
+    async fn signs_in_by_the_provider(&mut self) {
+        let there = self.follow("/api/v1/session/provider/start", "").await;
+        let cookie = self.secrets.last().unwrap().clone();
+        let back = self.http.get(&there).send().await.unwrap();
+        let back = back.headers()["location"].to_str().unwrap().to_owned();
+        let (_, path) = back.split_once("127.0.0.1").unwrap();
+        let (_, state) = path.split_once("state=").unwrap();
+        self.secrets.push(state.to_owned());
+        let cookie = format!("binnacle_provider={cookie}");
+        assert_eq!(self.follow(path, &cookie).await, "/");
+    }
+
+    /// Where it leads; keeps the value of the first cookie that comes with it.
+    async fn follow(&mut self, path: &str, cookie: &str) -> String {
+        let url = format!("{}{path}", self.url);
+        let asked = self.http.get(url).header("cookie", cookie);
+        let answer = asked.send().await.unwrap();
+        let set = answer.headers()["set-cookie"].to_str().unwrap();
+        let (_, value) = set.split(';').next().unwrap().split_once('=').unwrap();
+        self.secrets.push(value.to_owned());
+        answer.headers()["location"].to_str().unwrap().to_owned()
+    }
+
     async fn ask(&self, key: &str, method: &str, path: &str, body: Value) -> (String, Value) {
         let method = reqwest::Method::from_bytes(method.as_bytes()).unwrap();
         let url = format!("{}/api/v1{path}", self.url);
@@ -115,6 +141,7 @@ impl Drive {
 #[tokio::test]
 async fn no_password_token_key_code_or_cookie_is_in_the_most_talkative_log() {
     let _ = rustls::crypto::ring::default_provider().install_default();
+    let provider = Provider::start().await;
     let folder = tempfile::tempdir().unwrap();
     let operator = admin(folder.path(), &["create", "operator", "--name", "ada"]);
     let operator = operator["operator_id"].as_str().unwrap();
@@ -122,9 +149,9 @@ async fn no_password_token_key_code_or_cookie_is_in_the_most_talkative_log() {
     let who = ["--email", "ada@example.com", "--name", "Ada"];
     let user: Vec<&str> = user.into_iter().chain(who).collect();
     let made = admin(folder.path(), &user);
-    let program = Program::start(folder.path(), "trace");
+    let program = Program::start(folder.path(), "trace", &provider.settings());
     let mut drive = Drive {
-        http: reqwest::Client::new(),
+        http: client(),
         url: program.url.clone(),
         secrets: vec!["smtp-pass-word".to_owned(), "a-wrong-guess".to_owned()],
     };
@@ -136,6 +163,12 @@ async fn no_password_token_key_code_or_cookie_is_in_the_most_talkative_log() {
     let (cookie, _) = drive.ask("", "POST", "/session", right).await;
     let session = cookie.split_once('=').unwrap().1.to_owned();
     drive.secrets.push(session);
+
+    let lasting = Clock::System.now().micros() / 1_000_000 + 3600;
+    provider.says(json!({ "exp": lasting }));
+    drive.signs_in_by_the_provider().await;
+    drive.secrets.extend(provider.secrets());
+    drive.secrets.push(CLIENT_SECRET.to_owned());
 
     let token = json!({ "name": "ERP", "scope": "write" });
     let (_, token) = drive.ask(&cookie, "POST", "/tokens", token).await;

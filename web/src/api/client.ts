@@ -65,6 +65,16 @@ export async function answer<T>(
 export const signIn = (email: string, password: string, code?: string) =>
   answer(client.POST('/api/v1/session', { body: { email, password, code: code ?? null } }));
 
+/** By whose word one may sign in besides; none where the server was told of none. */
+export const findProvider = async () => (await answer(client.GET('/api/v1/session/provider'))).name;
+
+/** Goes there: not a call, but a page to be opened. */
+export const providerPath = '/api/v1/session/provider/start';
+
+/** The second factor's code, of whom the provider has vouched for. */
+export const sendProviderCode = (code: string) =>
+  answer(client.POST('/api/v1/session/provider/code', { body: { code } }));
+
 /** Sets a password with a one-time code; says whose. */
 export const acceptInvitation = (code: string, password: string) =>
   answer(client.POST('/api/v1/invitations/accept', { body: { code, password } }));

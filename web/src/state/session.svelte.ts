@@ -1,6 +1,6 @@
 /** Who is signed in. `unknown` until the server has been asked. */
 
-import { findMe, signIn, signOut, whenSignedOut } from '../api/client';
+import { findMe, sendProviderCode, signIn, signOut, whenSignedOut } from '../api/client';
 import { Problem } from '../api/problem';
 import type { Me } from '../api/types';
 import { forgetMe, keepMe, keptMe } from './me';
@@ -64,6 +64,11 @@ class SessionState {
 
   async signIn(email: string, password: string, code?: string): Promise<void> {
     this.#begin(await signIn(email, password, code));
+  }
+
+  /** The last step of who came back from the provider and has a second factor. */
+  async sendProviderCode(code: string): Promise<void> {
+    this.#begin(await sendProviderCode(code));
   }
 
   async signOut(): Promise<void> {

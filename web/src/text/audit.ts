@@ -21,6 +21,8 @@ const deeds: Record<string, string> = {
   'PUT /operators/{id}/firms/{firm}': 'Had an operator work with a firm',
   'DELETE /operators/{id}/firms/{firm}': 'Had an operator work with a firm no more',
   'POST /session': 'Signed in',
+  'GET /session/provider/callback': 'Signed in by the sign-in service',
+  'POST /session/provider/code': 'Sent the code after the sign-in service',
   'DELETE /session': 'Signed out',
   'DELETE /sessions': 'Ended all other sessions',
   'DELETE /sessions/{id}': 'Ended a session',

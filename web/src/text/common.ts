@@ -29,6 +29,24 @@ export const common = {
     codeWrong: 'The code is wrong, or was used before.',
     codeMissing: 'Enter the code.',
     otherUser: 'Sign in as someone else',
+    or: 'or',
+    by: (provider: string) => `Sign in with ${provider}`,
+    /** Why nobody was signed in by the provider, by the word in the address. */
+    why: {
+      cancelled: 'The sign-in was given up, or you were not let in there.',
+      over: 'That sign-in took too long, was begun in another browser, or was finished before. Try again.',
+      unreachable:
+        'The sign-in service cannot be reached just now. Try again, or use your password.',
+      untrusted:
+        'What the sign-in service said does not hold. Try again; if it stays so, tell your admin.',
+      unverified: 'The sign-in service does not vouch for an e-mail address of yours.',
+      unknown:
+        'Nobody with your e-mail address may sign in here. Ask your admin to invite you under that address.',
+      taken:
+        'Your e-mail address belongs here to another person of the sign-in service. Ask whoever runs this server.',
+      throttled: 'Too many attempts failed. Wait a little, then try again.',
+      failed: 'Something went wrong here. Try again.',
+    } as Record<string, string>,
   },
 
   invitation: {

@@ -64,6 +64,7 @@ export const settings = {
       current: 'this browser',
       seen: (when: string) => `last used ${when}`,
       from: (address: string) => `from ${address}`,
+      by: (provider: string) => `by ${provider}`,
       end: 'End',
       endOthers: 'End all others',
       unknown: 'a browser',

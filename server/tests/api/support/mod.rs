@@ -2,11 +2,13 @@
 
 mod database;
 mod person;
+mod provider;
 mod relay;
 mod ship;
 
 pub(crate) use database::Engine;
 pub(crate) use person::{Answer, Person, attempt, password_hash};
+pub(crate) use provider::{CLIENT_SECRET, Provider, Signer, provider_settings};
 pub(crate) use relay::{At, Encryption, Letter, Mood, Relay};
 pub(crate) use ship::{
     Ship, days_at_sea, days_in, exchange, frame, passage, sample, struck, truth,
@@ -205,7 +207,7 @@ fn metrics() -> PrometheusHandle {
         .clone()
 }
 
-fn client() -> reqwest::Client {
+pub(crate) fn client() -> reqwest::Client {
     // Only one of the tests can be first; reqwest wants a provider also for http.
     let _ = rustls::crypto::ring::default_provider().install_default();
     reqwest::Client::builder()

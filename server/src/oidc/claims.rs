@@ -1,0 +1,205 @@
+//! From the code that the browser brings to who the person is: what the provider says,
+//! and that it is the provider who says it.
+//!
+//! What always holds: the token bears a signature by one of the provider's keys, never
+//! none and never one by a shared secret; it is for us, of this sign-in, and not over
+//! (OpenID Connect Core 1.0, section 3.1.3.7).
+
+use super::attempt::Attempt;
+use super::provider::{self, Found, NEW_KEYS_AFTER_S};
+use super::refusal::Refusal;
+use super::sign_in::redirect_url;
+use crate::app::App;
+use crate::config::Oidc;
+use chrono::{DateTime, Utc};
+use openidconnect::core::{
+    CoreAuthenticationFlow, CoreClient, CoreClientAuthMethod, CoreIdToken, CoreIdTokenClaims,
+    CoreIdTokenVerifier, CoreJwsSigningAlgorithm, CoreTokenResponse, CoreUserInfoClaims,
+};
+use openidconnect::{
+    AccessToken, AuthType, AuthorizationCode, ClaimsVerificationError, ClientId, ClientSecret,
+    CsrfToken, EndpointMaybeSet, EndpointNotSet, EndpointSet, Nonce, OAuth2TokenResponse,
+    PkceCodeChallenge, PkceCodeVerifier, RequestTokenError, Scope, SignatureVerificationError,
+    TokenResponse,
+};
+use reqwest::Url;
+use tracing::{info, warn};
+
+/// By which a provider may sign: with a key that only it has.
+const SIGNATURES: [CoreJwsSigningAlgorithm; 9] = [
+    CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha256,
+    CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha384,
+    CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha512,
+    CoreJwsSigningAlgorithm::RsaSsaPssSha256,
+    CoreJwsSigningAlgorithm::RsaSsaPssSha384,
+    CoreJwsSigningAlgorithm::RsaSsaPssSha512,
+    CoreJwsSigningAlgorithm::EcdsaP256Sha256,
+    CoreJwsSigningAlgorithm::EcdsaP384Sha384,
+    CoreJwsSigningAlgorithm::EdDsa,
+];
+
+type Client = CoreClient<
+    EndpointSet,
+    EndpointNotSet,
+    EndpointNotSet,
+    EndpointNotSet,
+    EndpointMaybeSet,
+    EndpointMaybeSet,
+>;
+
+/// Whom the provider names, and what it says of their e-mail.
+pub(super) struct Identity {
+    pub(super) subject: String,
+    email: Option<String>,
+    access: AccessToken,
+}
+
+fn client(app: &App, found: &Found) -> Result<Client, Refusal> {
+    let config: &Oidc = &app.config.oidc;
+    let id = config.oidc_client_id.clone().unwrap_or_default();
+    let secret = config.oidc_client_secret.clone().map(ClientSecret::new);
+    let redirect = redirect_url(&app.config).ok_or(Refusal::Failed)?;
+    let client =
+        CoreClient::from_provider_metadata(found.metadata.clone(), ClientId::new(id), secret);
+    let methods = found.metadata.token_endpoint_auth_methods_supported();
+    let takes = |method| methods.is_none_or(|methods| methods.contains(&method));
+    let auth = if takes(CoreClientAuthMethod::ClientSecretBasic) {
+        AuthType::BasicAuth
+    } else {
+        AuthType::RequestBody
+    };
+    Ok(client.set_auth_type(auth).set_redirect_uri(redirect))
+}
+
+/// Where a person goes to sign in.
+pub(super) fn address(app: &App, found: &Found, attempt: &Attempt) -> Result<Url, Refusal> {
+    let client = client(app, found)?;
+    let (state, nonce) = (attempt.state(), attempt.nonce());
+    let verifier = PkceCodeVerifier::new(attempt.verifier());
+    let (address, _, _) = client
+        .authorize_url(
+            CoreAuthenticationFlow::AuthorizationCode,
+            || CsrfToken::new(state),
+            || Nonce::new(nonce),
+        )
+        .add_scope(Scope::new("email".to_owned()))
+        .set_pkce_challenge(PkceCodeChallenge::from_code_verifier_sha256(&verifier))
+        .url();
+    Ok(address)
+}
+
+/// Redeems a code: who it stands for.
+pub(super) async fn redeem(
+    app: &App,
+    attempt: &Attempt,
+    code: String,
+) -> Result<Identity, Refusal> {
+    let found = provider::current(app).await?;
+    let client = client(app, &found)?;
+    let request = client
+        .exchange_code(AuthorizationCode::new(code))
+        .map_err(|_| Refusal::Untrusted)?
+        .set_pkce_verifier(PkceCodeVerifier::new(attempt.verifier()));
+    let answer: Result<CoreTokenResponse, _> = request.request_async(&found.http).await;
+    let tokens = answer.map_err(|error| match error {
+        RequestTokenError::Request(cause) => {
+            let error = cause.to_string();
+            warn!(error, "the sign-in provider did not take a code");
+            Refusal::Unreachable
+        }
+        RequestTokenError::ServerResponse(said) => {
+            // Of the provider's own words only the kind: they may hold what was sent.
+            info!(error = %said.error().as_ref(), "the sign-in provider refused a code");
+            Refusal::Untrusted
+        }
+        RequestTokenError::Parse(..) | RequestTokenError::Other(_) => {
+            warn!("the sign-in provider's answer to a code cannot be read");
+            Refusal::Untrusted
+        }
+    })?;
+    let token = tokens.id_token().ok_or(Refusal::Untrusted)?;
+    let access = tokens.access_token().clone();
+    let nonce = Nonce::new(attempt.nonce());
+    let mut read = read(app, &client, token, &nonce);
+    if let Err(error) = &read
+        && may_be_by_a_new_key(error)
+    {
+        let found = provider::find(app, NEW_KEYS_AFTER_S).await?;
+        let client = self::client(app, &found)?;
+        read = self::read(app, &client, token, &nonce);
+    }
+    let claims = read.map_err(|error| {
+        info!(reason = reason(&error), "an identity token was refused");
+        Refusal::Untrusted
+    })?;
+    Ok(Identity {
+        subject: claims.subject().to_string(),
+        email: verified(&claims),
+        access,
+    })
+}
+
+/// The e-mail, which the provider says is verified.
+pub(super) async fn verified_email(app: &App, identity: &Identity) -> Result<String, Refusal> {
+    if let Some(email) = &identity.email {
+        return Ok(email.clone());
+    }
+    // Some tell it only to who asks besides (section 5.4).
+    let found = provider::current(app).await?;
+    let client = client(app, &found)?;
+    let subject = openidconnect::SubjectIdentifier::new(identity.subject.clone());
+    let Ok(request) = client.user_info(identity.access.clone(), Some(subject)) else {
+        return Err(Refusal::Unverified);
+    };
+    let answer: Result<CoreUserInfoClaims, _> = request.request_async(&found.http).await;
+    let claims = answer.map_err(|_| Refusal::Unverified)?;
+    let is_verified = claims.email_verified() == Some(true);
+    let email = claims.email().filter(|_| is_verified);
+    email
+        .map(|email| email.to_string())
+        .ok_or(Refusal::Unverified)
+}
+
+fn read(
+    app: &App,
+    client: &Client,
+    token: &CoreIdToken,
+    nonce: &Nonce,
+) -> Result<CoreIdTokenClaims, ClaimsVerificationError> {
+    let now = utc(app);
+    let verifier: CoreIdTokenVerifier<'_> = client
+        .id_token_verifier()
+        .set_allowed_algs(SIGNATURES)
+        .set_time_fn(move || now);
+    token.claims(&verifier, nonce).cloned()
+}
+
+fn verified(claims: &CoreIdTokenClaims) -> Option<String> {
+    let is_verified = claims.email_verified() == Some(true);
+    let email = claims.email().filter(|_| is_verified)?;
+    Some(email.to_string())
+}
+
+fn utc(app: &App) -> DateTime<Utc> {
+    DateTime::from_timestamp_micros(app.clock.now().micros()).unwrap_or_default()
+}
+
+fn may_be_by_a_new_key(error: &ClaimsVerificationError) -> bool {
+    use SignatureVerificationError::{CryptoError, NoMatchingKey};
+    matches!(
+        error,
+        ClaimsVerificationError::SignatureVerification(NoMatchingKey | CryptoError(_))
+    )
+}
+
+/// Without what the token says.
+fn reason(error: &ClaimsVerificationError) -> &'static str {
+    match error {
+        ClaimsVerificationError::Expired(_) => "it is over",
+        ClaimsVerificationError::InvalidAudience(_) => "it is for another",
+        ClaimsVerificationError::InvalidIssuer(_) => "it is by another",
+        ClaimsVerificationError::InvalidNonce(_) => "it is of another sign-in",
+        ClaimsVerificationError::SignatureVerification(_) => "its signature does not hold",
+        _ => "it cannot be read",
+    }
+}

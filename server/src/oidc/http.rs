@@ -1,0 +1,84 @@
+//! Requests to the provider.
+//!
+//! What always holds: each ends within ten seconds; redirects are not followed; no more
+//! is read than a provider has to say; a provider with a certificate is asked for nothing
+//! without. The server's own admin named the provider, which may be within the network
+//! then; but one on the public internet cannot send requests into it.
+
+use crate::webhooks::{self, Reach, is_public};
+use anyhow::{Context, bail, ensure};
+use axum::http::header::AUTHORIZATION;
+use openidconnect::{AsyncHttpClient, HttpRequest, HttpResponse};
+use reqwest::{Client, Url};
+use std::pin::Pin;
+
+/// Of a longer answer nothing is read: a hundred keys are a tenth of it.
+const MOST_BYTES: usize = 1 << 20;
+
+/// What asks.
+#[derive(Clone)]
+pub(super) struct Http {
+    client: Client,
+    reach: Reach,
+    https_only: bool,
+}
+
+/// Why there is no answer.
+#[derive(Debug, thiserror::Error)]
+#[error("{0:#}")]
+pub(super) struct NoAnswer(anyhow::Error);
+
+impl Http {
+    /// For the provider with this address.
+    pub(super) async fn of(issuer: &str) -> anyhow::Result<Http> {
+        let url = Url::parse(issuer).context("the issuer is not a URL")?;
+        let host = url.host_str().context("the issuer has no host")?;
+        let host = host.trim_start_matches('[').trim_end_matches(']');
+        let mut found = tokio::net::lookup_host((host, 0)).await?;
+        let reach = if found.all(|address| is_public(address.ip())) {
+            Reach::Public
+        } else {
+            Reach::Anywhere
+        };
+        Ok(Http {
+            client: webhooks::client(reach)?,
+            reach,
+            https_only: url.scheme() == "https",
+        })
+    }
+
+    async fn ask(&self, mut request: HttpRequest) -> anyhow::Result<HttpResponse> {
+        let url = webhooks::check_url(&request.uri().to_string(), self.reach)?;
+        ensure!(
+            !self.https_only || url.scheme() == "https",
+            "the provider names an address without https"
+        );
+        if let Some(secret) = request.headers_mut().get_mut(AUTHORIZATION) {
+            secret.set_sensitive(true);
+        }
+        let request = reqwest::Request::try_from(request)?;
+        let sent = self.client.execute(request).await;
+        let mut answer = sent.map_err(reqwest::Error::without_url)?;
+        let mut response = axum::http::Response::builder().status(answer.status());
+        if let Some(headers) = response.headers_mut() {
+            headers.clone_from(answer.headers());
+        }
+        let mut body = Vec::new();
+        while let Some(chunk) = answer.chunk().await? {
+            if body.len() + chunk.len() > MOST_BYTES {
+                bail!("the answer is longer than {MOST_BYTES} bytes");
+            }
+            body.extend_from_slice(&chunk);
+        }
+        Ok(response.body(body)?)
+    }
+}
+
+impl<'c> AsyncHttpClient<'c> for Http {
+    type Error = NoAnswer;
+    type Future = Pin<Box<dyn Future<Output = Result<HttpResponse, NoAnswer>> + Send + 'c>>;
+
+    fn call(&'c self, request: HttpRequest) -> Self::Future {
+        Box::pin(async move { self.ask(request).await.map_err(NoAnswer) })
+    }
+}

@@ -1,0 +1,81 @@
+//! What the provider says of itself: its addresses and keys.
+//!
+//! What always holds: it is asked when someone wants to sign in, not before; once an hour
+//! at most, but that a token by a key that is not known yet makes it be asked again; and
+//! after a failure not again for some seconds, however many wait.
+
+use super::http::Http;
+use super::refusal::Refusal;
+use crate::app::App;
+use anyhow::Context;
+use binnacle_magnetics::time::Timestamp;
+use openidconnect::IssuerUrl;
+use openidconnect::core::CoreProviderMetadata;
+use std::sync::Arc;
+use tokio::sync::Mutex;
+use tracing::warn;
+
+/// After so long it is asked anew.
+const KEPT_S: f64 = 3600.0;
+/// Not sooner, for keys that are not known.
+pub(super) const NEW_KEYS_AFTER_S: f64 = 60.0;
+/// Nor after a failure.
+const TRIED_AGAIN_AFTER_S: f64 = 5.0;
+
+/// What was found, or that nothing was.
+#[derive(Default)]
+pub struct Provider {
+    kept: Mutex<Option<Kept>>,
+}
+
+struct Kept {
+    at: Timestamp,
+    found: Option<Arc<Found>>,
+}
+
+/// A provider that has answered.
+pub(super) struct Found {
+    pub(super) metadata: CoreProviderMetadata,
+    pub(super) http: Http,
+}
+
+/// What is known of the provider, from no longer ago than `age_s`.
+pub(super) async fn find(app: &App, age_s: f64) -> Result<Arc<Found>, Refusal> {
+    let mut kept = app.provider.kept.lock().await;
+    let now = app.clock.now();
+    if let Some(Kept { at, found }) = &*kept {
+        let age = now.seconds_since(*at);
+        match found {
+            Some(found) if age < age_s => return Ok(Arc::clone(found)),
+            None if age < TRIED_AGAIN_AFTER_S => return Err(Refusal::Unreachable),
+            _ => {}
+        }
+    }
+    let issuer = app.config.oidc.oidc_issuer.as_deref().unwrap_or_default();
+    let found = discover(issuer).await.map(Arc::new);
+    if let Err(cause) = &found {
+        let error = format!("{cause:#}");
+        warn!(issuer, error, "the sign-in provider cannot be reached");
+    }
+    let found = found.ok();
+    *kept = Some(Kept {
+        at: now,
+        found: found.clone(),
+    });
+    found.ok_or(Refusal::Unreachable)
+}
+
+/// As it usually does.
+pub(super) async fn current(app: &App) -> Result<Arc<Found>, Refusal> {
+    find(app, KEPT_S).await
+}
+
+async fn discover(issuer: &str) -> anyhow::Result<Found> {
+    let http = Http::of(issuer).await?;
+    let issuer = IssuerUrl::new(issuer.to_owned())?;
+    let metadata = CoreProviderMetadata::discover_async(issuer, &http).await?;
+    metadata
+        .token_endpoint()
+        .context("it names no token endpoint")?;
+    Ok(Found { metadata, http })
+}
