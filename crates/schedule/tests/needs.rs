@@ -66,9 +66,9 @@ fn a_ship_of_the_marshall_islands_is_adjusted_after_a_new_compass_is_installed()
 }
 
 #[test]
-fn a_compass_without_a_record_is_due_today() {
+fn a_compass_without_a_record_is_due_today_and_overdue_every_day() {
     let due = due_of(json!({"flag": "NO"}), json!({}));
-    assert_eq!((due.on, due.urgency), (day("2026-11-21"), Urgency::Urgent));
+    assert_eq!((due.on, due.urgency), (day("2026-11-21"), Urgency::Overdue));
     assert_eq!(due.causes[0].kind, CauseKind::NeverAdjusted);
 }
 

@@ -273,6 +273,7 @@ impl Terms {
             licences: self.licences.clone(),
             flags: self.flags.clone(),
             teams: self.teams,
+            taken: Vec::new(),
             jobs_a_team_day: self.jobs_a_team_day,
             working_days: self.working_days.clone(),
             closed: self.closed.clone(),

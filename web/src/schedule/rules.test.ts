@@ -4,7 +4,12 @@ import { fieldsOf, settingsOf } from './rules';
 
 const settings = {
   horizon_days: 180,
-  weights: { unmet_eur: { routine: 20000, soon: 30000 }, late_eur_day: 500, job_h: 3 },
+  weights: {
+    unmet_eur: { routine: 20000, soon: 30000 },
+    late_eur_day: 500,
+    late_days: null,
+    job_h: 3,
+  },
   terms: { urgent_days: 14 },
 } as unknown as ScheduleSettings;
 

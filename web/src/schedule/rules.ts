@@ -22,10 +22,13 @@ export function fieldsOf(settings: ScheduleSettings): Field[] {
               urgency,
               value: String(figure),
             }))
-          : [{ part, name, urgency: null, value: String(value) }],
+          : [{ part, name, urgency: null, value: value === null ? '' : String(value) }],
     ),
   );
 }
+
+/** What may be left empty: nobody has said how late a job may be. */
+const mayBeUnsaid: ReadonlySet<string> = new Set(['late_days']);
 
 /** The settings that such fields say, or the field that is no number. */
 export function settingsOf(
@@ -34,11 +37,14 @@ export function settingsOf(
 ): ScheduleSettings | { wrong: Field | null } {
   const isNumber = (text: string) => text.trim() !== '' && Number.isFinite(Number(text));
   if (!isNumber(horizonDays)) return { wrong: null };
-  const wrong = fields.find((field) => !isNumber(field.value));
+  const isUnsaid = (field: Field) => mayBeUnsaid.has(field.name) && field.value.trim() === '';
+  const wrong = fields.find((field) => !isUnsaid(field) && !isNumber(field.value));
   if (wrong) return { wrong };
   const parts: Record<Field['part'], Record<string, unknown>> = { weights: {}, terms: {} };
-  for (const { part, name, urgency, value } of fields) {
-    if (urgency === null) parts[part][name] = Number(value);
+  for (const field of fields) {
+    const { part, name, urgency, value } = field;
+    if (isUnsaid(field)) parts[part][name] = null;
+    else if (urgency === null) parts[part][name] = Number(value);
     else
       parts[part][name] = {
         ...(parts[part][name] as Record<string, number> | undefined),

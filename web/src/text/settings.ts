@@ -170,7 +170,7 @@ export const settings = {
         early_eur_day: 'A day before the due date, €',
         changed_eur: 'Another place than was proposed, €',
         withdrawn_eur: 'Another than was offered, €',
-        late_days: 'Days after the due date that are allowed',
+        late_days: 'Days after the due date that are allowed; empty: late rather than not at all',
         job_h: 'Hours that a job takes on board',
         join_days: 'Days within which needs of a ship are one job',
         after_event_days: 'Days after dry-docking, repairs or a moved compass',

@@ -29,6 +29,9 @@ pub struct Firm {
     /// Jobs that a team does on one day in one port.
     #[serde(default = "one")]
     pub jobs_a_team_day: u32,
+    /// Teams that work elsewhere, and are not there to plan with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub taken: Vec<Taken>,
     /// Days of the week on which it works.
     #[serde(default = "working_week")]
     pub working_days: Vec<Weekday>,
@@ -51,6 +54,16 @@ pub struct Firm {
     pub lead_time_h: f64,
 }
 
+/// Teams that work elsewhere on a day.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Taken {
+    /// The day, ship's time.
+    pub day: NaiveDate,
+    /// How many.
+    pub teams: u32,
+}
+
 /// A port that a firm serves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -66,6 +79,13 @@ impl Firm {
     /// Whether it works on a day.
     pub fn works(&self, day: NaiveDate) -> bool {
         self.working_days.contains(&day.weekday()) && !self.closed.contains(&day)
+    }
+
+    /// How many of its teams there are to plan with on a day.
+    pub fn teams_on(&self, day: NaiveDate) -> u32 {
+        let taken = self.taken.iter().filter(|taken| taken.day == day);
+        self.teams
+            .saturating_sub(taken.map(|taken| taken.teams).sum())
     }
 
     /// Whether a flag accepts its adjusters; one that is not known may not.

@@ -10,7 +10,7 @@ mod read;
 mod sound;
 mod weights;
 
-pub use firm::{Firm, ServedPort};
+pub use firm::{Firm, ServedPort, Taken};
 pub use read::{InputError, read};
 pub use sound::{FirmError, firm_is_sound};
 pub use weights::Weights;

@@ -22,13 +22,14 @@ pub struct ByUrgency {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Weights {
-    /// A need that is not met within the horizon.
+    /// A need that is not met within the horizon, beside all the waiting that it could cost;
+    /// and one that is met late, where nobody has said how late it may be.
     pub unmet_eur: ByUrgency,
     /// A job at which the ship turns out not to be there, beside waiting for the next.
     pub missed_eur: ByUrgency,
     /// Each day that a need waits.
     pub waiting_eur_day: ByUrgency,
-    /// Each day after the due date.
+    /// Each day after the due date that is still to come.
     pub late_eur_day: Eur,
     /// Each day of an interval that is given away by adjusting before the due date.
     pub early_eur_day: Eur,
@@ -36,9 +37,10 @@ pub struct Weights {
     pub changed_eur: Eur,
     /// Another than was offered.
     pub withdrawn_eur: Eur,
-    /// Days after the due date on which a job may still be planned. What is overdue may
-    /// be planned on any day.
-    pub late_days: u32,
+    /// Days after the due date on which a job may be planned, and no later, though it could
+    /// be done in time at more cost. Where it is not said, a job is planned late only where
+    /// it is that or not at all. What is overdue may be planned on any day.
+    pub late_days: Option<u32>,
     /// Hours that a job takes on board.
     pub job_h: f64,
     /// Needs of one ship that are due within so many days of the first are one job.
@@ -73,7 +75,7 @@ impl Default for Weights {
             early_eur_day: Eur::whole(3),
             changed_eur: Eur::whole(150),
             withdrawn_eur: Eur::whole(500),
-            late_days: 0,
+            late_days: None,
             job_h: 3.0,
             join_days: 90,
         }

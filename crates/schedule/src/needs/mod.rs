@@ -140,7 +140,7 @@ pub enum Urgency {
     Soon,
     /// Due very soon, or the card is not to be trusted.
     Urgent,
-    /// The due date has passed.
+    /// The due date has passed, or there never was an adjustment.
     Overdue,
 }
 
@@ -205,7 +205,7 @@ pub fn due(
     let first = causes.first()?;
     Some(Due {
         on: first.due,
-        urgency: urgency(first, terms, today),
+        urgency: urgency(&causes, terms, today),
         reason: first.reason.clone(),
         causes,
     })
@@ -231,8 +231,14 @@ impl Terms {
     }
 }
 
-/// A card that is not to be trusted makes urgent what would be due soon.
-fn urgency(first: &Cause, terms: &Terms, today: NaiveDate) -> Urgency {
+/// A card that is not to be trusted makes urgent what would be due soon. A compass without
+/// an adjustment on record is due today on every day: it is overdue.
+fn urgency(causes: &[Cause], terms: &Terms, today: NaiveDate) -> Urgency {
+    let never = |cause: &Cause| cause.kind == CauseKind::NeverAdjusted;
+    let first = match causes.first() {
+        Some(first) if !causes.iter().any(never) => first,
+        _ => return Urgency::Overdue,
+    };
     let distrusted = matches!(
         first.kind,
         CauseKind::OverLimit | CauseKind::Change | CauseKind::FailedVerification

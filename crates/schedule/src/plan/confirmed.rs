@@ -19,8 +19,8 @@ pub(super) enum Standing<'a> {
         day: NaiveDate,
         quote: Quote,
     },
-    /// It may move, for this cause.
-    Loose { cause: String },
+    /// It may move, for this cause; where it is only late, to a day that is not.
+    Loose { cause: String, only_late: bool },
 }
 
 /// For each job whether it stands. Where a firm confirmed more than it has teams for,
@@ -44,11 +44,13 @@ pub(super) fn standing<'a>(input: &'a Input, jobs: &[Job<'a>]) -> Vec<Standing<'
             .values()
             .map(|jobs| jobs.div_ceil(of.jobs_a_team_day))
             .sum();
-        if sent > of.teams {
+        if sent > of.teams_on(*day) {
             *jobs_there.entry(call.port).or_default() -= 1;
-            let teams = if of.teams == 1 { "team" } else { "teams" };
-            let cause = format!("{} has only {} {teams} on {day}", of.called(), of.teams);
-            all[at] = Standing::Loose { cause };
+            let left = of.teams_on(*day);
+            let teams = if left == 1 { "team" } else { "teams" };
+            let cause = format!("{} has only {left} {teams} on {day}", of.called());
+            let only_late = false;
+            all[at] = Standing::Loose { cause, only_late };
         }
     }
     all
@@ -61,7 +63,10 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
     else {
         return Standing::Open;
     };
-    let loose = |cause| Standing::Loose { cause };
+    let loose = |cause| Standing::Loose {
+        cause,
+        only_late: false,
+    };
     let Some(&call) = job.calls.iter().find(|call| call.id == former.call) else {
         return loose(format!("call {} is cancelled", former.call));
     };
@@ -78,9 +83,10 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
     }
     match quote::quote(input, job, call, firm, day) {
         // Late as it is, it remains one of the job's options.
-        Ok(quote) if quote.late_days > 0 && job.due() >= input.now.date(0) => {
-            loose(format!("{day} is after the due date, {}", job.due()))
-        }
+        Ok(quote) if quote.late_days > 0 && !job.is_overdue(input.now.date(0)) => Standing::Loose {
+            cause: format!("{day} is after the due date, {}", job.due()),
+            only_late: true,
+        },
         Ok(quote) => Standing::Stands {
             call,
             firm: at,

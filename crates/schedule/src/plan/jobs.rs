@@ -39,6 +39,11 @@ impl Job<'_> {
             .unwrap_or(Urgency::Routine)
     }
 
+    /// Whether it is late already, however soon it is done.
+    pub(super) fn is_overdue(&self, today: NaiveDate) -> bool {
+        self.due() < today || self.urgency() == Urgency::Overdue
+    }
+
     pub(super) fn ids(&self) -> Vec<String> {
         self.needs.iter().map(|need| need.id.clone()).collect()
     }

@@ -2,8 +2,8 @@
 //!
 //! What always holds: a need is met at most once, by a firm that serves the port and is
 //! accepted, on a day on which it works and the ship is expected alongside long enough,
-//! within its teams; not after the due date, unless that has passed already or the
-//! weights allow it. A confirmed job stays as it is while all that holds of it. The same
+//! within its teams; after the due date only where that has passed already, nothing in
+//! time is to be had, or the weights allow it. A confirmed job stays as it is while all that holds of it. The same
 //! input gives the same schedule.
 
 mod confirmed;
@@ -109,17 +109,29 @@ impl<'a> Options<'a> {
                 options.add(input, at, call, *firm, *day, *quote);
                 continue;
             }
-            let unmet = input.weights.unmet_eur.of(job.urgency());
-            options.problem.unmet.push(unmet.cents());
+            let first = options.all.len();
+            let only_late = matches!(standing, Standing::Loose { only_late, .. } if *only_late);
             for &call in &job.calls {
                 for &firm in serving.get(&call.port).into_iter().flatten() {
                     for day in quote::days(call, input.now) {
-                        if let Ok(quote) = quote::quote(input, job, call, &input.firms[firm], day) {
+                        let of = &input.firms[firm];
+                        let Ok(quote) = quote::quote(input, job, call, of, day) else {
+                            continue;
+                        };
+                        // What was agreed and is late gives way to what is not.
+                        let as_late = only_late && quote.late_days > 0;
+                        if !as_late || job.was(&call.id, &of.id, day) {
                             options.add(input, at, call, firm, day, quote);
                         }
                     }
                 }
             }
+            // Undone it waits longer than any of its ways: what that costs never makes it
+            // better left undone, only a fee can.
+            let waits = options.all[first..].iter();
+            let waits = waits.map(|way| way.quote.cost() - way.quote.fee);
+            let unmet = input.weights.unmet_eur.of(job.urgency()).cents();
+            options.problem.unmet.push(unmet + waits.max().unwrap_or(0));
         }
         options
     }
@@ -136,7 +148,7 @@ impl<'a> Options<'a> {
         let of = &input.firms[firm];
         let problem = &mut self.problem;
         let firm_day = *self.firm_days.entry((firm, day)).or_insert_with(|| {
-            problem.teams.push(of.teams);
+            problem.teams.push(of.teams_on(day));
             problem.teams.len() - 1
         });
         let visit = *self

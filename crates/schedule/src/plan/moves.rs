@@ -80,7 +80,7 @@ fn kept(standing: &Standing<'_>) -> String {
     match standing {
         Standing::Open => "still the best".to_owned(),
         Standing::Stands { .. } => "confirmed".to_owned(),
-        Standing::Loose { cause } => format!("{cause}, and nothing better is to be had"),
+        Standing::Loose { cause, .. } => format!("{cause}, and nothing better is to be had"),
     }
 }
 
@@ -98,7 +98,7 @@ fn cause(
     way: Option<&Way<'_>>,
     made: &[Option<&Way<'_>>],
 ) -> String {
-    if let Standing::Loose { cause } = standing {
+    if let Standing::Loose { cause, .. } = standing {
         return cause.clone();
     }
     let job = &jobs[at];
@@ -134,8 +134,8 @@ fn cause(
     let names: Vec<&str> = others
         .map(|other| jobs[other.job].vessel.called())
         .collect();
-    let teams =
-        input.firms[old.firm].teams as usize * input.firms[old.firm].jobs_a_team_day as usize;
+    let teams = input.firms[old.firm].teams_on(old.day) as usize
+        * input.firms[old.firm].jobs_a_team_day as usize;
     if names.len() >= teams {
         return format!("gives way to {}", names.join(", "));
     }

@@ -112,7 +112,9 @@ pub(super) fn quote(
         !in_hours || to.hours_since(from) >= weights.job_h,
         Obstacle::LeadTime,
     );
-    let allowed = late_days <= i64::from(weights.late_days) || job.due() < today || confirmed;
+    let overdue = job.is_overdue(today);
+    let in_cap = |most: u32| late_days <= i64::from(most);
+    let allowed = overdue || confirmed || weights.late_days.is_none_or(in_cap);
     unless(allowed, Obstacle::AfterDue);
     unless(!declined(input, job, firm, day), Obstacle::Declined);
     if !against.is_empty() {
@@ -126,6 +128,11 @@ pub(super) fn quote(
         Urgency::Routine | Urgency::Soon => (job.due() - day).num_days().clamp(0, MOST_DAYS),
         Urgency::Urgent | Urgency::Overdue => 0,
     };
+    // What is late already is so whatever is done: only days to come count.
+    let late_to_come = (day - job.due().max(today)).num_days().clamp(0, MOST_DAYS);
+    // To be late at all weighs as much as to leave undone what could be done in time.
+    let at_all = late_days > 0 && !overdue && weights.late_days.is_none();
+    let late_at_all = i64::from(at_all) * weights.unmet_eur.of(urgency).cents();
     let more = job.needs.iter().skip(1);
     let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
     Ok(Quote {
@@ -136,7 +143,7 @@ pub(super) fn quote(
         fee: firm.fee_eur.cents() + extra,
         risk: (chance_of_missing * weights.missed_eur.of(urgency).cents() as f64).round() as i64,
         waiting: waits * weights.waiting_eur_day.of(urgency).cents(),
-        late: late_days.min(MOST_DAYS) * weights.late_eur_day.cents(),
+        late: late_to_come * weights.late_eur_day.cents() + late_at_all,
         early: early_days * weights.early_eur_day.cents(),
         changed: changed(input, job, call, firm, day),
     })

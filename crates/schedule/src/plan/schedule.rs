@@ -81,7 +81,7 @@ pub struct Weighed {
     pub risk_eur: f64,
     /// The days until then.
     pub waiting_eur: f64,
-    /// The days after the due date.
+    /// The days after the due date that are still to come, and being late at all.
     pub late_eur: f64,
     /// The days before it.
     pub early_eur: f64,

@@ -29,13 +29,16 @@ pub(super) fn unscheduled(
             .or_default()
             .push(jobs[way.job].vessel.called());
     }
-    let overdue = |job: &Job<'_>| job.due() < input.now.date(0);
+    let overdue = |job: &Job<'_>| job.is_overdue(input.now.date(0));
     let open = jobs.iter().zip(made).filter(|(job, way)| match way {
         None => true,
         Some(way) => way.quote.late_days > 0 && !overdue(job),
     });
     open.map(|(job, way)| {
         let mut found = Found::default();
+        if let Some(way) = way {
+            found.late(job, way);
+        }
         found.look(input, job, &taken);
         Unscheduled {
             needs: job.ids(),
@@ -56,9 +59,29 @@ struct Found {
     because: Vec<String>,
     /// By how near each is: what is only a question of teams first.
     near: BTreeSet<(u8, NaiveDate, String)>,
+    planned_late: bool,
 }
 
 impl Found {
+    /// It is planned, and late.
+    fn late(&mut self, job: &Job<'_>, way: &Way<'_>) {
+        let (late, due, day) = (way.quote.late_days, job.due(), way.day);
+        let days = if late == 1 { "day" } else { "days" };
+        self.planned_late = true;
+        self.say(format!("planned {late} {days} after the due date, {due}"));
+        self.extension(job, day);
+    }
+
+    /// Who has set the due date may set another.
+    fn extension(&mut self, job: &Job<'_>, day: NaiveDate) {
+        let whose = match job.vessel.flag {
+            Some(flag) => format!("flag {}", flag.letters()),
+            None => "the flag".to_owned(),
+        };
+        let help = format!("an extension to {day}, asked of {whose} where its rules know one");
+        self.near.insert((4, day, help));
+    }
+
     fn look(
         &mut self,
         input: &Input,
@@ -70,7 +93,7 @@ impl Found {
             .iter()
             .filter(|call| {
                 call.eta.date(quote::port_of(call).zone_h()) <= job.due()
-                    || job.due() < input.now.date(0)
+                    || job.is_overdue(input.now.date(0))
             })
             .copied()
             .collect();
@@ -135,7 +158,9 @@ impl Found {
             }
         }
         for firm in serving {
-            for day in quote::days(call, input.now) {
+            // Of what is planned late, other late days would help nobody.
+            let (late, days) = (self.planned_late, quote::days(call, input.now));
+            for day in days.filter(|day| !late || *day <= job.due()) {
                 match quote::quote(input, job, call, firm, day) {
                     Ok(_) => self.taken(firm, call, day, taken),
                     Err(obstacles) => self.obstacles(job, call, firm, day, &obstacles),
@@ -156,6 +181,10 @@ impl Found {
         let Some(others) = taken.get(&(firm.id.as_str(), day)) else {
             if firm.teams == 0 {
                 self.say(format!("{name} has no teams"));
+            } else if firm.teams_on(day) == 0 {
+                self.say(format!("{name}'s teams of {day} are booked"));
+                let help = format!("one more team of {name} on {day}, at {port}");
+                self.near.insert((0, day, help));
             } else {
                 self.say(format!(
                     "{name} at {port} on {day} costs more than leaving it undone"
@@ -183,7 +212,13 @@ impl Found {
         obstacles: &[Obstacle],
     ) {
         let (name, port, due) = (firm.called(), quote::port_of(call).name, job.due());
-        let only = |help: String| (obstacles.len() == 1).then_some((1, day, help));
+        // What would help against days that are too late is about the due date.
+        let about = if obstacles.contains(&Obstacle::AfterDue) {
+            due
+        } else {
+            day
+        };
+        let only = |help: String| (obstacles.len() == 1).then_some((1, about, help));
         let licence = job.vessel.licence.as_deref().unwrap_or_default();
         let flag = job.vessel.flag_in_words();
         for obstacle in obstacles {
@@ -205,7 +240,11 @@ impl Found {
                         "{name} wants to be asked {} h ahead, too long for {day}",
                         firm.lead_time_h
                     ),
-                    format!("{name} coming to {port} at shorter notice, on {day}"),
+                    format!(
+                        "{name}, or another firm, coming to {port} at shorter notice than {} h, \
+                         on {day}",
+                        firm.lead_time_h
+                    ),
                 ),
                 Obstacle::Stay => (
                     format!(
@@ -219,7 +258,7 @@ impl Found {
                         "call {} at {port} on {day} is after the due date, {due}",
                         call.called()
                     ),
-                    format!("a due date of {day} or later: {name} could come to {port}"),
+                    format!("a call at {port} by {due}: {name} could come"),
                 ),
                 Obstacle::Declined => (
                     format!("{name} declined"),
@@ -230,6 +269,9 @@ impl Found {
                 self.say(because);
             }
             self.near.extend(only(help));
+            if *obstacle == Obstacle::AfterDue && obstacles.len() == 1 {
+                self.extension(job, day);
+            }
         }
     }
 

@@ -57,15 +57,40 @@ fn a_licence_that_is_asked_for_is_named() {
 }
 
 #[test]
-fn a_call_after_the_due_date_wants_a_later_one() {
+fn what_can_only_be_late_is_planned_and_wants_an_earlier_call_or_an_extension() {
     let found = unscheduled(|input| input["needs"][0]["due"] = json!("2026-11-30"));
-    assert!(found.because[0].starts_with("no port call before the due date, 2026-11-30"));
-    assert!(
-        found
-            .would_help
-            .contains(&"a due date of 2026-12-01 or later: f could come to Rotterdam".to_owned()),
-        "{:?}",
-        found.would_help
+    assert!(found.planned_late);
+    assert_eq!(
+        found.because,
+        [
+            "planned 1 day after the due date, 2026-11-30",
+            "no port call before the due date, 2026-11-30; the first is 2026-12-01T00:00:00Z at \
+             Rotterdam"
+        ]
+    );
+    assert_eq!(
+        found.would_help,
+        [
+            "a call by 2026-11-30 at a port that a firm serves: NLRTM",
+            "an extension to 2026-12-01, asked of flag NO where its rules know one"
+        ]
+    );
+}
+
+#[test]
+fn who_allows_no_late_days_is_told_what_would_help_instead() {
+    let found = unscheduled(|input| {
+        input["needs"][0]["due"] = json!("2026-11-30");
+        input["weights"] = json!({"late_days": 0});
+    });
+    assert!(!found.planned_late);
+    assert_eq!(
+        found.would_help,
+        [
+            "a call at Rotterdam by 2026-11-30: f could come",
+            "a call by 2026-11-30 at a port that a firm serves: NLRTM",
+            "an extension to 2026-12-01, asked of flag NO where its rules know one"
+        ]
     );
 }
 
@@ -118,6 +143,18 @@ fn a_team_that_another_ship_has_is_named_with_the_ship() {
         ));
     });
     assert_eq!(found.because[0], "f's teams of 2026-12-01 go to w");
+    assert_eq!(
+        found.would_help[0],
+        "one more team of f on 2026-12-01, at Rotterdam"
+    );
+}
+
+#[test]
+fn a_team_that_works_elsewhere_is_not_planned_with() {
+    let found = unscheduled(|input| {
+        input["firms"][0]["taken"] = json!([{"day": "2026-12-01", "teams": 1}]);
+    });
+    assert_eq!(found.because[0], "f's teams of 2026-12-01 are booked");
     assert_eq!(
         found.would_help[0],
         "one more team of f on 2026-12-01, at Rotterdam"

@@ -147,6 +147,68 @@ fn what_is_overdue_is_done_at_the_first_call_there_is() {
 }
 
 #[test]
+fn a_compass_without_a_record_goes_to_the_first_call_there_is() {
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "compasses": [{"id": "k", "vessel": "v", "facts": {}}],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02"), call("d", "v", "2026-12-08", "2026-12-09")],
+        "firms": [firm("f", 1500)],
+        "weights": {"late_days": 0},
+    }));
+    assert_eq!(jobs(&found), [job("v", "f", "2026-12-01")]);
+    assert!(found.unscheduled.is_empty());
+}
+
+#[test]
+fn a_ship_overdue_for_years_is_done_at_the_last_call_of_the_horizon() {
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2016-11-01")],
+        "port_calls": [call("c", "v", "2027-05-17", "2027-05-18")],
+        "firms": [firm("f", 1500)],
+    }));
+    assert_eq!(jobs(&found), [job("v", "f", "2027-05-17")]);
+    // Only the 177 days to come are weighed.
+    assert!((found.jobs[0].weighed.late_eur - 177.0 * 500.0).abs() < 1e-9);
+}
+
+#[test]
+fn what_can_only_be_done_late_is_planned_before_it_is_overdue() {
+    let mut slow = firm("f", 1500);
+    slow["lead_time_h"] = json!(96);
+    let found = schedule(json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2026-12-07")],
+        "port_calls": [call("c", "v", "2026-12-10", "2026-12-11"), call("d", "v", "2027-03-01", "2027-03-03")],
+        "firms": [slow],
+    }));
+    assert_eq!(jobs(&found), [job("v", "f", "2026-12-10")]);
+    assert_eq!(found.jobs[0].late_days, 3);
+    assert!(found.unscheduled[0].planned_late);
+}
+
+#[test]
+fn no_job_is_late_for_the_sake_of_money() {
+    let mut dear = firm("dear", 15_000);
+    dear["ports"][0]["travel_eur"] = json!(4000);
+    let input = json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2026-12-01")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-03")],
+        "firms": [dear, {"id": "cheap", "ports": [{"port": "NLRTM"}], "fee_eur": 900,
+                         "closed": ["2026-12-01"]}],
+    });
+    assert_eq!(
+        jobs(&schedule(input.clone())),
+        [job("v", "dear", "2026-12-01")]
+    );
+    // Unless somebody has said how late it may be.
+    let mut late = input;
+    late["weights"] = json!({"late_days": 1});
+    assert_eq!(jobs(&schedule(late)), [job("v", "cheap", "2026-12-02")]);
+}
+
+#[test]
 fn a_need_beyond_the_horizon_waits() {
     let found = schedule(json!({
         "vessels": [vessel("v")],

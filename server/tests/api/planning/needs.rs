@@ -32,7 +32,7 @@ async fn a_compass_without_a_record_is_due_today_and_says_by_which_rule(shore: S
     let need = need(&ada, &nao).await;
     assert_eq!(
         (&need["due_on"], &need["urgency"]),
-        (&json!("2026-11-21"), &json!("urgent"))
+        (&json!("2026-11-21"), &json!("overdue"))
     );
     assert_eq!(need["vessel_name"], "Nao");
     assert_eq!(need["causes"][0]["kind"], "never_adjusted");
