@@ -59,6 +59,16 @@ pub struct Overseer {
     pub user: UserId,
 }
 
+/// An operator's admin at a screen, who may say who signs in and how. A token that leaked
+/// is not to make people of its own, or to become another.
+#[derive(Clone, Copy, Debug)]
+pub struct Custodian {
+    /// Whose people.
+    pub operator: OperatorId,
+    /// Who.
+    pub user: UserId,
+}
+
 /// Someone of an operator's or a firm's who may see the work orders between them.
 #[derive(Clone, Copy, Debug)]
 pub struct PartyReader {
@@ -134,6 +144,20 @@ impl Caller {
             return Err(Error::SecondFactorRequired);
         }
         Ok(())
+    }
+
+    /// Whether the session or token that vouched for the caller still does.
+    ///
+    /// # Errors
+    /// When the database does.
+    pub async fn still_vouched_for(&self, app: &App) -> Result<bool> {
+        let now = app.clock.now().into();
+        let found = match (self.session, self.token) {
+            (Some(session), _) => session::lasts(&app.db, session, now).await?,
+            (None, Some(token)) => tokens::lasts(&app.db, token, now).await?,
+            (None, None) => false,
+        };
+        Ok(found)
     }
 
     fn operator(&self) -> Result<OperatorId> {
@@ -266,6 +290,21 @@ impl FromRequestParts<App> for Overseer {
         let operator = caller.operator()?;
         caller.must_be_admin()?;
         Ok(Overseer {
+            operator,
+            user: caller.user.user_id,
+        })
+    }
+}
+
+impl FromRequestParts<App> for Custodian {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Custodian> {
+        let caller = Caller::from_request_parts(parts, app).await?;
+        let operator = caller.operator()?;
+        caller.must_be_admin()?;
+        caller.must_be_signed_in()?;
+        Ok(Custodian {
             operator,
             user: caller.user.user_id,
         })

@@ -2,11 +2,13 @@
 //! (RFC 5545).
 //!
 //! What always holds: a feed's address is its secret, shown once and stored as a hash; it
-//! shows what its operator or firm sees now, and nothing once it is removed. Port calls and
-//! due dates are the operator's own: no firm's calendar has them.
+//! shows what its operator or firm sees now, and nothing once it, or who made it, is
+//! removed. Port calls and due dates are the operator's own: no firm's calendar has them.
 
 mod ics;
 mod store;
+
+pub use store::delete_all_of;
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
@@ -108,7 +110,8 @@ async fn list_feeds(
 /// Make a calendar
 ///
 /// Of all your work orders, or of one vessel's; for an operator with port calls and due
-/// dates. The answer shows its secret address, this once.
+/// dates. The answer shows its secret address, this once. It ends when you are removed, shut
+/// out or given another one-time code.
 #[utoipa::path(post, path = "/calendar-feeds", tag = "adjusting", request_body = NewFeed,
     responses((status = 201, body = MadeFeed), (status = 401, body = Problem),
               (status = 403, body = Problem),
@@ -135,7 +138,8 @@ async fn create_feed(
         created_at: app.clock.now().into(),
         created_by: session::name_of(&mut tx, writer.user).await?,
     };
-    store::insert(&mut tx, writer.tenant, &about, &secret::hash(&token)).await?;
+    let hash = secret::hash(&token);
+    store::insert(&mut tx, writer.tenant, writer.user, &about, &hash).await?;
     tx.commit().await?;
     let base = app.config.mail.public_url.as_deref().unwrap_or_default();
     let base = base.trim_end_matches('/');

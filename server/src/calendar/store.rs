@@ -2,7 +2,7 @@
 
 use super::{Feed, Subscriber};
 use crate::db::{Db, Result, Tx, execute, row, rows};
-use crate::ids::{CallId, CompassId, FeedId, FirmId, OperatorId, OrderId, VesselId};
+use crate::ids::{CallId, CompassId, FeedId, FirmId, OperatorId, OrderId, UserId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 use crate::work_orders::State;
@@ -87,12 +87,18 @@ pub(super) async fn list(
     )
 }
 
-pub(super) async fn insert(tx: &mut Tx, tenant: Tenant, feed: &Feed, hash: &[u8]) -> Result<()> {
+pub(super) async fn insert(
+    tx: &mut Tx,
+    tenant: Tenant,
+    user: UserId,
+    feed: &Feed,
+    hash: &[u8],
+) -> Result<()> {
     execute!(
         tx,
         "INSERT INTO calendar_feeds (id, operator_id, firm_id, vessel_id, token_hash, name,
-                                     created_at, created_by)
-         VALUES ($1, $2, $3, $4, $5, $6, $7, $8)",
+                                     created_at, created_by, user_id)
+         VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9)",
         feed.id,
         tenant.operator(),
         tenant.firm(),
@@ -100,7 +106,8 @@ pub(super) async fn insert(tx: &mut Tx, tenant: Tenant, feed: &Feed, hash: &[u8]
         hash,
         feed.name.as_str(),
         feed.created_at,
-        feed.created_by.as_str()
+        feed.created_by.as_str(),
+        user
     )?;
     Ok(())
 }
@@ -116,14 +123,23 @@ pub(super) async fn delete(tx: &mut Tx, tenant: Tenant, id: FeedId) -> Result<bo
     Ok(deleted > 0)
 }
 
-/// Whose the calendar of this token is.
+/// Removes all calendars that a user made.
+///
+/// # Errors
+/// When the database does.
+pub async fn delete_all_of(tx: &mut Tx, user: UserId) -> Result<u64> {
+    execute!(tx, "DELETE FROM calendar_feeds WHERE user_id = $1", user)
+}
+
+/// Whose the calendar of this token is, unless who made it was shut out.
 pub(super) async fn find(db: &Db, token_hash: &[u8]) -> Result<Option<Subscriber>> {
     let found = row!(
         db,
         (String, Option<OperatorId>, Option<FirmId>, Option<VesselId>),
-        "SELECT name, operator_id, firm_id, vessel_id FROM calendar_feeds
-         WHERE token_hash = $1
-         ORDER BY id",
+        "SELECT f.name, f.operator_id, f.firm_id, f.vessel_id FROM calendar_feeds f
+         LEFT JOIN users u ON u.id = f.user_id
+         WHERE f.token_hash = $1 AND u.disabled_at IS NULL
+         ORDER BY f.id",
         token_hash
     )?;
     let whose = |(name, operator, firm, vessel): (_, Option<OperatorId>, Option<FirmId>, _)| {

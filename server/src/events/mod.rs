@@ -12,7 +12,7 @@ mod store;
 pub use live::{Line, Live};
 pub use store::{insert, insert_of_order, prune};
 
-use crate::access::PartyReader;
+use crate::access::Caller;
 use crate::app::App;
 use crate::error::{Problem, Result};
 use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
@@ -114,7 +114,7 @@ const LONGEST_STREAM: Duration = Duration::from_mins(30);
               (status = 401, body = Problem)))]
 async fn follow_events(
     State(app): State<App>,
-    reader: PartyReader,
+    caller: Caller,
     headers: HeaderMap,
 ) -> Result<Sse<impl Stream<Item = std::result::Result<Sent, Infallible>>>> {
     let last = headers
@@ -122,16 +122,18 @@ async fn follow_events(
         .and_then(|value| value.to_str().ok())
         .and_then(|text| Uuid::parse_str(text).ok())
         .map(EventId);
+    let tenant = caller.party()?;
     // Listening begins before the look back, so that nothing falls in between.
     let receiver = app.live.follow();
     let missed = match last {
-        Some(last) => store::since(&app.db, reader.tenant, last).await?,
+        Some(last) => store::since(&app.db, tenant, last).await?,
         None => Vec::new(),
     };
     let follower = Follower {
         ends: tokio::time::Instant::now() + LONGEST_STREAM,
         app,
-        tenant: reader.tenant,
+        tenant,
+        caller,
         receiver,
         pending: missed.into(),
         last,
@@ -143,6 +145,7 @@ async fn follow_events(
 struct Follower {
     app: App,
     tenant: Tenant,
+    caller: Caller,
     receiver: Receiver<Event>,
     pending: VecDeque<Event>,
     last: Option<EventId>,
@@ -153,6 +156,10 @@ impl Follower {
     async fn next(mut self) -> Option<(std::result::Result<Sent, Infallible>, Follower)> {
         loop {
             if let Some(event) = self.pending.pop_front() {
+                // Who was signed out meanwhile, or whose token was revoked, hears no more.
+                if !self.caller.still_vouched_for(&self.app).await.ok()? {
+                    return None;
+                }
                 self.last = Some(event.id);
                 return Some((Ok(event.to_sent()), self));
             }

@@ -14,7 +14,7 @@ mod user;
 
 pub use own::end_all;
 pub use sign_in::{open, prove};
-pub use store::{create_user, find_user, name_of, set_password};
+pub use store::{create_user, find_user, lasts, name_of, set_password};
 pub(crate) use user::user_sql;
 pub use user::{Role, User, normal_email};
 

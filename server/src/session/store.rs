@@ -65,6 +65,24 @@ pub async fn find_user(
     Ok(Some((holder.user, holder.session_id)))
 }
 
+/// Whether a session that was good still is.
+///
+/// # Errors
+/// When the database does.
+pub async fn lasts(db: &Db, id: SessionId, now: Time) -> Result<bool> {
+    let found = row!(
+        db,
+        (SessionId,),
+        "SELECT s.id FROM sessions s
+         JOIN users u ON u.id = s.user_id
+         WHERE s.id = $1 AND s.expires_at > $2 AND u.disabled_at IS NULL
+         ORDER BY s.id",
+        id,
+        now
+    )?;
+    Ok(found.is_some())
+}
+
 /// A user's name.
 ///
 /// # Errors

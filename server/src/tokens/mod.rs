@@ -5,7 +5,7 @@
 
 mod store;
 
-pub use store::caller;
+pub use store::{caller, delete_all, lasts};
 
 use crate::access::Caller;
 use crate::app::App;

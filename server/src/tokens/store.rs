@@ -2,7 +2,7 @@
 
 use super::{PREFIX, Scope, Token};
 use crate::access::Caller;
-use crate::db::{Db, Result, execute, row, rows};
+use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::ids::{TokenId, UserId};
 use crate::secret;
 use crate::session::{User, user_sql};
@@ -52,6 +52,24 @@ pub async fn caller(db: &Db, token: &str, now: Time) -> Result<Option<Caller>> {
         session: None,
         token: Some(holder.token_id),
     }))
+}
+
+/// Whether a token that was good still is.
+///
+/// # Errors
+/// When the database does.
+pub async fn lasts(db: &Db, id: TokenId, now: Time) -> Result<bool> {
+    let found = row!(
+        db,
+        (TokenId,),
+        "SELECT t.id FROM api_tokens t
+         JOIN users u ON u.id = t.user_id
+         WHERE t.id = $1 AND t.expires_at > $2 AND u.disabled_at IS NULL
+         ORDER BY t.id",
+        id,
+        now
+    )?;
+    Ok(found.is_some())
 }
 
 async fn note_use(db: &Db, id: TokenId, now: Time) -> Result<()> {
@@ -112,4 +130,12 @@ pub(super) async fn delete(db: &Db, user: UserId, id: TokenId) -> Result<bool> {
     )?;
     tx.commit().await?;
     Ok(deleted > 0)
+}
+
+/// Revokes all of a user's tokens.
+///
+/// # Errors
+/// When the database does.
+pub async fn delete_all(tx: &mut Tx, user: UserId) -> Result<u64> {
+    execute!(tx, "DELETE FROM api_tokens WHERE user_id = $1", user)
 }

@@ -3,7 +3,7 @@
 //! What always holds: a code is stored as a hash, works once and for a week; whoever
 //! uses it gets a password and nothing else, and signs in with that.
 
-use crate::access::Writer;
+use crate::access::Custodian;
 use crate::app::App;
 use crate::audit::{self, Actor};
 use crate::db::{Db, Tx, execute, row};
@@ -12,7 +12,7 @@ use crate::http::{Id, Json, Valid};
 use crate::ids::{FirmId, OperatorId, UserId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{oidc, password, second_factor, secret, session};
+use crate::{calendar, oidc, password, second_factor, secret, session, tokens};
 use axum::extract::State;
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
@@ -93,11 +93,11 @@ struct Invited {
               (status = 409, description = "The user is shut out", body = Problem)))]
 async fn invite_again(
     State(app): State<App>,
-    writer: Writer,
+    custodian: Custodian,
     Id(id): Id<UserId>,
 ) -> Result<(StatusCode, Json<Invitation>)> {
     let mut tx = app.db.begin().await?;
-    let user = super::store::find(&mut tx, writer.operator, id).await?;
+    let user = super::store::find(&mut tx, custodian.operator, id).await?;
     let user = user.ok_or(Error::NotFound("user"))?;
     if user.state == super::Standing::Disabled {
         return Err(Error::WrongState("the user is shut out".to_owned()));
@@ -109,7 +109,8 @@ async fn invite_again(
 
 /// Set a password with a one-time code
 ///
-/// Sessions there were end. A second factor stays.
+/// Sessions, tokens and calendars there were end: whoever needs a code may have lost more
+/// than the password. A second factor stays.
 #[utoipa::path(post, path = "/invitations/accept", tag = "people", security(()),
     request_body = Acceptance,
     responses((status = 200, body = Accepted),
@@ -142,7 +143,7 @@ async fn accept_invitation(
         return Err(Error::NotFound("code"));
     }
     session::set_password(&mut tx, invited.user_id, &hash).await?;
-    session::end_all(&mut tx, invited.user_id, None).await?;
+    end_access(&mut tx, invited.user_id).await?;
     let tenant = invited.operator_id.map(Tenant::Operator);
     let tenant = tenant.or(invited.firm_id.map(Tenant::Firm));
     audit::acts(Actor::person(invited.user_id, &invited.name, tenant));
@@ -166,9 +167,9 @@ pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitat
     })
 }
 
-/// Begins a user anew: password, second factor, sessions and whom a sign-in provider means
-/// are gone, and the code
-/// sets another password; none when nobody has the e-mail.
+/// Begins a user anew: password, second factor, sessions, tokens, calendars and whom a
+/// sign-in provider means are gone, and the code sets another password; none when nobody
+/// has the e-mail.
 ///
 /// # Errors
 /// When the database does.
@@ -188,12 +189,20 @@ pub async fn reset(db: &Db, email: &str, now: Time) -> Result<Option<(String, Ti
         audit::concerns(tenant);
     }
     session::set_password(&mut tx, user, "").await?;
-    session::end_all(&mut tx, user, None).await?;
+    end_access(&mut tx, user).await?;
     second_factor::remove(&mut tx, user).await?;
     oidc::forget(&mut tx, user).await?;
     let made = insert(&mut tx, user, now).await?;
     tx.commit().await?;
     Ok(Some(made))
+}
+
+/// Ends all by which a user, or who stole from them, gets in.
+async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
+    session::end_all(tx, user, None).await?;
+    tokens::delete_all(tx, user).await?;
+    calendar::delete_all_of(tx, user).await?;
+    Ok(())
 }
 
 async fn insert(tx: &mut Tx, user: UserId, now: Time) -> Result<(String, Time)> {

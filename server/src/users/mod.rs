@@ -2,14 +2,15 @@
 //!
 //! What always holds: an operator keeps at least one admin who can sign in; nobody
 //! learns another's password, for an admin gives a one-time code and the person sets
-//! the password; who is disabled is signed out at once, and so are their tokens.
+//! the password; who is disabled is signed out at once, and so are their tokens; a token
+//! changes none of this.
 
 mod invitation;
 mod store;
 
 pub use invitation::reset;
 
-use crate::access::{Overseer, Writer};
+use crate::access::{Custodian, Overseer};
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid, text};
@@ -178,7 +179,7 @@ async fn list_users(
               (status = 409, description = "The e-mail has an account", body = Problem)))]
 async fn invite_user(
     State(app): State<App>,
-    writer: Writer,
+    custodian: Custodian,
     Valid(new): Valid<NewUser>,
 ) -> Result<(StatusCode, Json<InvitedUser>)> {
     let email = checked_email(&new.email)?;
@@ -187,7 +188,7 @@ async fn invite_user(
     let mut tx = app.db.begin().await?;
     let created = store::insert(
         &mut tx,
-        writer.operator,
+        custodian.operator,
         &email,
         &name,
         new.role.into(),
@@ -197,7 +198,7 @@ async fn invite_user(
         Error::WrongState(format!("{email} has an account already, here or elsewhere"))
     })?;
     let invitation = invitation::make(&mut tx, &app, id).await?;
-    let user = store::find(&mut tx, writer.operator, id).await?;
+    let user = store::find(&mut tx, custodian.operator, id).await?;
     tx.commit().await?;
     let user = user.ok_or(Error::NotFound("user"))?;
     Ok((StatusCode::CREATED, Json(InvitedUser { user, invitation })))
@@ -213,7 +214,7 @@ async fn invite_user(
               (status = 409, description = "It is the last admin", body = Problem)))]
 async fn change_user(
     State(app): State<App>,
-    writer: Writer,
+    custodian: Custodian,
     Id(id): Id<UserId>,
     Valid(change): Valid<ChangedUser>,
 ) -> Result<Json<Person>> {
@@ -225,8 +226,8 @@ async fn change_user(
     let role = change.role.map(Role::from);
     let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
-    store::lock(&mut tx, writer.operator).await?;
-    let before = store::find(&mut tx, writer.operator, id).await?;
+    store::lock(&mut tx, custodian.operator).await?;
+    let before = store::find(&mut tx, custodian.operator, id).await?;
     before.ok_or(Error::NotFound("user"))?;
     store::update(&mut tx, id, name.as_deref(), role).await?;
     match change.disabled {
@@ -234,8 +235,8 @@ async fn change_user(
         Some(false) => store::enable(&mut tx, id).await?,
         None => {}
     }
-    store::must_have_admin(&mut tx, writer.operator).await?;
-    let after = store::find(&mut tx, writer.operator, id).await?;
+    store::must_have_admin(&mut tx, custodian.operator).await?;
+    let after = store::find(&mut tx, custodian.operator, id).await?;
     tx.commit().await?;
     Ok(Json(after.ok_or(Error::NotFound("user"))?))
 }
@@ -248,15 +249,15 @@ async fn change_user(
               (status = 409, description = "It is the last admin", body = Problem)))]
 async fn remove_user(
     State(app): State<App>,
-    writer: Writer,
+    custodian: Custodian,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
     let mut tx = app.db.begin().await?;
-    store::lock(&mut tx, writer.operator).await?;
-    if !store::delete(&mut tx, writer.operator, id).await? {
+    store::lock(&mut tx, custodian.operator).await?;
+    if !store::delete(&mut tx, custodian.operator, id).await? {
         return Err(Error::NotFound("user"));
     }
-    store::must_have_admin(&mut tx, writer.operator).await?;
+    store::must_have_admin(&mut tx, custodian.operator).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -269,11 +270,11 @@ async fn remove_user(
     responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn reset_second_factor(
     State(app): State<App>,
-    writer: Writer,
+    custodian: Custodian,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
     let mut tx = app.db.begin().await?;
-    let user = store::find(&mut tx, writer.operator, id).await?;
+    let user = store::find(&mut tx, custodian.operator, id).await?;
     user.ok_or(Error::NotFound("user"))?;
     second_factor::remove(&mut tx, id).await?;
     tx.commit().await?;
@@ -298,16 +299,16 @@ async fn find_sign_in_rules(
               (status = 409, description = "You have no second factor yourself", body = Problem)))]
 async fn change_sign_in_rules(
     State(app): State<App>,
-    writer: Writer,
+    custodian: Custodian,
     Valid(rules): Valid<SignInRules>,
 ) -> Result<Json<SignInRules>> {
     let mut tx = app.db.begin().await?;
-    let asking = store::find(&mut tx, writer.operator, writer.user).await?;
+    let asking = store::find(&mut tx, custodian.operator, custodian.user).await?;
     if rules.second_factor_required && !asking.is_some_and(|user| user.second_factor) {
         let first = "set up a second factor of your own first";
         return Err(Error::WrongState(first.to_owned()));
     }
-    store::set_rules(&mut tx, writer.operator, rules).await?;
+    store::set_rules(&mut tx, custodian.operator, rules).await?;
     tx.commit().await?;
     Ok(Json(rules))
 }

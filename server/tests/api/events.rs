@@ -1,7 +1,7 @@
 //! Live events.
 
 use crate::on_both;
-use crate::support::{Engine, Person, Shore, passage};
+use crate::support::{Answer, Engine, Person, Shore, passage};
 use binnacle_server::db::Db;
 use binnacle_server::events;
 use futures_util::StreamExt;
@@ -15,6 +15,7 @@ on_both!(
     a_dashboard_hears_of_a_report,
     a_dashboard_that_comes_back_gets_what_it_missed,
     nobody_hears_of_another_operators_fleet,
+    a_revoked_token_and_an_ended_session_hear_no_more,
     a_stopping_server_lets_its_dashboards_go,
     events_are_forgotten_after_a_day,
 );
@@ -56,6 +57,10 @@ impl Source {
         if let Some(last) = last {
             request = request.header("last-event-id", last);
         }
+        Source::of(request).await
+    }
+
+    async fn of(request: reqwest::RequestBuilder) -> Source {
         let response = request.send().await.unwrap();
         assert_eq!(response.headers()["content-type"], "text/event-stream");
         let chunks = futures_util::stream::unfold(response, |mut response| async {
@@ -148,6 +153,35 @@ async fn nobody_hears_of_another_operators_fleet(shore: Shore) {
     kogge.put(1, &passage(DAY, 3)).await.good();
     let (_, first) = source.next().await.unwrap();
     assert!(first.contains(&kogge.id), "{first}");
+    shore.finish().await;
+}
+
+async fn a_revoked_token_and_an_ended_session_hear_no_more(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let grace = ada.viewer(&shore).await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let token = json!({ "name": "ERP", "scope": "read" });
+    let made = ada.post("/tokens", &token).await.good();
+    let url = format!("{}/api/v1/events", shore.url);
+    let request = shore.http.get(url);
+    let mut by_token = Source::of(request.bearer_auth(made["token"].as_str().unwrap())).await;
+    let mut by_session = Source::open(&grace, None).await;
+    let mut kept = Source::open(&ada, None).await;
+    nao.put(1, &passage(DAY, 3)).await.good();
+    for source in [&mut by_token, &mut by_session, &mut kept] {
+        assert!(source.next().await.is_some());
+    }
+    let path = format!("/tokens/{}", made["id"].as_str().unwrap());
+    for ended in [
+        ada.request(Method::DELETE, &path),
+        grace.request(Method::DELETE, "/session"),
+    ] {
+        assert_eq!(Answer::of(ended).await.status, 204);
+    }
+    nao.put(2, &passage("2026-11-16T00:00:00Z", 3)).await.good();
+    assert!(kept.next().await.is_some());
+    assert_eq!(by_token.next().await, None);
+    assert_eq!(by_session.next().await, None);
     shore.finish().await;
 }
 

@@ -16,6 +16,9 @@ on_both!(
     an_operator_keeps_an_admin,
     two_admins_cannot_remove_each_other,
     nobody_sees_another_operators_people,
+    an_admins_token_makes_nobody_and_becomes_nobody,
+    another_code_ends_tokens_and_calendars,
+    a_calendar_ends_with_who_made_it,
 );
 
 const GOOD: &str = "seven gulls over the quay";
@@ -246,5 +249,131 @@ async fn nobody_sees_another_operators_people(shore: Shore) {
         assert_eq!(answer.problem(), "not-found");
     }
     assert_eq!(ada.get("/me").await.status, 200);
+    shore.finish().await;
+}
+
+/// Asks with a token of someone's.
+struct Program {
+    http: reqwest::Client,
+    url: String,
+    token: String,
+}
+
+impl Program {
+    async fn of(shore: &Shore, person: &Person) -> Program {
+        let new = json!({ "name": "ERP", "scope": "write" });
+        let made = person.post("/tokens", &new).await.good();
+        Program {
+            http: shore.http.clone(),
+            url: format!("{}/api/v1", shore.url),
+            token: made["token"].as_str().unwrap().to_owned(),
+        }
+    }
+
+    async fn ask(&self, method: Method, path: &str, body: &Value) -> Answer {
+        let request = self.http.request(method, format!("{}{path}", self.url));
+        Answer::of(request.bearer_auth(&self.token).json(body)).await
+    }
+}
+
+async fn an_admins_token_makes_nobody_and_becomes_nobody(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let viewer = ada.viewer(&shore).await;
+    let other = viewer.get("/me").await.good()["user_id"].clone();
+    let other = other.as_str().unwrap();
+    let own = ada.get("/me").await.good()["user_id"].clone();
+    let program = Program::of(&shore, &ada).await;
+    let new = json!({ "email": "eve@example.com", "name": "Eve", "role": "admin" });
+    let tried = [
+        (Method::POST, "/users".to_owned(), new),
+        (
+            Method::POST,
+            format!("/users/{other}/invitation"),
+            json!({}),
+        ),
+        (
+            Method::POST,
+            format!("/users/{}/invitation", own.as_str().unwrap()),
+            json!({}),
+        ),
+        (
+            Method::PATCH,
+            format!("/users/{other}"),
+            json!({ "role": "admin" }),
+        ),
+        (Method::DELETE, format!("/users/{other}"), json!({})),
+        (
+            Method::DELETE,
+            format!("/users/{other}/second-factor"),
+            json!({}),
+        ),
+        (
+            Method::PUT,
+            "/sign-in-rules".to_owned(),
+            json!({ "second_factor_required": false }),
+        ),
+    ];
+    for (method, path, body) in tried {
+        let refused = program.ask(method, &path, &body).await;
+        assert_eq!(refused.problem(), "forbidden", "{path}");
+    }
+    // What a program is for, it may.
+    assert_eq!(
+        program.ask(Method::GET, "/users", &json!({})).await.status,
+        200
+    );
+    let listed = ada.get("/users").await.good();
+    assert_eq!(listed["items"].as_array().unwrap().len(), 2);
+    shore.finish().await;
+}
+
+async fn calendar(shore: &Shore, person: &Person) -> String {
+    let made = person
+        .post("/calendar-feeds", &json!({ "name": "Fleet" }))
+        .await
+        .good();
+    let url = made["url"].as_str().unwrap();
+    url.replace("https://binnacle.example", &shore.url)
+}
+
+async fn another_code_ends_tokens_and_calendars(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let grace = ada.viewer(&shore).await;
+    let id = grace.get("/me").await.good()["user_id"].clone();
+    change(&ada, &id, json!({ "role": "admin" })).await.good();
+    let program = Program::of(&shore, &grace).await;
+    let address = calendar(&shore, &grace).await;
+    let http = shore.http.clone();
+    let reads = || Answer::of(http.get(&address));
+    assert_eq!(reads().await.status, 200);
+    let path = format!("/users/{}/invitation", id.as_str().unwrap());
+    let code = ada.post(&path, &json!({})).await.good()["code"].clone();
+    // Until it is used nothing is otherwise.
+    assert_eq!(
+        program.ask(Method::GET, "/me", &json!({})).await.status,
+        200
+    );
+    accept(&shore, code.as_str().unwrap(), GOOD).await.good();
+    let by_token = program.ask(Method::GET, "/me", &json!({})).await;
+    assert_eq!(by_token.problem(), "unauthenticated");
+    assert_eq!(reads().await.problem(), "unauthenticated");
+    shore.finish().await;
+}
+
+async fn a_calendar_ends_with_who_made_it(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let grace = ada.viewer(&shore).await;
+    let id = grace.get("/me").await.good()["user_id"].clone();
+    change(&ada, &id, json!({ "role": "admin" })).await.good();
+    let (hers, adas) = (calendar(&shore, &grace).await, calendar(&shore, &ada).await);
+    let http = shore.http.clone();
+    let reads = |address: &str| Answer::of(http.get(address));
+    change(&ada, &id, json!({ "disabled": true })).await.good();
+    assert_eq!(reads(&hers).await.problem(), "unauthenticated");
+    change(&ada, &id, json!({ "disabled": false })).await.good();
+    assert_eq!(reads(&hers).await.status, 200);
+    assert_eq!(remove(&ada, &id).await.status, 204);
+    assert_eq!(reads(&hers).await.problem(), "unauthenticated");
+    assert_eq!(reads(&adas).await.status, 200);
     shore.finish().await;
 }

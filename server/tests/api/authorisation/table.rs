@@ -15,6 +15,8 @@ const PARTYS_ONESELF: &str = "++3++3133";
 const OWN_BY_ID: &str = "+43+43143";
 /// Someone at a screen: no token.
 const IN_PERSON: &str = "++33+31+3";
+/// An operator's admin at a screen.
+const ADMIN_IN_PERSON: &str = "+33333133";
 const FLEET_READS: &str = "++++33133";
 const FLEET_WRITES: &str = "+33+33133";
 /// What is for an operator's admins to see.
@@ -122,7 +124,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /sessions", ANYONE),
     ("DELETE /sessions/{id}", OWN_BY_ID),
     ("GET /sign-in-rules", ADMIN_READS),
-    ("PUT /sign-in-rules", FLEET_WRITES),
+    ("PUT /sign-in-rules", ADMIN_IN_PERSON),
     ("POST /streams", AGENT),
     ("PUT /streams/{stream}/batches/{seq}", AGENT),
     ("GET /streams/{stream}/downlink", AGENT),
@@ -130,11 +132,11 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /tokens", IN_PERSON),
     ("DELETE /tokens/{id}", OWN_BY_ID),
     ("GET /users", ADMIN_READS),
-    ("POST /users", FLEET_WRITES),
-    ("DELETE /users/{id}", FLEET_WRITES),
-    ("PATCH /users/{id}", FLEET_WRITES),
-    ("POST /users/{id}/invitation", FLEET_WRITES),
-    ("DELETE /users/{id}/second-factor", FLEET_WRITES),
+    ("POST /users", ADMIN_IN_PERSON),
+    ("DELETE /users/{id}", ADMIN_IN_PERSON),
+    ("PATCH /users/{id}", ADMIN_IN_PERSON),
+    ("POST /users/{id}/invitation", ADMIN_IN_PERSON),
+    ("DELETE /users/{id}/second-factor", ADMIN_IN_PERSON),
     ("GET /vessels", FLEET_READS),
     ("POST /vessels", FLEET_WRITES),
     ("GET /vessels/{id}", FLEET_READS),
