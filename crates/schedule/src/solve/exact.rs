@@ -4,6 +4,7 @@
 //! one given; it is called optimal only where the solver finished its proof on every
 //! part. Work is limited in nodes, not in seconds: the same problem, the same answer.
 
+use super::LARGE;
 use super::problem::{Assignment, Problem};
 use microlp::{
     ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
@@ -19,7 +20,7 @@ pub(super) struct Finished {
 
 /// The cheapest assignment with the choices that are `open`, part by part
 /// of those that share no need and no firm's day. A part of many choices may take
-/// fewer nodes: `effort` is nodes times choices.
+/// fewer nodes, and one that is too large none: `effort` is nodes times choices.
 pub(super) fn finish(
     problem: &Problem,
     open: &[bool],
@@ -34,6 +35,10 @@ pub(super) fn finish(
             .iter()
             .all(|index| assignment[problem.choices[*index].need] == Some(*index))
         {
+            continue;
+        }
+        if part.len() > LARGE {
+            optimal = false;
             continue;
         }
         let nodes = (effort / part.len().max(1)).max(1) as u64;

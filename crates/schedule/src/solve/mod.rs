@@ -1,9 +1,10 @@
 //! The best assignment there is, or a good one and how far from the best it can be.
 //!
-//! Search gives an assignment, the linear relaxation's prices give a bound; a choice
-//! whose reduced cost is beyond the gap between them is in no better assignment. What
-//! is left falls into small parts, which branch and bound finishes; where one is too
-//! large for that, neighbourhoods of it are, each in turn, and the gap is stated.
+//! Search gives an assignment, prices give a bound: the linear relaxation's, or for a
+//! problem that is too large for it those of a subgradient. A choice whose reduced cost
+//! is beyond the gap between them is in no better assignment. What is left falls into
+//! small parts, which branch and bound finishes; where one is too large for that,
+//! neighbourhoods of it are, each in turn, and the gap is stated.
 //!
 //! What always holds: the answer is feasible, the bound is below every assignment's
 //! cost, and both are the same for the same problem.
@@ -11,6 +12,7 @@
 mod bound;
 mod exact;
 mod near;
+mod prices;
 mod problem;
 mod search;
 
@@ -24,6 +26,8 @@ const EFFORT: usize = 300_000;
 const EFFORT_NEAR: usize = 60_000;
 /// Needs of a neighbourhood.
 const NEIGHBOURS: usize = 60;
+/// With more choices than these the linear relaxation alone takes minutes.
+const LARGE: usize = 20_000;
 /// Rounds over all neighbourhoods, at most.
 const ROUNDS: usize = 3;
 /// No further round where the gap is this part of the cost, or less: half a per cent.
@@ -45,7 +49,12 @@ pub fn solve(problem: &Problem) -> Solved {
     let order = problem.by_need();
     let begin = vec![None; problem.unmet.len()];
     let mut found = search::improve(problem, begin, &order);
-    let bound = bound::bound(problem);
+    let large = problem.choices.len() > LARGE;
+    let bound = if large {
+        prices::bound(problem, cost_of(problem, &found))
+    } else {
+        bound::bound(problem)
+    };
     for round in 0..=ROUNDS {
         let cost = cost_of(problem, &found);
         if bound.cost >= cost {
@@ -54,6 +63,9 @@ pub fn solve(problem: &Problem) -> Solved {
                 cost,
                 bound: cost,
             };
+        }
+        if large && is_small(cost - bound.cost, cost) {
+            break;
         }
         let open = open(problem, &bound, &found, cost);
         let finished = exact::finish(problem, &open, found, EFFORT);
@@ -67,7 +79,7 @@ pub fn solve(problem: &Problem) -> Solved {
             };
         }
         let cost = cost_of(problem, &found);
-        if round == ROUNDS || (round > 0 && (cost - bound.cost) * SMALL_GAP <= cost) {
+        if round == ROUNDS || (round > 0 && is_small(cost - bound.cost, cost)) {
             break;
         }
         found = near::improve(problem, &open, found);
@@ -78,6 +90,10 @@ pub fn solve(problem: &Problem) -> Solved {
         cost,
         bound: bound.cost,
     }
+}
+
+fn is_small(gap: i64, cost: i64) -> bool {
+    gap * SMALL_GAP <= cost
 }
 
 /// The choices that a better assignment may have, and those of this one.
