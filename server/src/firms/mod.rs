@@ -4,9 +4,11 @@
 //! and a platform admin, who brings them together, sees all.
 
 pub mod keys;
+mod room;
 mod store;
 mod terms;
 
+pub use room::{Booking, Told, Visit, bookings, must_have_room, port_meant, teams_taken};
 pub use store::{create, engage, exists, name_for};
 pub use terms::{Terms, of_operator};
 

@@ -127,6 +127,19 @@ pub(super) async fn with_terms(
     )
 }
 
+/// The terms on which a firm works, for whomever it does.
+pub(super) async fn terms_of(tx: &mut Tx, firm: FirmId) -> Result<Vec<(OperatorId, String)>> {
+    rows!(
+        in tx,
+        (OperatorId, String),
+        "SELECT t.operator_id, t.terms FROM firm_terms t
+         JOIN operator_firms w ON w.firm_id = t.firm_id AND w.operator_id = t.operator_id
+         WHERE t.firm_id = $1
+         ORDER BY t.operator_id",
+        firm
+    )
+}
+
 /// The firms that someone sees: all, those an operator works with, or a firm itself.
 pub(super) async fn list(
     db: &Db,

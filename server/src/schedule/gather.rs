@@ -16,7 +16,7 @@ use crate::port_calls::{self, Earlier, Row, heading};
 use crate::time::Time;
 use crate::work_orders::State;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_schedule::input::{self, Declined, Firm, FormerJob, Input, JobState, Vessel};
+use binnacle_schedule::input::{self, Declined, Firm, FormerJob, Input, JobState, Taken, Vessel};
 use binnacle_schedule::time::Instant;
 use chrono::NaiveDate;
 use sha2::{Digest, Sha256};
@@ -77,7 +77,7 @@ pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> 
     let mut names = Names::of(&facts);
 
     let ahead = port_calls::ahead(&app.db, operator, now).await?;
-    let (planned_with, left_out) = firms_of(app, operator, &mut names).await?;
+    let (mut planned_with, left_out) = firms_of(app, operator, &mut names).await?;
     let orders = orders::under_way(&app.db, operator).await?;
     let beside = names.take_orders(&orders, &ahead, &planned_with);
     let busy: BTreeSet<CompassId> = beside.iter().map(|(order, _)| order.compass_id).collect();
@@ -126,6 +126,7 @@ pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> 
             names.pinned.insert(pin.compass_id);
         }
     }
+    book(app, operator, as_of, &all, &names, &mut planned_with).await?;
     let has_firms = !planned_with.is_empty();
     let mut input = Input {
         now: Instant(as_of.0),
@@ -227,6 +228,36 @@ async fn firms_of(
         }
     }
     Ok((planned_with, left_out))
+}
+
+/// Takes out the teams that orders have which are no jobs of the plan: other operators', and
+/// this one's beside it.
+async fn book(
+    app: &App,
+    operator: OperatorId,
+    as_of: Time,
+    former: &Former,
+    names: &Names,
+    firms: &mut [Firm],
+) -> Result<()> {
+    let from = Time(as_of.0.plus_seconds(-86_400.0));
+    let planned: BTreeSet<OrderId> = names
+        .agreed
+        .iter()
+        .filter(|(compass, _)| former.taken.contains(compass))
+        .map(|(_, agreed)| agreed.order_id)
+        .collect();
+    for firm in firms {
+        let id = FirmId(Uuid::parse_str(&firm.id).map_err(anyhow::Error::from)?);
+        let all = firms::bookings(&app.db, id, from).await?;
+        let elsewhere = all.iter().filter(|one| {
+            let counts = one.is_taken || one.operator_id == operator;
+            counts && !planned.contains(&one.order_id)
+        });
+        let days = firms::teams_taken(elsewhere, firm.jobs_a_team_day).into_iter();
+        firm.taken = days.map(|(day, teams)| Taken { day, teams }).collect();
+    }
+    Ok(())
 }
 
 /// Jobs of the plan before, and what has become of them since: each compass in one.
@@ -356,7 +387,7 @@ impl Names {
             let Some(call_id) = order.call(ahead) else {
                 beside.push((
                     order,
-                    "no port call is known at its order's time".to_owned(),
+                    "no port call is known at its order's port and time".to_owned(),
                 ));
                 continue;
             };

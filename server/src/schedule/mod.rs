@@ -19,7 +19,7 @@ mod solve;
 mod store;
 mod worker;
 
-pub use orders::{link, linked_port, other_ships};
+pub use orders::{link, linked_port};
 pub use plan::Plan;
 pub use settings::terms;
 pub use store::ask;

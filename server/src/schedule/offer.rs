@@ -1,8 +1,7 @@
 //! `/schedule/offer`: a planned job becomes work orders that are offered to its firm.
 //!
-//! What always holds: a compass has one order under way at a time, and a firm is offered
-//! no more ships on a day than it has teams for, by its terms; whoever offers it more at
-//! the same time waits and is refused.
+//! What always holds: a compass has one order under way at a time, a firm is offered no more
+//! ships on a day than it has teams for, and a job is offered whole or not at all.
 
 use super::orders;
 use super::plan::{Job, Plan};
@@ -10,16 +9,12 @@ use super::store;
 use crate::access::Writer;
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
-use crate::firms;
 use crate::http::{Json, Valid, optional_text};
 use crate::ids::{CompassId, FirmId, OrderId};
-use crate::time::Time;
 use crate::work_orders::{self, NewOffer, NewOrder};
 use axum::extract::State;
 use axum::http::StatusCode;
 use binnacle_schedule::input::JobState;
-use binnacle_schedule::ports::{self, PortCode};
-use binnacle_schedule::time::Instant;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -90,7 +85,11 @@ async fn offer_job(
     let text = optional_text("text", new.text.as_deref())?;
     let plan = store::current(&app.db, writer.operator).await?;
     let job = job_of(plan.as_ref(), &new)?;
-    let mut orders = Vec::new();
+    let mut tx = app.db.begin().await?;
+    for compass in &job.compasses {
+        work_orders::lock_compass(&mut tx, job.vessel_id, compass.compass_id).await?;
+    }
+    let (mut orders, mut told) = (Vec::new(), Vec::new());
     for compass in &job.compasses {
         let offer = NewOffer {
             firms: std::iter::once(job.firm_id)
@@ -100,12 +99,21 @@ async fn offer_job(
             at_once: false,
             text: text.clone(),
         };
-        let order_id = write(&app, writer, job, compass.compass_id, offer).await?;
+        let id = OrderId::new();
+        orders::at_call(&mut tx, job.vessel_id, id, job.call_id).await?;
+        let order = order_of(job, compass.compass_id, offer);
+        let (goes_on, news) = work_orders::write(&app, tx, writer, id, order).await?;
+        (tx, told) = (goes_on, told.into_iter().chain(news).collect());
         orders.push(OfferedOrder {
-            order_id,
+            order_id: id,
             compass_id: compass.compass_id,
         });
     }
+    tx.commit().await?;
+    for event in told {
+        app.publish(event);
+    }
+    app.work.notify_one();
     Ok((StatusCode::CREATED, Json(Offered { orders })))
 }
 
@@ -128,38 +136,10 @@ fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job>
     Ok(job)
 }
 
-/// Writes one order, if the firm has a team left that day.
-async fn write(
-    app: &App,
-    writer: Writer,
-    job: &Job,
-    compass_id: CompassId,
-    offer: NewOffer,
-) -> Result<OrderId> {
-    let firms = firms::of_operator(&app.db, writer.operator).await?;
-    let terms = firms.into_iter().find(|(firm, _, _)| *firm == job.firm_id);
-    let Some((_, firm_name, Some(terms))) = terms else {
-        return Err(Error::NotFound("firm"));
-    };
-    let zone_h = PortCode::parse(&job.port)
-        .ok()
-        .and_then(ports::find)
-        .map_or(0, ports::Port::zone_h);
-    let begins = Instant::at(job.day, 0.0, zone_h);
-    let day = (Time(begins.0), Time(begins.plus_hours(24.0).0));
-    let id = OrderId::new();
-    let mut tx = app.db.begin().await?;
-    let (operator, vessel) = (writer.operator, job.vessel_id);
-    let others = orders::other_ships(&mut tx, operator, job.firm_id, vessel, day).await?;
-    if others >= i64::from(terms.teams) * i64::from(terms.jobs_a_team_day) {
-        return Err(Error::WrongState(format!(
-            "{firm_name} has no team left on {}: make the schedule anew",
-            job.day
-        )));
-    }
-    orders::at_call(&mut tx, vessel, id, job.call_id).await?;
-    let order = NewOrder {
-        vessel_id: vessel,
+/// The order of one compass of a job.
+fn order_of(job: &Job, compass_id: CompassId, offer: NewOffer) -> NewOrder {
+    NewOrder {
+        vessel_id: job.vessel_id,
         compass_id,
         port: format!("{} ({})", job.port_name, job.port),
         berth: job.berth.clone(),
@@ -169,7 +149,5 @@ async fn write(
         firm: None,
         offer: Some(offer),
         limits: None,
-    };
-    work_orders::write(app, tx, writer, id, order).await?;
-    Ok(id)
+    }
 }

@@ -6,6 +6,7 @@
 
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::Result;
+use crate::firms::port_meant;
 use crate::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::port_calls::Row as Call;
 use crate::time::Time;
@@ -22,6 +23,8 @@ pub(super) struct Order {
     pub(super) id: OrderId,
     pub(super) compass_id: CompassId,
     pub(super) state: State,
+    /// In the operator's words, or as the schedule has it.
+    port: String,
     pub(super) planned_at: Time,
     /// Who is asked, or has accepted.
     pub(super) firm_id: Option<FirmId>,
@@ -41,7 +44,7 @@ pub(super) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order
     let mut found = rows!(
         db,
         Order,
-        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.planned_at, f.firm_id, l.call_id
+        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at, f.firm_id, l.call_id
          FROM work_orders o
          JOIN vessels v ON v.id = o.vessel_id
          LEFT JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
@@ -119,41 +122,6 @@ pub async fn linked_port(tx: &mut Tx, vessel: VesselId, order: OrderId) -> Resul
     Ok(found.map(|(port,)| port))
 }
 
-/// How many other ships a firm is to see on some day by an operator's orders. Whoever
-/// offers it more meanwhile waits.
-pub async fn other_ships(
-    tx: &mut Tx,
-    operator: OperatorId,
-    firm: FirmId,
-    vessel: VesselId,
-    (from, to): (Time, Time),
-) -> Result<i64> {
-    execute!(
-        &mut *tx,
-        "UPDATE firm_terms SET terms = terms WHERE operator_id = $1 AND firm_id = $2",
-        operator,
-        firm
-    )?;
-    let found = row!(
-        in tx,
-        (i64,),
-        "SELECT COUNT(DISTINCT o.vessel_id)
-         FROM work_orders o
-         JOIN vessels v ON v.id = o.vessel_id
-         JOIN work_order_offers f ON f.vessel_id = o.vessel_id AND f.order_id = o.id
-         WHERE v.operator_id = $1 AND f.firm_id = $2 AND o.vessel_id <> $3
-           AND f.state IN ('open', 'proposed', 'accepted')
-           AND o.state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')
-           AND o.planned_at >= $4 AND o.planned_at < $5",
-        operator,
-        firm,
-        vessel,
-        from,
-        to
-    )?;
-    Ok(found.map_or(0, |(ships,)| ships))
-}
-
 impl Order {
     /// How far it is a job of the plan; none where it is beside the plan.
     pub(super) fn job_state(&self) -> Option<JobState> {
@@ -164,11 +132,14 @@ impl Order {
         }
     }
 
-    /// The call that it is to be done at: as was noted, or the one that its time lies in.
+    /// The call that it is to be done at: as was noted, or the one at its port that its time
+    /// lies in; at any port where its words mean none.
     pub(super) fn call(&self, calls: &[Call]) -> Option<CallId> {
         let hers = calls.iter().filter(|call| call.vessel_id == self.vessel_id);
+        let meant = port_meant(&self.port).map(|port| port.code.to_string());
+        let there = hers.filter(|call| meant.as_ref().is_none_or(|code| *code == call.port));
         let mut then =
-            hers.filter(|call| call.eta <= self.planned_at && self.planned_at <= call.etd);
+            there.filter(|call| call.eta <= self.planned_at && self.planned_at <= call.etd);
         self.call_id.or_else(|| then.next().map(|call| call.id))
     }
 

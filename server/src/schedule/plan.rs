@@ -157,6 +157,10 @@ pub struct Unscheduled {
     pub urgency: Urgency,
     /// Why they are due.
     pub reason: String,
+    /// Orders under way that firms are asked for or hold though nothing is planned: to be
+    /// cancelled, or moved by agreement.
+    #[serde(default)]
+    pub orders: Vec<OrderId>,
     /// Whether it is in the plan, after the due date.
     pub planned_late: bool,
     /// Why it could not be.

@@ -108,28 +108,34 @@ fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, CompassId), AlertW
     let mut wanted = BTreeMap::new();
     for change in &plan.changes {
         let stands = change.what == ChangeKind::Kept && change.why == STANDS;
-        for compass in change.compasses.iter().filter(|_| !stands) {
-            let agreed = names.agreed.get(&compass.compass_id);
-            let Some(agreed) = agreed.filter(|agreed| agreed.state == JobState::Confirmed) else {
-                continue;
-            };
-            let alert = AlertWanted {
-                cause: Cause::AgreedJobAtRisk,
-                severity: Severity::Warning,
-                since: plan.solved_at,
-                dated: Dated::default(),
-                summary: format!(
-                    "The adjustment agreed with {} for {} does not fit any more: {}.",
-                    names.firm(agreed.firm_id),
-                    agreed.day,
-                    change.why
-                ),
-                advice: "Agree on another time with the firm, or cancel its order and offer \
-                         the job as the schedule has it now.",
-                evidence: Evidence(vec![format!("Work order {}.", agreed.order_id)]),
-            };
-            wanted.insert((agreed.vessel_id, compass.compass_id), alert);
-        }
+        let held: Vec<(CompassId, &Agreed)> = change
+            .compasses
+            .iter()
+            .filter_map(|one| Some((one.compass_id, names.agreed.get(&one.compass_id)?)))
+            .filter(|(_, agreed)| agreed.state == JobState::Confirmed)
+            .collect();
+        // A job is told of once, however many compasses it is for.
+        let Some((compass, agreed)) = held.first().filter(|_| !stands) else {
+            continue;
+        };
+        let orders = held.iter();
+        let orders = orders.map(|(_, agreed)| format!("Work order {}.", agreed.order_id));
+        let alert = AlertWanted {
+            cause: Cause::AgreedJobAtRisk,
+            severity: Severity::Warning,
+            since: plan.solved_at,
+            dated: Dated::default(),
+            summary: format!(
+                "The adjustment agreed with {} for {} does not fit any more: {}.",
+                names.firm(agreed.firm_id),
+                agreed.day,
+                change.why
+            ),
+            advice: "Agree on another time with the firm, or cancel its order and offer the \
+                     job as the schedule has it now.",
+            evidence: Evidence(orders.collect()),
+        };
+        wanted.insert((agreed.vessel_id, *compass), alert);
     }
     wanted
 }
@@ -154,6 +160,7 @@ fn named(schedule: Schedule, gathered: &Gathered, now: Time, took_s: f64) -> Res
         let compasses = compasses(&one.needs, names)?;
         let (vessel_id, vessel_name) = vessel(&compasses, names);
         Ok(Unscheduled {
+            orders: orders_of(&compasses, names, |_| !one.planned_late),
             vessel_id,
             vessel_name,
             compasses,

@@ -141,16 +141,24 @@ impl<'a> Change<'a> {
     }
 
     /// Makes it durable, and tells both sides.
-    pub(super) async fn commit(mut self) -> Result<()> {
+    pub(super) async fn commit(self) -> Result<()> {
+        let app = self.app;
+        let (tx, told) = self.settle().await?;
+        tx.commit().await?;
+        for event in told {
+            app.publish(event);
+        }
+        app.work.notify_one();
+        Ok(())
+    }
+
+    /// Ends it in a transaction that goes on; the events are to be published, and the work
+    /// that follows to be woken, once that is committed.
+    pub(super) async fn settle(mut self) -> Result<(Tx, Vec<Event>)> {
         let news = news::tell(&mut self.tx, &self.whole, &self.before, self.now);
         let news = news.await?;
         self.told.extend(news);
-        self.tx.commit().await?;
-        for event in self.told {
-            self.app.publish(event);
-        }
-        self.app.work.notify_one();
-        Ok(())
+        Ok((self.tx, self.told))
     }
 }
 

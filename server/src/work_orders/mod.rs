@@ -32,7 +32,8 @@ mod offering;
 mod offers;
 mod order;
 pub mod photos;
-mod plan;
+mod place;
+
 mod reading;
 mod record;
 mod refusal;
@@ -51,6 +52,7 @@ pub use moved::{Alongside, Moving, calls_move};
 pub use offering::NewOffer;
 pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};
+pub use store::lock_compass;
 pub use verification::{after_analysis, alert};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
@@ -58,6 +60,7 @@ use crate::app::App;
 use crate::audit;
 use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
+use crate::events::Event;
 use crate::http::{Id, Json, Page, Params, Valid, text};
 use crate::idempotency::{self, Key};
 use crate::ids::{OperatorId, OrderId};
@@ -138,8 +141,8 @@ async fn create_work_order(
     Valid(new): Valid<NewOrder>,
 ) -> Result<(StatusCode, Json<Order>)> {
     let hash = idempotency::request_hash("work order", &new)?;
-    let new = new.checked()?;
     let now = app.clock.now().into();
+    let new = new.checked(now)?;
     let wanted = OrderId::new();
     let operator = writer.operator;
     let mut tx = app.db.begin().await?;
@@ -192,6 +195,8 @@ async fn open(
         compass_name,
     };
     change.append(Content::Opened(Box::new(opened))).await?;
+    let at = change.whole.summary.planned_at;
+    place::must_be_there(&mut change, at, "port").await?;
     if let Some(offer) = offer {
         let offered = offer.checked(&mut change.tx, operator).await?;
         offering::offer(&mut change, offered).await?;
@@ -199,8 +204,8 @@ async fn open(
     Ok(change)
 }
 
-/// Writes an order under an id and offers it, as the schedule has it; commits what the
-/// schedule has begun.
+/// Writes an order under an id and offers it, as the schedule has it, in a transaction that
+/// goes on: what there is to be told when it is committed comes back with it.
 ///
 /// # Errors
 /// [`Error::WrongState`] when another order of the compass is under way, and what is wrong
@@ -211,14 +216,15 @@ pub async fn write(
     writer: Writer,
     id: OrderId,
     new: NewOrder,
-) -> Result<()> {
+) -> Result<(Tx, Vec<Event>)> {
     let author = Author {
         id: Some(writer.user.0),
         name: session::name_of(&mut tx, writer.user).await?,
         firm_id: None,
     };
-    let change = open(app, tx, writer.operator, id, new.checked()?, author).await?;
-    change.commit().await
+    let new = new.checked(app.clock.now().into())?;
+    let change = open(app, tx, writer.operator, id, new, author).await?;
+    change.settle().await
 }
 
 /// See a work order

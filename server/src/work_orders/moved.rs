@@ -145,13 +145,6 @@ pub(super) fn zone_h(port: &str) -> i32 {
     port.and_then(ports::find).map_or(0, ports::Port::zone_h)
 }
 
-/// The day that an instant lies in, in ship's time of a port: from and to.
-pub(super) fn day_of(at: Time, port: &str) -> (Time, Time) {
-    let zone_h = zone_h(port);
-    let begins = Instant::at(Instant(at.0).date(zone_h), 0.0, zone_h);
-    (Time(begins.0), Time(begins.plus_hours(DAY_H).0))
-}
-
 fn offset(zone_h: i32) -> String {
     format!(
         "{}{:02}:00",

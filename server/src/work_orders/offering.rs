@@ -3,11 +3,12 @@
 use super::change::Change;
 use super::entry::Content;
 use super::offers::{Asked, Between, OfferState, Offered, Terms};
-use super::order::State;
+use super::order::{State, must_be_near};
+use super::place;
 use super::retime::at_its_call;
 use crate::db::Tx;
 use crate::error::{Error, Result};
-use crate::firms;
+use crate::firms::{self, Told, Visit};
 use crate::http::{optional_text, text};
 use crate::ids::{FirmId, OperatorId};
 use crate::time::Time;
@@ -18,6 +19,7 @@ use utoipa::ToSchema;
 const MOST_FIRMS: usize = 20;
 pub(super) const LONGEST_H: u32 = 720;
 const HOUR_S: f64 = 3600.0;
+const MOST_EARLY_S: f64 = 86_400.0;
 const MOST_EUR: f64 = 1e6;
 /// Longest text of a message, in characters.
 pub(super) const MAX_MESSAGE: usize = 2000;
@@ -164,6 +166,7 @@ impl Proposal {
             let detail = format!("{} is over", self.terms.planned_at.0);
             return invalid("planned_at", detail);
         }
+        must_be_near(self.terms.planned_at, now)?;
         if let Some(fee) = self.terms.fee_eur
             && !(0.0..=MOST_EUR).contains(&fee)
         {
@@ -181,8 +184,14 @@ impl Proposal {
 
 impl Boarded {
     /// The same at a moment that can be.
-    pub(super) fn checked(self, now: Time) -> Result<Boarded> {
+    pub(super) fn checked(self, now: Time, planned_at: Time) -> Result<Boarded> {
         let at = self.at.unwrap_or(now);
+        if planned_at.0.seconds_since(at.0) > MOST_EARLY_S {
+            return Err(Error::WrongState(format!(
+                "the order is for {}: nobody goes on board more than a day before it",
+                planned_at.to_the_minute()
+            )));
+        }
         if at > now {
             return Err(Error::Invalid {
                 field: "at",
@@ -218,15 +227,48 @@ pub(super) fn due(change: &Change<'_>, hours: u32) -> Time {
 }
 
 /// Offers an order, and asks whom it is the turn of.
+///
+/// # Errors
+/// [`Error::WrongState`] when one of the firms has no team left that day.
 pub(super) async fn offer(change: &mut Change<'_>, offered: Offered) -> Result<()> {
+    // Everybody locks them in one order.
+    let mut firms: Vec<&Asked> = offered.firms.iter().collect();
+    firms.sort_by_key(|firm| firm.firm_id.0);
+    let at = change.whole.summary.planned_at;
+    for firm in firms {
+        must_have_room(change, firm, at, Told::Operator).await?;
+    }
     change.append(Content::Offered(offered)).await?;
     ask_next(change).await
 }
 
+/// Refuses a time at which a firm has no team left.
+pub(super) async fn must_have_room(
+    change: &mut Change<'_>,
+    firm: &Asked,
+    at: Time,
+    told: Told,
+) -> Result<()> {
+    let summary = &change.whole.summary;
+    let visit = Visit {
+        operator: summary.operator_id,
+        vessel: summary.vessel_id,
+        port: &summary.port,
+        at,
+    };
+    let name = (firm.firm_id, firm.firm_name.as_str());
+    firms::must_have_room(&mut change.tx, name, &visit, told).await
+}
+
 /// Asks whom it is the turn of, where nobody else is waited for.
 pub(super) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
+    let at = change.whole.summary.planned_at;
+    if at <= change.now {
+        // Nobody can be asked for what was to be done already.
+        return Ok(());
+    }
     let offers = change.whole.standing().offers;
-    let answer_by = due(change, offers.answer_within_hours);
+    let answer_by = due(change, offers.answer_within_hours).min(at);
     for next in offers.next() {
         let asked = Between {
             answer_by: Some(answer_by),
@@ -268,6 +310,8 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
     let asked = offer.firm();
     match says {
         FirmSays::Yes(answer) => {
+            let at = change.whole.summary.planned_at;
+            must_have_room(change, &asked, at, Told::Firm).await?;
             change
                 .append(Content::Accepted(answer.between(asked)))
                 .await
@@ -279,8 +323,11 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
             ask_next(change).await
         }
         FirmSays::Instead(proposal) => {
+            let at = proposal.terms.planned_at;
+            must_have_room(change, &asked, at, Told::Firm).await?;
+            place::must_be_there(change, at, "planned_at").await?;
             let proposed = Between {
-                answer_by: Some(due(change, offers.answer_within_hours)),
+                answer_by: Some(due(change, offers.answer_within_hours).min(at)),
                 terms: Some(proposal.terms),
                 text: proposal.text,
                 ..Between::with(asked)
@@ -323,7 +370,9 @@ pub(super) async fn operator_says(
         ..Between::with(offer.firm())
     };
     if yes {
+        let firm = between.firm.clone();
         if let Some(terms) = &between.terms {
+            must_have_room(change, &firm, terms.planned_at, Told::Operator).await?;
             at_its_call(change, terms.planned_at).await?;
         }
         return change.append(Content::ProposalAccepted(between)).await;

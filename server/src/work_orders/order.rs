@@ -25,6 +25,9 @@ use utoipa::{IntoParams, ToSchema};
 /// What everything that comes from an order says of itself until the sea has spoken.
 pub(super) const NOT_A_CERTIFICATE: &str = "predicted, not a certificate";
 
+/// No order is for later.
+const MOST_DAYS_AHEAD: f64 = 730.0;
+
 /// How far an order has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
@@ -348,9 +351,29 @@ impl Order {
     }
 }
 
+/// Refuses a time that nobody plans for.
+pub(super) fn must_be_near(planned_at: Time, now: Time) -> Result<()> {
+    if planned_at.0.seconds_since(now.0) <= MOST_DAYS_AHEAD * 86_400.0 {
+        return Ok(());
+    }
+    Err(Error::Invalid {
+        field: "planned_at",
+        detail: format!("{} is more than {MOST_DAYS_AHEAD} days ahead", planned_at.0),
+    })
+}
+
 impl NewOrder {
     /// The order, its words trimmed.
-    pub fn checked(self) -> Result<NewOrder> {
+    pub fn checked(self, now: Time) -> Result<NewOrder> {
+        let past = |grace_h: f64| now.0.seconds_since(self.planned_at.0) > grace_h * 3600.0;
+        // Who is on the quay already may write the order afterwards; nobody can be asked for it.
+        if past(if self.offer.is_some() { 0.0 } else { 24.0 }) {
+            return Err(Error::Invalid {
+                field: "planned_at",
+                detail: format!("{} is over", self.planned_at.0),
+            });
+        }
+        must_be_near(self.planned_at, now)?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
         if let Some(limits) = &self.limits {
             limits.must_be_sane().map_err(|error| Error::Invalid {

@@ -6,19 +6,19 @@
 
 use super::change::Change;
 use super::entry::Content;
-use super::moved::{CallFit, day_of};
-use super::offering::{Answer, LONGEST_H, Proposal, due, two_days};
-use super::offers::{Between, Offer, Terms};
+use super::moved::CallFit;
+use super::offering::{Answer, LONGEST_H, Proposal, due, must_have_room, two_days};
+use super::offers::{Asked, Between, Offer, Terms};
 use super::order::{Order, State};
 use super::store;
 use super::{request, shown};
 use crate::access::{PartyWriter, Writer};
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
-use crate::firms;
+use crate::firms::Told;
 use crate::http::{Id, Json, Valid, ValidOrNone};
 use crate::idempotency::Key;
-use crate::ids::{FirmId, OperatorId, OrderId};
+use crate::ids::OrderId;
 use crate::port_calls;
 use crate::schedule;
 use crate::tenants::Tenant;
@@ -92,10 +92,9 @@ async fn propose_retime(
     };
     let asked = asked.checked(app.clock.now().into())?;
     whole.must_be(&[State::Accepted], "a firm that has it is asked")?;
-    let jobs = jobs_a_day(&app, writer.operator, whole.summary.firm_id).await?;
     if let Some(mut change) = request.begin(&whole).await? {
         let holder = holder(&change)?;
-        must_be_possible(&mut change, holder.firm_id, &asked.terms, jobs).await?;
+        must_be_possible(&mut change, &holder.firm(), &asked.terms, Told::Operator).await?;
         let between = Between {
             answer_by: Some(due(&change, hours)),
             terms: Some(asked.terms),
@@ -133,14 +132,13 @@ async fn accept_retime(
             "the firm that has the order answers what it is asked".to_owned(),
         ));
     };
-    let jobs = jobs_a_day(&app, summary.operator_id, Some(firm)).await?;
     if let Some(mut change) = request.begin_on(summary.vessel_id).await? {
         let offer = holder(&change)?;
         if offer.firm_id != firm {
             return Err(Error::NotFound("work order"));
         }
         let terms = asked_terms(&change, &offer)?;
-        must_be_possible(&mut change, firm, &terms, jobs).await?;
+        must_be_possible(&mut change, &offer.firm(), &terms, Told::Firm).await?;
         at_its_call(&mut change, terms.planned_at).await?;
         let agreed = Between {
             terms: Some(terms),
@@ -214,14 +212,6 @@ fn asked_terms(change: &Change<'_>, offer: &Offer) -> Result<Terms> {
     Ok(terms)
 }
 
-/// How many ships a day a firm sees for an operator; none where nobody has said.
-async fn jobs_a_day(app: &App, operator: OperatorId, firm: Option<FirmId>) -> Result<Option<i64>> {
-    let all = firms::of_operator(&app.db, operator).await?;
-    let terms = all.into_iter().find(|(id, _, _)| Some(*id) == firm);
-    let terms = terms.and_then(|(_, _, terms)| terms);
-    Ok(terms.map(|terms| i64::from(terms.teams) * i64::from(terms.jobs_a_team_day)))
-}
-
 /// The port that an order is for, where its call is known.
 async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
     if let Some(port) = change.whole.standing().port {
@@ -254,19 +244,15 @@ pub(super) async fn at_its_call(change: &mut Change<'_>, at: Time) -> Result<()>
 /// [`Error::WrongState`], which says what is in the way.
 async fn must_be_possible(
     change: &mut Change<'_>,
-    firm: FirmId,
+    firm: &Asked,
     terms: &Terms,
-    jobs: Option<i64>,
+    told: Told,
 ) -> Result<()> {
     // Without any call nobody knows where she will be: the firm judges for itself.
     let Some(port) = order_port(change).await? else {
-        return Ok(());
+        return must_have_room(change, firm, terms.planned_at, told).await;
     };
-    let at = terms.planned_at;
-    let (vessel, operator) = (
-        change.whole.summary.vessel_id,
-        change.whole.summary.operator_id,
-    );
+    let (at, vessel) = (terms.planned_at, change.whole.summary.vessel_id);
     let call = port_calls::alongside(&mut change.tx, vessel, at).await?;
     let fit = match &call {
         Some(call) => call.alongside()?.fit(&port, at),
@@ -278,16 +264,5 @@ async fn must_be_possible(
             at.to_the_minute()
         )));
     }
-    let Some(jobs) = jobs else {
-        return Ok(());
-    };
-    let day = day_of(at, &port);
-    let others = schedule::other_ships(&mut change.tx, operator, firm, vessel, day).await?;
-    if others >= jobs {
-        return Err(Error::WrongState(format!(
-            "the firm has no team left on the day of {}",
-            at.to_the_minute()
-        )));
-    }
-    Ok(())
+    must_have_room(change, firm, at, told).await
 }

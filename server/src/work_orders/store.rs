@@ -70,19 +70,27 @@ pub(super) fn read(lines: Vec<(String,)>) -> Result<Vec<Entry>> {
     lines.into_iter().map(read).collect()
 }
 
+/// Has whoever orders the same meanwhile wait.
+///
+/// # Errors
+/// When the database fails.
+pub async fn lock_compass(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE compasses SET name = name WHERE vessel_id = $1 AND id = $2",
+        vessel,
+        compass
+    )?;
+    Ok(())
+}
+
 /// Whether a compass has an order that is not done yet.
 pub(super) async fn is_under_way(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
 ) -> Result<bool> {
-    // Whoever orders the same meanwhile waits.
-    execute!(
-        &mut *tx,
-        "UPDATE compasses SET name = name WHERE vessel_id = $1 AND id = $2",
-        vessel,
-        compass
-    )?;
+    lock_compass(tx, vessel, compass).await?;
     let found = row!(
         in tx,
         (i64,),

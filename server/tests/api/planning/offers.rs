@@ -13,6 +13,10 @@ on_both!(
     a_firm_that_said_no_is_not_planned_again,
     no_firm_is_offered_more_ships_than_it_has_teams,
     an_offer_is_of_the_plan_that_was_looked_at,
+    a_job_is_offered_whole_or_not_at_all,
+    a_firm_is_booked_once_by_all_operators_together,
+    an_order_is_for_a_port_and_a_time_that_can_be,
+    an_agreed_job_that_fits_nowhere_names_its_order,
 );
 
 /// A firm with terms, and its adjuster.
@@ -201,5 +205,166 @@ async fn an_offer_is_of_the_plan_that_was_looked_at(shore: Shore) {
     let viewer = ada.viewer(&shore).await;
     let seen = viewer.post("/schedule/offer", &offer_of(&plan, &nao)).await;
     assert_eq!(seen.problem(), "forbidden");
+    shore.finish().await;
+}
+
+fn direct(vessel: &Value, port: &str, planned_at: &str, firm: &str) -> Value {
+    json!({ "vessel_id": vessel["id"], "compass_id": compass_of(vessel), "port": port,
+            "planned_at": planned_at, "offer": { "firms": [firm] } })
+}
+
+async fn orders(person: &Person) -> usize {
+    let list = person.get("/work-orders").await.good();
+    list["items"].as_array().unwrap().len()
+}
+
+async fn a_job_is_offered_whole_or_not_at_all(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let path = format!("/vessels/{}/compasses", nao["id"].as_str().unwrap());
+    let second = json!({ "name": "Steering", "role": "steering" });
+    let second = ada.post(&path, &second).await.good();
+    enter(&ada, &nao, "NLRTM", 14).await;
+    firm(&shore, &ada, "rosa").await;
+    let plan = solve(&ada).await;
+    assert_eq!(plan["jobs"][0]["compasses"].as_array().unwrap().len(), 2);
+    // The job's last compass is ordered meanwhile.
+    let other = &plan["jobs"][0]["compasses"][1]["compass_id"];
+    assert!(*other == second["id"] || *other == compass_of(&nao).as_str());
+    let order = json!({ "vessel_id": nao["id"], "compass_id": other, "port": "NLRTM",
+                        "planned_at": "2026-12-15T10:00:00Z" });
+    ada.post("/work-orders", &order).await.good();
+    let offer = json!({ "version": plan["version"],
+                        "compass_id": plan["jobs"][0]["compasses"][0]["compass_id"] });
+    let refused = ada.post("/schedule/offer", &offer).await;
+    assert_eq!(refused.problem(), "wrong-state");
+    assert_eq!(orders(&ada).await, 1);
+    shore.finish().await;
+}
+
+async fn a_firm_is_booked_once_by_all_operators_together(shore: Shore) {
+    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
+    let (nao, hind) = (
+        due_vessel(&ada, "Nao").await,
+        due_vessel(&eve, "Hind").await,
+    );
+    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let mut tx = shore.app.db.begin().await.unwrap();
+    let firm_id = binnacle_server::ids::FirmId(id.parse().unwrap());
+    let now = binnacle_server::time::Time(shore.app.clock.now());
+    binnacle_server::firms::engage(&mut tx, eve.operator, firm_id, now)
+        .await
+        .unwrap();
+    tx.commit().await.unwrap();
+    // One team; both ask it before it has answered either.
+    let at = "2026-12-15T09:00:00Z";
+    let hers = direct(&nao, "NLRTM", at, &id);
+    let hers = ada.post("/work-orders", &hers).await.good();
+    let theirs = direct(&hind, "BEANR", at, &id);
+    let theirs = eve.post("/work-orders", &theirs).await.good();
+    let yes = |order: &Value| format!("/work-orders/{}/accept", order["id"].as_str().unwrap());
+    let (one, other) = (yes(&hers), yes(&theirs));
+    let body = json!({});
+    let (one, other) = tokio::join!(rosa.post(&one, &body), rosa.post(&other, &body));
+    let mut statuses = [one.status, other.status];
+    statuses.sort_unstable();
+    assert_eq!(statuses, [200, 409], "{one:?} {other:?}");
+    let refused = if one.status == 409 { &one } else { &other };
+    assert!(
+        refused
+            .text
+            .contains("your firm has no team left on 2026-12-15: it goes to"),
+        "{refused:?}"
+    );
+    // Who asks later is told that, and nothing of whom.
+    let (late, ship) = if one.status == 409 {
+        (&ada, "Niña")
+    } else {
+        (&eve, "Golden")
+    };
+    let ship = due_vessel(late, ship).await;
+    let full = late
+        .post("/work-orders", &direct(&ship, "NLRTM", at, &id))
+        .await;
+    assert_eq!(full.problem(), "wrong-state");
+    assert!(
+        full.text.contains("rosa has no team left on 2026-12-15"),
+        "{full:?}"
+    );
+    assert!(
+        !full.text.contains("Hind") && !full.text.contains("Nao"),
+        "{full:?}"
+    );
+    shore.finish().await;
+}
+
+async fn an_order_is_for_a_port_and_a_time_that_can_be(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let ask = async |port: &str, at: &str| {
+        let order = direct(&nao, port, at, &id);
+        ada.post("/work-orders", &order).await
+    };
+    let elsewhere = ask("ESBIO", "2026-12-15T09:00:00Z").await;
+    assert_eq!(elsewhere.status, 422);
+    assert!(
+        elsewhere
+            .text
+            .contains("she is at Rotterdam (NLRTM) then, not at Bilbao (ESBIO)"),
+        "{elsewhere:?}"
+    );
+    for at in [
+        "2020-01-01T00:00:00Z",
+        "9999-01-01T00:00:00Z",
+        "2026-11-20T23:00:00Z",
+    ] {
+        assert_eq!(ask("NLRTM", at).await.status, 422, "{at}");
+    }
+    // Two days to answer would be longer than there is.
+    let order = ask("NLRTM", "2026-11-21T20:00:00Z").await.good();
+    assert_eq!(order["answer_by"], "2026-11-21T20:00:00Z");
+    let path = format!("/work-orders/{}", order["id"].as_str().unwrap());
+    let why = json!({ "text": "not this day" });
+    ada.post(&format!("{path}/cancel"), &why).await.good();
+    let order = ask("NLRTM", "2026-12-15T09:00:00Z").await.good();
+    let path = format!("/work-orders/{}", order["id"].as_str().unwrap());
+    rosa.post(&format!("{path}/accept"), &json!({}))
+        .await
+        .good();
+    let early = rosa.post(&format!("{path}/on-board"), &json!({})).await;
+    assert_eq!(early.problem(), "wrong-state");
+    assert!(
+        early.text.contains("more than a day before it"),
+        "{early:?}"
+    );
+    shore.finish().await;
+}
+
+async fn an_agreed_job_that_fits_nowhere_names_its_order(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let call = enter(&ada, &nao, "NLRTM", 14).await;
+    let (_, rosa) = firm(&shore, &ada, "rosa").await;
+    let plan = solve(&ada).await;
+    let order = offer(&ada, &plan, &nao).await;
+    rosa.post(&format!("{order}/accept"), &json!({}))
+        .await
+        .good();
+    solve(&ada).await;
+    // An hour alongside is not enough for anybody.
+    let one = format!(
+        "{}/{}",
+        port_calls::path(&nao),
+        call["id"].as_str().unwrap()
+    );
+    let late = json!({ "eta": "2026-12-22T09:00:00Z", "etd": "2026-12-22T10:00:00Z" });
+    patch(&ada, &one, &late).await.good();
+    let plan = solve(&ada).await;
+    assert_eq!(plan["jobs"], json!([]));
+    let id = order.rsplit('/').next().unwrap();
+    assert_eq!(plan["unscheduled"][0]["orders"], json!([id]));
+    assert_eq!(alerts(&ada).await.len(), 1);
     shore.finish().await;
 }
