@@ -10,10 +10,13 @@ export interface Field {
   value: string;
 }
 
+/** A figure, one for each urgency, or none said. */
+type Figure = number | Record<string, number> | null;
+
 /** Every figure that the server knows, in its order. */
 export function fieldsOf(settings: ScheduleSettings): Field[] {
   return (['weights', 'terms'] as const).flatMap((part) =>
-    Object.entries((settings[part] ?? {}) as Record<string, unknown>).flatMap(
+    Object.entries((settings[part] ?? {}) as Record<string, Figure>).flatMap(
       ([name, value]): Field[] =>
         typeof value === 'object' && value !== null
           ? Object.entries(value).map(([urgency, figure]) => ({
