@@ -36,6 +36,8 @@ pub(crate) struct Circumstances {
     pub(crate) one_reference: bool,
     /// Whether another step at sea, weeks before or after, went the same way.
     pub(crate) creeps: bool,
+    /// How many lasting changes there were within a day of it, with it.
+    pub(crate) in_a_day: usize,
     /// From the change to the row that told.
     pub(crate) told_after_s: f64,
     /// What people reported at the time.
@@ -90,6 +92,9 @@ const REFERENCE_RATE: f64 = 1.0;
 const STORM_DEG: f64 = 5.0;
 const ANOMALY_DEG: f64 = 6.0;
 const FAULT_DEG: f64 = 10.0;
+
+/// What contradicts what the search decided weighs so much less.
+const AGAINST: f64 = 0.02;
 
 /// The odds that a lead stands for.
 pub(crate) fn odds(nats: f64) -> f64 {
@@ -150,9 +155,22 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
         3.0 * passing * alongside * over_anomaly * (0.9 - 0.8 * long),
     ));
     for (cause, weight) in &mut weights {
-        *weight *= possible(what, *cause, known.one_reference);
         if known.reported.contains(cause) {
             *weight *= REPORTED;
+        }
+    }
+    let agrees = |cause: Cause| agrees(what, cause, known.one_reference);
+    let is_of_the_ship = matches!(what, What::Return(_)) || what.is_lasting();
+    let agreeing = weights.iter().filter(|(cause, _)| agrees(*cause));
+    let most = agreeing
+        .map(|(_, weight)| *weight)
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let against = weights.iter_mut().filter(|(cause, _)| !agrees(*cause));
+    for (cause, weight) in against {
+        *weight *= AGAINST;
+        if cause.is_the_ships() != is_of_the_ship {
+            // Whether an epoch begins has been decided: it is not named for what it is not.
+            *weight = weight.min(most);
         }
     }
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
@@ -168,7 +186,12 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
     for c in &mut causes {
         c.probability /= kept;
     }
-    causes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    causes.sort_by(|a, b| {
+        let by_agreement = || agrees(b.cause).cmp(&agrees(a.cause));
+        b.probability
+            .total_cmp(&a.probability)
+            .then_with(by_agreement)
+    });
     causes
 }
 
@@ -190,14 +213,13 @@ impl Kind {
     }
 }
 
-/// What the search decided is hardly undone by circumstances.
-fn possible(what: What, cause: Cause, one_reference: bool) -> f64 {
-    let agrees = match what {
+/// Whether a cause is of what the search decided.
+fn agrees(what: What, cause: Cause, one_reference: bool) -> bool {
+    match what {
         What::Step | What::Return(_) => cause.is_the_ships(),
         What::Alignment => cause == Cause::Alignment,
         What::Drift => cause == Cause::Drift,
         What::Reference => cause == Cause::ReferenceFault,
         What::Burst => !cause.is_the_ships() && (one_reference || cause != Cause::ReferenceFault),
-    };
-    if agrees { 1.0 } else { 0.02 }
+    }
 }

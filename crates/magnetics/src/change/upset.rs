@@ -30,6 +30,8 @@ const SLACK: f64 = 0.06;
 pub(super) enum Earlier<'a> {
     Ship(&'a Filter),
     Reference(&'a Filter),
+    /// The compass's own zero.
+    Zero(&'a Filter),
 }
 
 impl Earlier<'_> {
@@ -37,7 +39,8 @@ impl Earlier<'_> {
     pub(super) fn again(self, now: &Filter) -> Filter {
         match self {
             Earlier::Ship(before) => set_back(now, before),
-            Earlier::Reference(before) => mended(now, before),
+            Earlier::Reference(before) => mended(now, before, &[CONSTANT_STATE, OFFSET]),
+            Earlier::Zero(before) => mended(now, before, &[CONSTANT_STATE]),
         }
     }
 }
@@ -92,11 +95,10 @@ pub(super) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
     copy
 }
 
-/// The filter with the references' lasting errors as `before` had them.
-fn mended(now: &Filter, before: &Filter) -> Filter {
+/// The filter with some of the instruments' lasting errors as `before` had them.
+fn mended(now: &Filter, before: &Filter, lasting: &[usize]) -> Filter {
     let mut copy = now.clone();
-    let lasting = [CONSTANT_STATE, OFFSET];
-    for i in lasting {
+    for &i in lasting {
         copy.mean[i] = before.mean[i];
         for j in 0..STATES {
             let known = if lasting.contains(&j) {

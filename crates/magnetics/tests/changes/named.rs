@@ -143,6 +143,42 @@ fn a_report_dates_what_happened_between_two_samples() {
     assert_eq!(nearest(&analysis, stepped).from, said);
 }
 
+/// The same ship with a step of so much in (bx, by) at a time.
+fn with_step(mut log: Log, at: Timestamp, [bx_nt, by_nt]: [f64; 2]) -> Log {
+    for sample in log.samples.iter_mut().filter(|s| s.time >= at) {
+        let earth = field(FieldModel::Igrf14, sample.position, 0.0, sample.time).unwrap();
+        let (sin, cos) = sample.compass.degrees().to_radians().sin_cos();
+        let off = ((bx_nt * sin + by_nt * cos) / earth.h_nt()).to_degrees();
+        sample.compass = CompassHeading::new(sample.compass.degrees() - off).unwrap();
+    }
+    log
+}
+
+#[test]
+fn steps_within_a_day_are_sudden_however_they_point() {
+    let apart = [[2500.0, 750.0], [-2000.0, 2500.0], [2250.0, 1250.0]];
+    let one_way = [[2000.0, 1500.0]; 3];
+    for (seed, steps) in [(50, apart), (51, apart), (52, one_way), (53, apart)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let day = log.samples[log.samples.len() / 2].time;
+        for (hour, step) in [0.0, 8.0, 16.0].into_iter().zip(steps) {
+            log = with_step(log, day.plus_seconds(hour * HOUR_S), step);
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let found = of_the_ship(&analysis);
+        let of_the_day = |c: &&&Change| c.from.seconds_since(day).abs() < DAY_S;
+        let found: Vec<_> = found.iter().filter(of_the_day).collect();
+        assert_eq!(found.len(), 3, "seed {seed}: {found:?}");
+        for change in found {
+            assert_eq!(change.cause, Cause::LightningOrShock, "seed {seed}");
+            let told = change.evidence.join("; ");
+            assert!(told.contains("one of 3 changes within a day"), "{told}");
+            assert!(!told.contains("went the same way"), "{told}");
+        }
+    }
+}
+
 /// The same ship with a bx that grows by so much over thirty days.
 fn with_ramp(mut log: Log, from_day: f64, nt: f64) -> Log {
     let start = log.start;

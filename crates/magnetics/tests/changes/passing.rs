@@ -103,3 +103,46 @@ fn a_step_that_was_told_and_is_gone_again_says_so_and_stays_one_change() {
     let then = run(&log.samples[..before]);
     assert_eq!(of_the_ship(&then).len(), 1, "{:?}", then.changes);
 }
+
+/// Turns every compass reading between two times by so much.
+fn turned(log: &mut Log, (from, to): (Timestamp, Timestamp), degrees: f64) {
+    let during = |s: &&mut Sample| (from..to).contains(&s.time);
+    for sample in log.samples.iter_mut().filter(during) {
+        sample.compass = CompassHeading::new(sample.compass.degrees() + degrees).unwrap();
+    }
+}
+
+#[test]
+fn a_compass_off_on_every_heading_for_hours_is_one_fault_that_passed() {
+    for seed in [50, 51, 52, 54] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let from = log.samples[log.samples.len() / 2].time;
+        turned(&mut log, (from, from.plus_seconds(5.0 * HOUR_S)), 12.0);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<_> = analysis.changes.iter().filter(|c| c.confirmed).collect();
+        let causes: Vec<Cause> = told.iter().map(|c| c.cause).collect();
+        assert_eq!(causes, [Cause::CompassFault], "seed {seed}: {told:?}");
+        let lasted_h = told[0].ended.unwrap().seconds_since(told[0].from) / HOUR_S;
+        assert!((4.0..6.0).contains(&lasted_h), "seed {seed}: {lasted_h} h");
+        assert_eq!(analysis.epochs.len(), 1, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_zero_that_is_put_right_after_a_day_ends_its_change() {
+    for seed in [50, 53, 54] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let from = log.samples[log.samples.len() / 2].time;
+        let to = from.plus_seconds(30.0 * HOUR_S);
+        turned(&mut log, (from, to), 8.0);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = of_the_ship(&analysis);
+        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        assert_eq!(told[0].cause, Cause::Alignment, "seed {seed}");
+        let late_h = told[0].ended.unwrap().seconds_since(to) / HOUR_S;
+        assert!(late_h.abs() < 1.0, "seed {seed}: {late_h} h");
+        assert_eq!(analysis.epochs[2].resumes, Some(0), "seed {seed}");
+    }
+}

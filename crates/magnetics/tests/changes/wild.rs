@@ -130,3 +130,29 @@ fn a_swing_in_high_latitudes_where_the_field_is_weak_is_no_strike() {
         assert!(told[0].cause.passes_by(), "seed {seed}: {told:?}");
     }
 }
+
+#[test]
+fn no_compass_is_told_to_be_astray_by_more_than_half_a_turn() {
+    let mut reversed = 0;
+    for seed in [61, 62, 63, 65, 67] {
+        let (log, _) = astray(
+            seed,
+            6 * AN_HOUR,
+            |i| if i % 4 == 0 { 120.0 } else { 178.0 },
+        );
+        let analysis = run(&log.samples);
+        for line in analysis.changes.iter().flat_map(|c| &c.evidence) {
+            let Some(after) = line.strip_prefix("it was astray by ") else {
+                continue;
+            };
+            let degrees: f64 = after.split(' ').next().unwrap().parse().unwrap();
+            assert!(degrees <= 180.0, "seed {seed}: {line}");
+            assert!(
+                line.ends_with("the compass no longer pointed north"),
+                "{line}"
+            );
+            reversed += 1;
+        }
+    }
+    assert!(reversed > 1, "{reversed}");
+}

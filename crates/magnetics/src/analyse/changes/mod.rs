@@ -1,6 +1,7 @@
 //! Changes found among the readings of one epoch of the logbook: the epochs that
 //! they make of it, and what they say of its samples.
 
+mod evidence;
 mod fault;
 mod size;
 mod teller;

@@ -30,9 +30,16 @@ const USUAL_H_NT: f64 = 24_000.0;
 /// This share of the readings is less far astray: a wild one is of no account.
 const LESS_ASTRAY: f64 = 0.75;
 
-/// How far the compass was astray from what the ship had been, in degrees as they would
-/// be where H is 24 µT.
-pub(super) fn astray_deg(before: &Snapshot, readings: &[Observation]) -> f64 {
+/// How far the compass was astray from what the ship had been, degrees.
+pub(super) struct Astray {
+    /// As it was seen.
+    pub(super) seen_deg: f64,
+    /// As the same field would show where H is 24 µT.
+    pub(super) usual_deg: f64,
+}
+
+/// How far the compass was astray, a few wild readings left out.
+pub(super) fn astray(before: &Snapshot, readings: &[Observation]) -> Astray {
     let off = |o: &Observation| {
         let magnetic = o.compass.degrees() + o.deviation.degrees_east() - before.constant_deg;
         let earth = EarthField {
@@ -43,17 +50,24 @@ pub(super) fn astray_deg(before: &Snapshot, readings: &[Observation]) -> f64 {
             .parameters
             .field_over_lambda(magnetic.to_radians(), earth);
         let expected = crate::ship::compass_rad(field[0], field[1]).to_degrees();
-        wrap_180(o.compass.degrees() - expected).abs() * o.h_nt / USUAL_H_NT
+        let seen_deg = wrap_180(o.compass.degrees() - expected).abs();
+        (seen_deg, seen_deg * o.h_nt / USUAL_H_NT)
     };
-    let mut astray: Vec<f64> = readings.iter().map(off).collect();
-    astray.sort_by(f64::total_cmp);
-    let place = (LESS_ASTRAY * astray.len() as f64) as usize;
-    astray.get(place).copied().unwrap_or(0.0)
+    let (seen, usual): (Vec<f64>, Vec<f64>) = readings.iter().map(off).unzip();
+    let most = |mut of: Vec<f64>| {
+        of.sort_by(f64::total_cmp);
+        let place = (LESS_ASTRAY * of.len() as f64) as usize;
+        of.get(place).copied().unwrap_or(0.0)
+    };
+    Astray {
+        seen_deg: most(seen),
+        usual_deg: most(usual),
+    }
 }
 
 /// By how much the compass's zero moved, degrees.
 pub(super) fn zero_change(before: &Snapshot, after: &Snapshot) -> f64 {
-    (after.constant_deg - before.constant_deg).abs()
+    wrap_180(after.constant_deg - before.constant_deg).abs()
 }
 
 pub(super) fn step(before: &Snapshot, after: &Snapshot) -> Step {

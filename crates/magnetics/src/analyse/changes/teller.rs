@@ -1,8 +1,9 @@
 //! Puts events into words and dates.
 
+use super::evidence::evidence;
 use super::{Ended, cause_of, size};
 use crate::analyse::logbook::LogbookEntry;
-use crate::change::{Cause, Change, Circumstances, Event, Perhaps, What, at_port, causes, odds};
+use crate::change::{Cause, Change, Circumstances, Event, Perhaps, What, at_port, causes};
 use crate::fit::Observation;
 use crate::ship::EarthField;
 use crate::time::Timestamp;
@@ -13,17 +14,14 @@ const REPORT_S: f64 = 2.0 * 86_400.0;
 /// What happens after work has ended was hardly the work, but for a clock that is wrong.
 const WORKED_BEFORE_S: f64 = 6.0 * 3600.0;
 const LOADED_BEFORE_S: f64 = 6.0 * 3600.0;
-/// Steps at sea that follow each other within this, in directions whose cosine is more
-/// than that, are of one drift.
+/// Steps at sea that follow each other within this but not within a day, in directions
+/// whose cosine is more than that, are of one drift, unless they showed within hours.
 const CREEPS_S: f64 = 45.0 * 86_400.0;
+const CREEPS_FOR_S: f64 = 86_400.0;
+const SUDDEN_S: f64 = 3.0 * 3600.0;
 const SAME_WAY: f64 = 0.7;
-/// What is further astray is worth a word, degrees where H is 24 µT.
-const WILD_DEG: f64 = 8.0;
 /// What is less likely than this makes no band wider.
 const SELDOM: f64 = 0.02;
-
-/// Said of a disturbance that other ships may speak for.
-const FAINT: &str = "too faint to be certain by this ship alone";
 
 /// Puts events into words and dates.
 pub(super) struct Teller<'a> {
@@ -112,6 +110,8 @@ impl Teller<'_> {
             What::Drift => None,
             _ => self.began_at_port(event),
         };
+        let astray = (event.what == What::Burst)
+            .then(|| size::astray(&event.before, self.rows_of_burst(index)));
         let known = Circumstances {
             leads: event.leads,
             at_port,
@@ -121,15 +121,16 @@ impl Teller<'_> {
                 last.seconds_since(self.time(event.first))
             }),
             is_over: event.last.is_some(),
-            astray_deg: matches!(event.what, What::Burst)
-                .then(|| size::astray_deg(&event.before, self.rows_of_burst(index))),
+            astray_deg: astray.as_ref().map(|astray| astray.usual_deg),
             one_reference: self.one_reference(),
             creeps: self.creeps(index),
+            in_a_day: self.in_a_day(index),
             over_step: event.over_step,
             told_after_s: self.time(event.told).seconds_since(from),
             reported: self.reported(from_earliest, from_latest),
         };
         let causes = causes(event.what, &known);
+        let seen_deg = astray.map(|astray| astray.seen_deg);
         let has_step = matches!(event.what, What::Step | What::Drift);
         let worst = match event.what {
             What::Alignment => size::zero_change(&event.before, &event.after),
@@ -146,7 +147,7 @@ impl Teller<'_> {
             detected_at: self.time(event.told),
             confirmed: event.confirmed,
             cause: causes.first().map_or(Cause::Unknown, |c| c.cause),
-            evidence: evidence(event, &known, worst),
+            evidence: evidence(event, &known, worst, seen_deg),
             causes,
             deviation_change_deg: event.what.is_lasting().then_some(worst),
             step: has_step.then(|| size::step(&event.before, &event.after)),
@@ -177,22 +178,40 @@ impl Teller<'_> {
         })
     }
 
-    /// Whether a step is one of several that go the same way: of something that creeps.
+    /// Whether a step is one of several that go the same way for days: of something that
+    /// creeps.
     fn creeps(&self, index: usize) -> bool {
         let event = &self.events[index];
-        let is_alone = |event: &Event| {
-            event.what == What::Step && event.confirmed && self.began_at_port(event) == Some(false)
-        };
         let time = |event: &Event| self.time(event.first);
+        let was_sudden =
+            |event: &Event| self.time(event.told).seconds_since(time(event)) < SUDDEN_S;
+        let is_alone = |event: &Event| {
+            event.what == What::Step
+                && event.confirmed
+                && self.began_at_port(event) == Some(false)
+                && !was_sudden(event)
+        };
         let mut others = self.events.iter().enumerate();
         is_alone(event)
             && others.any(|(place, other)| {
                 let apart_s = time(other).seconds_since(time(event)).abs();
                 place != index
                     && is_alone(other)
-                    && apart_s < CREEPS_S
+                    && (CREEPS_FOR_S..CREEPS_S).contains(&apart_s)
                     && size::cosine(event, other) > SAME_WAY
             })
+    }
+
+    /// How many lasting changes there were within a day of a step, with it.
+    fn in_a_day(&self, index: usize) -> usize {
+        let time = |event: &Event| self.time(event.first);
+        let event = &self.events[index];
+        let is_sudden =
+            |event: &Event| matches!(event.what, What::Step | What::Alignment) && event.confirmed;
+        let others = self.events.iter().filter(|other| {
+            is_sudden(other) && time(other).seconds_since(time(event)).abs() < CREEPS_FOR_S
+        });
+        if is_sudden(event) { others.count() } else { 0 }
     }
 
     /// What people reported around the interval.
@@ -223,95 +242,5 @@ impl Teller<'_> {
         let said = said.filter(|entry| cause_of(entry.kind).is_some());
         let times = said.map(|entry| entry.from);
         times.filter(|time| before < *time && *time < after).min()
-    }
-}
-
-fn evidence(event: &Event, known: &Circumstances, worst_deg: f64) -> Vec<String> {
-    let [step, reference, burst, _] = event.leads;
-    let mut told = vec![match event.what {
-        What::Step | What::Return(_) => format!(
-            "a change of the ship's own magnetism, of up to {worst_deg:.1} degrees of deviation, \
-             explains the samples: {} none, {} a passing disturbance and {} a fault of the reference",
-            likelier(step),
-            likelier(step - burst),
-            likelier(step - reference)
-        ),
-        What::Alignment => format!(
-            "what changed is the same on every heading, and gyro and satellite compass agree: \
-             that the compass's own zero moved, by {worst_deg:.1} degrees, is {} a change of the \
-             ship's magnetism",
-            likelier(event.over_step)
-        ),
-        What::Drift => format!(
-            "the deviation goes on changing, by up to {worst_deg:.1} degrees so far: a drift is \
-             {} one sudden change",
-            likelier(event.over_step)
-        ),
-        What::Reference => format!(
-            "what changed is the same on every heading: a fault of the reference is {} none and {} \
-             a change of the ship",
-            likelier(reference),
-            likelier(reference - step)
-        ),
-        What::Burst => format!(
-            "the compass went astray, but not for good: a passing disturbance is {} none and {} a \
-             change of the ship",
-            likelier(burst),
-            likelier(burst - step)
-        ),
-    }];
-    if event.was_step {
-        told.push(
-            "at first taken for a change of the ship's own magnetism, until it was gone again at sea"
-                .to_owned(),
-        );
-    }
-    match known.at_port {
-        Some(true) => told.push("it began at a port call".to_owned()),
-        Some(false) => told.push("it began at sea".to_owned()),
-        None => {}
-    }
-    match known.ended_at_port {
-        Some(true) => told.push("the ship was herself again after a port call".to_owned()),
-        Some(false) => told.push("the ship became herself again at sea".to_owned()),
-        None => {}
-    }
-    if known.creeps {
-        told.push("another change within weeks went the same way".to_owned());
-    }
-    if let Some(degrees) = known.astray_deg.filter(|degrees| *degrees > WILD_DEG) {
-        told.push(format!(
-            "it was astray by {degrees:.0} degrees, which few storms and anomalies come to"
-        ));
-        if known.one_reference {
-            told.push("compass or reference: there is no other reference to tell which".to_owned());
-        }
-    }
-    if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
-        told.push(format!("it lasted {:.1} hours", seconds / 3600.0));
-    }
-    if !known.reported.is_empty() {
-        told.push("the logbook has a report of that time".to_owned());
-    }
-    match (event.confirmed, event.last) {
-        (true, _) => {}
-        (false, None) => told.push("not yet certain: more samples will tell".to_owned()),
-        (false, Some(_)) => told.push(FAINT.to_owned()),
-    }
-    told
-}
-
-/// By how much likelier than something one is that leads it by so many nats, with the
-/// temper of [`causes`]: the models are only nearly right.
-fn likelier(nats: f64) -> String {
-    let odds = odds(nats);
-    match odds {
-        ..0.7 => "less likely than".to_owned(),
-        ..1.5 => "about as likely as".to_owned(),
-        ..10.0 => format!("{odds:.1} times likelier than"),
-        ..100.0 => format!("{:.0} times likelier than", (odds / 10.0).round() * 10.0),
-        ..1000.0 => format!("{:.0} times likelier than", (odds / 100.0).round() * 100.0),
-        ..1e6 => "more than a thousand times likelier than".to_owned(),
-        _ => "more than a million times likelier than".to_owned(),
     }
 }

@@ -21,7 +21,7 @@ impl Search<'_> {
         };
         let dated = self.date(lead.spawn, lead.kind, k);
         let earlier = self.calls.bases.last();
-        let at_sea = earlier.is_some_and(|base| !base.at_port);
+        let at_sea = self.misaligned.is_some() || earlier.is_some_and(|base| !base.at_port);
         if kind == Kind::Step && self.misled.is_none() && at_sea {
             // Linearised each at its own end, either may be the likelier.
             let back = leads[Kind::Return as usize];
@@ -55,6 +55,7 @@ impl Search<'_> {
         );
         let mut rivals = Vec::new();
         if kind == Kind::Step {
+            self.misaligned = None;
             rivals = self.rivals_of(k, &dated, &before);
             // It may be that several steps were the same.
             rivals.append(&mut self.rivals);
@@ -132,13 +133,14 @@ impl Search<'_> {
         self.come_back(k, lead, dated, leads);
     }
 
-    /// The ship is herself again. What came and went within hours at sea was beside
-    /// her, and no change of her own.
+    /// The ship is herself again, or her compass's zero is where it was. What came and went
+    /// within hours at sea was beside her, and no change of her own.
     fn come_back(&mut self, k: usize, lead: Lead, dated: Dated, leads: Leads) {
-        let Some(base) = self.calls.bases.last() else {
+        let zero = self.misaligned.take().map(|(event, _)| event);
+        let ship = || self.calls.bases.last().map(|base| base.event);
+        let Some(event) = zero.or_else(ship) else {
             return;
         };
-        let event = base.event;
         let before = self.bank.spawns[lead.spawn].origin().clone();
         self.supersede_burst(dated.first);
         if self.was_brief(&self.events[event], &dated) {
@@ -164,7 +166,7 @@ impl Search<'_> {
             .zip(time(event.first))
             .map(|(end, begin)| end.seconds_since(begin));
         let mut rows = event.between.0..=back.between.1.max(back.first);
-        event.what == What::Step
+        matches!(event.what, What::Step | What::Alignment)
             && lasted_s.is_some_and(|s| s < BRIEF_S)
             && !rows.any(|row| self.is_call(row))
     }
@@ -194,6 +196,7 @@ impl Search<'_> {
     /// The ship has been herself again since a port call.
     pub(super) fn adopt_call(&mut self, k: usize, back: Candidate, leads: Leads) {
         self.supersede_burst(back.at);
+        self.misaligned = None;
         // What was taken for a step to something else was this.
         let mut places = 0..;
         self.events.retain(|event| {

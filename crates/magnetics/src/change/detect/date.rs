@@ -33,7 +33,7 @@ impl Search<'_> {
         let from = winner.saturating_sub(1);
         let origin = &spawns[from];
         let until = spawns.get(winner + 1).map_or(k, |s| s.at);
-        let earlier = earlier(self.misled.as_ref(), &self.calls);
+        let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
         let began = |filter: &Filter, next: &Measurement| match (kind, earlier) {
             (Kind::Return, Some(earlier)) => earlier.again(filter),
             (Kind::Reference | Kind::Satellite, _) => misled(filter, next, kind),

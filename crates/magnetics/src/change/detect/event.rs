@@ -73,13 +73,14 @@ pub(crate) struct Event {
 }
 
 impl Event {
-    /// What was told as a step was gone again before row `end`.
+    /// What was told as the ship's or her compass's was gone again before row `end`.
     pub(super) fn pass(&mut self, end: usize) {
         let [step, reference, burst, back] = self.leads;
         self.what = What::Burst;
         self.last = Some(end.saturating_sub(1).max(self.first));
         self.leads = [0.0, reference, burst.max(step), back];
         self.was_step = true;
+        self.over_step = 0.0;
     }
 }
 

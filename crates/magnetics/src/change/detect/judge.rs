@@ -76,7 +76,7 @@ impl Search<'_> {
             return self.adopt_mended(k, leads);
         }
         let earlier = self.calls.bases.last();
-        let enough = if earlier.is_some_and(|base| base.at_port) {
+        let enough = if self.misaligned.is_none() && earlier.is_some_and(|base| base.at_port) {
             LOADED_RETURN_AT_SEA_NATS
         } else {
             RETURN_AT_SEA_NATS

@@ -97,6 +97,8 @@ struct Search<'a> {
     /// A reference's fault that goes on, if one does: its place in the list of
     /// events, and the filter before.
     misled: Option<(usize, Filter)>,
+    /// The same of a compass's zero that moved, if nothing else has changed since.
+    misaligned: Option<(usize, Filter)>,
     unsettled: Unsettled,
     /// What else the last step may have been.
     rivals: Vec<Rival>,
@@ -128,6 +130,7 @@ impl<'a> Search<'a> {
             spawned: 0,
             calls: Calls::default(),
             misled: None,
+            misaligned: None,
             unsettled: Unsettled::default(),
             rivals: Vec::new(),
             burst: None,
@@ -150,7 +153,7 @@ impl<'a> Search<'a> {
         let at = self.point(k);
         let m = self.measure(k, &at);
         if is_due || (k >= FIRST_PASSING && self.is_astray(k, &m)) {
-            let earlier = earlier(self.misled.as_ref(), &self.calls);
+            let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
             self.bank.spawn(k, &self.null, &self.noise, earlier);
             self.spawned = k;
         }
@@ -163,7 +166,7 @@ impl<'a> Search<'a> {
         calls.take(|at| self.measure(k, at), &self.noise, &self.null);
         self.calls = calls;
         self.take_in_rivals(k);
-        let earlier = earlier(self.misled.as_ref(), &self.calls);
+        let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
         let null = (&self.null, surprise);
         self.bank.take(k, m, &self.noise, null, earlier);
         if k >= FIRST_PASSING {
@@ -321,11 +324,17 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What may be again what it was: a reference first, which is soon mended.
-fn earlier<'a>(misled: Option<&'a (usize, Filter)>, calls: &'a Calls) -> Option<Earlier<'a>> {
+/// What may be again what it was: a reference first, which is soon mended; then what
+/// changed last.
+fn earlier<'a>(
+    misled: Option<&'a (usize, Filter)>,
+    misaligned: Option<&'a (usize, Filter)>,
+    calls: &'a Calls,
+) -> Option<Earlier<'a>> {
     let reference = misled.map(|(_, before)| Earlier::Reference(before));
+    let zero = || misaligned.map(|(_, before)| Earlier::Zero(before));
     let ship = || calls.bases.last().map(|base| Earlier::Ship(&base.filter));
-    reference.or_else(ship)
+    reference.or_else(zero).or_else(ship)
 }
 
 /// The likeliest copies by kind, in the order of [`Kind`].

@@ -43,6 +43,8 @@ pub(super) struct Rival {
     first: usize,
     between: (usize, usize),
     filter: Filter,
+    /// The filter before it.
+    before: Filter,
 }
 
 impl Search<'_> {
@@ -77,6 +79,7 @@ impl Search<'_> {
             first: dated.first,
             between: dated.between,
             filter,
+            before: before.clone(),
         }
     }
 
@@ -111,6 +114,7 @@ impl Search<'_> {
                 row((place + 1).min(spawns.len() - 1)).max(first),
             ),
             filter,
+            before: spawns[place].origin().clone(),
         })
     }
 
@@ -180,6 +184,7 @@ impl Search<'_> {
             What::Drift => Unsettled::creeping(k, rival.drift),
             _ => Unsettled::default(),
         };
+        self.misaligned = (rival.what == What::Alignment).then_some((of, rival.before));
         self.take_over(k, rival.filter, rival.first);
         true
     }

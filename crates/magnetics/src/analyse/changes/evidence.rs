@@ -1,0 +1,115 @@
+//! Why an event is what it is taken for, in words that an officer knows.
+
+use crate::change::{Circumstances, Event, What, odds};
+
+/// What is further astray is worth a word, degrees where H is 24 µT.
+const WILD_DEG: f64 = 8.0;
+/// Beyond this a compass points no way at all, degrees.
+const POINTLESS_DEG: f64 = 90.0;
+/// Said of a disturbance that other ships may speak for.
+const FAINT: &str = "too faint to be certain by this ship alone";
+
+/// The evidence of an event; `seen_deg` is how far the compass was seen astray.
+pub(super) fn evidence(
+    event: &Event,
+    known: &Circumstances,
+    worst_deg: f64,
+    seen_deg: Option<f64>,
+) -> Vec<String> {
+    let [step, reference, burst, _] = event.leads;
+    let mut told = vec![match event.what {
+        What::Step | What::Return(_) => format!(
+            "a change of the ship's own magnetism, of up to {worst_deg:.1} degrees of deviation, \
+             explains the samples: {} none, {} a passing disturbance and {} a fault of the reference",
+            likelier(step),
+            likelier(step - burst),
+            likelier(step - reference)
+        ),
+        What::Alignment => format!(
+            "what changed is the same on every heading, and gyro and satellite compass agree: \
+             that the compass's own zero moved, by {worst_deg:.1} degrees, is {} a change of the \
+             ship's magnetism",
+            likelier(event.over_step)
+        ),
+        What::Drift => format!(
+            "the deviation goes on changing, by up to {worst_deg:.1} degrees so far: a drift is \
+             {} one sudden change",
+            likelier(event.over_step)
+        ),
+        What::Reference => format!(
+            "what changed is the same on every heading: a fault of the reference is {} none and {} \
+             a change of the ship",
+            likelier(reference),
+            likelier(reference - step)
+        ),
+        What::Burst => format!(
+            "the compass went astray, but not for good: a passing disturbance is {} none and {} a \
+             change of the ship",
+            likelier(burst),
+            likelier(burst - step)
+        ),
+    }];
+    if event.was_step {
+        told.push(
+            "at first taken for a change of the ship's own magnetism, until it was gone again at sea"
+                .to_owned(),
+        );
+    }
+    match known.at_port {
+        Some(true) => told.push("it began at a port call".to_owned()),
+        Some(false) => told.push("it began at sea".to_owned()),
+        None => {}
+    }
+    match known.ended_at_port {
+        Some(true) => told.push("the ship was herself again after a port call".to_owned()),
+        Some(false) => told.push("the ship became herself again at sea".to_owned()),
+        None => {}
+    }
+    if known.in_a_day > 1 {
+        told.push(format!(
+            "it is one of {} changes within a day of it",
+            known.in_a_day
+        ));
+    }
+    if known.creeps {
+        told.push("another change within weeks went the same way".to_owned());
+    }
+    let is_wild = known.astray_deg.is_some_and(|degrees| degrees > WILD_DEG);
+    if let Some(degrees) = seen_deg.filter(|_| is_wild) {
+        told.push(if degrees > POINTLESS_DEG {
+            format!("it was astray by {degrees:.0} degrees: the compass no longer pointed north")
+        } else {
+            format!("it was astray by {degrees:.0} degrees, which few storms and anomalies come to")
+        });
+        if known.one_reference {
+            told.push("compass or reference: there is no other reference to tell which".to_owned());
+        }
+    }
+    if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
+        told.push(format!("it lasted {:.1} hours", seconds / 3600.0));
+    }
+    if !known.reported.is_empty() {
+        told.push("the logbook has a report of that time".to_owned());
+    }
+    match (event.confirmed, event.last) {
+        (true, _) => {}
+        (false, None) => told.push("not yet certain: more samples will tell".to_owned()),
+        (false, Some(_)) => told.push(FAINT.to_owned()),
+    }
+    told
+}
+
+/// By how much likelier than something one is that leads it by so many nats, with the
+/// temper of [`causes`]: the models are only nearly right.
+fn likelier(nats: f64) -> String {
+    let odds = odds(nats);
+    match odds {
+        ..0.7 => "less likely than".to_owned(),
+        ..1.5 => "about as likely as".to_owned(),
+        ..10.0 => format!("{odds:.1} times likelier than"),
+        ..100.0 => format!("{:.0} times likelier than", (odds / 10.0).round() * 10.0),
+        ..1000.0 => format!("{:.0} times likelier than", (odds / 100.0).round() * 100.0),
+        ..1e6 => "more than a thousand times likelier than".to_owned(),
+        _ => "more than a million times likelier than".to_owned(),
+    }
+}
