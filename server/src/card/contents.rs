@@ -15,6 +15,16 @@ use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use utoipa::ToSchema;
 
+/// What a card says of itself while no heading at sea has verified what was foretold.
+pub(super) fn foretold(adjusted_at: Time, order: OrderId) -> String {
+    format!(
+        "Foretold when the compass was adjusted at the berth on {} by work order {order}: \
+         headings at sea have not verified it. Not a certificate of adjustment: no adjuster has \
+         signed it.",
+        adjusted_at.day()
+    )
+}
+
 /// What a predicted card says of itself.
 pub(super) const PREDICTED: &str = "Predicted from observations under way by a model of the \
      ship's magnetism. Not a certificate of adjustment: no adjuster has signed it.";
@@ -44,6 +54,10 @@ pub struct Card {
     /// What verified it; none of a card that is predicted.
     #[schema(required)]
     pub verified: Option<VerifiedAtSea>,
+    /// The work order whose adjustment at the berth the model comes from, while headings at
+    /// sea have not verified it.
+    #[schema(required)]
+    pub unverified_order: Option<OrderId>,
     /// The ship.
     pub vessel: Ship,
     /// The compass: each magnetic element has a card of its own.
@@ -80,7 +94,8 @@ pub struct Card {
     /// Who did it, by the work order; none where that adjustment was by none.
     #[schema(required)]
     pub adjusted_by: Option<AdjustedBy>,
-    /// When the compass is due to be adjusted next; none where no adjustment is on record.
+    /// When the compass is due to be adjusted next; none where no adjustment is on record,
+    /// or where headings at sea have not verified the last.
     #[schema(required)]
     pub next_due: Option<NextDue>,
     /// What belongs on a card and is not recorded here: a person must write it.
@@ -322,9 +337,10 @@ pub struct Source {
     /// The work order that foretold it; none for a model that was fitted.
     #[schema(required)]
     pub foretold_by: Option<OrderId>,
-    /// The time of the first sample in it.
+    /// The time of the first sample in it; of a model that was foretold, in the one that it
+    /// was foretold from.
     pub data_from: Time,
-    /// The time of the last sample in it.
+    /// The time of the last of them.
     pub data_until: Time,
     /// Samples that carried weight.
     #[schema(example = 412)]

@@ -30,7 +30,10 @@ pub(super) fn csv(card: &Card) -> Result<Vec<u8>, csv::Error> {
     writer.write_record(COLUMNS)?;
     let verified = card.verified.as_ref();
     let verified = [
-        verified.map_or(String::new(), |by| by.order.to_string()),
+        verified
+            .map(|by| by.order)
+            .or(card.unverified_order)
+            .map_or(String::new(), |order| order.to_string()),
         verified.map_or(String::new(), |by| by.verified_at.0.to_string()),
         verified.map_or(String::new(), |by| by.headings.to_string()),
     ];

@@ -5,7 +5,7 @@
 
 use super::contents::{
     AdjustedBy, Card, CardRow, CargoAboard, Coefficients, Correctors, NotRecorded, PREDICTED,
-    Place, Ship, Source, Status, VerifiedAtSea, verified,
+    Place, Ship, Source, Status, VerifiedAtSea, foretold, verified,
 };
 use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
@@ -33,6 +33,8 @@ pub(super) struct Basis {
     pub(super) compass: Compass,
     pub(super) place: Place,
     pub(super) model: StoredModel,
+    /// The first and the last sample that it rests on.
+    pub(super) data: (Time, Time),
     /// The binnacle as it is recorded.
     pub(super) binnacle: Option<Revised>,
     /// What people reported, without what is withdrawn.
@@ -72,20 +74,25 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
     let adjusted_at = last(&basis.logbook, LogbookKind::Adjustment, at);
     let adjusted_by = adjusted_by(&basis.completed, adjusted_at);
     let worst = deviation::worst_of(&curve).ok_or(DeviationError::NotFinite)?;
+    let verified_by = verified_by(model, &basis.completed);
+    let unverified = unverified(model, &basis.completed);
     let next_due = next_due(&due::Facts {
         flag: basis.vessel.flag.as_deref(),
-        adjusted_at,
+        // What nothing at sea supports starts no term.
+        adjusted_at: adjusted_at.filter(|_| unverified.is_none()),
         logbook: &basis.logbook,
         at,
         worst_deviation_deg: worst.deviation_deg,
     });
-    let verified_by = verified_by(model, &basis.completed);
     Ok(Card {
         status: verified_by.map_or(Status::Predicted, |_| Status::Verified),
-        statement: verified_by
-            .as_ref()
-            .map_or_else(|| PREDICTED.to_owned(), verified),
+        statement: match (&verified_by, unverified, model.foretold_by) {
+            (Some(by), _, _) => verified(by),
+            (None, Some(order), Some(_)) => foretold(order.at, order.order),
+            (None, _, _) => PREDICTED.to_owned(),
+        },
         verified: verified_by,
+        unverified_order: unverified.map(|order| order.order),
         rows: lines.iter().zip(basis.observed).map(line).collect(),
         worst,
         widest_band95_deg,
@@ -101,7 +108,10 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
             ),
             (NotRecorded::Adjuster, adjusted_by.is_none()),
             (NotRecorded::Signature, true),
-            (NotRecorded::NextDue, next_due.is_none()),
+            (
+                NotRecorded::NextDue,
+                next_due.is_none() && unverified.is_none(),
+            ),
         ]),
         correctors: basis.binnacle.as_ref().map(correctors),
         degaussed_at: last(&basis.logbook, LogbookKind::Degaussing, at),
@@ -114,8 +124,8 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
             version: model.version,
             fitted_at: model.created_at,
             foretold_by: model.foretold_by,
-            data_from: model.data_from,
-            data_until: model.data_until,
+            data_from: basis.data.0,
+            data_until: basis.data.1,
             samples_used: ship.samples_used,
             rms_deg: ship.rms_deg,
             estimator: model.estimator.clone(),
@@ -141,6 +151,15 @@ fn verified_by(model: &StoredModel, completed: &[CompletedOrder]) -> Option<Veri
         until: at_sea.until,
         rms_deg: at_sea.rms_deg,
     })
+}
+
+/// The adjustment that the model comes from, while nothing at sea has verified it.
+fn unverified<'a>(
+    model: &StoredModel,
+    completed: &'a [CompletedOrder],
+) -> Option<&'a CompletedOrder> {
+    let by = completed.iter().rev().find(|order| order.bears_on(model))?;
+    Some(by).filter(|order| order.at_sea.is_none())
 }
 
 /// A compass that stands still, or has parted from the gyro on board, is not described

@@ -183,6 +183,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
         (Some(_), Some(from)) => (from, now),
         _ => (model.data_from, model.data_until.0.plus_seconds(1.0).into()),
     };
+    let data = data_of(app, &model).await?;
     let samples = analysis::chunks(db, id, compass.id, Some(from), Some(until)).await?;
     let completed = work_orders::completed(db, id, compass.id).await?;
     let binnacle = binnacles::current(db, id, compass.id).await?;
@@ -206,6 +207,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             compass,
             place,
             model,
+            data,
             completed,
             binnacle,
             logbook,
@@ -216,6 +218,23 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
         make(basis).map_err(Error::NoCard)
     });
     made.await?
+}
+
+/// The first and the last sample that a model rests on: of one that was foretold, those
+/// of the model before the adjustment.
+async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
+    let from = match model.foretold_by {
+        Some(order) => work_orders::foretold_from(&app.db, model.vessel_id, order).await?,
+        None => None,
+    };
+    let behind = match from {
+        Some(version) => {
+            models::of_version(&app.db, model.vessel_id, model.compass_id, version).await?
+        }
+        None => None,
+    };
+    let behind = behind.as_ref().unwrap_or(model);
+    Ok((behind.data_from, behind.data_until))
 }
 
 impl Query {

@@ -4,7 +4,7 @@ use super::entry::{Entry, Reference};
 use super::select::Occasion;
 use crate::card;
 use crate::sheet::words::{east_west, heading_to_a_tenth, latitude, longitude, signed};
-use crate::sheet::{A4, Face, MARGIN, Pen, Sheet, Style, cut};
+use crate::sheet::{A4, Face, MARGIN, Pen, Sheet, Style, cut, wrap};
 use crate::time::Time;
 use binnacle_magnetics::analyse::SampleReason;
 
@@ -182,16 +182,41 @@ fn doubt(reason: SampleReason) -> &'static str {
     }
 }
 
-fn foot(sheet: &mut Sheet) {
-    let y = HEIGHT - MARGIN;
+/// Where the master's line begins.
+const MASTER: f32 = RIGHT - 150.0;
+const FOOT: f32 = 7.0;
+
+/// What stands at the foot, beside the master's line.
+fn said_at_the_foot() -> Vec<String> {
     let says = "Observed by the agent on board by itself, in settled stretches of heading: one in \
                 each watch that has one, and after alterations of course of 20° or more. A card is \
                 predicted where the remarks do not say that it was verified.";
-    sheet.text((LEFT, y), Style::plain(7.0).grey(FAINT), says);
-    sheet.rule((RIGHT - 150.0, y - 9.0), (RIGHT, y - 9.0), 0.5);
-    sheet.text(
-        (RIGHT - 150.0, y),
-        Style::plain(7.0).grey(FAINT),
-        "Seen by the master",
-    );
+    wrap(says, Face::Regular, FOOT, MASTER - 14.0 - LEFT)
+}
+
+fn foot(sheet: &mut Sheet) {
+    let y = HEIGHT - MARGIN;
+    let small = Style::plain(FOOT).grey(FAINT);
+    for (above, line) in said_at_the_foot().into_iter().rev().enumerate() {
+        sheet.text((LEFT, y - 8.5 * above as f32), small, line);
+    }
+    sheet.rule((MASTER, y - 9.0), (RIGHT, y - 9.0), 0.5);
+    sheet.text((MASTER, y), small, "Seen by the master");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sheet::width;
+
+    #[test]
+    fn the_foot_leaves_the_masters_line_free() {
+        let lines = said_at_the_foot();
+        for line in &lines {
+            let end = LEFT + width(line, Face::Regular, FOOT);
+            assert!(end < MASTER, "{line} ends at {end}");
+        }
+        let last_row = TOP + LINE * ROWS as f32;
+        assert!(HEIGHT - MARGIN - 8.5 * lines.len() as f32 > last_row);
+    }
 }

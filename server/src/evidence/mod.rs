@@ -2,15 +2,16 @@
 //!
 //! What always holds: the same state of an order makes the same octets; the archive's
 //! manifest names the SHA-256 of every other file in it, the log's entries name each
-//! other's, and the completion names the record's. [`verify()`] needs nothing but the
-//! archive itself.
+//! other's, and the completion names the record's; sheet and table are made from the
+//! record's text alone. [`verify()`] needs nothing but the archive itself.
 
 mod archive;
+mod covered;
 mod sheets;
 mod verify;
 
 pub use archive::{Evidence, File, Line, archive};
-pub use sheets::record_pdf;
+pub use sheets::{predicted_csv, record_pdf};
 pub use verify::{Found, verify};
 
 /// What says how to check it, in every archive.

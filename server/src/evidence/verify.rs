@@ -1,6 +1,7 @@
 //! Checking an archive with nothing but what is in it.
 
 use super::archive::{Head, Manifest};
+use super::covered::{self, covered};
 use crate::work_orders::completion::{Completed, SignedBy};
 use crate::work_orders::entry::sha256_hex;
 use crate::work_orders::photos::PhotoTaken;
@@ -112,6 +113,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     let mut withheld: Vec<String> = Vec::new();
     let mut completed: Option<Completed> = None;
     let mut entries: i64 = 0;
+    let recorded = covered::head(files);
     for line in text.lines() {
         entries += 1;
         let at = format!("entries.ndjson, line {entries}");
@@ -153,6 +155,11 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
             }
             None => Some(sha256_hex(line.as_bytes())),
         };
+        if let Some(head) = recorded.as_ref().filter(|head| head.entries == entries)
+            && previous.as_deref() != Some(head.last_sha256.as_str())
+        {
+            found.wrong(format!("{at} is not the one that record.json names"));
+        }
     }
     if !withheld.is_empty() {
         found.facts.push(format!(
@@ -174,6 +181,11 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
         "the log has {entries} entries, the last with SHA-256 {}",
         head.last_sha256
     ));
+    // Of a record that is not the one that was signed nothing follows.
+    let text = files.get("record.json").map(|text| sha256_hex(text));
+    if completed.is_some_and(|completed| Some(completed.record_sha256) == text) {
+        covered(files, entries, found);
+    }
     if signed == 0 {
         found
             .facts

@@ -10,7 +10,7 @@ pub use missing::NoModel;
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
 pub use store::{
     StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
-    insert, lately, withdrawn,
+    insert, lately, of_version, withdrawn,
 };
 
 use crate::access::Reader;

@@ -145,6 +145,25 @@ pub async fn in_force(
     )
 }
 
+/// One model of a compass by its version.
+pub async fn of_version(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    version: i64,
+) -> Result<Option<StoredModel>> {
+    row!(
+        db,
+        StoredModel,
+        "SELECT * FROM models
+         WHERE vessel_id = $1 AND compass_id = $2 AND version = $3
+         ORDER BY version",
+        vessel,
+        compass,
+        version
+    )
+}
+
 /// Since when, and why, the compass's last card holds no more; none while it holds.
 pub async fn card_withdrawn(
     db: &Db,

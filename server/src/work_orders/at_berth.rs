@@ -4,6 +4,7 @@ use super::asked::BerthReadingSchema;
 use super::basis::Basis;
 use super::entry::Content;
 use super::order::{Order, State};
+use super::whereabouts;
 use super::plan::{Choice, Planned, calculate, must_still_hold, offer};
 use super::reading::{Read, check, must_be_numbers};
 use super::schema::OfferSchema;
@@ -67,11 +68,14 @@ async fn read_berth(
     }
     must_not_be_moved(&whole)?;
     must_be_numbers(&given, app.clock.now().into())?;
+    whereabouts::must_be_of_now(&given, app.clock.now().into())?;
     let (vessel, compass) = (whole.summary.vessel_id, whole.summary.compass_id);
     let basis = Basis::load(&app, vessel, compass, &given).await?;
-    let (checked, refusal) = match check(&given, &basis)? {
-        Ok(checked) => (Some(checked), None),
-        Err(refusal) => (None, Some(refusal)),
+    let doubt = whereabouts::doubt(&app, (vessel, compass), &whole.summary.port, &given).await?;
+    let (checked, refusal) = match (check(&given, &basis)?, doubt) {
+        (Ok(checked), None) => (Some(checked), None),
+        (Ok(_), Some(doubt)) => (None, Some(doubt)),
+        (Err(refusal), doubt) => (None, Some(refusal.doubted(doubt))),
     };
     let read = Read {
         given,
@@ -111,7 +115,10 @@ fn must_not_be_moved(whole: &Whole) -> Result<()> {
     )?;
     if whole.standing().was_moved() {
         return Err(Error::WrongState(
-            "correctors were moved since the reading: the model does not know them so".to_owned(),
+            "correctors were moved since the reading, and the model does not know them so: put \
+             them back as they stood, say so under corrector-settings, and read again; or cancel \
+             the order, which notes how they stand, and let headings at sea make a model"
+                .to_owned(),
         ));
     }
     Ok(())

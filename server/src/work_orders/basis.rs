@@ -73,6 +73,8 @@ pub(super) struct Prepared {
     pub binnacle: Binnacle,
     /// How they stand now, where they were moved since.
     pub moved_to: Option<Setting>,
+    /// What the compass was last read to be with them so, degrees.
+    pub compass_deg: Option<f64>,
     /// What a plan must keep to, by the order.
     pub limits: Limits,
 }
@@ -154,7 +156,7 @@ impl Prepared {
             earth: self.basis.earth(),
             reading: &self.reading,
             scale_sd: self.given.scale_sd(),
-            compass_deg: self.given.compass_deg,
+            compass_deg: self.compass_deg,
             vertical: self.given.vertical(),
             binnacle: &self.binnacle,
             now: self.moved_to.as_ref(),

@@ -3,6 +3,7 @@
 //! What always holds: an adjustment bears on the model that it foretold and on what was
 //! fitted later to the epoch that it began, and on no other.
 
+use super::store;
 use super::verification::Verified;
 use crate::db::{Db, rows};
 use crate::error::Result;
@@ -10,6 +11,7 @@ use crate::ids::{CompassId, OrderId, VesselId};
 use crate::models::StoredModel;
 use crate::time::Time;
 use binnacle_magnetics::adjust::Verification;
+use serde_json::Value;
 
 /// An adjustment that was completed.
 #[derive(Clone, Debug)]
@@ -61,6 +63,15 @@ pub async fn completed(
         compass
     )?;
     found.into_iter().map(Row::read).collect()
+}
+
+/// The version of the model that an order's adjustment was foretold from, by its record.
+pub async fn foretold_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
+    let Some(record) = store::record(db, vessel, order).await? else {
+        return Ok(None);
+    };
+    let record: Value = serde_json::from_str(&record)?;
+    Ok(record["data"]["model_version"].as_i64())
 }
 
 impl CompletedOrder {

@@ -4,7 +4,7 @@ use super::completion::{self, Signed, SignedBy, Word};
 use super::entry::Content;
 use super::order::{Order, State};
 use super::photos::{Caption, MAX_BYTES, MOST, PhotoTaken};
-use super::plan::must_still_hold;
+use super::plan::{must_keep_to_limits, must_still_hold};
 use super::record::Aboard;
 use super::store::{self, Whole};
 use super::view;
@@ -13,7 +13,7 @@ use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
-use crate::evidence::{Evidence, File, Line, archive, record_pdf};
+use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf};
 use crate::firms::keys;
 use crate::http::{Id, Json, Params, Valid};
 use crate::idempotency::Key;
@@ -153,6 +153,7 @@ async fn complete_work_order(
     whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
     let prepared = whole.standing().prepared()?;
     must_still_hold(&app, &whole.summary, &prepared).await?;
+    must_keep_to_limits(&whole.standing())?;
     let (word, at) = word.checked(&whole.standing(), app.clock.now().into())?;
     let aboard = aboard(&app, &whole).await?;
     if let Some(mut change) = request.begin(&whole).await? {
@@ -254,7 +255,7 @@ async fn find_evidence(
     let record = record.ok_or_else(no_record)?;
     let mut files = vec![File {
         name: "predicted.csv".to_owned(),
-        bytes: predicted(&whole).into_bytes(),
+        bytes: predicted_csv(&record)?.into_bytes(),
     }];
     for (seq, photo) in photos(&whole) {
         let found = store::photo(&app.db, vessel, id, photo.photo).await?;
@@ -292,25 +293,4 @@ async fn find_evidence(
         (CONTENT_DISPOSITION, name.as_str()),
     ];
     Ok((headers, bytes).into_response())
-}
-
-/// The residuals foretold, a row to a place and heading.
-fn predicted(whole: &Whole) -> String {
-    let standing = whole.standing();
-    let tables = standing.plan.iter().flat_map(|plan| &plan.plan.after);
-    let mut lines = vec!["place,compass_deg,predicted_deviation_deg,band95_deg".to_owned()];
-    for table in tables {
-        for row in &table.rows {
-            let band = row.band95_deg.map(|band| format!("{band:.2}"));
-            lines.push(format!(
-                "{},{:.0},{:.2},{}",
-                table.place,
-                row.compass_deg,
-                row.deviation_deg,
-                band.unwrap_or_default()
-            ));
-        }
-    }
-    lines.push(String::new());
-    lines.join("\n")
 }

@@ -33,7 +33,7 @@ mod offers;
 mod order;
 pub mod photos;
 mod place;
-
+mod plan;
 mod reading;
 mod record;
 mod refusal;
@@ -44,8 +44,9 @@ mod steps;
 mod store;
 mod verification;
 mod view;
+mod whereabouts;
 
-pub use completed::{AtSea, CompletedOrder, completed};
+pub use completed::{AtSea, CompletedOrder, completed, foretold_from};
 pub use deadlines::{lapse, watch};
 pub use done::{Done, Span, done};
 pub use moved::{Alongside, Moving, calls_move};

@@ -65,6 +65,7 @@ impl Standing {
             given: read.given.clone(),
             binnacle: self.binnacle.clone().ok_or_else(wrong)?,
             moved_to: self.moved_to.clone(),
+            compass_deg: self.compass_deg,
             limits: self.limits,
             basis,
         })
@@ -72,7 +73,7 @@ impl Standing {
 }
 
 /// What is read at a berth holds no longer: by then she may lie elsewhere.
-const READING_HOLDS_S: f64 = 48.0 * 3600.0;
+pub(super) const READING_HOLDS_S: f64 = 48.0 * 3600.0;
 
 /// Refuses a reading that is too old, or older than a change of the ship's magnetism.
 ///
@@ -100,6 +101,21 @@ pub(super) async fn must_still_hold(
         ));
     }
     Ok(())
+}
+
+/// Refuses what is foretold beyond the order's limits, however it came to be followed.
+///
+/// # Errors
+/// [`Error::NotAdjustable`] with what would cure it.
+pub(super) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
+    let basis = standing.read.as_ref().and_then(|read| read.basis.as_ref());
+    let followed = standing.plan.as_ref().zip(basis);
+    let beyond =
+        followed.and_then(|(plan, basis)| plan.plan.beyond(&standing.limits, &basis.waters));
+    match beyond {
+        Some(refused) => Err(Error::NotAdjustable(vec![Refusal::from(&refused)])),
+        None => Ok(()),
+    }
 }
 
 /// What the planner offers, or why it offers nothing.

@@ -94,7 +94,10 @@ fn step(entry: &super::entry::Entry) -> Option<serde_json::Value> {
     let Content::Step(done) = &entry.content else {
         return None;
     };
-    Some(json!({ "at": at(entry.at), "said": done.said, "words": done.step.words }))
+    Some(json!({
+        "at": at(entry.at), "said": done.said, "words": done.step.words,
+        "moved": done.setting.is_some(),
+    }))
 }
 
 fn photo(entry: &super::entry::Entry) -> Option<serde_json::Value> {

@@ -44,6 +44,16 @@ pub enum Cure {
     Swing,
 }
 
+impl Refusal {
+    /// The same, a doubt of the place before all else that could explain it.
+    pub(super) fn doubted(mut self, doubt: Option<Refusal>) -> Refusal {
+        if let Some(doubt) = doubt {
+            self.could_be.insert(0, doubt.words);
+        }
+        self
+    }
+}
+
 impl From<&Refused> for Refusal {
     fn from(refused: &Refused) -> Refusal {
         let word = serde_json::to_value(&refused.refusal).ok();

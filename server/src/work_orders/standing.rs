@@ -138,8 +138,11 @@ impl Standing {
                 }
             }
             Content::CorrectorSettings(moved) => {
+                let stands = self.setting() == Some(&moved.after);
+                // What it read before they were moved says nothing of how it reads now.
+                let still = self.compass_deg.filter(|_| stands);
+                self.compass_deg = moved.compass_deg.or(still);
                 self.moved_to = Some(moved.after.clone());
-                self.compass_deg = moved.compass_deg.or(self.compass_deg);
                 match &self.plan {
                     Some(plan) if plan.plan.setting == moved.after => {
                         self.steps_done = plan.plan.steps.len();

@@ -3691,9 +3691,12 @@ export interface components {
         };
         /** @description The model that a card is made from. */
         CardModel: {
-            /** @description The time of the first sample in it. */
+            /**
+             * @description The time of the first sample in it; of a model that was foretold, in the one that it
+             *     was foretold from.
+             */
             data_from: components["schemas"]["Time"];
-            /** @description The time of the last sample in it. */
+            /** @description The time of the last of them. */
             data_until: components["schemas"]["Time"];
             /**
              * @description The estimator that made it.
@@ -4505,6 +4508,7 @@ export interface components {
             statement: string;
             /** @description What the card is worth. */
             status: components["schemas"]["CardStatus"];
+            unverified_order: components["schemas"]["OrderId"] | null;
             verified: components["schemas"]["CardVerification"] | null;
             /** @description The ship. */
             vessel: components["schemas"]["CardVessel"];

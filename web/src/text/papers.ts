@@ -13,6 +13,8 @@ export const papers = {
     predicted: 'Predicted',
     verified: 'Verified at sea',
     byModel: 'by the model alone.',
+    foretold:
+      'when the compass was adjusted at the berth; headings at sea have not verified it yet.',
     byOrder: (headings: number, until: string, adjusted: string) =>
       `by ${headings} headings up to ${until}, after the adjustment of ${adjusted}.`,
     order: 'Work order',

@@ -282,10 +282,17 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     let front = search::search(adjustment, &condition);
     let mut plans = Vec::new();
     for found in chosen(&front, adjustment.limits.near_equal_deg) {
-        plans.push(whole(adjustment, &condition, found)?);
+        let plan = whole(adjustment, &condition, found)?;
+        let beyond = refusal::afterwards(adjustment, &condition, &plan);
+        if beyond.is_empty() {
+            plans.push(plan);
+        } else if refusals.is_empty() {
+            // Of the plan that would be recommended.
+            refusals = beyond;
+        }
     }
-    refusals.extend(refusal::afterwards(adjustment, &condition, &plans));
-    if !refusals.is_empty() {
+    // What is beyond the limits is no alternative either.
+    if plans.is_empty() {
         return Ok(refused(Some(berth), refusals));
     }
     Ok(Outcome {

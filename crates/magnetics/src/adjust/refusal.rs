@@ -3,7 +3,7 @@
 use super::condition::Condition;
 use super::mistakes::{Mistake, mistakes};
 use super::read::Unit;
-use super::{AdjustError, Adjustment, Plan, PredictedTable, Refused};
+use super::{AdjustError, Adjustment, Limits, Plan, PredictedTable, Refused, Water};
 use crate::berth::{BerthError, Consistency};
 use crate::deviation::Coefficients;
 use crate::model::Model;
@@ -171,7 +171,11 @@ impl Refusal {
     pub fn could_be(&self) -> Vec<String> {
         let mistakes = self.mistakes().iter().map(ToString::to_string);
         let suspects = match self {
-            Refusal::InconsistentBerth { consistency, .. } => consistency.suspects().to_vec(),
+            // A mistake that explains all of it leaves nothing to suspect the steel of.
+            Refusal::InconsistentBerth {
+                consistency,
+                mistakes,
+            } if mistakes.is_empty() => consistency.suspects(),
             _ => Vec::new(),
         };
         let suspects = suspects.iter().map(ToString::to_string);
@@ -291,15 +295,13 @@ pub(super) fn of_berth(
     }
 }
 
-/// What is wrong with the recommended plan.
+/// What is wrong with a plan.
 pub(super) fn afterwards(
     adjustment: &Adjustment<'_>,
     condition: &Condition<'_>,
-    plans: &[Plan],
+    plan: &Plan,
 ) -> Vec<Refusal> {
-    plans.first().map_or_else(Vec::new, |plan| {
-        beyond_limits(adjustment, condition, &plan.after, &plan.model_after)
-    })
+    beyond_limits(adjustment, condition, &plan.after, &plan.model_after)
 }
 
 /// What is wrong with residuals foretold by a model.
@@ -310,18 +312,50 @@ pub(super) fn beyond_limits(
     model: &Model,
 ) -> Vec<Refusal> {
     let limits = &adjustment.limits;
+    let mut refusals: Vec<Refusal> = beyond(after, model, limits, adjustment.waters)
+        .into_iter()
+        .collect();
+    let too_large = matches!(refusals.first(), Some(Refusal::ResidualTooLarge { .. }));
+    if too_large && !condition.may_move_pair && condition.binnacle.design.quadrantal.is_some() {
+        refusals.insert(
+            0,
+            Refusal::MagnetometerTooPoor {
+                lambda_sd: condition.lambda_sd_share(),
+                limit: limits.lambda_sd,
+            },
+        );
+    }
+    refusals
+}
+
+impl Plan {
+    /// Which of these limits it breaks in these waters, with what would cure that; nothing
+    /// that [`super::plan`] offers breaks those it was asked for.
+    #[must_use]
+    pub fn beyond(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
+        beyond(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)
+    }
+}
+
+fn beyond(
+    after: &[PredictedTable],
+    model: &Model,
+    limits: &Limits,
+    waters: &[Water],
+) -> Option<Refusal> {
     let counted = after.iter().enumerate().filter(|(index, _)| {
         // The berth stands first, and is not where she trades.
         index
             .checked_sub(1)
-            .is_none_or(|water| adjustment.waters[water].weight > 0.0)
+            .and_then(|water| waters.get(water))
+            .is_none_or(|water| water.weight > 0.0)
     });
     let mut worst: Option<Refusal> = None;
     for (_, table) in counted {
         let place = table.place.clone();
         let (Some(reach_deg), Some(worst_deg)) = (table.reach_deg, table.worst_deg) else {
             let what = format!("compass headings are ambiguous at {place}");
-            return vec![Refusal::AmbiguousHeadings { what }];
+            return Some(Refusal::AmbiguousHeadings { what });
         };
         let band_deg = table.widest_band_deg.unwrap_or(f64::INFINITY);
         if band_deg > limits.band_deg {
@@ -340,18 +374,7 @@ pub(super) fn beyond_limits(
             });
         }
     }
-    let too_large = matches!(worst, Some(Refusal::ResidualTooLarge { .. }));
-    let mut refusals: Vec<Refusal> = worst.into_iter().collect();
-    if too_large && !condition.may_move_pair && condition.binnacle.design.quadrantal.is_some() {
-        refusals.insert(
-            0,
-            Refusal::MagnetometerTooPoor {
-                lambda_sd: condition.lambda_sd_share(),
-                limit: limits.lambda_sd,
-            },
-        );
-    }
-    refusals
+    worst
 }
 
 /// The greatest of the exact coefficients, the model's constant with A.
@@ -411,7 +434,12 @@ impl fmt::Display for Refusal {
                 consistency,
                 mistakes,
             } => {
-                write!(f, "the berth is inconsistent: {}", consistency.in_words())?;
+                let words = if mistakes.is_empty() {
+                    consistency.in_words()
+                } else {
+                    consistency.apart()
+                };
+                write!(f, "the berth is inconsistent: {words}")?;
                 explained(f, mistakes)
             }
             Refusal::ImplausibleLambda { mistakes, .. } | Refusal::NoSuchField { mistakes, .. } => {

@@ -16,6 +16,8 @@ use std::fmt;
 const NORMAL_99: f64 = 2.575_829;
 /// Beyond this a berth is not a good one, whatever its errors explain.
 const GOOD_DEG: f64 = 1.0;
+/// Steel that turned the field farther would be nearer than a magnetometer is ever set up.
+const STEEL_DEG: f64 = 20.0;
 
 /// The angle between the field read and the field expected, with its verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,6 +60,12 @@ pub enum Suspect {
         /// Degrees clockwise.
         turned_deg: f64,
     },
+    /// The position is off, or the date, and with it the variation: too far east by this
+    /// (west if negative).
+    Variation {
+        /// Degrees.
+        too_far_east_deg: f64,
+    },
     /// Steel of the quay, a crane or a ship alongside adds this across the needle.
     NearbySteel {
         /// nT.
@@ -92,19 +100,26 @@ impl Consistency {
         }
     }
 
-    /// What could be wrong, and by how much each would have to be.
-    pub fn suspects(&self) -> [Suspect; 4] {
+    /// What could be wrong, and by how much each would have to be: steel and the ship's
+    /// own magnetism only of an angle that they could bring about.
+    pub fn suspects(&self) -> Vec<Suspect> {
         let across_nt = self.across_nt;
-        [
+        let mut suspects = vec![
             Suspect::Heading {
                 too_small_deg: self.angle_deg,
             },
             Suspect::Magnetometer {
                 turned_deg: self.angle_deg,
             },
-            Suspect::NearbySteel { across_nt },
-            Suspect::ShipsMagnetism { across_nt },
-        ]
+            Suspect::Variation {
+                too_far_east_deg: self.angle_deg,
+            },
+        ];
+        if self.angle_deg.abs() <= STEEL_DEG {
+            suspects.push(Suspect::NearbySteel { across_nt });
+            suspects.push(Suspect::ShipsMagnetism { across_nt });
+        }
+        suspects
     }
 
     /// The angle and its error.
@@ -120,9 +135,9 @@ impl Consistency {
 
     /// One line: the angle, its error, and the suspects.
     pub fn in_words(&self) -> String {
-        let [heading, magnetometer, steel, ship] = self.suspects();
-        let apart = self.apart();
-        format!("{apart}; {heading}, or {magnetometer}, or {steel}, or {ship}")
+        let suspects = self.suspects();
+        let suspects: Vec<String> = suspects.iter().map(ToString::to_string).collect();
+        format!("{}; {}", self.apart(), suspects.join(", or "))
     }
 }
 
@@ -178,6 +193,18 @@ impl fmt::Display for Suspect {
                     f,
                     "the magnetometer is turned {:.1} degrees to {side}",
                     turned_deg.abs()
+                )
+            }
+            Suspect::Variation { too_far_east_deg } => {
+                let side = if too_far_east_deg < 0.0 {
+                    "west"
+                } else {
+                    "east"
+                };
+                write!(
+                    f,
+                    "position or date is wrong, and so the variation {:.1} degrees too far {side}",
+                    too_far_east_deg.abs()
                 )
             }
             Suspect::NearbySteel { across_nt } => {

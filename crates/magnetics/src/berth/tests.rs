@@ -276,8 +276,9 @@ fn a_field_that_points_elsewhere_is_refused_with_what_could_be_wrong() {
         panic!("{refused}");
     };
     assert_eq!(consistency.verdict, Verdict::Inconsistent);
-    let [Suspect::Heading { too_small_deg }, ..] = consistency.suspects() else {
-        panic!("{:?}", consistency.suspects());
+    let suspects = consistency.suspects();
+    let [Suspect::Heading { too_small_deg }, ..] = suspects[..] else {
+        panic!("{suspects:?}");
     };
     // A compass swings a little less or more than the ship.
     assert!((4.0..6.0).contains(&too_small_deg), "{too_small_deg}");
@@ -286,12 +287,24 @@ fn a_field_that_points_elsewhere_is_refused_with_what_could_be_wrong() {
         "too small",
         "turned",
         "to starboard",
+        "and so the variation",
         "steel near the berth adds",
         "magnetism has changed",
     ] {
         assert!(text.contains(words), "{text}");
     }
     assert!(!text.contains('\n'));
+}
+
+#[test]
+fn steel_is_no_suspect_of_an_angle_that_it_cannot_bring_about() {
+    for turned_deg in [90.0, 178.0] {
+        let field = field_read(&ship(), BISCAY, 45.0 - turned_deg);
+        let refused = lambda_at_berth(&model_of(&ship()), BISCAY, &reading(45.0, field));
+        let text = refused.unwrap_err().to_string();
+        assert!(text.contains("the heading is"), "{text}");
+        assert!(!text.contains("nT across the needle"), "{text}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use super::{FAINT, LEFT, RIGHT, UNKNOWN, known, told};
 use crate::binnacles::in_words;
-use crate::card::contents::{Card, CargoAboard, NextDue};
+use crate::card::contents::{Card, CargoAboard};
 use crate::sheet::words::signed;
 use crate::sheet::{A4, Face, MARGIN, Sheet, Style, wrap};
 use crate::time::Time;
@@ -68,6 +68,10 @@ fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
         known(card.degaussing.as_deref()),
         in_logbook(card.degaussed_at)
     );
+    let adjusted = match (card.adjusted_at, &card.adjusted_by) {
+        (Some(at), Some(by)) => format!("{} (work order {})", at.day(), by.order),
+        (at, _) => in_logbook(at),
+    };
     let recorded = card
         .correctors
         .as_ref()
@@ -90,9 +94,9 @@ fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
         ("Correctors", recorded),
         ("Degaussing", degaussing),
         ("Cargo", cargo(&card.cargo)),
-        ("Last adjusted", in_logbook(card.adjusted_at)),
+        ("Last adjusted", adjusted),
         ("by", adjuster),
-        ("Next due", next_due(card.next_due.as_ref())),
+        ("Next due", next_due(card)),
     ];
     sheet.text((SECOND, top), Style::bold(8.0), "State");
     let at = top + 11.0;
@@ -101,8 +105,11 @@ fn state(sheet: &mut Sheet, card: &Card, top: f32) -> f32 {
     })
 }
 
-fn next_due(due: Option<&NextDue>) -> String {
-    let Some(due) = due else {
+fn next_due(card: &Card) -> String {
+    if card.unverified_order.is_some() {
+        return "no date yet: unverified berth adjustment".to_owned();
+    }
+    let Some(due) = &card.next_due else {
         return "at once: no adjustment is on record".to_owned();
     };
     let flags = if due.flags_own_rules {
@@ -192,27 +199,36 @@ fn signatures(sheet: &mut Sheet) {
 
 fn source(sheet: &mut Sheet, card: &Card) {
     let model = &card.model;
-    let rms = model
-        .rms_deg
-        .map_or(String::new(), |rms| format!(", residuals {rms:.2}° rms"));
-    let from = match model.foretold_by {
-        Some(order) => format!("foretold by work order {order}{rms} before it."),
-        None => format!(
-            "{} samples from {} to {}{rms}.",
-            model.samples_used,
-            model.data_from.to_the_minute(),
-            model.data_until.to_the_minute()
-        ),
+    let made = format!(
+        "Model version {} of {}",
+        model.version,
+        model.fitted_at.to_the_minute()
+    );
+    let lines = if let Some(order) = model.foretold_by {
+        [
+            format!(
+                "{made}: foretold by work order {order} from {} samples of {} to {}.",
+                model.samples_used,
+                model.data_from.day(),
+                model.data_until.day()
+            ),
+            format!("Record SHA-256 {}", model.input_hash),
+        ]
+    } else {
+        let rms = model
+            .rms_deg
+            .map_or(String::new(), |rms| format!(", residuals {rms:.2}° rms"));
+        [
+            format!(
+                "{made}, {}: {} samples from {} to {}{rms}.",
+                model.estimator,
+                model.samples_used,
+                model.data_from.to_the_minute(),
+                model.data_until.to_the_minute()
+            ),
+            format!("Data SHA-256 {}", model.input_hash),
+        ]
     };
-    let lines = [
-        format!(
-            "Model version {} of {}, {}: {from}",
-            model.version,
-            model.fitted_at.to_the_minute(),
-            model.estimator
-        ),
-        format!("Data SHA-256 {}", model.input_hash),
-    ];
     for (index, line) in lines.into_iter().enumerate() {
         let y = A4.1 - MARGIN - 14.0 + 9.5 * index as f32;
         sheet.text((LEFT, y), Style::plain(6.8).grey(FAINT), line);

@@ -32,7 +32,12 @@ pub(super) fn draw(sheet: &mut Sheet, card: &Card) -> f32 {
 
 /// What the card is worth, so that nobody can overlook it.
 fn mark(sheet: &mut Sheet, card: &Card) {
+    let foretold = card.model.foretold_by.and(card.unverified_order);
     let (word, why) = match &card.verified {
+        None if foretold.is_some() => (
+            "PREDICTED",
+            "foretold from an adjustment at the berth; not verified at sea".to_owned(),
+        ),
         None => (
             "PREDICTED",
             "by a model of observations under way; no adjuster has signed it".to_owned(),

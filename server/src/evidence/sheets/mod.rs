@@ -46,6 +46,30 @@ pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
     pdf(&paper.finish(&foot), &about)
 }
 
+/// The residuals that the record foretells, a row to a place and heading.
+///
+/// # Errors
+/// When the text is no record of ours.
+pub fn predicted_csv(text: &str) -> anyhow::Result<String> {
+    let record: Value = serde_json::from_str(text)?;
+    let tables = record["predicted_after"].as_array();
+    let mut lines = vec!["place,compass_deg,predicted_deviation_deg,band95_deg".to_owned()];
+    for table in tables.into_iter().flatten() {
+        for row in table["rows"].as_array().into_iter().flatten() {
+            let band = row["band95_deg"].as_f64();
+            let band = band.map_or(String::new(), |band| format!("{band:.2}"));
+            lines.push(format!(
+                "{},{:.0},{:.2},{band}",
+                word(&table["place"]),
+                number(&row["compass_deg"]),
+                number(&row["deviation_deg"])
+            ));
+        }
+    }
+    lines.push(String::new());
+    Ok(lines.join("\n"))
+}
+
 fn word(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -208,8 +232,8 @@ fn plan(paper: &mut Paper, record: &Value) {
     paper.fact(
         "Followed",
         &format!(
-            "{} movements; worst residual {:.1}°, weighted over the waters; widest band ±{:.1}°",
-            plan["moves"],
+            "{} steps; worst residual {:.1}°, weighted over the waters; widest band ±{:.1}°",
+            steps_done(record),
             number(&plan["worst_residual_deg"]),
             number(&plan["widest_band_deg"])
         ),
@@ -251,6 +275,12 @@ fn plan(paper: &mut Paper, record: &Value) {
     for note in plan["notes"].as_array().into_iter().flatten() {
         paper.fact("Note", &word(note));
     }
+}
+
+/// How many of the steps moved something, those before a new plan with the rest.
+fn steps_done(record: &Value) -> usize {
+    let steps = record["steps_as_read"].as_array().into_iter().flatten();
+    steps.filter(|step| step["moved"] == true).count()
 }
 
 fn photos(paper: &mut Paper, record: &Value) {

@@ -49,12 +49,13 @@ pub(super) fn steps(paper: &mut Paper, record: &Value) {
     if steps.is_none_or(Vec::is_empty) {
         paper.lines(LEFT, Style::plain(SIZE), "None: nothing had to be moved.");
     }
-    for step in steps.into_iter().flatten() {
+    // A new plan counts its steps from one again; on paper they are counted through.
+    for (index, step) in steps.into_iter().flatten().enumerate() {
         let said = &step["said"];
         let turned =
             (number(&said["after_deg"]) - number(&said["before_deg"]) + 540.0).rem_euclid(360.0);
         paper.room_for(3);
-        let words = format!("{}. {}", said["number"], word(&step["words"]));
+        let words = format!("{}. {}", index + 1, word(&step["words"]));
         paper.lines(LEFT, Style::plain(SIZE), &words);
         let showed = format!(
             "{}: compass {} to {}, turned {}, expected {} within {:.1}°: {}",

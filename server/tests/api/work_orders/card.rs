@@ -55,12 +55,45 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     assert_eq!(card["verified"], Value::Null);
     assert_eq!(card["adjusted_by"]["order"], job.order);
     assert_eq!(card["adjusted_by"]["licence"], "ES-CA-114");
-    assert_eq!(card["next_due"]["on"], "2028-11-21");
+    // Nothing at sea supports it yet: no term begins, and it says where it comes from.
+    assert_eq!(card["unverified_order"], job.order);
+    assert_eq!(card["next_due"], Value::Null);
+    assert!(
+        !card["not_recorded"]
+            .as_array()
+            .unwrap()
+            .contains(&json!("next_due"))
+    );
+    let statement = card["statement"].as_str().unwrap();
+    assert!(
+        statement.starts_with("Foretold when the compass was adjusted"),
+        "{statement}"
+    );
+    assert!(statement.contains(&job.order), "{statement}");
+    let source = &card["model"];
+    let data = [&source["data_from"], &source["data_until"]];
+    assert!(
+        data.iter().all(|at| at.as_str().unwrap() < "2026-11-20T12"),
+        "{source}"
+    );
+    let csv = job.person.get(&job.ship.path("/card.csv")).await.text;
+    let order = format!(",{},", job.order);
+    assert!(
+        csv.lines().skip(1).all(|line| line.contains(&order)),
+        "{csv}"
+    );
+    let svg = job.person.get(&job.ship.path("/card.svg")).await.text;
+    for words in ["not verified at sea", "unverified berth adjustment"] {
+        assert!(svg.contains(words), "{words}: {svg}");
+    }
+    assert!(!svg.contains("(logbook)"), "{svg}");
     let more = job.sail(&shore, &ship, 2, 6.0).await;
     assert_eq!(more["state"], "verified", "{}", more["verification"]);
 
     job.is_said_everywhere("verified").await;
     let card = job.card().await;
+    assert_eq!(card["next_due"]["on"], "2028-11-21");
+    assert_eq!(card["unverified_order"], Value::Null);
     let by = &card["verified"];
     assert_eq!(by["order"], job.order);
     assert_eq!(by["adjusted_at"], more["completed_at"]);

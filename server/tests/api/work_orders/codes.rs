@@ -17,7 +17,7 @@ on_both!(
 
 impl Job {
     /// Another order for the same compass, whose plan keeps to these limits.
-    async fn order_again(&mut self, limits: Value) {
+    pub(super) async fn order_again(&mut self, limits: Value) {
         self.post("/cancel", &json!({ "text": "other limits" }))
             .await
             .good();

@@ -35,7 +35,11 @@ async fn each_entry_names_the_hash_of_the_one_before(shore: Shore) {
     shore.finish().await;
 }
 
-const PICTURE: &[u8] = &[0xFF, 0xD8, 0xFF, 0xE0, 0, 16, b'J', b'F', b'I', b'F'];
+/// The frame of a JPEG of 800 by 600, and the beginning of its scan.
+pub(super) const PICTURE: &[u8] = &[
+    0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 0, 0, 0xFF, 0xC0, 0, 11, 8, 0x02, 0x58, 0x03, 0x20, 1, 1, 0x11,
+    0, 0xFF, 0xDA, 0, 8,
+];
 
 impl Job {
     async fn photo(&self, bytes: &'static [u8]) -> Answer {
@@ -51,6 +55,9 @@ async fn only_a_picture_is_a_photograph(shore: Shore) {
         (page.status, page.problem().as_str()),
         (415, "unsupported-media-type")
     );
+    let cut_off = job.photo(b"\x89PNG\r\n\x1a\n").await;
+    assert_eq!(cut_off.problem(), "unsupported-media-type");
+    assert!(cut_off.text.contains("cut off"), "{cut_off:?}");
     job.photo(PICTURE).await.good();
     let order = job.seen().await;
     assert_eq!(order["photos"].as_array().unwrap().len(), 1);
@@ -148,6 +155,9 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
         found.facts.iter().any(|fact| fact.contains(&public_key)),
         "{found:?}"
     );
+    assert!(found.facts.iter().any(|fact| {
+        fact.contains("cover record.json, predicted.csv, record.pdf, photos/0002.jpeg")
+    }));
     let files = unpacked(&whole);
     assert!(String::from_utf8_lossy(&files["README.txt"]).contains("not a certificate"));
     assert!(
@@ -187,6 +197,23 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
         let problems = evidence::verify(&packed(&forged)).problems;
         assert_eq!(problems.len(), 1, "{name}: {problems:?}");
     }
+    // who changes what is drawn from the record by the record,
+    for (name, content) in [
+        (
+            "predicted.csv",
+            b"place,compass_deg,predicted_deviation_deg,band95_deg\n".to_vec(),
+        ),
+        (
+            "record.pdf",
+            b"%PDF-1.7 CERTIFICATE OF ADJUSTMENT\n".to_vec(),
+        ),
+    ] {
+        let mut forged = files.clone();
+        forge(&mut forged, name, content);
+        let problems = evidence::verify(&packed(&forged)).problems;
+        assert_eq!(problems.len(), 1, "{name}: {problems:?}");
+        assert!(problems[0].starts_with(name), "{problems:?}");
+    }
     // a log that lost a line by its chain, and one that lost its end by its head.
     let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();
     let lines: Vec<&str> = log.lines().collect();
@@ -199,5 +226,18 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
         assert!(!problems.is_empty(), "without line {}", left_out + 1);
     }
     assert!(!evidence::verify(b"not an archive").problems.is_empty());
+    // A photograph that comes after the record is evidence, and nobody has signed it.
+    job.photo(PICTURE).await.good();
+    let found = evidence::verify(&job.evidence().await);
+    assert_eq!(found.problems, Vec::<String>::new());
+    let uncovered = found
+        .facts
+        .iter()
+        .find(|fact| fact.starts_with("no signature covers"));
+    let later = format!("photos/{:04}.jpeg", lines.len() + 1);
+    assert!(
+        uncovered.is_some_and(|fact| fact.contains(&later)),
+        "{found:?}"
+    );
     shore.finish().await;
 }

@@ -3,6 +3,7 @@
 mod card;
 mod codes;
 mod evidence;
+mod limits;
 mod refusals;
 mod way;
 

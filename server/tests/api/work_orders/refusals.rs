@@ -10,6 +10,8 @@ on_both!(
     a_request_sent_again_under_its_key_writes_one_entry,
     what_a_phone_kept_for_days_is_written_once,
     a_bad_reading_is_kept_and_refused_with_what_could_be_wrong,
+    a_reading_is_doubted_by_the_port_and_by_the_track,
+    what_was_moved_can_be_put_back_and_the_berth_read_again,
     a_step_that_reads_otherwise_is_planned_anew,
     what_cannot_be_done_in_a_state_is_refused_and_writes_nothing,
     a_compass_has_one_order_under_way,
@@ -55,7 +57,7 @@ async fn a_request_sent_again_under_its_key_writes_one_entry(shore: Shore) {
 
 async fn what_a_phone_kept_for_days_is_written_once(shore: Shore) {
     let mut job = Job::begin(&shore).await;
-    let photo = b"\xFF\xD8\xFF\xE0 a tray".to_vec();
+    let photo = super::evidence::PICTURE.to_vec();
     for days in [0.0, 3.0, 40.0] {
         shore.advance(86_400.0 * days);
         // No session lasts so long.
@@ -122,6 +124,7 @@ async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(shore: Shore
         let refusal = answer.json()["refusals"][0].clone();
         let could_be = refusal["could_be"].to_string();
         assert!(could_be.contains(said), "{said}: {refusal}");
+        assert!(!could_be.contains("across the needle"), "{refusal}");
         assert!(!refusal["cures"].as_array().unwrap().is_empty());
         let order = job.seen().await;
         assert_eq!(
@@ -146,6 +149,56 @@ async fn a_bad_reading_is_kept_and_refused_with_what_could_be_wrong(shore: Shore
         4,
         "what cannot be read is not kept"
     );
+    shore.finish().await;
+}
+
+async fn a_reading_is_doubted_by_the_port_and_by_the_track(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let with = |changes: Value| {
+        let mut body = reading();
+        body.as_object_mut()
+            .unwrap()
+            .extend(changes.as_object().unwrap().clone());
+        body
+    };
+    // Of a week ago no plan could be made.
+    let old = with(json!({ "at": "2026-11-14T06:30:00Z" }));
+    let answer = job.post("/berth-reading", &old).await;
+    assert_eq!(answer.problem(), "invalid");
+    assert!(answer.text.contains("hours back"), "{answer:?}");
+    // East for west; and when by her own track she was at sea.
+    for (body, words) in [
+        (with(json!({ "lon": 3.04 })), "nautical miles from Bilbao"),
+        (
+            with(json!({ "at": "2026-11-19T22:00:00Z" })),
+            "from where her track has her",
+        ),
+    ] {
+        let answer = job.post("/berth-reading", &body).await;
+        assert_eq!(answer.problem(), "not-adjustable", "{body}");
+        let refusal = answer.json()["refusals"][0].clone();
+        assert!(refusal.to_string().contains(words), "{words}: {refusal}");
+        assert_eq!(job.seen().await["state"], "planned");
+    }
+    job.post("/berth-reading", &reading()).await.good();
+    shore.finish().await;
+}
+
+async fn what_was_moved_can_be_put_back_and_the_berth_read_again(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    job.post("/berth-reading", &reading()).await.good();
+    let order = job.post("/plan", &json!({})).await.good();
+    let before = order["next_step"]["setting_before"].clone();
+    let path = format!("/steps/{}", order["next_step"]["number"]);
+    let after = json!({ "after_deg": order["next_step"]["expected_compass_deg"] });
+    job.post(&path, &after).await.good();
+    let refused = job.post("/berth-reading", &reading()).await;
+    assert_eq!(refused.problem(), "wrong-state");
+    assert!(refused.text.contains("put them back"), "{refused:?}");
+    let stand = json!({ "setting": before });
+    job.post("/corrector-settings", &stand).await.good();
+    let order = job.post("/berth-reading", &reading()).await.good();
+    assert_eq!(order["state"], "measured");
     shore.finish().await;
 }
 

@@ -221,6 +221,38 @@ fn the_first_plan_takes_the_fewest_moves_among_near_equals_and_the_others_trade(
 }
 
 #[test]
+fn an_alternative_keeps_to_the_limits_that_the_recommended_plan_keeps_to() {
+    let case = case(60.0);
+    let wide = Limits {
+        residual_deg: 30.0,
+        band_deg: 10.0,
+        ..Limits::default()
+    };
+    let with = |limits: Limits| {
+        let mut adjustment = case.adjustment();
+        adjustment.limits = limits;
+        plan(&adjustment).unwrap()
+    };
+    let all = with(wide).plans;
+    let reach = |plan: &Plan| {
+        let reaches = plan.after.iter().filter_map(|table| table.reach_deg);
+        reaches.fold(0.0, f64::max)
+    };
+    let furthest = all.iter().map(reach).fold(0.0, f64::max);
+    let narrow = Limits {
+        residual_deg: furthest - 0.01,
+        ..wide
+    };
+    let kept = with(narrow).plans;
+    assert!(!kept.is_empty() && kept.len() < all.len());
+    for plan in &all {
+        let within = reach(plan) <= narrow.residual_deg;
+        assert_eq!(plan.beyond(&narrow, &case.waters).is_none(), within);
+        assert_eq!(kept.contains(plan), within);
+    }
+}
+
+#[test]
 fn no_plan_uses_what_is_not_on_board() {
     let mut form: BinnacleForm = class_a().into();
     form.aboard.magnets[0].count = 5;

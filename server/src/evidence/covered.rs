@@ -1,0 +1,80 @@
+//! What a signature over the record's SHA-256 ties down: the record, what is made from it
+//! and nothing else, and the log as far as the record names it.
+//!
+//! What always holds: a file that is not covered is said to be so, or is a problem.
+
+use super::archive::Head;
+use super::sheets::{predicted_csv, record_pdf};
+use super::verify::Found;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// How far the log went when the record was made, by the record.
+pub(super) fn head(files: &BTreeMap<String, Vec<u8>>) -> Option<Head> {
+    let record: Value = serde_json::from_slice(files.get("record.json")?).ok()?;
+    serde_json::from_value(record["log"].clone()).ok()
+}
+
+/// Holds what is made from the record against what the record makes, and says what the
+/// record covers of an archive whose log has so many entries.
+pub(super) fn covered(files: &BTreeMap<String, Vec<u8>>, entries: i64, found: &mut Found) {
+    made_from_the_record(files, found);
+    let Some(head) = head(files) else {
+        found.problems.push("record.json names no log".to_owned());
+        return;
+    };
+    let of_the_record = |name: &&String| {
+        let number = name.get("photos/".len()..).and_then(|rest| rest.get(..4));
+        let number = number.and_then(|number| number.parse::<i64>().ok());
+        number.is_some_and(|number| number <= head.entries)
+    };
+    let photos = files.keys().filter(|name| name.starts_with("photos/"));
+    let (within, later): (Vec<&String>, Vec<&String>) = photos.partition(of_the_record);
+    let mut covers = vec!["record.json".to_owned(), "predicted.csv".to_owned()];
+    covers.push("record.pdf".to_owned());
+    covers.extend(within.into_iter().cloned());
+    found.facts.push(format!(
+        "the adjuster's word, and a firm's signature, cover {} and the log's entries 1 to {}",
+        covers.join(", "),
+        head.entries
+    ));
+    let mut beyond: Vec<String> = later.into_iter().cloned().collect();
+    if entries > head.entries {
+        beyond.push(format!("the log's entries from {} on", head.entries + 1));
+    }
+    if !beyond.is_empty() {
+        found.facts.push(format!(
+            "no signature covers {}: they came with the record or after it",
+            beyond.join(", ")
+        ));
+    }
+    if files.get("README.txt").map(Vec::as_slice) != Some(super::README.as_bytes()) {
+        found
+            .facts
+            .push("README.txt is not this version's; it is no part of the evidence".to_owned());
+    }
+}
+
+fn made_from_the_record(files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+    let text = files
+        .get("record.json")
+        .map(|bytes| std::str::from_utf8(bytes));
+    let Some(Ok(text)) = text else {
+        // That it is missing, or no text of ours, is said where it is held against the log.
+        return;
+    };
+    let made = [
+        ("predicted.csv", predicted_csv(text).map(String::into_bytes)),
+        ("record.pdf", record_pdf(text)),
+    ];
+    for (name, made) in made {
+        let is_so = made.is_ok_and(|made| files.get(name) == Some(&made));
+        if !is_so {
+            found.problems.push(format!(
+                "{name} is not what version {} makes from record.json: it was changed, or made \
+                 by another version; what was signed is record.json",
+                env!("CARGO_PKG_VERSION")
+            ));
+        }
+    }
+}
