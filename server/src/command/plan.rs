@@ -35,7 +35,7 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
     model.check().map_err(|error| of(&arguments.model, error))?;
     let binnacle: Binnacle = input::json_file(&arguments.binnacle)?;
     let form: BerthForm = input::json_file(&arguments.berth)?;
-    if let Some(mistake) = form.mistaken(&model) {
+    if let Some(mistake) = form.mistaken(&model, &binnacle) {
         return Err(of(&arguments.berth, mistake));
     }
     let berth = form.read().map_err(|error| of(&arguments.berth, error))?;

@@ -71,7 +71,12 @@ pub(super) fn check(
     basis: &Basis,
 ) -> Result<std::result::Result<Checked, Refusal>> {
     let variation = basis.variation()?;
-    let checked = given.check(&basis.model.model, basis.earth(), variation);
+    let checked = given.check(
+        &basis.model.model,
+        basis.earth(),
+        variation,
+        &basis.binnacle,
+    );
     Ok(match checked {
         Ok((reading, estimate)) => Ok(Checked::new(&reading, &estimate)),
         Err(refused) => Err(Refusal::from(&*refused)),

@@ -4,7 +4,7 @@ use super::basis::Prepared;
 use super::plan::{Planned, refusals};
 use super::refusal::Refusal;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{AdjustError, Outcome, Recheck, Step, recheck};
+use binnacle_magnetics::adjust::{AdjustError, Outcome, Recheck, Step, recheck, turned_in_all};
 use binnacle_magnetics::binnacle::{Binnacle, Setting};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -138,10 +138,10 @@ pub(super) fn judge(
     };
     let rechecked = recheck(&prepared.adjustment(), &step, before_deg, after_deg)?;
     let (said, setting, binnacle, outcome) = match rechecked {
-        Recheck::Confirmed { off_deg } => (
+        Recheck::Confirmed { off_deg, proven } => (
             said(
                 Verdict::Confirmed,
-                format!("as expected, to {:.1} degrees", off_deg.abs()),
+                format!("within {:.1} degrees: {}", off_deg.abs(), proven.in_words()),
             ),
             Some(step.setting_after.clone()),
             None,
@@ -187,7 +187,20 @@ pub(super) fn judge(
             Some(*binnacle),
             Some(outcome),
         ),
-        Recheck::Unexplained { off_deg } => (
+        Recheck::Unexplained { unmoved: true, .. } => (
+            said(
+                Verdict::Unexplained,
+                format!(
+                    "the compass stands as it stood, where {:.1} degrees were expected: was the \
+                     step done, and does the card turn freely? Tap the bowl and read again",
+                    step.change_deg
+                ),
+            ),
+            None,
+            None,
+            None,
+        ),
+        Recheck::Unexplained { off_deg, .. } => (
             said(
                 Verdict::Unexplained,
                 format!(
@@ -201,6 +214,10 @@ pub(super) fn judge(
             None,
         ),
     };
+    let said = match &setting {
+        Some(setting) if said.is_confirmed() => in_all(prepared, said, setting)?,
+        _ => said,
+    };
     let (replanned, refusals) = outcome.map_or((None, Vec::new()), |outcome| followed(*outcome));
     Ok(StepDone {
         said,
@@ -210,6 +227,24 @@ pub(super) fn judge(
         replanned,
         refusals,
     })
+}
+
+/// With what the steps so far come to together, where that is not what was expected.
+fn in_all(prepared: &Prepared, said: StepSaid, setting: &Setting) -> Result<StepSaid, AdjustError> {
+    let Some(first_deg) = prepared.given.compass_deg else {
+        return Ok(said);
+    };
+    let in_all = turned_in_all(&prepared.adjustment(), first_deg, setting, said.after_deg)?;
+    if in_all.agrees() {
+        return Ok(said);
+    }
+    let words = format!(
+        "{}; but {}: see that each corrector stands as it should, and read the magnetometer \
+         again before you finish",
+        said.words,
+        in_all.in_words()
+    );
+    Ok(StepSaid { words, ..said })
 }
 
 fn followed(outcome: Outcome) -> (Option<Box<Planned>>, Vec<Refusal>) {

@@ -211,6 +211,7 @@ fn mistakes_at_the_berth_are_bad_input_by_file_and_field() {
     );
     refused(&berth([y, x]), &["reading.forward", "axes are swapped"]);
     refused(&berth([1e6, y]), &["reading.forward", "1000000 nT is not"]);
+    refused(&berth([1e300, y]), &["reading.forward", "1e300 nT is not"]);
     let with = |path: &str, value: Value| {
         let mut berth = berth([x, y]);
         *berth.pointer_mut(path).unwrap() = value;
@@ -222,6 +223,7 @@ fn mistakes_at_the_berth_are_bad_input_by_file_and_field() {
     refused(&unit, &["gamma"]);
     let stern = with("/reading/heading_true_deg", json!(243.0));
     refused(&stern, &["reading.heading_true_deg", "180 degrees off"]);
+    refused(&stern, &["it could be that the heading is"]);
     let wrong = with("/reading/heading_true_deg", json!(400.0));
     refused(&wrong, &["reading.heading_true_deg", "400"]);
     refused(
@@ -252,6 +254,9 @@ fn a_binnacle_that_cannot_be_is_bad_input_by_file_and_field() {
     let mut wrong = binnacle();
     wrong["setting"]["fore_and_aft"][0]["hole"] = json!(25);
     refused(&wrong, &["setting.fore_and_aft[0].hole", "no hole 25"]);
+    let mut wrong = binnacle();
+    wrong["setting"]["heeling"]["position"] = json!(99);
+    refused(&wrong, &["setting.heeling.position", "no position 99"]);
     let mut wrong = binnacle();
     wrong["type"]["magnets"] = json!([]);
     refused(&wrong, &["magnets", "is empty"]);

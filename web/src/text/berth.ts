@@ -164,6 +164,7 @@ export const berth = {
       side: { forward: 'forward of the card', aft: 'aft of the card' },
       position: (n: number) => `position ${n}`,
       first: 'Before the next step',
+      firstOfBar: 'Before it goes in',
       expect: 'The compass should then read',
       tolerance: (deg: string) => `within ${deg}`,
       turns: (deg: string, way: string) => `it turns by ${deg}, ${way}`,
@@ -176,7 +177,7 @@ export const berth = {
       readsHelp: 'when it has settled',
       submit: 'Done: next',
       send: 'Send what it reads',
-      ok: (off: string) => `As expected, to ${off}.`,
+      ok: (off: string) => `Off by ${off}, within what readings err.`,
       off: (off: string) =>
         `Off by ${off}. Read once more; if it stays so, send it: what to do follows from what was read.`,
       wrong: 'Enter what the compass reads, 0 to 360.',
@@ -184,7 +185,7 @@ export const berth = {
       toBeSent: 'waiting to be sent',
       done: 'Steps done',
       verdict: {
-        confirmed: 'As expected',
+        confirmed: 'Within what readings err',
         not_seen: 'Not to be seen on this heading',
         wrong_end: 'Wrong end',
         other_strength: 'Other strength: there is a new plan',

@@ -2,7 +2,7 @@
 
 use super::Adjustment;
 use super::condition::Condition;
-use crate::berth::{Consistency, Estimated, Verdict};
+use crate::berth::{Consistency, Estimated, USUAL_LAMBDA, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// Less than this share of a coefficient is not seen on a heading.
@@ -58,6 +58,15 @@ impl BerthCheck {
             words.push(format!(
                 "the berth has checked little: {}",
                 self.consistency.in_words()
+            ));
+        }
+        let lambda = self.lambda.value;
+        if !USUAL_LAMBDA.contains(&lambda) {
+            let (least, greatest) = (USUAL_LAMBDA.start(), USUAL_LAMBDA.end());
+            words.push(format!(
+                "lambda is {lambda:.2}, where {least} to {greatest} is usual: a magnetometer whose \
+                 scale is wrong, or that was not where the card is, would do that, and the whole \
+                 plan errs in proportion; read again before anything is moved"
             ));
         }
         let Seen { b, c, d, e } = self.seen;

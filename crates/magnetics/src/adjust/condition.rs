@@ -79,6 +79,14 @@ impl<'a> Condition<'a> {
         Ok(condition)
     }
 
+    /// As if λ were sure enough for spheres to be moved.
+    pub(super) fn with_free_spheres(&self) -> Condition<'a> {
+        Condition {
+            may_move_pair: true,
+            ..*self
+        }
+    }
+
     pub(super) fn constant_deg(&self) -> f64 {
         self.model.constant_deg
     }

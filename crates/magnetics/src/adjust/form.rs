@@ -168,7 +168,10 @@ impl BerthForm {
                 greatest,
             } => wrong(
                 format!("reading.{}", name.trim_end_matches("_nt")),
-                format!("{value} nT is not between {least} and {greatest}"),
+                format!(
+                    "{} nT is not between {least} and {greatest}",
+                    figure(*value)
+                ),
             ),
             _ => wrong("reading.forward, reading.starboard", error.to_string()),
         })?;
@@ -214,16 +217,25 @@ impl BerthForm {
         .read()
     }
 
-    /// The mistake that alone makes the reading fit the model, if there is one.
-    pub fn mistaken(&self, model: &Model) -> Option<FormError> {
+    /// The mistakes each of which alone makes the reading fit the model, if there are any.
+    pub fn mistaken(&self, model: &Model, binnacle: &Binnacle) -> Option<FormError> {
         self.reading.must_be_numbers().ok()?;
         let (earth, variation) = self.field().ok()?;
-        let refused = self.reading.check(model, earth, variation).err()?;
-        let mistake = refused.refusal.mistakes().first()?;
-        Some(wrong(
-            format!("reading.{}", mistake.field()),
-            mistake.to_string(),
-        ))
+        let refused = self
+            .reading
+            .check(model, earth, variation, binnacle)
+            .err()?;
+        let mistakes = refused.refusal.mistakes();
+        let mut fields: Vec<String> = Vec::new();
+        for mistake in mistakes {
+            let field = format!("reading.{}", mistake.field());
+            if !fields.contains(&field) {
+                fields.push(field);
+            }
+        }
+        let each: Vec<String> = mistakes.iter().map(ToString::to_string).collect();
+        let what = format!("it could be that {}", each.join(", or that "));
+        (!mistakes.is_empty()).then(|| wrong(fields.join(" or "), what))
     }
 
     fn field(&self) -> Result<(EarthField, Variation), FormError> {
@@ -243,7 +255,7 @@ impl BerthForm {
     fn waters(&self, berth: EarthField) -> Result<Vec<Water>, FormError> {
         if self.waters.is_empty() {
             return Ok(vec![Water {
-                name: "where she lies".to_owned(),
+                name: "the waters of her berth".to_owned(),
                 h_nt: berth.h_nt,
                 z_nt: berth.z_nt,
                 weight: 1.0,
@@ -272,6 +284,15 @@ impl WaterForm {
             z_nt: field.z_nt,
             weight: self.weight,
         })
+    }
+}
+
+/// A figure as it was given, unless that would fill the page.
+fn figure(value: f64) -> String {
+    if value.abs() < 1e12 {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }
 

@@ -5,6 +5,8 @@
 
 use super::Adjustment;
 use super::condition::Condition;
+use super::instructions::NORMAL_99;
+use super::tolerance::errors_between;
 use crate::berth::BerthError;
 use crate::binnacle::{HeelingSetting, Red, Setting};
 use crate::corrector::{Effect, Iron, effect, heeling_effect};
@@ -46,16 +48,55 @@ impl VerticalReading {
     }
 }
 
+/// What the magnetometer would read down with correctors of this effect, nT.
+fn down_nt(adjustment: &Adjustment<'_>, condition: &Condition<'_>, effect: &Effect) -> Option<f64> {
+    let read_nt = adjustment.vertical?.down_nt;
+    let z_nt = adjustment.earth.z_nt;
+    Some(read_nt + condition.chi33_change(effect) * z_nt + condition.bz_change(effect))
+}
+
+/// How a step with heeling magnets is verified, which no compass on an even keel shows;
+/// none where the vertical force was not read.
+pub(super) fn check(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    before: &Setting,
+    after: &Setting,
+) -> Option<String> {
+    let binnacle = condition.binnacle;
+    let [was_nt, will_nt] =
+        [before, after].map(|setting| down_nt(adjustment, condition, &effect(binnacle, setting)));
+    let (was_nt, will_nt) = (was_nt?, will_nt?);
+    let errors = adjustment.reading.errors();
+    let tilted_nt = adjustment.earth.h_nt * errors.tilt_sd_deg.to_radians();
+    // Read twice with the same instrument: noise and tilt differ, its scale does not.
+    let instrument_nt = std::f64::consts::SQRT_2 * errors.field_sd_nt.hypot(tilted_nt);
+    let scale_nt = adjustment.scale_sd * (will_nt - was_nt);
+    let of_correctors = errors_between(binnacle, &binnacle.setting, after);
+    let squares = of_correctors.iter().map(|error| {
+        let down_nt = error.chi[2][2] * adjustment.earth.z_nt + error.b_nt[2];
+        down_nt.powi(2)
+    });
+    let correctors_nt = squares.sum::<f64>().sqrt();
+    let sd_nt = instrument_nt.hypot(scale_nt).hypot(correctors_nt);
+    Some(format!(
+        "on an even keel the compass does not show these: with the bowl out and the magnetometer \
+         as before, it must now read {:.1} microtesla down, to {:.1}; before this step {:.1}",
+        will_nt / 1e3,
+        NORMAL_99 * sd_nt / 1e3,
+        was_nt / 1e3
+    ))
+}
+
 /// J with correctors of this effect, degrees per degree.
 fn heeling_error(
     adjustment: &Adjustment<'_>,
     condition: &Condition<'_>,
     effect: &Effect,
 ) -> Option<f64> {
-    let read_nt = adjustment.vertical?.down_nt;
+    let aboard_nt = down_nt(adjustment, condition, effect)?;
     let z_nt = adjustment.earth.z_nt;
     let h_nt = adjustment.earth.h_nt;
-    let aboard_nt = read_nt + condition.chi33_change(effect) * z_nt + condition.bz_change(effect);
     let ship = condition.aboard(effect, h_nt);
     Some(((1.0 + ship.chi[1][1]) * z_nt - aboard_nt) / (ship.lambda() * h_nt))
 }

@@ -6,10 +6,10 @@
 //! the plan says. A step that finds its hole taken waits for the other tray, or takes
 //! its own out first.
 
-use super::Adjustment;
 use super::condition::Condition;
 use super::moves::matched;
 use super::tolerance::errors_between;
+use super::{Adjustment, heeling};
 use crate::angle::{wrap_180, wrap_360};
 use crate::berth::Alignment;
 use crate::binnacle::{Axis, BarSetting, HeelingSetting, PairSetting, Setting, Side, Tray};
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// How well two readings of a card tell its turn, degrees.
-const READING_SD_DEG: f64 = 0.3;
+pub(super) const READING_SD_DEG: f64 = 0.3;
 /// Two-sided 99 % of a normal distribution: of a hundred right steps one is looked at
 /// again.
 pub(super) const NORMAL_99: f64 = 2.575_829;
@@ -162,6 +162,12 @@ pub(super) fn change_deg(
     (change, variance.sqrt().hypot(of_lambda))
 }
 
+/// How far off a turn may be that is known to so much, degrees.
+pub(super) fn tolerance_deg(sd_deg: f64) -> f64 {
+    let tolerance_deg = NORMAL_99 * sd_deg.hypot(READING_SD_DEG);
+    tolerance_deg.max(LEAST_TOLERANCE_DEG)
+}
+
 fn step(
     adjustment: &Adjustment<'_>,
     condition: &Condition<'_>,
@@ -173,15 +179,18 @@ fn step(
 ) -> Step {
     let (corrector, from, to) = moved;
     let (change_deg, sd_deg) = change_deg(adjustment, condition, &before, &after);
-    let tolerance_deg = NORMAL_99 * sd_deg.hypot(READING_SD_DEG);
-    let tolerance_deg = tolerance_deg.max(LEAST_TOLERANCE_DEG);
+    let tolerance_deg = tolerance_deg(sd_deg);
     let action = action(from.as_ref(), to.as_ref());
     Step {
         number,
         corrector,
         action,
         words: words(condition, corrector, from.as_ref(), to.as_ref()),
-        check: retentive(corrector),
+        check: match corrector {
+            Corrector::Heeling => heeling::check(adjustment, condition, &before, &after),
+            // What comes out shows nothing of its own any more.
+            _ => to.as_ref().and_then(|_| retentive(corrector)),
+        },
         from,
         to,
         expected_compass_deg: wrap_360(shown_deg + change_deg),
@@ -365,9 +374,13 @@ fn said(condition: &Condition<'_>, corrector: Corrector, place: &Place) -> Strin
                 slew => format!(", {} degrees to port", -slew),
             };
             format!(
-                "{} mm ({} mm, the longest on top) {side} the card{slew}",
+                "{} mm ({}; spacers of wood or brass fill the tube below, so that its top stands \
+                 at the card's height) {side} the card{slew}",
                 bar.length_mm,
-                pieces.join(" + ")
+                match &pieces[..] {
+                    [_] => "one piece".to_owned(),
+                    _ => format!("{} mm, the longest on top", pieces.join(" + ")),
+                }
             )
         }
         Place::Bucket(set) => {

@@ -9,9 +9,6 @@ use crate::ship::EarthField;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// λ of a compass that was placed with any care: the unit is right.
-const USUAL_LAMBDA: std::ops::RangeInclusive<f64> = 0.5..=1.25;
-
 /// One thing that, done otherwise, makes a reading fit the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -36,6 +33,8 @@ pub enum Mistake {
 
 impl Mistake {
     pub(super) const ALL: [Mistake; 8] = [
+        // The commonest first: so they are told.
+        Mistake::HeadingReversed,
         Mistake::Nanotesla,
         Mistake::Microtesla,
         Mistake::Gauss,
@@ -43,7 +42,6 @@ impl Mistake {
         Mistake::SwappedAxes,
         Mistake::StarboardReversed,
         Mistake::ForwardReversed,
-        Mistake::HeadingReversed,
     ];
 
     /// The field of the form that it stands in.
@@ -125,7 +123,7 @@ pub fn mistakes(
         };
         let reading = BerthReading::new(magnetic, field_nt, errors, alignment);
         let found = reading.and_then(|reading| lambda_at_berth(model, earth, &reading));
-        found.is_ok_and(|found| USUAL_LAMBDA.contains(&found.lambda.value))
+        found.is_ok()
     };
     if fits(magnetic.degrees(), field_nt) {
         return Vec::new();
@@ -135,6 +133,24 @@ pub fn mistakes(
         fits(degrees, field_nt)
     };
     Mistake::ALL.into_iter().filter(explains).collect()
+}
+
+/// Mistakes with the axes that this heading would not show: the reading fits the model
+/// with and without them.
+pub(super) fn unseen(model: &Model, earth: EarthField, reading: &BerthReading) -> Vec<Mistake> {
+    let fits = |mistake: &Mistake| {
+        let degrees = reading.magnetic().degrees();
+        let (_, field_nt) = mistake.undone(degrees, reading.field_nt(), Unit::Nanotesla);
+        let (errors, alignment) = (reading.errors(), reading.alignment());
+        let undone = BerthReading::new(reading.magnetic(), field_nt, errors, alignment);
+        undone.is_ok_and(|undone| lambda_at_berth(model, earth, &undone).is_ok())
+    };
+    let axes = [
+        Mistake::SwappedAxes,
+        Mistake::StarboardReversed,
+        Mistake::ForwardReversed,
+    ];
+    axes.into_iter().filter(fits).collect()
 }
 
 impl fmt::Display for Mistake {

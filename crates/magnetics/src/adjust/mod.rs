@@ -10,30 +10,34 @@
 mod again;
 mod berth;
 mod candidates;
+mod card;
 mod condition;
 mod form;
 mod heeling;
 mod instructions;
 mod mistakes;
 mod moves;
+mod notes;
 mod objective;
 mod predicted;
 mod read;
 mod recheck;
 mod refusal;
 mod search;
+mod spheres;
 mod tolerance;
 mod verify;
 
 pub use again::{Again, AgainForm, Done, Learnt, Part, Slip, Verdict, read_again};
 pub use berth::{BerthCheck, Seen};
+pub use card::Card;
 pub use form::{AfterForm, Berth, BerthForm, FieldForm, FormError, WaterForm};
 pub use heeling::{HeelingPlan, VerticalReading};
 pub use instructions::{Action, Corrector, Place, Step};
 pub use mistakes::{Mistake, mistakes};
 pub use predicted::{PredictedRow, PredictedTable};
 pub use read::{HeadingFrom, Magnetometer, NumberError, ReadingForm, Unit};
-pub use recheck::{Recheck, recheck};
+pub use recheck::{InAll, Proven, Recheck, recheck, turned_in_all};
 pub use refusal::{Coefficient, Cure, Refusal};
 pub use verify::{Needed, Settled, Verification, verify};
 
@@ -276,6 +280,8 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
         Err(error) => return Err(error),
     };
     let berth = BerthCheck::new(adjustment, &condition);
+    let card = adjustment.card();
+    refusals.extend(card.filter(Card::is_refused).map(Refusal::CardDisagrees));
     if !refusals.is_empty() {
         return Ok(refused(Some(berth), refusals));
     }
@@ -283,12 +289,11 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     let mut plans = Vec::new();
     for found in chosen(&front, adjustment.limits.near_equal_deg) {
         let plan = whole(adjustment, &condition, found)?;
-        let beyond = refusal::afterwards(adjustment, &condition, &plan);
-        if beyond.is_empty() {
+        if plan.beyond(&adjustment.limits, adjustment.waters).is_none() {
             plans.push(plan);
         } else if refusals.is_empty() {
             // Of the plan that would be recommended.
-            refusals = beyond;
+            refusals = refusal::afterwards(adjustment, &condition, &plan);
         }
     }
     // What is beyond the limits is no alternative either.
@@ -296,7 +301,7 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
         return Ok(refused(Some(berth), refusals));
     }
     Ok(Outcome {
-        notes: notes(adjustment, &condition, &berth),
+        notes: notes::notes(adjustment, &condition, &berth, &plans),
         berth: Some(berth),
         refusals: Vec::new(),
         plans,
@@ -357,26 +362,6 @@ fn whole(
         model_after: condition.model_with(&found.setting)?,
         setting: found.setting.clone(),
     })
-}
-
-fn notes(
-    adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    berth: &BerthCheck,
-) -> Vec<String> {
-    let mut notes = berth.in_words();
-    if !condition.may_move_pair && adjustment.binnacle.design.quadrantal.is_some() {
-        notes.push(format!(
-            "spheres are left as found: lambda is sure only to {:.1} per cent",
-            100.0 * condition.lambda_sd_share()
-        ));
-    }
-    if !condition.may_move_bar && adjustment.binnacle.design.flinders.is_some() {
-        notes.push(
-            "the Flinders bar is left as found: the model does not tell chi13 from bx".to_owned(),
-        );
-    }
-    notes
 }
 
 fn check(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
@@ -453,6 +438,25 @@ impl Adjustment<'_> {
     /// How the correctors stand now.
     pub fn standing(&self) -> &Setting {
         self.now.unwrap_or(&self.binnacle.setting)
+    }
+
+    /// The compass held against the field, while the correctors stand as they did when
+    /// both were read.
+    fn card(&self) -> Option<Card> {
+        if *self.standing() != self.binnacle.setting {
+            return None;
+        }
+        let constant_deg = self.model.constant_deg;
+        let card = |read_deg| {
+            Card::new(
+                read_deg,
+                self.reading,
+                self.earth,
+                self.binnacle,
+                constant_deg,
+            )
+        };
+        self.compass_deg.map(card)
     }
 }
 

@@ -7,12 +7,14 @@
 
 use super::Refused;
 use super::VerticalReading;
+use super::card::Card;
 use super::mistakes::{Mistake, mistakes};
 use super::refusal::Refusal;
 use crate::angle::{MagneticHeading, TrueHeading, Variation};
 use crate::berth::{
     Alignment, BerthError, BerthEstimate, BerthReading, ReadingErrors, lambda_at_berth,
 };
+use crate::binnacle::Binnacle;
 use crate::fit::WEAKEST_H_NT;
 use crate::model::Model;
 use crate::ship::EarthField;
@@ -239,7 +241,8 @@ impl ReadingForm {
         )
     }
 
-    /// λ and the berth's consistency, or why the reading is not taken.
+    /// λ and the berth's consistency, or why the reading is not taken; its correctors
+    /// stood as the binnacle says.
     ///
     /// # Errors
     /// The refusal, with what alone would explain it.
@@ -248,6 +251,7 @@ impl ReadingForm {
         model: &Model,
         earth: EarthField,
         variation: Variation,
+        binnacle: &Binnacle,
     ) -> Result<(BerthReading, BerthEstimate), Box<Refused>> {
         if earth.h_nt < WEAKEST_H_NT {
             let h_nt = earth.h_nt;
@@ -257,10 +261,16 @@ impl ReadingForm {
             let estimate = lambda_at_berth(model, earth, &reading)?;
             Ok((reading, estimate))
         });
-        found.map_err(|error| {
+        let (reading, estimate) = found.map_err(|error| {
             let explain = self.mistakes(model, earth, variation);
             Box::new(Refusal::of_reading(&error, explain).with_cures())
-        })
+        })?;
+        let card = |read_deg| Card::new(read_deg, &reading, earth, binnacle, model.constant_deg);
+        let card = self.compass_deg.map(card).filter(Card::is_refused);
+        match card {
+            Some(card) => Err(Box::new(Refusal::CardDisagrees(card).with_cures())),
+            None => Ok((reading, estimate)),
+        }
     }
 
     fn mistakes(&self, model: &Model, earth: EarthField, variation: Variation) -> Vec<Mistake> {

@@ -2,15 +2,21 @@
 //! plan from there where it was otherwise.
 
 use super::condition::Condition;
-use super::instructions::{NORMAL_99, Place, Step, change_deg};
+use super::instructions::{NORMAL_99, Place, READING_SD_DEG, Step, change_deg, tolerance_deg};
 use super::{AdjustError, Adjustment, Outcome, plan};
 use crate::angle::wrap_180;
 use crate::binnacle::{Axis, Binnacle, BinnacleForm, Calibrated, Setting, Soft};
 use crate::corrector::Iron;
+use crate::deviation::NORMAL_95;
 use serde::{Deserialize, Serialize};
 
 /// A corrector is not so much weaker or stronger than it is said to be.
 const STRENGTHS: std::ops::RangeInclusive<f64> = 0.3..=3.0;
+
+/// A card that turned by less may not have turned at all, degrees.
+const UNMOVED_DEG: f64 = 0.5;
+/// What tells an effect no better, 95 %, is said to prove little.
+const PROVES_LITTLE: f64 = 0.3;
 
 /// What a step came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,6 +26,8 @@ pub enum Recheck {
     Confirmed {
         /// By how much it turned less than, or beyond, what was expected, degrees.
         off_deg: f64,
+        /// What that tells of the corrector, which may be little.
+        proven: Proven,
     },
     /// On this heading the compass does not show it, and showed nothing.
     NotSeen {
@@ -53,7 +61,94 @@ pub enum Recheck {
     Unexplained {
         /// By how much it is off, degrees.
         off_deg: f64,
+        /// Whether the card stands as it stood: the step was perhaps not done, or the
+        /// card sticks.
+        unmoved: bool,
     },
+}
+
+/// What two readings of the card tell of what a corrector does.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Proven {
+    /// Its effect as a share of what was taken.
+    pub share: f64,
+    /// How well the two readings tell that, 95 %, as a share of what was taken.
+    pub to: f64,
+}
+
+/// What all steps together have done to the compass, which is read no worse for it than
+/// after one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct InAll {
+    /// By how much it turned since the berth was read, degrees.
+    pub turned_deg: f64,
+    /// By how much it should have, degrees.
+    pub expected_deg: f64,
+    /// The difference, degrees.
+    pub off_deg: f64,
+    /// Right steps differ by more once in a hundred, degrees.
+    pub tolerance_deg: f64,
+}
+
+impl Proven {
+    fn new(turned_deg: f64, expected_deg: f64) -> Proven {
+        Proven {
+            share: turned_deg / expected_deg,
+            to: NORMAL_95 * READING_SD_DEG / expected_deg.abs(),
+        }
+    }
+
+    /// All of it in words.
+    pub fn in_words(&self) -> String {
+        let share = 100.0 * self.share;
+        let to = 100.0 * self.to;
+        if self.to > PROVES_LITTLE {
+            return format!(
+                "{share:.0} per cent of what was expected, told to {to:.0} per cent only: this \
+                 heading proves little of it"
+            );
+        }
+        format!("{share:.0} per cent of what was expected, told to {to:.0} per cent")
+    }
+}
+
+impl InAll {
+    /// Whether errors explain it.
+    pub fn agrees(&self) -> bool {
+        self.off_deg.abs() <= self.tolerance_deg
+    }
+
+    /// All of it in words.
+    pub fn in_words(&self) -> String {
+        format!(
+            "in all the compass turned by {:.1} degrees since the berth was read, where {:.1} \
+             were expected (to {:.1})",
+            self.turned_deg, self.expected_deg, self.tolerance_deg
+        )
+    }
+}
+
+/// Holds the compass, read now, against what it read with the magnetometer: small errors
+/// of steps, each within its own tolerance, add up.
+///
+/// # Errors
+/// When the adjustment itself cannot be.
+pub fn turned_in_all(
+    adjustment: &Adjustment<'_>,
+    first_deg: f64,
+    now: &Setting,
+    now_deg: f64,
+) -> Result<InAll, AdjustError> {
+    let condition = Condition::new(adjustment)?;
+    let first = &adjustment.binnacle.setting;
+    let (expected_deg, sd_deg) = change_deg(adjustment, &condition, first, now);
+    let turned_deg = wrap_180(now_deg - first_deg);
+    Ok(InAll {
+        turned_deg,
+        expected_deg,
+        off_deg: wrap_180(turned_deg - expected_deg),
+        tolerance_deg: tolerance_deg(sd_deg),
+    })
 }
 
 /// Judges a step by the compass at the berth before and after it, degrees.
@@ -80,7 +175,8 @@ pub fn recheck(
     let off_deg = wrap_180(turned_deg - step.change_deg);
     if off_deg.abs() <= step.tolerance_deg {
         return Ok(if step.seen {
-            Recheck::Confirmed { off_deg }
+            let proven = Proven::new(turned_deg, step.change_deg);
+            Recheck::Confirmed { off_deg, proven }
         } else {
             Recheck::NotSeen {
                 expected_deg: step.change_deg,
@@ -101,7 +197,8 @@ pub fn recheck(
         });
     }
     let Some((share, binnacle)) = strength(adjustment, step, turned_deg)? else {
-        return Ok(Recheck::Unexplained { off_deg });
+        let unmoved = turned_deg.abs() <= UNMOVED_DEG;
+        return Ok(Recheck::Unexplained { off_deg, unmoved });
     };
     let setting = step.setting_after.clone();
     let outcome = Box::new(plan(&Adjustment {

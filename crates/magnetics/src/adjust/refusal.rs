@@ -1,9 +1,10 @@
 //! Why there is no plan, and what would cure it.
 
+use super::card::Card;
 use super::condition::Condition;
 use super::mistakes::{Mistake, mistakes};
 use super::read::Unit;
-use super::{AdjustError, Adjustment, Limits, Plan, PredictedTable, Refused, Water};
+use super::{AdjustError, Adjustment, Limits, Plan, PredictedTable, Refused, Water, spheres};
 use crate::berth::{BerthError, Consistency};
 use crate::deviation::Coefficients;
 use crate::model::Model;
@@ -47,6 +48,8 @@ pub enum Refusal {
         /// Mistakes that alone would explain it.
         mistakes: Vec<Mistake>,
     },
+    /// The compass did not read what the field read would turn it to.
+    CardDisagrees(Card),
     /// The earth's field at the berth is too weak to steer by.
     FieldTooWeak {
         /// Its horizontal part, nT.
@@ -175,10 +178,14 @@ impl Refusal {
             Refusal::InconsistentBerth {
                 consistency,
                 mistakes,
-            } if mistakes.is_empty() => consistency.suspects(),
+            } if mistakes.is_empty() => consistency
+                .suspects()
+                .iter()
+                .map(ToString::to_string)
+                .collect(),
+            Refusal::CardDisagrees(card) => card.suspects(),
             _ => Vec::new(),
         };
-        let suspects = suspects.iter().map(ToString::to_string);
         mistakes.chain(suspects).collect()
     }
 
@@ -191,6 +198,7 @@ impl Refusal {
             Refusal::ImplausibleLambda { lambda, .. } => {
                 format!("the field read would make lambda {lambda:.3}")
             }
+            Refusal::CardDisagrees(card) => card.found(),
             Refusal::NoSuchField { what, .. } => format!("no ship lies in such a field: {what}"),
             other => other.to_string(),
         }
@@ -208,6 +216,7 @@ impl Refusal {
             Refusal::ImplausibleLambda { .. } | Refusal::NoSuchField { .. } => {
                 vec![Cure::ReadAgain, Cure::BetterMagnetometer]
             }
+            Refusal::CardDisagrees(_) => vec![Cure::ReadAgain],
             Refusal::FieldTooWeak { .. } => vec![Cure::AnotherBerth],
             Refusal::AmbiguousHeadings { .. } => vec![Cure::Swing],
             Refusal::BandTooWide { .. } => {
@@ -223,10 +232,19 @@ impl Refusal {
                 mostly: Coefficient::A,
                 ..
             } => vec![Cure::Alignment, Cure::HeadingsAtSea, Cure::Swing],
+            // Known better it would be as large.
+            Refusal::ResidualTooLarge {
+                worst_deg,
+                limit_deg,
+                ..
+            } if worst_deg > limit_deg => vec![Cure::OtherCorrectors],
             Refusal::ResidualTooLarge { .. } => {
                 vec![Cure::OtherCorrectors, Cure::HeadingsAtSea, Cure::Swing]
             }
-            Refusal::MagnetometerTooPoor { .. } => vec![Cure::BetterMagnetometer, Cure::Swing],
+            // A heeled ship's magnetometer is a poor one too.
+            Refusal::MagnetometerTooPoor { .. } => {
+                vec![Cure::BetterMagnetometer, Cure::ReadAgain, Cure::Swing]
+            }
         };
         Refused {
             words: self.to_string(),
@@ -244,10 +262,15 @@ fn too_strong(name: &str, value_nt: f64, greatest_nt: f64) -> Option<String> {
         "down_nt" => "down",
         _ => return None,
     };
+    let value_ut = value_nt / 1e3;
+    let value = if value_ut.abs() < 1e9 {
+        format!("{value_ut:.0}")
+    } else {
+        format!("{value_ut:e}")
+    };
+    let greatest_ut = greatest_nt / 1e3;
     Some(format!(
-        "{:.0} microtesla {part}, where more than {:.0} cannot be",
-        value_nt / 1e3,
-        greatest_nt / 1e3
+        "{value} microtesla {part}, where more than {greatest_ut:.0} cannot be"
     ))
 }
 
@@ -311,21 +334,12 @@ pub(super) fn beyond_limits(
     after: &[PredictedTable],
     model: &Model,
 ) -> Vec<Refusal> {
-    let limits = &adjustment.limits;
-    let mut refusals: Vec<Refusal> = beyond(after, model, limits, adjustment.waters)
-        .into_iter()
-        .collect();
-    let too_large = matches!(refusals.first(), Some(Refusal::ResidualTooLarge { .. }));
-    if too_large && !condition.may_move_pair && condition.binnacle.design.quadrantal.is_some() {
-        refusals.insert(
-            0,
-            Refusal::MagnetometerTooPoor {
-                lambda_sd: condition.lambda_sd_share(),
-                limit: limits.lambda_sd,
-            },
-        );
+    match beyond(after, model, &adjustment.limits, adjustment.waters) {
+        Some(too_large @ Refusal::ResidualTooLarge { .. }) => {
+            spheres::residual_too_large(adjustment, condition, after, too_large)
+        }
+        found => found.into_iter().collect(),
     }
-    refusals
 }
 
 impl Plan {
@@ -350,14 +364,25 @@ fn beyond(
             .and_then(|water| waters.get(water))
             .is_none_or(|water| water.weight > 0.0)
     });
-    let mut worst: Option<Refusal> = None;
+    let mut worst = None;
     for (_, table) in counted {
         let place = table.place.clone();
         let (Some(reach_deg), Some(worst_deg)) = (table.reach_deg, table.worst_deg) else {
-            let what = format!("compass headings are ambiguous at {place}");
+            let what = format!("compass headings are ambiguous at {}", said(&place));
             return Some(Refusal::AmbiguousHeadings { what });
         };
         let band_deg = table.widest_band_deg.unwrap_or(f64::INFINITY);
+        let too_large = |place| Refusal::ResidualTooLarge {
+            place,
+            reach_deg,
+            worst_deg,
+            limit_deg: limits.residual_deg,
+            mostly: mostly(model, table),
+        };
+        if worst_deg > limits.residual_deg {
+            // No band is narrow enough for that.
+            return Some(too_large(place));
+        }
         if band_deg > limits.band_deg {
             worst = Some(Refusal::BandTooWide {
                 place,
@@ -365,13 +390,7 @@ fn beyond(
                 limit_deg: limits.band_deg,
             });
         } else if reach_deg > limits.residual_deg && worst.is_none() {
-            worst = Some(Refusal::ResidualTooLarge {
-                place,
-                reach_deg,
-                worst_deg,
-                limit_deg: limits.residual_deg,
-                mostly: mostly(model, table),
-            });
+            worst = Some(too_large(place));
         }
     }
     worst
@@ -398,6 +417,14 @@ fn mostly(model: &Model, table: &PredictedTable) -> Coefficient {
         .into_iter()
         .max_by(|x, y| x.0.abs().total_cmp(&y.0.abs()));
     largest.map_or(Coefficient::A, |(_, which)| which)
+}
+
+/// A place in a sentence: the berth has no name of its own.
+fn said(place: &str) -> &str {
+    match place {
+        "berth" => "the berth",
+        named => named,
+    }
 }
 
 impl fmt::Display for Coefficient {
@@ -446,6 +473,7 @@ impl fmt::Display for Refusal {
                 f.write_str(&self.found())?;
                 explained(f, mistakes)
             }
+            Refusal::CardDisagrees(card) => f.write_str(&card.in_words()),
             Refusal::FieldTooWeak { h_nt } => write!(
                 f,
                 "the earth's horizontal field at the berth, {h_nt:.0} nT, is too weak for a compass"
@@ -457,8 +485,9 @@ impl fmt::Display for Refusal {
                 limit_deg,
             } => write!(
                 f,
-                "at {place} the residual is known to {band_deg:.1} degrees only, of \
-                 {limit_deg:.1} at most"
+                "at {} the residual is known to {band_deg:.1} degrees only, of \
+                 {limit_deg:.1} at most",
+                said(place)
             ),
             Refusal::ResidualTooLarge {
                 place,
@@ -468,8 +497,9 @@ impl fmt::Display for Refusal {
                 mostly,
             } => write!(
                 f,
-                "at {place} the correctors on board leave {worst_deg:.1} degrees, {reach_deg:.1} \
-                 with the band, of {limit_deg:.1} at most; most of it is {mostly}"
+                "at {} the correctors on board leave {worst_deg:.1} degrees, {reach_deg:.1} \
+                 with the band, of {limit_deg:.1} at most; most of it is {mostly}",
+                said(place)
             ),
             Refusal::MagnetometerTooPoor { lambda_sd, limit } => write!(
                 f,

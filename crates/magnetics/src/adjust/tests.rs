@@ -1,6 +1,7 @@
 //! Ships and berths for tests of the planner.
 
 mod best;
+mod card;
 mod paper;
 mod refused;
 mod sea;

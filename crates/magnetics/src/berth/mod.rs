@@ -18,7 +18,8 @@ mod reading;
 pub use consistency::{Consistency, Suspect, Verdict};
 pub use error::BerthError;
 pub use lambda::{
-    BerthEstimate, FullParameters, GREATEST_LAMBDA, JointCovariance, LEAST_LAMBDA, lambda_at_berth,
+    BerthEstimate, FullParameters, GREATEST_LAMBDA, JointCovariance, LEAST_LAMBDA, USUAL_LAMBDA,
+    lambda_at_berth,
 };
 pub use permanent::{Permanent, permanent_at_berth};
 pub use reading::{Alignment, BerthReading, ReadingErrors};

@@ -356,7 +356,7 @@ fn a_reading_in_microtesla_is_no_ships_lambda() {
     let reading = reading(30.0, [forward / 1e3, starboard / 1e3]);
     let refused = lambda_at_berth(&model_of(&ship()), BISCAY, &reading).unwrap_err();
     assert!(matches!(refused, BerthError::Implausible(lambda) if lambda < 0.001));
-    assert!(refused.to_string().contains("0.0009, outside 0.4 to 1.4"));
+    assert!(refused.to_string().contains("0.0009, outside 0.5 to 1.25"));
 }
 
 #[test]

@@ -231,7 +231,7 @@ fn trays(form: &BinnacleForm, axis: Axis, trays: &[Tray]) -> Result<(), Binnacle
         return Err(BinnacleError::new(format!("setting.{axis}"), what));
     }
     for (index, tray) in trays.iter().enumerate() {
-        hole_there(&field(index, "hole"), tray.hole, &rack.holes)?;
+        place_there(&field(index, "hole"), "hole", tray.hole, &rack.holes)?;
         if trays[..index].iter().any(|other| other.hole == tray.hole) {
             let what = format!("hole {} holds magnets already", tray.hole);
             return Err(BinnacleError::new(field(index, "hole"), what));
@@ -253,12 +253,12 @@ fn trays(form: &BinnacleForm, axis: Axis, trays: &[Tray]) -> Result<(), Binnacle
     Ok(())
 }
 
-fn hole_there(field: &str, number: u16, holes: &[Hole]) -> Result<(), BinnacleError> {
+fn place_there(field: &str, what: &str, number: u16, holes: &[Hole]) -> Result<(), BinnacleError> {
     if holes.iter().any(|hole| hole.number == number) {
         return Ok(());
     }
     let what = format!(
-        "there is no hole {number}: they are numbered 1 to {}",
+        "there is no {what} {number}: they are numbered 1 to {}",
         holes.len()
     );
     Err(BinnacleError::new(field, what))
@@ -324,7 +324,12 @@ fn check_heeling(design: &DesignForm, set: &HeelingSetting) -> Result<(), Binnac
             "the type has no heeling bucket",
         ));
     };
-    hole_there(&field("position"), set.position, &bucket.positions)?;
+    place_there(
+        &field("position"),
+        "position",
+        set.position,
+        &bucket.positions,
+    )?;
     if !(1..=bucket.at_most).contains(&set.count) {
         let what = format!("{} where 1 to {} fit", set.count, bucket.at_most);
         return Err(BinnacleError::new(field("count"), what));

@@ -7,6 +7,9 @@ use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, VerticalRead
 use binnacle_magnetics::binnacle::Binnacle;
 use binnacle_magnetics::model::Model;
 
+/// How well a card is read before the bowl is taken out, with its friction, degrees.
+const CARD_SD_DEG: f64 = 0.4;
+
 /// As chance made them.
 pub(crate) struct Scene {
     pub(crate) rng: Random,
@@ -19,6 +22,8 @@ pub(crate) struct Scene {
     /// What the reference of the model is off.
     pub(crate) reference_deg: f64,
     pub(crate) berthed: Berthed,
+    /// What the compass read there, correctors as they were.
+    compass_deg: f64,
     scale_sd: f64,
 }
 
@@ -41,6 +46,9 @@ impl Scene {
         let model = model_by(&mut rng, &standing, &waters, reference_deg);
         let place = (waters[0].h_nt, waters[0].z_nt);
         let berthed = reading(&mut rng, &standing, place, instruments);
+        // A draw of its own, so that all else is as it was without it.
+        let misread_deg = CARD_SD_DEG * Random::new(!seed).gaussian();
+        let compass_deg = standing.compass_deg(place, berthed.magnetic_deg) + misread_deg;
         Scene {
             rng,
             binnacle,
@@ -50,6 +58,7 @@ impl Scene {
             model,
             reference_deg,
             berthed,
+            compass_deg: compass_deg.rem_euclid(360.0),
             scale_sd: instruments.scale_sd,
         }
     }
@@ -66,7 +75,7 @@ impl Scene {
             earth: self.waters[0].earth(),
             reading: &self.berthed.reading,
             scale_sd: self.scale_sd,
-            compass_deg: None,
+            compass_deg: Some(self.compass_deg),
             vertical: Some(VerticalReading {
                 down_nt: self.berthed.down_nt,
             }),

@@ -300,3 +300,27 @@ fn the_mirror_image_of_a_ship_gets_as_good_a_plan() {
     let [a, b] = [one, other].map(|plan| plan.setting.athwartship[0].red);
     assert_eq!(a, b.reversed());
 }
+
+#[test]
+fn magnets_against_what_the_vertical_field_induces_are_for_one_dip_and_that_is_said() {
+    let first_note = |chi13: f64, waters: usize| {
+        let mut ship = bare();
+        ship.chi[0][2] = chi13;
+        let mut form: BinnacleForm = class_a().into();
+        form.setting.flinders = None;
+        form.aboard.flinders_pieces_mm.clear();
+        let mut case = Case::new(ship, Binnacle::try_from(form).unwrap(), 60.0);
+        case.waters.truncate(waters);
+        let mut notes = case.plan().notes.into_iter();
+        notes
+            .next()
+            .filter(|note| note.starts_with("this plan is for waters of one dip"))
+    };
+    let note = first_note(-0.05, 1).unwrap();
+    assert!(
+        note.contains("magnetic equator") && note.contains("Flinders bar"),
+        "{note}"
+    );
+    assert_eq!(first_note(-0.05, 2), None);
+    assert_eq!(first_note(-0.002, 1), None);
+}

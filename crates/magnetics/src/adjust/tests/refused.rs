@@ -69,6 +69,9 @@ fn with_a_poor_magnetometer_spheres_stay_and_where_they_must_move_that_is_said()
         refused.words
     );
     assert_eq!(refused.cures[0], Cure::BetterMagnetometer);
+    assert!(refused.cures.contains(&Cure::ReadAgain));
+    // No other correctors: those on board would do.
+    assert_eq!(outcome.refusals.len(), 1, "{:?}", outcome.refusals);
     adjustment.limits.residual_deg = 20.0;
     adjustment.limits.band_deg = 20.0;
     let outcome = plan(&adjustment).unwrap();
@@ -163,4 +166,127 @@ fn what_cannot_be_is_named() {
     adjustment.waters = &weak;
     let error = plan(&adjustment).unwrap_err().to_string();
     assert!(error.starts_with("waters[0].h_nt is 900"), "{error}");
+}
+
+#[test]
+fn a_lambda_that_is_not_usual_is_named_and_one_that_is_no_compass_s_refused() {
+    let case = case(60.0);
+    let found = |times: f64| {
+        let [x, y] = case.reading.field_nt();
+        let field_nt = [x * times, y * times];
+        let (errors, heading) = (case.reading.errors(), case.reading.magnetic());
+        let reading = BerthReading::new(heading, field_nt, errors, Alignment::Keel).unwrap();
+        let mut adjustment = case.adjustment();
+        adjustment.reading = &reading;
+        plan(&adjustment).unwrap()
+    };
+    let is_named = |outcome: &Outcome| {
+        let named = |note: &String| note.starts_with("lambda is");
+        outcome.notes.iter().any(named)
+    };
+    let right = found(1.0);
+    let lambda = right.berth.unwrap().lambda.value;
+    assert!(
+        !right.plans.is_empty() && !is_named(&right),
+        "{:?}",
+        right.notes
+    );
+    for unusual in [0.55, 0.62, 1.13, 1.2] {
+        let outcome = found(unusual / lambda);
+        assert!(!outcome.plans.is_empty() && is_named(&outcome), "{unusual}");
+    }
+    for none in [0.40, 0.47, 1.29, 1.40] {
+        let refused = found(none / lambda).refusals.remove(0).refusal;
+        assert!(
+            matches!(refused, Refusal::ImplausibleLambda { .. }),
+            "{none}"
+        );
+    }
+}
+
+#[test]
+fn an_age_that_nobody_said_is_said_not_to_be_checked() {
+    let case = case(60.0);
+    let said = |days: Option<f64>| {
+        let mut adjustment = case.adjustment();
+        adjustment.circumstances.model_age_days = days;
+        let notes = plan(&adjustment).unwrap().notes;
+        notes
+            .iter()
+            .any(|note| note.starts_with("how old the model is"))
+    };
+    assert!(said(None) && !said(Some(3.0)));
+}
+
+/// A ship with hardly any deviation, so that several explanations fit.
+fn nearly_nil() -> Case {
+    let mut case = case(45.0);
+    let magnitude = 0.9 * BISCAY.h_nt;
+    case.model.parameters_over_lambda = Parameters::from_array([0.0; 7]);
+    let mut form: BinnacleForm = case.binnacle.clone().into();
+    form.setting = Setting::default();
+    case.binnacle = Binnacle::try_from(form).unwrap();
+    let field_nt = [magnitude * 0.5_f64.sqrt(), -magnitude * 0.5_f64.sqrt()];
+    let (errors, heading) = (case.reading.errors(), case.reading.magnetic());
+    case.reading = BerthReading::new(heading, field_nt, errors, Alignment::Keel).unwrap();
+    case
+}
+
+#[test]
+fn all_mistakes_that_explain_a_reading_are_told_the_heading_first() {
+    let case = nearly_nil();
+    let found = mistakes(
+        &case.model,
+        BISCAY,
+        MagneticHeading::new(225.0).unwrap(),
+        case.reading.field_nt(),
+        Unit::Nanotesla,
+        case.reading.errors(),
+        Alignment::Keel,
+    );
+    assert_eq!(found, [Mistake::HeadingReversed, Mistake::SwappedAxes]);
+}
+
+#[test]
+fn what_a_heading_cannot_show_of_the_axes_is_said() {
+    let mut case = nearly_nil();
+    let notes = |case: &Case| case.plan().notes.join(" ");
+    assert!(
+        !notes(&case).contains("cannot show whether"),
+        "{}",
+        notes(&case)
+    );
+    let side = -0.9 * BISCAY.h_nt * 0.5_f64.sqrt();
+    let (errors, heading) = (case.reading.errors(), MagneticHeading::new(135.0).unwrap());
+    case.reading = BerthReading::new(heading, [side, side], errors, Alignment::Keel).unwrap();
+    assert!(notes(&case).contains("whether the magnetometer's axes are swapped"));
+    assert!(!notes(&case).contains("points to port"), "{}", notes(&case));
+}
+
+#[test]
+fn what_the_correctors_cannot_reach_no_heading_at_sea_and_no_swing_cures() {
+    let refused = |change: fn(&mut ShipMagnetism), magnets: u16| {
+        let mut ship = bare();
+        change(&mut ship);
+        let mut form: BinnacleForm = class_a().into();
+        form.aboard.magnets[0].count = magnets;
+        let case = Case::new(ship, Binnacle::try_from(form).unwrap(), 60.0);
+        let mut adjustment = case.adjustment();
+        adjustment.limits = Limits::default();
+        let mut refusals = plan(&adjustment).unwrap().refusals;
+        assert_eq!(refusals.len(), 1, "{refusals:?}");
+        refusals.remove(0)
+    };
+    // D is negative, and spheres stand athwart only.
+    let negative_d = refused(|ship| (ship.chi[0][0], ship.chi[1][1]) = (-0.25, 0.0), 12);
+    // More than the few magnets on board.
+    let strong = refused(|ship| ship.b_nt = [12_000.0, -9_000.0, 0.0], 4);
+    for refused in [negative_d, strong] {
+        assert!(
+            matches!(refused.refusal, Refusal::ResidualTooLarge { .. }),
+            "{}",
+            refused.words
+        );
+        assert_eq!(refused.cures, [Cure::OtherCorrectors]);
+    }
 }

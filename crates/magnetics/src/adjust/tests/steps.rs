@@ -93,6 +93,8 @@ fn heeling_magnets_are_left_without_a_vertical_reading_and_nulled_with_one() {
         down_nt: ship.field_aboard([0.0, 0.0, BISCAY.z_nt])[2],
     });
     let outcome = plan(&adjustment).unwrap();
+    let left = |note: &String| note.starts_with("the heeling magnets are left");
+    assert!(case.plan().notes.iter().any(left) && !outcome.notes.iter().any(left));
     let plan = &outcome.plans[0];
     let (before, after) = (
         plan.heeling.before_deg_per_deg.unwrap(),
@@ -181,6 +183,11 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
     assert!((share - 0.6).abs() < 0.01, "{share}");
     assert_eq!(setting, step.setting_after);
     assert!(!outcome.plans.is_empty());
+    let forgotten = read(0.2);
+    assert!(
+        matches!(forgotten, Recheck::Unexplained { unmoved: true, .. }),
+        "{forgotten:?}"
+    );
     let wild = read(step.change_deg + 25.0);
     assert!(!matches!(wild, Recheck::Confirmed { .. }));
 }
@@ -208,4 +215,112 @@ fn a_step_that_the_heading_does_not_show_is_said_to_be_so() {
     );
     let seen = outcome.berth.unwrap().seen;
     assert!(seen.b < 1e-9 && seen.c > 0.99 && seen.d < 1e-9 && seen.e > 0.99);
+}
+
+/// Magnets of 0.59 of their moment, told by 1.5 degrees: within what readings err, and
+/// no proof that they are right.
+#[test]
+fn a_small_turn_is_confirmed_with_how_little_it_proves() {
+    let case = case(60.0);
+    let adjustment = case.adjustment();
+    let mut step = plan(&adjustment).unwrap().plans[0].steps[0].clone();
+    (step.change_deg, step.tolerance_deg, step.seen) = (-1.52, 0.80, true);
+    let Recheck::Confirmed { proven, .. } = recheck(&adjustment, &step, 50.0, 49.1).unwrap() else {
+        panic!()
+    };
+    assert!((proven.share - 0.59).abs() < 0.01, "{proven:?}");
+    assert!((proven.to - 0.39).abs() < 0.01, "{proven:?}");
+    let words = proven.in_words();
+    assert!(
+        words.contains("59 per cent") && words.contains("39 per cent only"),
+        "{words}"
+    );
+    (step.change_deg, step.tolerance_deg) = (15.0, 2.0);
+    let Recheck::Confirmed { proven, .. } = recheck(&adjustment, &step, 50.0, 64.5).unwrap() else {
+        panic!()
+    };
+    assert!(!proven.in_words().contains("only"), "{proven:?}");
+}
+
+/// Each step a little less than it should, all the same way: each within its tolerance.
+#[test]
+fn what_each_step_hides_all_of_them_show() {
+    let mut ship = bare();
+    ship.b_nt = [4_000.0, 3_500.0, 0.0];
+    let case = Case::new(ship, class_a(), 45.0);
+    let adjustment = case.adjustment();
+    let steps = plan(&adjustment).unwrap().plans.remove(0).steps;
+    let last = &steps.last().unwrap().setting_after;
+    let expected: f64 = steps.iter().map(|step| step.change_deg).sum();
+    let wrap = crate::angle::wrap_360;
+    let in_all = |off_deg: f64| {
+        turned_in_all(&adjustment, 50.0, last, wrap(50.0 + expected + off_deg)).unwrap()
+    };
+    let found = in_all(0.0);
+    assert!(found.agrees() && found.off_deg.abs() < 1e-6, "{found:?}");
+    let hidden: f64 = steps.iter().map(|step| 0.95 * step.tolerance_deg).sum();
+    assert!(steps.len() > 2 && hidden > found.tolerance_deg, "{found:?}");
+    let found = in_all(hidden);
+    assert!(!found.agrees(), "{found:?}");
+    assert!(found.in_words().starts_with("in all the compass turned"));
+}
+
+/// What comes out needs no trial for magnetism of its own, and no place in the tube.
+#[test]
+fn iron_is_tried_where_it_goes_in_and_a_bar_stands_at_the_cards_height() {
+    let case = case(60.0);
+    let adjustment = case.adjustment();
+    let condition = Condition::new(&adjustment).unwrap();
+    let mut bare = case.binnacle.setting.clone();
+    (bare.flinders, bare.quadrantal) = (None, None);
+    let out = instructions::steps(&adjustment, &condition, &bare);
+    assert_eq!(out.len(), 2);
+    assert!(out.iter().all(|step| step.check.is_none()), "{out:?}");
+    let adjustment = Adjustment {
+        now: Some(&bare),
+        ..adjustment.clone()
+    };
+    let back = instructions::steps(&adjustment, &condition, &case.binnacle.setting);
+    assert!(back.iter().all(|step| step.check.is_some()));
+    assert!(
+        back[0].words.contains("fill the tube below"),
+        "{}",
+        back[0].words
+    );
+}
+
+/// The compass on an even keel shows nothing of them, the vertical field all.
+#[test]
+fn heeling_magnets_are_verified_by_the_vertical_field() {
+    let case = case(60.0);
+    let down_nt = |setting: &Setting| {
+        let there = effect(&case.binnacle, setting).as_ship(f64::INFINITY);
+        sum(&case.bare, &there).field_aboard([0.0, 0.0, BISCAY.z_nt])[2]
+    };
+    let mut moved = 0;
+    for more_nt in [-12_000.0, -6_000.0, 6_000.0, 12_000.0] {
+        let mut adjustment = case.adjustment();
+        adjustment.vertical = Some(VerticalReading {
+            down_nt: down_nt(&case.binnacle.setting) + more_nt,
+        });
+        for step in &plan(&adjustment).unwrap().plans[0].steps {
+            if step.corrector != Corrector::Heeling {
+                continue;
+            }
+            let [was, will] = [&step.setting_before, &step.setting_after]
+                .map(|setting| (down_nt(setting) + more_nt) / 1e3);
+            let words = step.check.as_ref().unwrap();
+            assert!(
+                words.contains(&format!("read {will:.1} microtesla down")),
+                "{words} {will}"
+            );
+            assert!(
+                words.contains(&format!("before this step {was:.1}")),
+                "{words} {was}"
+            );
+            assert!((was - will).abs() > 1.0, "{words}");
+            moved += 1;
+        }
+    }
+    assert!(moved >= 2, "{moved}");
 }

@@ -1,0 +1,85 @@
+//! What an adjuster should know of the plans that are given.
+
+use super::condition::Condition;
+use super::{Adjustment, BerthCheck, Plan, mistakes};
+
+/// All of it, the gravest first.
+pub(super) fn notes(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    berth: &BerthCheck,
+    plans: &[Plan],
+) -> Vec<String> {
+    let mut notes: Vec<String> = only_here(adjustment, plans).into_iter().collect();
+    notes.extend(berth.in_words());
+    let unseen = mistakes::unseen(adjustment.model, adjustment.earth, adjustment.reading);
+    notes.extend(unseen.iter().map(|mistake| {
+        format!(
+            "this heading cannot show whether {mistake}: the reading fits either way, and lambda \
+             hardly differs"
+        )
+    }));
+    if adjustment.circumstances.model_age_days.is_none() {
+        notes.push(
+            "how old the model is was not said (model_until), and so not checked: cargo, work on \
+             the hull or a season may lie between it and this berth"
+                .to_owned(),
+        );
+    }
+    let card = adjustment.card().filter(|card| !card.agrees());
+    notes.extend(card.map(|card| card.in_words()));
+    if !condition.may_move_pair && adjustment.binnacle.design.quadrantal.is_some() {
+        notes.push(format!(
+            "spheres are left as found: lambda is sure only to {:.1} per cent",
+            100.0 * condition.lambda_sd_share()
+        ));
+    }
+    if !condition.may_move_bar && adjustment.binnacle.design.flinders.is_some() {
+        notes.push(
+            "the Flinders bar is left as found: the model does not tell chi13 from bx".to_owned(),
+        );
+    }
+    if adjustment.vertical.is_none() && adjustment.binnacle.design.heeling.is_some() {
+        notes.push(
+            "the heeling magnets are left as found: the vertical field (down) was not read"
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+/// Waters whose dips differ by less, as tangents, are one to a compass.
+const ONE_DIP: f64 = 0.3;
+/// So many standard errors from nil a parameter is known.
+const KNOWN_SD: f64 = 3.0;
+/// What magnets do against the vertical field's share is no matter below this, degrees.
+const LEAST_SHARE_DEG: f64 = 1.0;
+
+/// What the vertical field induces and magnets are to cure, because nothing says that
+/// she leaves these waters.
+fn only_here(adjustment: &Adjustment<'_>, plans: &[Plan]) -> Option<String> {
+    let after = &plans.first()?.model_after;
+    let covariance = after.covariance?;
+    let waters = adjustment.waters.iter().filter(|water| water.weight > 0.0);
+    let dips: Vec<f64> = waters.map(|water| water.z_nt / water.h_nt).collect();
+    let least = dips.iter().copied().fold(f64::INFINITY, f64::min);
+    let greatest = dips.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let chi13 = after.parameters_over_lambda.chi13;
+    let is_known = chi13.abs() > KNOWN_SD * covariance[1][1].sqrt();
+    let share_deg = (chi13 * f64::midpoint(least, greatest)).to_degrees();
+    if greatest - least > ONE_DIP || !is_known || share_deg.abs() < LEAST_SHARE_DEG {
+        return None;
+    }
+    let bar = if adjustment.binnacle.design.flinders.is_some() {
+        "; a Flinders bar would follow the field: give the waters where she trades"
+    } else {
+        ""
+    };
+    let share_deg = share_deg.abs();
+    Some(format!(
+        "this plan is for waters of one dip only: of B {share_deg:.1} degrees are induced by the \
+         vertical field (chi13), and magnets are set against them; at the magnetic equator she \
+         will have {share_deg:.1} degrees of B again, and in the other hemisphere {:.1}{bar}",
+        2.0 * share_deg
+    ))
+}
