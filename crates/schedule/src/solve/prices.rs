@@ -220,3 +220,49 @@ fn add_up(problem: &Problem, layout: &Layout, prices: &[i64]) -> Bound {
             .collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::{Choice, Visit, solve};
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    fn problems() -> impl Strategy<Value = Problem> {
+        let visits = vec((0..4_usize, 0..900_i64, 1..=3_u32), 6);
+        let choices = vec((0..5_usize, 0..6_usize, 0..2000_i64), 0..13);
+        (vec(0..3000_i64, 5), visits, vec(0..3_u32, 4), choices).prop_map(
+            |(unmet, visits, teams, choices)| Problem {
+                unmet,
+                visits: visits
+                    .into_iter()
+                    .map(|(firm_day, travel, jobs_a_team)| Visit {
+                        firm_day,
+                        travel,
+                        jobs_a_team,
+                    })
+                    .collect(),
+                teams,
+                choices: choices
+                    .into_iter()
+                    .map(|(need, visit, cost)| Choice { need, visit, cost })
+                    .collect(),
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        // The solver is held to every assignment there is by a test of its own.
+        #[test]
+        fn no_best_assignment_costs_less_nor_has_a_choice_beyond_the_gap(problem in problems()) {
+            let best = solve(&problem);
+            let found = bound(&problem, best.cost);
+            prop_assert!(found.cost <= best.cost, "{} {}", found.cost, best.cost);
+            for choice in best.assignment.iter().flatten() {
+                prop_assert!(found.reduced[*choice] <= best.cost - found.cost);
+            }
+        }
+    }
+}
