@@ -228,7 +228,8 @@ export interface paths {
         /**
          * Make a calendar
          * @description Of all your work orders, or of one vessel's; for an operator with port calls and due
-         *     dates. The answer shows its secret address, this once.
+         *     dates. The answer shows its secret address, this once. It ends when you are removed, shut
+         *     out or given another one-time code.
          */
         post: operations["create_feed"];
         delete?: never;
@@ -459,7 +460,8 @@ export interface paths {
         put?: never;
         /**
          * Set a password with a one-time code
-         * @description Sessions there were end. A second factor stays.
+         * @description Sessions, tokens and calendars there were end: whoever needs a code may have lost more
+         *     than the password. A second factor stays.
          */
         post: operations["accept_invitation"];
         delete?: never;
@@ -8024,6 +8026,11 @@ export interface components {
              * @description When they are due.
              */
             due_on: string;
+            /**
+             * @description Orders under way that firms are asked for or hold though nothing is planned: to be
+             *     cancelled, or moved by agreement.
+             */
+            orders?: components["schemas"]["OrderId"][];
             /** @description Whether it is in the plan, after the due date. */
             planned_late: boolean;
             /** @description Why they are due. */
