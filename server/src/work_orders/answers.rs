@@ -188,7 +188,7 @@ async fn go_on_board(
     }
     let allowed = [State::Planned, State::Accepted];
     whole.must_be(&allowed, "the adjuster goes on board once a firm has it")?;
-    let boarded = boarded.checked(app.clock.now().into(), whole.summary.planned_at)?;
+    let boarded = boarded.checked(app.clock.now().into())?;
     if let Some(mut change) = request.begin(&whole).await? {
         change.append(Content::OnBoard(boarded)).await?;
         change.commit().await?;

@@ -19,7 +19,6 @@ use utoipa::ToSchema;
 const MOST_FIRMS: usize = 20;
 pub(super) const LONGEST_H: u32 = 720;
 const HOUR_S: f64 = 3600.0;
-const MOST_EARLY_S: f64 = 86_400.0;
 const MOST_EUR: f64 = 1e6;
 /// Longest text of a message, in characters.
 pub(super) const MAX_MESSAGE: usize = 2000;
@@ -184,14 +183,8 @@ impl Proposal {
 
 impl Boarded {
     /// The same at a moment that can be.
-    pub(super) fn checked(self, now: Time, planned_at: Time) -> Result<Boarded> {
+    pub(super) fn checked(self, now: Time) -> Result<Boarded> {
         let at = self.at.unwrap_or(now);
-        if planned_at.0.seconds_since(at.0) > MOST_EARLY_S {
-            return Err(Error::WrongState(format!(
-                "the order is for {}: nobody goes on board more than a day before it",
-                planned_at.to_the_minute()
-            )));
-        }
         if at > now {
             return Err(Error::Invalid {
                 field: "at",
@@ -260,15 +253,20 @@ pub(super) async fn must_have_room(
     firms::must_have_room(&mut change.tx, name, &visit, told).await
 }
 
+/// Until when to answer: no later than the job is to begin, if that is still ahead.
+fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
+    let due = due(change, within_hours);
+    if at > change.now { due.min(at) } else { due }
+}
+
 /// Asks whom it is the turn of, where nobody else is waited for.
 pub(super) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
-    let at = change.whole.summary.planned_at;
-    if at <= change.now {
-        // Nobody can be asked for what was to be done already.
-        return Ok(());
-    }
     let offers = change.whole.standing().offers;
-    let answer_by = due(change, offers.answer_within_hours).min(at);
+    let answer_by = answer_by(
+        change,
+        offers.answer_within_hours,
+        change.whole.summary.planned_at,
+    );
     for next in offers.next() {
         let asked = Between {
             answer_by: Some(answer_by),
@@ -327,7 +325,7 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
             must_have_room(change, &asked, at, Told::Firm).await?;
             place::must_be_there(change, at, "planned_at").await?;
             let proposed = Between {
-                answer_by: Some(due(change, offers.answer_within_hours).min(at)),
+                answer_by: Some(answer_by(change, offers.answer_within_hours, at)),
                 terms: Some(proposal.terms),
                 text: proposal.text,
                 ..Between::with(asked)

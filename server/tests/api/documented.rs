@@ -75,7 +75,8 @@ fn ship(binnacle: &Binnacle, berth: &Value) -> (Value, [f64; 3]) {
 fn the_berth_and_the_binnacle_of_the_pages_make_a_plan() {
     let binnacle = binnacle();
     let known: Binnacle = serde_json::from_value(binnacle.clone()).unwrap();
-    let [mut berth]: [Value; 1] = blocks(PLAN).try_into().unwrap();
+    // The second block is of the reading after the steps.
+    let [mut berth, _]: [Value; 2] = blocks(PLAN).try_into().unwrap();
     let (model, aboard) = ship(&known, &berth);
     for (name, nt) in ["forward", "starboard", "down"].iter().zip(aboard) {
         berth["reading"][name] = json!(nt / 1000.0);

@@ -17,7 +17,8 @@ fn schedule_plans_the_documented_example() {
     let printed = good(&run(folder.path(), &["schedule", "--input", "fleet.json"]));
     let schedule: Value = serde_json::from_str(&printed).unwrap();
     assert_eq!(schedule["proven_optimal"], true);
-    assert_eq!(schedule["jobs"].as_array().unwrap().len(), 2);
+    assert_eq!(schedule["jobs"].as_array().unwrap().len(), 3);
+    assert_eq!(schedule["unscheduled"][0]["planned_late"], true);
 }
 
 #[test]
