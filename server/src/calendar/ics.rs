@@ -119,7 +119,7 @@ fn expected(what: &str, at: Time, uncertainty_h: f64) -> String {
 }
 
 fn day(due: &Due, public_url: Option<&str>) -> anyhow::Result<Event> {
-    let on: NaiveDate = due.due_on.parse().context("a stored due date")?;
+    let on: NaiveDate = due.day.parse().context("a stored due date")?;
     let at = utc(due.changed_at)?;
     let mut event = Event::new();
     event

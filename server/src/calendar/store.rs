@@ -41,7 +41,8 @@ pub(super) struct Due {
     pub vessel_name: String,
     pub compass_id: CompassId,
     pub compass_name: String,
-    pub due_on: String,
+    #[sqlx(rename = "due_on")]
+    pub day: String,
     pub urgency: String,
     pub reason: String,
     pub version: i64,

@@ -100,10 +100,6 @@ impl Standing {
             | Content::ProposalAccepted(_)
             | Content::ProposalDeclined(_)
             | Content::Lapsed(_) => self.state = self.offers.state(),
-            Content::RetimeProposed(_)
-            | Content::RetimeAccepted(_)
-            | Content::RetimeDeclined(_)
-            | Content::RetimeLapsed(_) => {}
             Content::CallMoved(moved) => {
                 self.port.get_or_insert_with(|| moved.call.was.port.clone());
                 self.call = Some(moved.call.clone());
@@ -112,7 +108,12 @@ impl Standing {
             Content::Photo(photo) => self.photos.push(photo.clone()),
             Content::Signature(signature) => self.signatures.push(signature.clone()),
             Content::Opened(opened) => self.limits = opened.order.limits.unwrap_or_default(),
-            Content::Remark(_) | Content::Message(_) => {}
+            Content::RetimeProposed(_)
+            | Content::RetimeAccepted(_)
+            | Content::RetimeDeclined(_)
+            | Content::RetimeLapsed(_)
+            | Content::Remark(_)
+            | Content::Message(_) => {}
             Content::BerthReading(read) => self.take_reading(read),
             Content::Plan(planned) => self.follow(planned.as_ref().clone()),
             Content::Step(done) => {

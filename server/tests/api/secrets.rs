@@ -138,17 +138,22 @@ impl Drive {
     }
 }
 
+/// Whom a new server's first command makes, with the password.
+fn first_admin(folder: &Path) -> Value {
+    let operator = admin(folder, &["create", "operator", "--name", "ada"]);
+    let operator = operator["operator_id"].as_str().unwrap();
+    let user = ["create", "user", "--operator", operator, "--role", "admin"];
+    let who = ["--email", "ada@example.com", "--name", "Ada"];
+    let user: Vec<&str> = user.into_iter().chain(who).collect();
+    admin(folder, &user)
+}
+
 #[tokio::test]
 async fn no_password_token_key_code_or_cookie_is_in_the_most_talkative_log() {
     let _ = rustls::crypto::ring::default_provider().install_default();
     let provider = Provider::start().await;
     let folder = tempfile::tempdir().unwrap();
-    let operator = admin(folder.path(), &["create", "operator", "--name", "ada"]);
-    let operator = operator["operator_id"].as_str().unwrap();
-    let user = ["create", "user", "--operator", operator, "--role", "admin"];
-    let who = ["--email", "ada@example.com", "--name", "Ada"];
-    let user: Vec<&str> = user.into_iter().chain(who).collect();
-    let made = admin(folder.path(), &user);
+    let made = first_admin(folder.path());
     let program = Program::start(folder.path(), "trace", &provider.settings());
     let mut drive = Drive {
         http: client(),

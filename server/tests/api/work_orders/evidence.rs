@@ -117,6 +117,50 @@ fn forge(files: &mut BTreeMap<String, Vec<u8>>, name: &str, content: Vec<u8>) {
     );
 }
 
+/// Tries all that a forger can who keeps the manifest right.
+fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
+    // Whoever puts the manifest right as well is caught by the log,
+    for name in files
+        .keys()
+        .filter(|name| name.starts_with("photos/") || *name == "record.json")
+    {
+        let mut forged = files.clone();
+        let mut content = files[name].clone();
+        content.push(b' ');
+        forge(&mut forged, name, content);
+        let problems = evidence::verify(&packed(&forged)).problems;
+        assert_eq!(problems.len(), 1, "{name}: {problems:?}");
+    }
+    // who changes what is drawn from the record by the record,
+    for (name, content) in [
+        (
+            "predicted.csv",
+            b"place,compass_deg,predicted_deviation_deg,band95_deg\n".to_vec(),
+        ),
+        (
+            "record.pdf",
+            b"%PDF-1.7 CERTIFICATE OF ADJUSTMENT\n".to_vec(),
+        ),
+    ] {
+        let mut forged = files.clone();
+        forge(&mut forged, name, content);
+        let problems = evidence::verify(&packed(&forged)).problems;
+        assert_eq!(problems.len(), 1, "{name}: {problems:?}");
+        assert!(problems[0].starts_with(name), "{problems:?}");
+    }
+    // a log that lost a line by its chain, and one that lost its end by its head.
+    let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();
+    let lines: Vec<&str> = log.lines().collect();
+    for left_out in 0..lines.len() {
+        let mut kept = lines.clone();
+        kept.remove(left_out);
+        let mut forged = files.clone();
+        forge(&mut forged, "entries.ndjson", kept.join("\n").into_bytes());
+        let problems = evidence::verify(&packed(&forged)).problems;
+        assert!(!problems.is_empty(), "without line {}", left_out + 1);
+    }
+}
+
 async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
     let job = Job::begin(&shore).await;
     job.photo(PICTURE).await.good();
@@ -185,46 +229,7 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
         assert!(!problems.is_empty(), "{name} changed");
     }
 
-    // Whoever puts the manifest right as well is caught by the log,
-    for name in files
-        .keys()
-        .filter(|name| name.starts_with("photos/") || *name == "record.json")
-    {
-        let mut forged = files.clone();
-        let mut content = files[name].clone();
-        content.push(b' ');
-        forge(&mut forged, name, content);
-        let problems = evidence::verify(&packed(&forged)).problems;
-        assert_eq!(problems.len(), 1, "{name}: {problems:?}");
-    }
-    // who changes what is drawn from the record by the record,
-    for (name, content) in [
-        (
-            "predicted.csv",
-            b"place,compass_deg,predicted_deviation_deg,band95_deg\n".to_vec(),
-        ),
-        (
-            "record.pdf",
-            b"%PDF-1.7 CERTIFICATE OF ADJUSTMENT\n".to_vec(),
-        ),
-    ] {
-        let mut forged = files.clone();
-        forge(&mut forged, name, content);
-        let problems = evidence::verify(&packed(&forged)).problems;
-        assert_eq!(problems.len(), 1, "{name}: {problems:?}");
-        assert!(problems[0].starts_with(name), "{problems:?}");
-    }
-    // a log that lost a line by its chain, and one that lost its end by its head.
-    let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();
-    let lines: Vec<&str> = log.lines().collect();
-    for left_out in 0..lines.len() {
-        let mut kept = lines.clone();
-        kept.remove(left_out);
-        let mut forged = files.clone();
-        forge(&mut forged, "entries.ndjson", kept.join("\n").into_bytes());
-        let problems = evidence::verify(&packed(&forged)).problems;
-        assert!(!problems.is_empty(), "without line {}", left_out + 1);
-    }
+    forgeries_are_found_out(&files);
     assert!(!evidence::verify(b"not an archive").problems.is_empty());
     // A photograph that comes after the record is evidence, and nobody has signed it.
     job.photo(PICTURE).await.good();
@@ -234,7 +239,8 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
         .facts
         .iter()
         .find(|fact| fact.starts_with("no signature covers"));
-    let later = format!("photos/{:04}.jpeg", lines.len() + 1);
+    let entries = String::from_utf8_lossy(&files["entries.ndjson"]);
+    let later = format!("photos/{:04}.jpeg", entries.lines().count() + 1);
     assert!(
         uncovered.is_some_and(|fact| fact.contains(&later)),
         "{found:?}"

@@ -232,7 +232,7 @@ impl Judge<'_> {
             learnt,
             refusals: beyond
                 .into_iter()
-                .map(|refusal| refusal.with_cures())
+                .map(super::refusal::Refusal::with_cures)
                 .collect(),
             binnacle,
             outcome: Box::new(outcome),
