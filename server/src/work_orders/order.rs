@@ -366,8 +366,9 @@ impl NewOrder {
     /// The order, its words trimmed.
     pub fn checked(self, now: Time) -> Result<NewOrder> {
         let past = |grace_h: f64| now.0.seconds_since(self.planned_at.0) > grace_h * 3600.0;
-        // Who is on the quay already may write the order afterwards; nobody can be asked for it.
-        if past(if self.offer.is_some() { 0.0 } else { 24.0 }) {
+        // Who is on the quay already may write the order afterwards; who is asked for one needs
+        // time to answer, but for a page that was open for a while.
+        if past(if self.offer.is_some() { 1.0 } else { 24.0 }) {
             return Err(Error::Invalid {
                 field: "planned_at",
                 detail: format!("{} is over", self.planned_at.0),

@@ -43,7 +43,11 @@ const pages = [
     path: '/notifications',
     ready: (page) => page.getByLabel('Time zone'),
   },
-  { name: 'settings', path: '/settings', ready: (page) => page.getByText('this browser') },
+  {
+    name: 'settings',
+    path: '/settings',
+    ready: (page) => page.getByText('this browser', { exact: true }),
+  },
   { name: 'people', path: '/settings/people', ready: (page) => page.getByTestId('users') },
   { name: 'agents', path: '/settings/agents', ready: (page) => page.getByLabel('Vessel') },
   {

@@ -6,8 +6,8 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { phone, notSignedIn, signIn, struck, fitsItsWidth } from '../helpers.mjs';
 
-/** The berth where she is adjusted, and how she lies there. */
-const berth = { lat: 43.35, lon: -3.04, headingDeg: 40 };
+/** The berth where she is adjusted, a day from her last sample at most, and how she lies. */
+const berth = { lat: 35.9, lon: 14.5, headingDeg: 40 };
 /** The share of the earth's field that reaches the compass: what no heading tells. */
 const lambda = 0.9;
 const radians = (degrees) => (degrees * Math.PI) / 180;
@@ -120,7 +120,7 @@ export const adjusting = {
       await order.click();
       await page.getByRole('alert').getByText('Say in which port').waitFor();
       assert.equal(await page.getByLabel('Vessel').inputValue(), vessel.id);
-      await page.getByLabel('Port').fill('Bilbao');
+      await page.getByLabel('Port').fill('Valletta');
       await page.getByLabel('Berth').fill('A5');
       await page.getByLabel('Adjuster').fill('M. Etxeberria');
       await page.getByLabel('Licence number').fill('ES-CA-114');
@@ -152,8 +152,8 @@ export const adjusting = {
       await page.getByRole('heading', { name: 'Read the field' }).waitFor();
 
       // In gauss what is microtesla: refused, with what it could be.
-      await page.getByLabel('Latitude').fill('43 21.0 N');
-      await page.getByLabel('Longitude').fill('003 02.4 W');
+      await page.getByLabel('Latitude').fill('35 54.0 N');
+      await page.getByLabel('Longitude').fill('014 30.0 E');
       await page.getByLabel(/^True heading of the ship/).fill(String(berth.headingDeg));
       await page.getByLabel('It is from').selectOption('ashore');
       await page.getByLabel(/^The compass read, before/).fill(field.compass);
@@ -247,7 +247,7 @@ export const adjusting = {
       await signIn(page, settings);
       const { id, name } = await struck(page);
       await page.goto(`/work-orders/new?vessel=${id}`);
-      await page.getByLabel('Port').fill('Bilbao');
+      await page.getByLabel('Port').fill('Valletta');
       await page.getByRole('button', { name: 'Order it' }).click();
       const title = { name: `${name}: adjustment`, level: 1 };
       await page.getByRole('heading', title).waitFor();
