@@ -52,7 +52,7 @@ const expected = async (page) => parseFloat(await page.getByTestId('expected').i
 async function stepAsExpected(page, n) {
   await page.getByText(new RegExp(`^Step ${n} of`)).waitFor();
   await page.getByLabel(/^The compass reads/).fill(String(await expected(page)));
-  await page.getByText(/^As expected, to 0\.\d°\.$/).waitFor();
+  await page.getByText(/^Off by 0\.\d°, within what readings err\.$/).waitFor();
   await page.getByRole('button', { name: 'Done: next' }).click();
 }
 
