@@ -100,7 +100,7 @@ pub(super) fn evidence(
 }
 
 /// By how much likelier than something one is that leads it by so many nats, with the
-/// temper of [`causes`]: the models are only nearly right.
+/// temper of `causes`: the models are only nearly right.
 fn likelier(nats: f64) -> String {
     let odds = odds(nats);
     match odds {
