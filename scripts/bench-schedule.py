@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """How long a fleet's schedule takes: by the solver alone, and through the real server.
 
-    scripts/bench-schedule solver
-    scripts/bench-schedule server PROGRAM [VESSELS CALLS FIRMS]
+    scripts/bench-schedule.py solver
+    scripts/bench-schedule.py server PROGRAM [VESSELS CALLS FIRMS]
 
 `solver` builds and runs crates/schedule/examples/fleet.rs for the fleets of BENCHMARKS.md.
 `server` starts PROGRAM (a binnacle-server) on a new SQLite database, enters a fleet over
