@@ -147,6 +147,9 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
     for (name, part) in [("forward", x), ("starboard", y), ("down", z)] {
         reading[name] = serde_json::json!(part / 1000.0);
     }
+    // So is the compass, but for what the needles induce.
+    let compass_deg = (-y).atan2(x).to_degrees().rem_euclid(360.0);
+    reading["compass_deg"] = serde_json::json!(compass_deg);
     let strange = [
         0.0, -0.0, 1e-300, -1.0, 1.0, 89.9, 180.0, 359.9, 4e3, -7e4, 1e9, -1e308,
     ];

@@ -10,7 +10,7 @@ use uuid::Uuid;
 
 /// Orders of so long ago are shown no more.
 const SHOWN_FOR_S: f64 = 400.0 * 86_400.0;
-/// Port calls and due dates of so long ago are shown no more.
+/// Port calls of so long ago are shown no more.
 const OVER_FOR_S: f64 = 90.0 * 86_400.0;
 /// As many as a calendar takes, the latest.
 const MOST: i64 = 2000;

@@ -33,13 +33,14 @@ pub async fn look(app: &App) -> Result<usize> {
 
 async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
     let now: Time = app.clock.now().into();
-    let facts = of_fleet(app, operator, None).await?;
     let today = now.0.to_chrono().date_naive();
     let mut before: BTreeMap<CompassId, Noted> = store::needs_told(&app.db, operator)
         .await?
         .into_iter()
         .map(|noted| (noted.compass_id, noted))
         .collect();
+    // What was noted is read first: what another process notes meanwhile is not forgotten.
+    let facts = of_fleet(app, operator, None).await?;
     let terms = schedule::terms(&app.db, operator).await?;
     let needs = facts.iter().filter_map(|facts| need(facts, &terms, today));
     let mut told = 0;

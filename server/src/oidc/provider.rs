@@ -59,7 +59,8 @@ pub(super) async fn find(app: &App, age_s: f64) -> Result<Arc<Found>, Refusal> {
     }
     let found = found.ok();
     *kept = Some(Kept {
-        at: now,
+        // It may have taken as long to find nothing.
+        at: app.clock.now(),
         found: found.clone(),
     });
     found.ok_or(Refusal::Unreachable)

@@ -14,7 +14,7 @@ use crate::peer::Origin;
 use crate::session::throttle::{self, Subjects};
 use crate::session::{self, User, normal_email};
 use crate::time::Time;
-use crate::{second_factor, secret};
+use crate::{password, second_factor, secret};
 use axum::extract::State;
 use axum::http::header::{LOCATION, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
@@ -146,6 +146,8 @@ async fn send_code(
     let user = user.ok_or(OVER)?;
     audit::acts(Actor::user(&user));
     let subjects = Subjects::person(&user.email, &from);
+    // As with passwords, guesses sent at once do not outrun the count.
+    let _place = password::place(&app).await?;
     throttle::check(&app.db, &subjects, now).await?;
     if !second_factor::use_code(&app.db, user.user_id, &sent.code, now).await? {
         throttle::note_failure(&app.db, &subjects, now).await?;
@@ -231,7 +233,8 @@ async fn who(app: &App, attempt: &Attempt, code: String) -> std::result::Result<
 /// The user with the e-mail of someone who comes for the first time.
 async fn bound(app: &App, issuer: &str, identity: &Identity) -> std::result::Result<User, Refusal> {
     let email = claims::verified_email(app, identity).await?;
-    if email.chars().any(char::is_control) {
+    // Nobody here has another; and what is alike in lower case is not the same.
+    if !email.is_ascii() || email.chars().any(char::is_control) {
         return Err(Refusal::Unknown);
     }
     let user = store::find_by_email(&app.db, &normal_email(&email)).await?;

@@ -38,17 +38,17 @@ pub(super) fn withdrawn(row: &Row) -> Result<Moving> {
 /// What a file moves; its new calls have these ids.
 pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec<Moving>> {
     let mut all = Vec::new();
+    let mut free: Vec<&(CallId, &Content)> = new.iter().collect();
+    free.sort_by(|(_, one), (_, other)| one.eta.0.seconds_since(other.eta.0).total_cmp(&0.0));
     for (row, call) in &taken.amended {
         all.extend(amended(row, call)?);
     }
     for row in &taken.withdrawn {
         let moving = withdrawn(row)?;
-        let apart_h = |call: &Content| (call.eta.0.seconds_since(row.eta.0) / 3600.0).abs();
-        let near = new
-            .iter()
-            .filter(|(_, call)| call.port.to_string() == row.port && apart_h(call) <= SAME_CALL_H)
-            .min_by(|(_, one), (_, other)| apart_h(one).total_cmp(&apart_h(other)));
-        all.push(match near {
+        let gone = taken.withdrawn.iter().filter(|gone| gone.port == row.port);
+        let came = new.iter().filter(|(_, call)| is_at(row, call));
+        let becomes = becomes(row, &mut free, gone.count() == came.count());
+        all.push(match becomes {
             Some((then_id, call)) => Moving {
                 then_id: *then_id,
                 is: Some(alongside(call)),
@@ -58,6 +58,30 @@ pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec
         });
     }
     Ok(all)
+}
+
+fn is_at(row: &Row, call: &Content) -> bool {
+    call.port.to_string() == row.port
+}
+
+/// Which of the new calls, in the order of time, one that is gone has become, each for one
+/// only: the next where as many came as went, else the nearest.
+fn becomes<'a>(
+    row: &Row,
+    free: &mut Vec<&'a (CallId, &'a Content)>,
+    in_order: bool,
+) -> Option<&'a (CallId, &'a Content)> {
+    let apart_h = |call: &Content| (call.eta.0.seconds_since(row.eta.0) / 3600.0).abs();
+    let mut could_be = (0..free.len()).filter(|at| {
+        let call = free[*at].1;
+        is_at(row, call) && apart_h(call) <= SAME_CALL_H
+    });
+    let found = if in_order {
+        could_be.next()
+    } else {
+        could_be.min_by(|one, other| apart_h(free[*one].1).total_cmp(&apart_h(free[*other].1)))
+    };
+    found.map(|at| free.remove(at))
 }
 
 fn alongside(call: &Content) -> Alongside {

@@ -109,8 +109,9 @@ async fn invite_again(
 
 /// Set a password with a one-time code
 ///
-/// Sessions, tokens and calendars there were end: whoever needs a code may have lost more
-/// than the password. A second factor stays.
+/// Sessions, tokens and calendars there were end, and whom a sign-in provider means is
+/// forgotten: whoever needs a code may have lost more than the password. A second factor
+/// stays.
 #[utoipa::path(post, path = "/invitations/accept", tag = "people", security(()),
     request_body = Acceptance,
     responses((status = 200, body = Accepted),
@@ -191,7 +192,6 @@ pub async fn reset(db: &Db, email: &str, now: Time) -> Result<Option<(String, Ti
     session::set_password(&mut tx, user, "").await?;
     end_access(&mut tx, user).await?;
     second_factor::remove(&mut tx, user).await?;
-    oidc::forget(&mut tx, user).await?;
     let made = insert(&mut tx, user, now).await?;
     tx.commit().await?;
     Ok(Some(made))
@@ -202,6 +202,7 @@ async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
     session::end_all(tx, user, None).await?;
     tokens::delete_all(tx, user).await?;
     calendar::delete_all_of(tx, user).await?;
+    oidc::forget(tx, user).await?;
     Ok(())
 }
 

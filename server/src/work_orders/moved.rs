@@ -8,7 +8,7 @@ use super::entry::{Author, Content};
 use super::news::{self, Before};
 use super::offers::{Between, Offer};
 use super::store;
-use crate::db::{Tx, rows};
+use crate::db::{Tx, execute, rows};
 use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CallId, OrderId, VesselId};
@@ -176,6 +176,8 @@ struct Affected {
     id: OrderId,
     planned_at: Time,
     call_id: Option<CallId>,
+    /// Whether it is at no call that stands.
+    is_adrift: bool,
 }
 
 /// Tells of calls of one vessel that are about to move or to be withdrawn, whose row is
@@ -193,11 +195,23 @@ pub async fn calls_move(
     if moving.is_empty() {
         return Ok(Vec::new());
     }
+    // Who agrees to another time meanwhile waits, or is waited for.
+    execute!(
+        &mut *tx,
+        "UPDATE work_orders SET state = state
+         WHERE vessel_id = $1
+           AND state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')",
+        vessel
+    )?;
     let orders = rows!(
         in &mut *tx,
         Affected,
-        "SELECT o.id, o.planned_at, l.call_id FROM work_orders o
+        "SELECT o.id, o.planned_at, l.call_id,
+                CASE WHEN c.id IS NULL OR c.withdrawn_at IS NOT NULL THEN TRUE ELSE FALSE END
+                    AS is_adrift
+         FROM work_orders o
          LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
+         LEFT JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
          WHERE o.vessel_id = $1
            AND o.state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')
          ORDER BY o.id",
@@ -205,9 +219,9 @@ pub async fn calls_move(
     )?;
     let mut told = Vec::new();
     for order in orders {
-        let at = |one: &&Moving| match order.call_id {
-            Some(call) => call == one.call_id,
-            None => one.was.eta <= order.planned_at && order.planned_at <= one.was.etd,
+        let at = |one: &&Moving| {
+            let is_then = one.was.eta <= order.planned_at && order.planned_at <= one.was.etd;
+            order.call_id == Some(one.call_id) || order.is_adrift && is_then
         };
         if let Some(one) = moving.iter().find(at) {
             schedule::link(tx, vessel, order.id, one.then_id).await?;

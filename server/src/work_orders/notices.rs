@@ -1,7 +1,7 @@
 //! What people are told of an order, in words, and on which side.
 //!
-//! What always holds: who does something is not told of it by us; what is between the
-//! operator and one firm is told to no other.
+//! What always holds: who does something is not told of it by us, but of a call that moves
+//! all are; what is between the operator and one firm is told to no other.
 
 use super::entry::{Content, Entry};
 use super::moved::{CallFit, CallMoved};

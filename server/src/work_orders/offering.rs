@@ -215,7 +215,7 @@ pub(super) fn message(said: &str) -> Result<String> {
 }
 
 /// When an answer to what is asked now is due.
-pub(super) fn due(change: &Change<'_>, hours: u32) -> Time {
+fn due(change: &Change<'_>, hours: u32) -> Time {
     Time(change.now.0.plus_seconds(f64::from(hours) * HOUR_S))
 }
 
@@ -254,7 +254,7 @@ pub(super) async fn must_have_room(
 }
 
 /// Until when to answer: no later than the job is to begin, if that is still ahead.
-fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
+pub(super) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
     let due = due(change, within_hours);
     if at > change.now { due.min(at) } else { due }
 }
@@ -370,6 +370,7 @@ pub(super) async fn operator_says(
     if yes {
         let firm = between.firm.clone();
         if let Some(terms) = &between.terms {
+            place::must_be_there(change, terms.planned_at, "planned_at").await?;
             must_have_room(change, &firm, terms.planned_at, Told::Operator).await?;
             at_its_call(change, terms.planned_at).await?;
         }

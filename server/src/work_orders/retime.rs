@@ -7,15 +7,16 @@
 use super::change::Change;
 use super::entry::Content;
 use super::moved::CallFit;
-use super::offering::{Answer, LONGEST_H, Proposal, due, must_have_room, two_days};
+use super::offering::{Answer, LONGEST_H, Proposal, answer_by, must_have_room, two_days};
 use super::offers::{Asked, Between, Offer, Terms};
 use super::order::{Order, State};
+use super::place;
 use super::store;
 use super::{request, shown};
 use crate::access::{PartyWriter, Writer};
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
-use crate::firms::Told;
+use crate::firms::{Told, port_meant};
 use crate::http::{Id, Json, Valid, ValidOrNone};
 use crate::idempotency::Key;
 use crate::ids::OrderId;
@@ -96,7 +97,7 @@ async fn propose_retime(
         let holder = holder(&change)?;
         must_be_possible(&mut change, &holder.firm(), &asked.terms, Told::Operator).await?;
         let between = Between {
-            answer_by: Some(due(&change, hours)),
+            answer_by: Some(answer_by(&change, hours, asked.terms.planned_at)),
             terms: Some(asked.terms),
             text: asked.text,
             ..Between::with(holder.firm())
@@ -138,6 +139,13 @@ async fn accept_retime(
             return Err(Error::NotFound("work order"));
         }
         let terms = asked_terms(&change, &offer)?;
+        // What was agreed on besides the time stands.
+        let agreed = offer.terms.clone();
+        let terms = Terms {
+            berth: (terms.berth).or_else(|| agreed.as_ref()?.berth.clone()),
+            fee_eur: (terms.fee_eur).or_else(|| agreed.as_ref()?.fee_eur),
+            ..terms
+        };
         must_be_possible(&mut change, &offer.firm(), &terms, Told::Firm).await?;
         at_its_call(&mut change, terms.planned_at).await?;
         let agreed = Between {
@@ -226,7 +234,9 @@ async fn order_port(change: &mut Change<'_>) -> Result<Option<String>> {
         return Ok(Some(port));
     }
     let call = port_calls::alongside(&mut change.tx, vessel, planned_at).await?;
-    Ok(call.map(|call| call.port))
+    let meant = port_meant(&change.whole.summary.port).map(|port| port.code.to_string());
+    let is_hers = |port: &String| meant.as_ref().is_none_or(|meant| meant == port);
+    Ok(call.map(|call| call.port).filter(is_hers))
 }
 
 /// Notes at which call an order is to be done whose time is another now.
@@ -250,6 +260,7 @@ async fn must_be_possible(
 ) -> Result<()> {
     // Without any call nobody knows where she will be: the firm judges for itself.
     let Some(port) = order_port(change).await? else {
+        place::must_be_there(change, terms.planned_at, "planned_at").await?;
         return must_have_room(change, firm, terms.planned_at, told).await;
     };
     let (at, vessel) = (terms.planned_at, change.whole.summary.vessel_id);

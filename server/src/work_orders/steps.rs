@@ -239,8 +239,7 @@ fn in_all(prepared: &Prepared, said: StepSaid, setting: &Setting) -> Result<Step
         return Ok(said);
     }
     let words = format!(
-        "{}; but {}: see that each corrector stands as it should, and read the magnetometer \
-         again before you finish",
+        "{}; but {}: see that each corrector stands as it should before you finish",
         said.words,
         in_all.in_words()
     );

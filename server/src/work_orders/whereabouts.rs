@@ -8,12 +8,12 @@ use super::refusal::{Cure, Refusal};
 use crate::analysis;
 use crate::app::App;
 use crate::error::{Error, Result};
+use crate::firms::port_meant;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
 use binnacle_magnetics::adjust::ReadingForm;
 use binnacle_magnetics::analyse::SampleDiagnostic;
 use binnacle_magnetics::position::Position;
-use binnacle_schedule::ports;
 
 /// The farthest berth of a port from where the list of ports has it, nautical miles.
 const FROM_PORT_NM: f64 = 60.0;
@@ -85,16 +85,10 @@ fn refusal(words: String) -> Refusal {
     }
 }
 
-/// By the list of ports: several may have one name, and a port that it lacks tells nothing.
+/// By the list of ports; words that mean none of it tell nothing.
 fn not_in_port(berth: Position, port: &str) -> Option<String> {
-    let port = port.trim().to_lowercase();
-    let named = ports::all().iter().filter(|known| {
-        known.name.to_lowercase() == port
-            || known.plain_name.to_lowercase() == port
-            || known.code.to_string().to_lowercase() == port
-    });
-    let far = named.map(|known| (distance_nm(berth, known.position), known.name));
-    let (apart_nm, name) = far.min_by(|one, other| one.0.total_cmp(&other.0))?;
+    let known = port_meant(port)?;
+    let (apart_nm, name) = (distance_nm(berth, known.position), known.name);
     (apart_nm > FROM_PORT_NM).then(|| {
         format!(
             "the position of the reading is {apart_nm:.0} nautical miles from {name}, where the \
@@ -142,7 +136,7 @@ mod tests {
 
     #[test]
     fn a_berth_is_near_its_port_whatever_the_case_of_its_name() {
-        for port in ["Bilbao", " bilbao ", "ESBIO"] {
+        for port in ["Bilbao", " bilbao ", "ESBIO", "Bilbao (ESBIO)"] {
             assert_eq!(not_in_port(at(43.35, -3.04), port), None);
             assert!(
                 not_in_port(at(43.35, 3.04), port).is_some(),

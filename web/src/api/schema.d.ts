@@ -460,8 +460,9 @@ export interface paths {
         put?: never;
         /**
          * Set a password with a one-time code
-         * @description Sessions, tokens and calendars there were end: whoever needs a code may have lost more
-         *     than the password. A second factor stays.
+         * @description Sessions, tokens and calendars there were end, and whom a sign-in provider means is
+         *     forgotten: whoever needs a code may have lost more than the password. A second factor
+         *     stays.
          */
         post: operations["accept_invitation"];
         delete?: never;

@@ -71,7 +71,7 @@ pub(super) fn check(
     let tilted_nt = adjustment.earth.h_nt * errors.tilt_sd_deg.to_radians();
     // Read twice with the same instrument: noise and tilt differ, its scale does not.
     let instrument_nt = std::f64::consts::SQRT_2 * errors.field_sd_nt.hypot(tilted_nt);
-    let scale_nt = adjustment.scale_sd * (will_nt - was_nt);
+    let scale_nt = adjustment.scale_sd * (will_nt - adjustment.vertical?.down_nt);
     let of_correctors = errors_between(binnacle, &binnacle.setting, after);
     let squares = of_correctors.iter().map(|error| {
         let down_nt = error.chi[2][2] * adjustment.earth.z_nt + error.b_nt[2];

@@ -9,6 +9,7 @@
 
 mod again;
 mod berth;
+mod beyond;
 mod candidates;
 mod card;
 mod condition;
@@ -69,7 +70,7 @@ pub struct Adjustment<'a> {
     pub binnacle: &'a Binnacle,
     /// How they stand now, where they were moved since.
     pub now: Option<&'a Setting>,
-    /// Where the vessel trades; the berth counts only if it is among them.
+    /// Where the vessel trades: what the search makes small. Limits hold at the berth as well.
     pub waters: &'a [Water],
     /// What the model and the ship are like.
     pub circumstances: Circumstances,
@@ -293,7 +294,8 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
             plans.push(plan);
         } else if refusals.is_empty() {
             // Of the plan that would be recommended.
-            refusals = refusal::afterwards(adjustment, &condition, &plan);
+            refusals =
+                beyond::beyond_limits(adjustment, &condition, &plan.after, &plan.model_after);
         }
     }
     // What is beyond the limits is no alternative either.

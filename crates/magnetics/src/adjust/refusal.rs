@@ -1,14 +1,10 @@
 //! Why there is no plan, and what would cure it.
 
 use super::card::Card;
-use super::condition::Condition;
 use super::mistakes::{Mistake, mistakes};
 use super::read::Unit;
-use super::{AdjustError, Adjustment, Limits, Plan, PredictedTable, Refused, Water, spheres};
+use super::{AdjustError, Adjustment, Refused};
 use crate::berth::{BerthError, Consistency};
-use crate::deviation::Coefficients;
-use crate::model::Model;
-use crate::ship::EarthField;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -318,109 +314,8 @@ pub(super) fn of_berth(
     }
 }
 
-/// What is wrong with a plan.
-pub(super) fn afterwards(
-    adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    plan: &Plan,
-) -> Vec<Refusal> {
-    beyond_limits(adjustment, condition, &plan.after, &plan.model_after)
-}
-
-/// What is wrong with residuals foretold by a model.
-pub(super) fn beyond_limits(
-    adjustment: &Adjustment<'_>,
-    condition: &Condition<'_>,
-    after: &[PredictedTable],
-    model: &Model,
-) -> Vec<Refusal> {
-    match beyond(after, model, &adjustment.limits, adjustment.waters) {
-        Some(too_large @ Refusal::ResidualTooLarge { .. }) => {
-            spheres::residual_too_large(adjustment, condition, after, too_large)
-        }
-        found => found.into_iter().collect(),
-    }
-}
-
-impl Plan {
-    /// Which of these limits it breaks in these waters, with what would cure that; nothing
-    /// that [`super::plan`] offers breaks those it was asked for.
-    #[must_use]
-    pub fn beyond(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
-        beyond(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)
-    }
-}
-
-fn beyond(
-    after: &[PredictedTable],
-    model: &Model,
-    limits: &Limits,
-    waters: &[Water],
-) -> Option<Refusal> {
-    let counted = after.iter().enumerate().filter(|(index, _)| {
-        // The berth stands first, and is not where she trades.
-        index
-            .checked_sub(1)
-            .and_then(|water| waters.get(water))
-            .is_none_or(|water| water.weight > 0.0)
-    });
-    let mut worst = None;
-    for (_, table) in counted {
-        let place = table.place.clone();
-        let (Some(reach_deg), Some(worst_deg)) = (table.reach_deg, table.worst_deg) else {
-            let what = format!("compass headings are ambiguous at {}", said(&place));
-            return Some(Refusal::AmbiguousHeadings { what });
-        };
-        let band_deg = table.widest_band_deg.unwrap_or(f64::INFINITY);
-        let too_large = |place| Refusal::ResidualTooLarge {
-            place,
-            reach_deg,
-            worst_deg,
-            limit_deg: limits.residual_deg,
-            mostly: mostly(model, table),
-        };
-        if worst_deg > limits.residual_deg {
-            // No band is narrow enough for that.
-            return Some(too_large(place));
-        }
-        if band_deg > limits.band_deg {
-            worst = Some(Refusal::BandTooWide {
-                place,
-                band_deg,
-                limit_deg: limits.band_deg,
-            });
-        } else if reach_deg > limits.residual_deg && worst.is_none() {
-            worst = Some(too_large(place));
-        }
-    }
-    worst
-}
-
-/// The greatest of the exact coefficients, the model's constant with A.
-fn mostly(model: &Model, table: &PredictedTable) -> Coefficient {
-    let earth = EarthField {
-        h_nt: table.h_nt,
-        z_nt: table.z_nt,
-    };
-    let Ok(found) = Coefficients::new(&model.parameters_over_lambda, earth) else {
-        return Coefficient::A;
-    };
-    let a = found.a + model.constant_deg.to_radians();
-    let sizes = [
-        (a, Coefficient::A),
-        (found.b, Coefficient::B),
-        (found.c, Coefficient::C),
-        (found.d, Coefficient::D),
-        (found.e, Coefficient::E),
-    ];
-    let largest = sizes
-        .into_iter()
-        .max_by(|x, y| x.0.abs().total_cmp(&y.0.abs()));
-    largest.map_or(Coefficient::A, |(_, which)| which)
-}
-
 /// A place in a sentence: the berth has no name of its own.
-fn said(place: &str) -> &str {
+pub(super) fn said(place: &str) -> &str {
     match place {
         "berth" => "the berth",
         named => named,

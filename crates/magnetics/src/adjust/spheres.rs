@@ -1,7 +1,10 @@
 //! Spheres that have to stay where they are, because λ is too unsure.
 
 use super::condition::Condition;
-use super::{Adjustment, PredictedTable, Refusal, search};
+use super::{Adjustment, PredictedTable, Refusal, beyond, predicted, search};
+
+/// What the search takes a water for where headings are ambiguous, degrees.
+const AMBIGUOUS_DEG: f64 = 90.0;
 
 /// Why the residual is too large: where spheres on board would lessen it, had they not to
 /// stay because λ is too unsure, that is the magnetometer's and no corrector's.
@@ -15,17 +18,27 @@ pub(super) fn residual_too_large(
     if condition.may_move_pair || condition.binnacle.design.quadrantal.is_none() {
         return vec![too_large];
     }
-    let front = search::search(adjustment, &condition.with_free_spheres());
-    let best = front.undominated().last().map(|found| found.worst_deg);
-    let best_deg = best.unwrap_or(f64::INFINITY);
-    if best_deg + limits.near_equal_deg >= weighted_worst_deg(adjustment, after) {
+    let free = condition.with_free_spheres();
+    let front = search::search(adjustment, &free);
+    let Some(&best) = front.undominated().last() else {
+        return vec![too_large];
+    };
+    if best.worst_deg + limits.near_equal_deg >= weighted_worst_deg(adjustment, after) {
         return vec![too_large];
     }
     let poor = Refusal::MagnetometerTooPoor {
         lambda_sd: condition.lambda_sd_share(),
         limit: limits.lambda_sd,
     };
-    if best_deg <= limits.residual_deg {
+    // The band is wide by λ, which a better magnetometer tells: the residual alone counts.
+    let within = |table: &PredictedTable| {
+        table
+            .worst_deg
+            .is_some_and(|worst_deg| worst_deg <= limits.residual_deg)
+    };
+    let would_do = predicted::tables(adjustment, &free, &best.setting)
+        .is_ok_and(|tables| beyond::counted(&tables, adjustment.waters).all(within));
+    if would_do {
         return vec![poor];
     }
     vec![poor, too_large]
@@ -36,7 +49,7 @@ fn weighted_worst_deg(adjustment: &Adjustment<'_>, after: &[PredictedTable]) -> 
     // The berth stands first.
     let in_waters = adjustment.waters.iter().zip(after.iter().skip(1));
     let (weights, sum) = in_waters.fold((0.0, 0.0), |(weights, sum), (water, table)| {
-        let worst_deg = table.worst_deg.unwrap_or(0.0);
+        let worst_deg = table.worst_deg.unwrap_or(AMBIGUOUS_DEG);
         (weights + water.weight, sum + water.weight * worst_deg)
     });
     sum / weights

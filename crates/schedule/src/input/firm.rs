@@ -84,8 +84,7 @@ impl Firm {
     /// How many of its teams there are to plan with on a day.
     pub fn teams_on(&self, day: NaiveDate) -> u32 {
         let taken = self.taken.iter().filter(|taken| taken.day == day);
-        self.teams
-            .saturating_sub(taken.map(|taken| taken.teams).sum())
+        taken.fold(self.teams, |left, taken| left.saturating_sub(taken.teams))
     }
 
     /// Whether a flag accepts its adjusters; one that is not known may not.

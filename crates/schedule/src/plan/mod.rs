@@ -127,7 +127,7 @@ impl<'a> Options<'a> {
                 }
             }
             // Undone it waits longer than any of its ways: what that costs never makes it
-            // better left undone, only a fee can.
+            // better left undone, only a fee with its travel can.
             let waits = options.all[first..].iter();
             let waits = waits.map(|way| way.quote.cost() - way.quote.fee);
             let unmet = input.weights.unmet_eur.of(job.urgency()).cents();

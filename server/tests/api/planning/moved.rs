@@ -17,6 +17,7 @@ on_both!(
     files_that_move_a_call_are_told_as_a_request_is,
     a_new_day_is_agreed_on_and_the_old_one_stands_until_then,
     a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team,
+    another_time_leaves_the_fee_that_was_agreed,
     a_question_that_is_not_answered_leaves_what_was_agreed,
     a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks,
     a_call_withdrawn_after_acceptance_is_told_and_done_at_another,
@@ -291,6 +292,26 @@ async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(shore: Shore)
     let gone = agreed.answer(&agreed.rosa, "accept").await;
     assert!(gone.text.contains("no call at NLRTM"), "{gone:?}");
     assert_eq!(agreed.seen().await["planned_at"], "2026-12-15T08:00:00Z");
+    shore.finish().await;
+}
+
+async fn another_time_leaves_the_fee_that_was_agreed(shore: Shore) {
+    let agreed = Agreed::new(&shore).await;
+    agreed
+        .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
+        .await;
+    let dearer = json!({ "terms": { "planned_at": "2026-12-16T08:00:00Z", "fee_eur": 900.5 } });
+    let path = format!("{}/retime", agreed.order);
+    agreed.ada.post(&path, &dearer).await.good();
+    let order = agreed.answer(&agreed.rosa, "accept").await.good();
+    assert_eq!(order["offers"][0]["terms"]["fee_eur"], 900.5);
+    agreed.retime("2026-12-17T08:00:00Z").await.good();
+    let order = agreed.answer(&agreed.rosa, "accept").await.good();
+    assert_eq!(order["planned_at"], "2026-12-17T08:00:00Z");
+    assert_eq!(order["offers"][0]["terms"]["fee_eur"], 900.5);
+    // She is at sea then.
+    let elsewhere = agreed.retime("2026-12-20T08:00:00Z").await;
+    assert_eq!(elsewhere.problem(), "wrong-state");
     shore.finish().await;
 }
 

@@ -14,13 +14,13 @@ mod news;
 
 pub use form::AgainForm;
 
+use super::beyond::beyond_limits;
 use super::condition::{Condition, Known};
 use super::heeling::VerticalReading;
 use super::instructions::Step;
 use super::mistakes::Mistake;
 use super::predicted::{PredictedTable, tables_by};
 use super::read::Unit;
-use super::refusal::beyond_limits;
 use super::{AdjustError, Adjustment, Outcome, Refused, plan};
 use crate::berth::BerthReading;
 use crate::binnacle::{Binnacle, Setting};
@@ -193,6 +193,12 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn verdict(&self, news: &News, weighed: &[Weighed]) -> Result<Verdict, AdjustError> {
+        if self.adjustment.model.covariance.is_none() {
+            // Nothing is known of what differences there may be.
+            return Ok(Verdict::Unexplained {
+                mistakes: Vec::new(),
+            });
+        }
         let fits = weighed
             .iter()
             .any(|one| one.what != What::Elsewhere && one.squared <= greatest(news));
@@ -226,6 +232,8 @@ impl Judge<'_> {
             vertical: self.vertical,
             binnacle: &binnacle,
             now: None,
+            // That was read before the steps.
+            compass_deg: None,
             ..self.adjustment.clone()
         })?;
         Ok(Verdict::Replan {

@@ -1,5 +1,9 @@
 //! The command line, and with it every setting: flags, or `BINNACLE_*` variables.
 
+mod admin;
+
+pub use admin::{Admin, AdminCommand, Create, FleetRole, Person};
+
 use crate::tls::Certificate;
 use crate::webhooks::Reach;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -233,114 +237,6 @@ fn issuer(text: &str) -> Result<String, String> {
         "http" if is_here => Ok(text.to_owned()),
         _ => Err("must be https, unless it is this machine".to_owned()),
     }
-}
-
-/// `admin`.
-#[derive(Debug, Args)]
-pub struct Admin {
-    /// Which database.
-    #[command(flatten)]
-    pub database: Database,
-    /// What to do.
-    #[command(subcommand)]
-    pub command: AdminCommand,
-}
-
-/// What `admin` can do.
-#[derive(Debug, Subcommand)]
-pub enum AdminCommand {
-    /// Create something and print it as JSON
-    Create {
-        /// What to create.
-        #[command(subcommand)]
-        what: Create,
-    },
-    /// Give someone who lost password or telephone a one-time code to begin anew with:
-    /// password, second factor, sessions and whom a sign-in provider means are gone
-    ResetUser {
-        /// What the person signs in with
-        #[arg(long)]
-        email: String,
-    },
-    /// Revoke an agent's token: it is known no more until the agent is enrolled again
-    RevokeAgent {
-        /// The vessel's id
-        #[arg(long)]
-        vessel: Uuid,
-        /// The agent's id, as `GET /api/v1/vessels/{id}/agents` lists it
-        #[arg(long)]
-        agent: Uuid,
-    },
-}
-
-/// What `admin create` can create.
-#[derive(Debug, Subcommand)]
-pub enum Create {
-    /// A company with a fleet
-    Operator {
-        /// Its name
-        #[arg(long)]
-        name: String,
-    },
-    /// Someone who may see, or manage, an operator's fleet
-    User {
-        /// The operator's id
-        #[arg(long)]
-        operator: Uuid,
-        /// Who.
-        #[command(flatten)]
-        person: Person,
-        /// May the user change things?
-        #[arg(long, value_enum)]
-        role: FleetRole,
-    },
-    /// A company that adjusts compasses
-    Firm {
-        /// Its name
-        #[arg(long)]
-        name: String,
-        /// The id of an operator that works with it, as often as there are such
-        #[arg(long = "operator")]
-        operators: Vec<Uuid>,
-    },
-    /// Someone who adjusts compasses for a firm
-    Adjuster {
-        /// The firm's id
-        #[arg(long)]
-        firm: Uuid,
-        /// Who.
-        #[command(flatten)]
-        person: Person,
-    },
-    /// Someone who manages operators and firms
-    PlatformAdmin {
-        /// Who.
-        #[command(flatten)]
-        person: Person,
-    },
-}
-
-/// A person to be created.
-#[derive(Debug, Args)]
-pub struct Person {
-    /// What the person signs in with
-    #[arg(long)]
-    pub email: String,
-    /// The person's name
-    #[arg(long)]
-    pub name: String,
-    /// Read the password from standard input; otherwise one is made and printed
-    #[arg(long)]
-    pub password_stdin: bool,
-}
-
-/// What a user of an operator may do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FleetRole {
-    /// See and change
-    Admin,
-    /// See
-    Viewer,
 }
 
 /// A model of the earth's field.
