@@ -2,6 +2,7 @@
 
 mod coverage;
 mod export;
+mod picture;
 
 use crate::access::Reader;
 use crate::analysis;
@@ -15,6 +16,7 @@ use crate::vessels;
 use axum::extract::State;
 use axum::response::Response;
 use binnacle_magnetics::analyse::SampleDiagnostic;
+use picture::SamplePicture;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -26,6 +28,7 @@ pub fn router() -> OpenApiRouter<App> {
         .routes(routes!(list_samples))
         .routes(routes!(samples_csv))
         .routes(routes!(samples_ndjson))
+        .routes(routes!(draw_samples))
         .merge(coverage::router())
 }
 
@@ -207,6 +210,23 @@ async fn samples_ndjson(
     Params(range): Params<Range>,
 ) -> Result<Response> {
     export::ndjson(&find(&app, reader, id, &range).await?)
+}
+
+/// A compass's samples as a picture shows them
+///
+/// Dots that are few enough to draw, and the residuals' means by day or week.
+#[utoipa::path(get, path = "/vessels/{id}/samples/picture", tag = "fleet",
+    params(("id" = VesselId, Path), Range),
+    responses((status = 200, body = SamplePicture), (status = 401, body = Problem),
+              (status = 404, body = Problem), (status = 422, body = Problem)))]
+async fn draw_samples(
+    State(app): State<App>,
+    reader: Reader,
+    Id(id): Id<VesselId>,
+    Params(range): Params<Range>,
+) -> Result<Json<SamplePicture>> {
+    let samples = find(&app, reader, id, &range).await?;
+    Ok(Json(picture::picture(&samples)))
 }
 
 async fn find(

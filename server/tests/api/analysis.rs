@@ -15,6 +15,7 @@ on_both!(
     samples_of_one_instant_are_all_listed,
     a_change_of_settings_makes_a_new_version_and_reaches_the_ship,
     samples_page_and_filter_and_come_as_files,
+    a_picture_of_samples_says_what_their_list_says,
     coverage_tells_what_to_sail_next_once_there_is_a_model,
     fit_reads_the_exported_samples_and_weights_them_once,
 );
@@ -223,6 +224,46 @@ async fn a_change_of_settings_makes_a_new_version_and_reaches_the_ship(shore: Sh
     settings["agent"]["min_sog_kn"] = json!(6.0);
     settings["analysis"]["reference_constant_sd_deg"] = json!(-1.0);
     assert_eq!(put(settings).await.problem(), "invalid");
+    shore.finish().await;
+}
+
+async fn a_picture_of_samples_says_what_their_list_says(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 300)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let listed = ada.get(&nao.path("/samples?limit=300")).await.good();
+    let listed = listed["items"].as_array().unwrap();
+    let picture = ada.get(&nao.path("/samples/picture")).await.good();
+    assert_eq!(picture["samples"], 300);
+    assert_eq!(picture["with_residual"], 300);
+    assert_eq!(picture["first"], listed[0]["time"]);
+    assert_eq!(picture["last"], listed[299]["time"]);
+    let used = listed.iter().filter(|sample| sample["used"] == json!(true));
+    let intervals = picture["intervals"].as_array().unwrap();
+    let counted: u64 = intervals
+        .iter()
+        .map(|interval| interval["samples"].as_u64().unwrap())
+        .sum();
+    assert_eq!(counted, used.count() as u64);
+    assert_eq!(picture["dots"]["used"].as_array().unwrap().len(), 300);
+    let near = |column: &str, field: &str, most: f64| {
+        let drawn = picture["dots"][column][17].as_f64().unwrap();
+        let exact = listed[17][field].as_f64().unwrap();
+        assert!((drawn - exact).abs() <= most, "{column}: {drawn}, {exact}");
+    };
+    near("compass_deg", "compass_deg", 0.051);
+    near("deviation_deg", "deviation_deg", 0.0051);
+    near("residual_deg", "residual_deg", 0.0051);
+    near("lon", "lon", 0.051);
+
+    let none = "/samples/picture?to=2020-01-01T00:00:00Z";
+    let none = ada.get(&nao.path(none)).await.good();
+    assert_eq!(
+        (&none["samples"], &none["rms_deg"]),
+        (&json!(0), &json!(null))
+    );
     shore.finish().await;
 }
 

@@ -2185,6 +2185,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/vessels/{id}/samples/picture": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * A compass's samples as a picture shows them
+         * @description Dots that are few enough to draw, and the residuals' means by day or week.
+         */
+        get: operations["draw_samples"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/vessels/{id}/settings": {
         parameters: {
             query?: never;
@@ -7378,6 +7398,23 @@ export interface components {
              */
             swing_h: number;
         };
+        /** @description The residuals of an interval. */
+        ResidualInterval: {
+            /** @description Its first instant. */
+            from: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description Their mean, degrees.
+             */
+            mean_deg: number;
+            /**
+             * Format: double
+             * @description Their root mean square, degrees.
+             */
+            rms_deg: number;
+            /** @description How many. */
+            samples: number;
+        };
         /** @description An entry as it is, and as it was. */
         RevisedEntry: components["schemas"]["LogbookEntry"] & {
             /** @description As it was written each time, the first time first. */
@@ -7531,12 +7568,56 @@ export interface components {
              */
             z_nt: number | null;
         };
+        /**
+         * @description Samples in order of time, a column each and all of one length, rounded to what a picture
+         *     can show.
+         */
+        SampleDots: {
+            /** @description Mean raw compass heading. */
+            compass_deg: number[];
+            /** @description Reference less variation less compass, degrees. */
+            deviation_deg: number[];
+            /** @description Degrees east. */
+            lon: number[];
+            /** @description Measured less predicted, degrees; none where no model predicts. */
+            residual_deg: (number | null)[];
+            /** @description Seconds since the beginning of 1970, UTC. */
+            unix_s: number[];
+            /** @description Whether it carried weight in a model. */
+            used: boolean[];
+        };
         /** @description A page of samples. */
         SampleList: {
             /** @description In order of time. */
             items: components["schemas"]["Sample"][];
             /** @description `after` of the next page. */
             next: string | null;
+        };
+        /** @description A compass's samples as a picture shows them. */
+        SamplePicture: {
+            /** @description Samples that have a measured deviation, evenly picked where there are more than 1,200. */
+            dots: components["schemas"]["SampleDots"];
+            first: components["schemas"]["Time"] | null;
+            /**
+             * Format: int64
+             * @description How many days each interval is of: 1 up to 31 days, 7 beyond.
+             */
+            interval_days: number;
+            /**
+             * @description The residuals that carried weight, by interval from the first one's UTC day; those
+             *     without any are left out.
+             */
+            intervals: components["schemas"]["ResidualInterval"][];
+            last: components["schemas"]["Time"] | null;
+            /**
+             * Format: double
+             * @description Root mean square of the residuals that carried weight, degrees.
+             */
+            rms_deg: number | null;
+            /** @description How many samples have a measured deviation. */
+            samples: number;
+            /** @description How many of those have a residual, being of an epoch with a model. */
+            with_residual: number;
         };
         /**
          * @description Why a sample was left out, or counted for less.
@@ -17718,6 +17799,80 @@ export interface operations {
                 };
                 content: {
                     "application/x-ndjson": string;
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    draw_samples: {
+        parameters: {
+            query?: {
+                /** @description The first instant, RFC 3339. */
+                from?: string;
+                /** @description The instant after the last, RFC 3339. */
+                to?: string;
+                /** @description A compass of the vessel's; its first one if not said. */
+                compass?: components["schemas"]["CompassId"];
+            };
+            header?: never;
+            path: {
+                id: components["schemas"]["VesselId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SamplePicture"];
                 };
             };
             /** @description Bad Request */

@@ -197,6 +197,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /vessels/{id}/samples", FLEET_READS),
     ("GET /vessels/{id}/samples.csv", FLEET_READS),
     ("GET /vessels/{id}/samples.ndjson", FLEET_READS),
+    ("GET /vessels/{id}/samples/picture", FLEET_READS),
     ("GET /vessels/{id}/settings", FLEET_READS),
     ("PUT /vessels/{id}/settings", FLEET_WRITES),
     ("GET /webhooks", PARTY_READS),
