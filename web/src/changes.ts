@@ -4,8 +4,9 @@
  */
 
 import type { Change, ChangeCause, DeviationRow, Epoch, LogbookEntry, Timeline } from './api/types';
-import { day, signed, time } from './format';
+import { signed, time } from './format';
 import { text } from './text';
+import { withoutItsDay, type At } from './whereabouts';
 
 /** A line of the timeline. */
 export type Line =
@@ -60,20 +61,14 @@ export function lines(timeline: Timeline, entries: readonly LogbookEntry[]): Lin
 }
 
 /** `18 Nov 2026, 12:00 UTC`, with the time between which it must lie if that is wide. */
-export function when(change: Change): string {
+export function when(change: Change, at: At = time): string {
   const [earliest, latest] = [Date.parse(change.from_earliest), Date.parse(change.from_latest)];
-  if (latest - earliest <= 2 * minuteMs) return time(change.from);
-  return text.changes.between(time(change.from_earliest), lateClock(change));
+  if (latest - earliest <= 2 * minuteMs) return at(change.from);
+  const from = at(change.from_earliest);
+  return text.changes.between(from, withoutItsDay(at(change.from_latest), from));
 }
 
 const minuteMs = 60_000;
-
-/** The end of the time in which it happened; without the day if that is the same. */
-function lateClock(change: Change): string {
-  const late = time(change.from_latest);
-  const sameDay = day(change.from_earliest) === day(change.from_latest);
-  return sameDay ? late.slice(day(change.from_latest).length + 2) : late;
-}
 
 /** How long after it happened the samples told: `2 h`, `40 min`, `3 days`. */
 export function delay(change: Change): string | null {

@@ -1,11 +1,12 @@
 /**
  * The logbook's form: what a reporter types, and the entry that it makes. Times are
- * typed and shown in UTC, to the minute. Pure functions.
+ * typed in UTC, to the minute, and shown by the clocks that the reader chose. Pure functions.
  */
 
 import type { CargoKind, LogbookEntry, LogbookKind, NewEntry } from './api/types';
-import { day, time } from './format';
+import { time } from './format';
 import { text } from './text';
+import { fromTo, type At } from './whereabouts';
 
 /** What stands in the fields; an empty one is no value. */
 export interface Draft {
@@ -132,14 +133,10 @@ function blankToNull(typed: string): string | null {
 }
 
 /** `14 Nov 2026, 08:30 – 16:00 UTC`, `since 14 Nov 2026, 08:30 UTC`. */
-export function period(entry: LogbookEntry): string {
+export function period(entry: LogbookEntry, at: At = time): string {
   const { from, to } = entry;
-  if (to) {
-    const sameDay = day(from) === day(to);
-    const begin = time(from).replace(/ UTC$/, '');
-    return `${begin} – ${sameDay ? time(to).slice(day(to).length + 2) : time(to)}`;
-  }
-  return isOpen(entry) ? text.logbook.since(time(from)) : time(from);
+  if (to) return fromTo(at(from), at(to));
+  return isOpen(entry) ? text.logbook.since(at(from)) : at(from);
 }
 
 /** What was reported, in a few words: `Scrap, hatch 2, Bilbao`. */

@@ -8,6 +8,7 @@ import { isTheShips, when } from './changes';
 import { count, day, degrees, time } from './format';
 import { details, isOpen, period } from './logbook';
 import { text } from './text';
+import type { At } from './whereabouts';
 
 export interface Range {
   fromMs: number;
@@ -43,13 +44,13 @@ export function marksIn(
   timeline: Timeline | undefined,
   entries: readonly LogbookEntry[],
   calls: readonly PortCall[],
-  at: (value: string, where: { port: string }) => string = time,
+  at: At = time,
 ): Mark[] {
   const found = [
-    ...(timeline ? [...epochMarks(timeline, range), ...changeMarks(timeline)] : []),
+    ...(timeline ? [...epochMarks(timeline, range), ...changeMarks(timeline, at)] : []),
     ...entries
       .filter((entry) => entry.withdrawn_at === null)
-      .map((entry) => reportMark(entry, range)),
+      .map((entry) => reportMark(entry, range, at)),
     ...calls.filter((call) => call.withdrawn_at === null).map((call) => callMark(call, at)),
   ];
   return found
@@ -79,7 +80,7 @@ function epochMarks({ epochs }: Timeline, range: Range): Mark[] {
   }));
 }
 
-function changeMarks({ changes }: Timeline): Mark[] {
+function changeMarks({ changes }: Timeline, at: At): Mark[] {
   return changes.map((change) => ({
     key: `change ${change.from}`,
     lane: 'changes' as const,
@@ -87,7 +88,7 @@ function changeMarks({ changes }: Timeline): Mark[] {
     // A disturbance lasts; a step is there at once.
     toMs: Date.parse(change.ended ?? change.from),
     title: text.changes.cause[change.cause],
-    when: when(change),
+    when: when(change, at),
     more:
       isTheShips(change) && change.deviation_change_deg !== null
         ? text.changes.deviation(degrees(Math.abs(change.deviation_change_deg)))
@@ -99,28 +100,28 @@ function changeMarks({ changes }: Timeline): Mark[] {
   }));
 }
 
-function reportMark(entry: LogbookEntry, range: Range): Mark {
+function reportMark(entry: LogbookEntry, range: Range, at: At): Mark {
   return {
     key: `entry ${entry.id}`,
     lane: 'reports',
     fromMs: Date.parse(entry.from),
     toMs: isOpen(entry) ? range.toMs : Date.parse(entry.to ?? entry.from),
     title: text.logbook.kinds[entry.kind],
-    when: period(entry),
+    when: period(entry, at),
     more: [details(entry, () => ''), entry.note].filter((part) => part !== '').join('. '),
     at: '#logbook',
     grave: false,
   };
 }
 
-function callMark(call: PortCall, at: (value: string, where: { port: string }) => string): Mark {
+function callMark(call: PortCall, at: At): Mark {
   return {
     key: `call ${call.id}`,
     lane: 'calls',
     fromMs: Date.parse(call.eta),
     toMs: Date.parse(call.etd),
     title: call.port_name || call.port,
-    when: t.fromTo(at(call.eta, call), at(call.etd, call)),
+    when: t.fromTo(at(call.eta, call.port), at(call.etd, call.port)),
     more: '',
     at: '/schedule',
     grave: false,

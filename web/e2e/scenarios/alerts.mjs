@@ -48,6 +48,82 @@ export const alerts = {
     },
   },
 
+  'what the reader writes at an alert stays when the alert is over meanwhile': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await withModel(page);
+      await limit(page, vessel.id, { deviation_deg: 1 });
+      await page.getByRole('link', { name: /^Alerts/ }).click();
+      const card = page
+        .getByRole('article')
+        .filter({ hasText: `${vessel.name}: Deviation over the limit` });
+      await card.getByRole('button', { name: 'Clear' }).click();
+      await card.getByLabel('Why it is over').fill('Half a sentence');
+      await limit(page, vessel.id, { deviation_deg: 45 });
+      await card.getByText(/^Over since/).waitFor();
+      assert.equal(await card.getByLabel('Why it is over').inputValue(), 'Half a sentence');
+      assert.ok(await card.getByRole('button', { name: 'Clear the alert' }).isDisabled());
+      await shoot('alert-over-meanwhile', {}, card);
+      await card.getByRole('button', { name: 'Cancel' }).click();
+      await card.waitFor({ state: 'detached' });
+    },
+  },
+
+  'alerts, reports and changes are dated by the clocks that the reader chose': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const { id, name, last_position: last } = await struck(page);
+      const headers = { 'X-Binnacle-Request': '1' };
+      const data = { kind: 'note', from: last.at, note: 'Dated where she was' };
+      const path = `/api/v1/vessels/${id}/logbook`;
+      const noted = await page.request.post(path, { headers, data });
+      assert.ok(noted.ok(), await noted.text());
+      await limit(page, id, { deviation_deg: 1 });
+      const zone = Math.round(last.lon / 15);
+      const by = (clocks) => {
+        if (zone === 0) return /\d UTC$/;
+        const hers = `UTC\\${zone < 0 ? '−' : '+'}${Math.abs(zone)}`;
+        return clocks === 'ship' ? new RegExp(`\\d ${hers}$`) : new RegExp(`UTC \\(.*${hers}\\)$`);
+      };
+      const choose = async (label) => {
+        await page.goto('/settings');
+        await page.getByText(label, { exact: true }).click();
+      };
+      for (const [clocks, label] of [
+        ['both', 'Both'],
+        ['ship', 'Ship’s time'],
+      ]) {
+        await choose(label);
+        await page.goto('/alerts');
+        const card = page.getByRole('article').filter({ hasText: `${name}: Deviation over` });
+        await card.locator('time').getByText(by(clocks)).waitFor();
+        await shoot(`alerts-${clocks}`, {}, card.first());
+        await page.goto(`/vessels/${id}`);
+        const entry = page.getByTestId('logbook').locator('li', { hasText: data.note });
+        await entry.locator('.when').getByText(by(clocks)).waitFor();
+        const line = page.getByTestId('timeline').locator('li', { hasText: 'Reported: ' });
+        await line.first().locator('p.small').getByText(by(clocks)).waitFor();
+        // Where lightning struck her is a zone of its own.
+        const struckAt = page.getByTestId('timeline').locator('li', { hasText: 'Lightning' });
+        const said = await struckAt.first().locator('p.when').innerText();
+        assert.match(said, clocks === 'both' ? / UTC\b/ : / UTC([+−]\d+)?$/);
+      }
+      await choose('UTC');
+      await page.goto(`/vessels/${id}`);
+      const entry = page.getByTestId('logbook').locator('li', { hasText: data.note });
+      await entry
+        .locator('.when')
+        .getByText(/\d UTC$/)
+        .waitFor();
+      const { items } = await (await page.request.get(path)).json();
+      const mine = items.find(({ note }) => note === data.note);
+      await page.request.post(`${path}/${mine.id}/withdraw`, { headers, data: { reason: '' } });
+      await limit(page, id, { deviation_deg: 45 });
+    },
+  },
+
   'a webhook is made, tested and removed': {
     allowedErrors: [notSignedIn, /status of 422 .*\/api\/v1\/webhooks\b/],
     async run({ page, settings, shoot }) {

@@ -258,6 +258,41 @@ export const vessel = {
     },
   },
 
+  'what the reader begins while a report is on its way stays open': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      const logbook = page.getByRole('region', { name: 'Logbook' });
+      let release = () => undefined;
+      const released = new Promise((resolve) => (release = resolve));
+      await page.route('**/logbook', async (route) => {
+        if (route.request().method() !== 'POST') return route.continue();
+        const response = await route.fetch();
+        // It is written, and told live; its answer is still on the way.
+        await released;
+        return route.fulfill({ response });
+      });
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      await logbook.getByRole('combobox', { name: /^What/ }).selectOption({ label: 'Remark' });
+      await logbook.getByLabel('Remarks').fill('Slow answer');
+      await logbook.getByRole('button', { name: 'Report' }).click();
+      const entry = logbook.getByRole('listitem').filter({ hasText: 'Slow answer' });
+      await entry.getByRole('button', { name: /^Withdraw/ }).click();
+      await entry.getByLabel('Why').fill('Half a sen');
+      const answered = page.waitForResponse(
+        (response) => response.url().endsWith('/logbook') && response.request().method() === 'POST',
+      );
+      release();
+      await answered;
+      await logbook.getByRole('status').getByText('Reported.').waitFor();
+      assert.equal(await entry.getByLabel('Why').inputValue(), 'Half a sen');
+      await entry.getByLabel('Why').fill('A test');
+      await entry.getByRole('button', { name: 'Withdraw the entry' }).click();
+      await logbook.locator('s', { hasText: 'Slow answer' }).waitFor();
+    },
+  },
+
   'an administrator makes an enrolment code': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {

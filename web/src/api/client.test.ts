@@ -1,5 +1,5 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { createVessel, findModel, listSamples, listVessels, whenSignedOut } from './client';
+import { createVessel, findModel, listVessels, whenSignedOut } from './client';
 import { Problem } from './problem';
 
 // The client takes the browser's `fetch` and `Request` when it is loaded: these
@@ -83,12 +83,5 @@ describe('a list', () => {
     const asked = serve(json({ items: [{ id: 'a' }], next: 'c1' }), json({ items: [{ id: 'b' }] }));
     expect((await listVessels()).map((vessel) => vessel.id)).toEqual(['a', 'b']);
     expect(new URL(asked[1]?.url ?? '').searchParams.get('after')).toBe('c1');
-  });
-
-  test('of too many samples keeps the latest and says so', async () => {
-    serve(json({ items: [{ windows: 1 }, { windows: 2 }, { windows: 3 }], next: null }));
-    const found = await listSamples('v', '2026-01-01T00:00:00Z', 2);
-    expect(found.items.map((sample) => sample.windows)).toEqual([2, 3]);
-    expect(found.truncated).toBe(true);
   });
 });

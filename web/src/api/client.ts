@@ -16,7 +16,6 @@ import type {
   NewMailRecipient,
   NewVessel,
   NewWebhook,
-  Sample,
   Severity,
 } from './types';
 
@@ -326,22 +325,13 @@ export const sendLetterAgain = (id: string, delivery: string) =>
     }),
   );
 
-/** Samples since `from` in order of time; when there are more than `most`, the latest. */
-export async function listSamples(
-  id: string,
-  from: string,
-  most: number,
-  compass?: string,
-): Promise<{ items: Sample[]; truncated: boolean }> {
-  const all = await everyPage((after) =>
-    answer(
-      client.GET('/api/v1/vessels/{id}/samples', {
-        params: { path: { id }, query: { ...which(compass), ...page(longestPage, after), from } },
-      }),
-    ),
+/** A compass's samples since an instant, as they are drawn. */
+export const findPicture = (id: string, from: string, compass?: string) =>
+  answer(
+    client.GET('/api/v1/vessels/{id}/samples/picture', {
+      params: { path: { id }, query: { ...which(compass), from } },
+    }),
   );
-  return { items: all.slice(-most), truncated: all.length > most };
-}
 
 /** All items of a list, page by page. */
 export async function everyPage<T>(

@@ -1,6 +1,6 @@
-/** Residuals gathered by day or week, and thinned for drawing. */
+/** The dots of a picture of samples, and its means as an axis wants them. */
 
-import type { Sample } from '../api/types';
+import type { SampleDots, SamplePicture } from '../api/types';
 
 export interface Interval {
   from: Date;
@@ -18,55 +18,41 @@ export interface Residual {
   used: boolean;
 }
 
-export function residualsOf(samples: Sample[]): Residual[] {
-  return samples.flatMap((sample) =>
-    typeof sample.residual_deg === 'number'
-      ? [{ time: new Date(sample.time), residualDeg: sample.residual_deg, used: sample.used }]
-      : [],
-  );
+/** A sample as it is drawn. */
+export interface SampleDot {
+  compassDeg: number;
+  deviationDeg: number;
+  residualDeg: number | null;
+  used: boolean;
 }
 
-/** By UTC day up to 31 days, by week from the first day beyond; only used samples count. */
-export function byInterval(residuals: Residual[]): { days: 1 | 7; intervals: Interval[] } {
-  const used = residuals.filter((residual) => residual.used);
-  const times = used.map((residual) => residual.time.getTime());
-  const first = Math.floor(least(times) / dayMs) * dayMs;
-  const days = greatest(times) - first > 31 * dayMs ? 7 : 1;
-  const groups = new Map<number, number[]>();
-  for (const { time, residualDeg } of used) {
-    const index = Math.floor((time.getTime() - first) / (days * dayMs));
-    const group = groups.get(index);
-    if (group) group.push(residualDeg);
-    else groups.set(index, [residualDeg]);
-  }
-  const intervals = [...groups]
-    .sort(([a], [b]) => a - b)
-    .map(([index, values]) => ({
-      from: new Date(first + index * days * dayMs),
-      to: new Date(first + (index + 1) * days * dayMs),
-      samples: values.length,
-      meanDeg: mean(values),
-      rmsDeg: rms(values),
-    }));
-  return { days, intervals };
-}
+/** The dots as rows. */
+export const dotsOf = (dots: SampleDots): SampleDot[] =>
+  dots.compass_deg.map((compassDeg, i) => ({
+    compassDeg,
+    deviationDeg: dots.deviation_deg[i] ?? NaN,
+    residualDeg: dots.residual_deg[i] ?? null,
+    used: dots.used[i] ?? false,
+  }));
 
-export function mean(values: number[]): number {
-  return values.reduce((sum, value) => sum + value, 0) / values.length;
-}
+export const residualsOf = (dots: SampleDots): Residual[] =>
+  dots.unix_s.flatMap((seconds, i) => {
+    const residualDeg = dots.residual_deg[i] ?? null;
+    if (residualDeg === null) return [];
+    return [{ time: new Date(seconds * 1000), residualDeg, used: dots.used[i] ?? false }];
+  });
 
-export function rms(values: number[]): number {
-  return Math.sqrt(mean(values.map((value) => value * value)));
-}
-
-// Spreading thousands of values into Math.min would overflow the stack.
-function least(values: number[]): number {
-  return values.reduce((a, b) => Math.min(a, b), Infinity);
-}
-
-function greatest(values: number[]): number {
-  return values.reduce((a, b) => Math.max(a, b), -Infinity);
-}
+export const intervalsOf = (picture: SamplePicture): Interval[] =>
+  picture.intervals.map((interval) => {
+    const from = new Date(interval.from);
+    return {
+      from,
+      to: new Date(from.getTime() + picture.interval_days * dayMs),
+      samples: interval.samples,
+      meanDeg: interval.mean_deg,
+      rmsDeg: interval.rms_deg,
+    };
+  });
 
 /** At most `most` of the values, evenly picked and in their order. */
 export function thinned<T>(values: T[], most: number): T[] {

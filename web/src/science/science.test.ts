@@ -1,12 +1,12 @@
 import { describe, expect, test } from 'vitest';
-import type { Coverage, Model, Sample } from '../api/types';
+import type { Coverage, Model, SamplePicture } from '../api/types';
 import { coefficientErrors, exactCoefficients } from './coefficients';
 import { headingRange, latitudeRange, widths } from './advice';
 import { coverageTable, gaps } from './coverage';
 import { arcs, pointAt, rings, sectorPath, shade } from './rose';
 import { closed, deviationAt, everyStep, extremes, grade } from './curve';
 import { basisOf, parameterRows } from './parameters';
-import { byInterval, residualsOf, thinned } from './residuals';
+import { dotsOf, intervalsOf, residualsOf, thinned } from './residuals';
 
 const model: Model = {
   version: 1,
@@ -143,34 +143,35 @@ describe('the curve', () => {
   });
 });
 
-describe('residuals', () => {
-  const sample = (time: string, residual_deg: number | null, used = true) =>
-    ({ time, residual_deg, used }) as Sample;
+describe('a picture of samples', () => {
+  const picture = {
+    interval_days: 7,
+    intervals: [{ from: '2026-11-01T00:00:00Z', samples: 2, mean_deg: 1, rms_deg: 1.5 }],
+    dots: {
+      unix_s: [1793491200, 1793491800],
+      lon: [4, 4.1],
+      compass_deg: [90, 91],
+      deviation_deg: [2, 2.5],
+      residual_deg: [0.5, null],
+      used: [true, false],
+    },
+  } as SamplePicture;
 
-  test('are gathered by UTC day, unused ones left out', () => {
-    const { days, intervals } = byInterval(
-      residualsOf([
-        sample('2026-11-01T23:50:00Z', 1),
-        sample('2026-11-02T00:10:00Z', 3),
-        sample('2026-11-02T01:10:00Z', -1),
-        sample('2026-11-02T02:10:00Z', 90, false),
-        sample('2026-11-02T03:10:00Z', null),
-      ]),
-    );
-    expect(days).toBe(1);
-    expect(intervals.map((i) => [i.samples, i.meanDeg])).toEqual([
-      [1, 1],
-      [2, 1],
+  test('has rows again, those without a prediction too', () => {
+    expect(dotsOf(picture.dots)).toEqual([
+      { compassDeg: 90, deviationDeg: 2, residualDeg: 0.5, used: true },
+      { compassDeg: 91, deviationDeg: 2.5, residualDeg: null, used: false },
     ]);
-    expect(intervals[1]?.rmsDeg).toBeCloseTo(Math.sqrt(5), 9);
   });
 
-  test('beyond a month are gathered by week', () => {
-    const found = byInterval(
-      residualsOf([sample('2026-09-01T00:00:00Z', 1), sample('2026-11-01T00:00:00Z', 1)]),
-    );
-    expect(found.days).toBe(7);
-    expect(byInterval([]).intervals).toEqual([]);
+  test('has residuals in time where something was predicted', () => {
+    expect(residualsOf(picture.dots)).toEqual([
+      { time: new Date('2026-11-01T00:00:00Z'), residualDeg: 0.5, used: true },
+    ]);
+  });
+
+  test('has intervals that end where the next would begin', () => {
+    expect(intervalsOf(picture)[0]?.to).toEqual(new Date('2026-11-08T00:00:00Z'));
   });
 
   test('are thinned evenly and never repeated', () => {

@@ -6,13 +6,11 @@
 import { SvelteMap } from 'svelte/reactivity';
 import { searchPorts } from '../api/schedule';
 import { atSea, zoneOf, type Clocks } from '../format';
+import type { Where } from '../whereabouts';
 
 export const clockChoices: Clocks[] = ['utc', 'ship', 'both'];
 
 const key = 'binnacle-clocks';
-
-/** Where something happened: a place at sea, or a port by its code. */
-export type Where = { lon: number } | { port: string | null | undefined } | null | undefined;
 
 class TimesState {
   clocks = $state<Clocks>(stored());

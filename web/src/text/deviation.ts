@@ -89,7 +89,6 @@ export const deviation = {
     none: 'No residuals yet: they need a model.',
     period: 'Period',
     days: (n: number) => `${n} days`,
-    truncated: (n: string) => `Only the last ${n} samples of this period are shown.`,
   },
 
   coverage: {
