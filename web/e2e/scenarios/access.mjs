@@ -100,7 +100,14 @@ const others = [
   {
     who: 'adjuster',
     home: 'My orders',
-    paths: ['/', '/work-orders', '/settings', '/notifications'],
+    paths: [
+      '/',
+      '/work-orders',
+      '/settings',
+      '/notifications',
+      '/settings/keys',
+      '/settings/audit',
+    ],
   },
   { who: 'platform', home: 'Platform', paths: ['/', '/settings'] },
 ];

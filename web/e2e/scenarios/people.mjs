@@ -1,7 +1,15 @@
 /** People and what acts for them: inviting, a second factor, tokens, enrolling, firms, an adjuster. */
 import assert from 'node:assert/strict';
-import { createHmac } from 'node:crypto';
+import {
+  createHmac,
+  createPrivateKey,
+  createPublicKey,
+  generateKeyPairSync,
+  sign,
+} from 'node:crypto';
+import { readFile } from 'node:fs/promises';
 import { encode } from 'uqr';
+import { findings } from '../axe.mjs';
 import { fitsItsWidth, notSignedIn, phone, signIn, struck } from '../helpers.mjs';
 
 /** RFC 6238 with what authenticator apps use: SHA-1, 30 s, six digits. */
@@ -177,6 +185,77 @@ export const people = {
       await page.setViewportSize(phone);
       await fitsItsWidth(page);
       await shoot('audit-phone');
+    },
+  },
+
+  'a firm has a key made, registers another by its proof, and revokes one': {
+    allowedErrors: [notSignedIn, /status of 422 .*\/keys\b/],
+    async run({ page, browser, settings, shoot }) {
+      await signInAs(page, adjuster(settings), 'My orders');
+      await page.getByRole('link', { name: 'Settings' }).click();
+      await page.getByRole('link', { name: 'Signing keys' }).click();
+      await page.getByText('None is registered').waitFor();
+      const listed = page.getByTestId('signing-keys').getByRole('listitem');
+      const { firm_id: firm } = await (await page.request.get('/api/v1/me')).json();
+      const said = Buffer.from(`binnacle firm key ${firm}`);
+
+      await page.getByRole('button', { name: 'Register a key' }).click();
+      await page.getByRole('button', { name: 'Register it' }).click();
+      await page.getByRole('alert').filter({ hasText: 'Give the key a name' }).waitFor();
+      await page.getByLabel('Name').fill('Office, 2026');
+      await page.getByRole('button', { name: 'Make a key' }).click();
+      await page.getByText('A key was made').waitFor();
+      const publicKey = await page.getByLabel('Public key').inputValue();
+      await page.getByRole('button', { name: 'Register it' }).click();
+      await page.getByRole('alert').filter({ hasText: 'Save the private key first' }).waitFor();
+      await shoot('signing-key-made', { fullPage: true });
+      const [download] = await Promise.all([
+        page.waitForEvent('download'),
+        page.getByRole('link', { name: 'Save the private key' }).click(),
+      ]);
+      const pem = await readFile(await download.path(), 'utf8');
+      const held = createPublicKey(createPrivateKey(pem));
+      const raw = held.export({ format: 'der', type: 'spki' }).subarray(-32).toString('hex');
+      assert.equal(raw, publicKey, 'the file is the key’s that is shown');
+      await page.getByRole('button', { name: 'Register it' }).click();
+      await listed.filter({ hasText: 'Office, 2026' }).getByText(publicKey).waitFor();
+
+      const own = generateKeyPairSync('ed25519');
+      const of = own.publicKey.export({ format: 'der', type: 'spki' }).subarray(-32);
+      await page.getByRole('button', { name: 'Register a key' }).click();
+      await page.getByLabel('Name').fill('Laptop');
+      await page.getByText('Its public half and proof').press('Enter');
+      await page.getByLabel('Public key').fill(of.toString('hex'));
+      const proof = page.getByLabel('Proof');
+      await proof.fill('12');
+      await page.getByRole('button', { name: 'Register it' }).click();
+      await page.getByRole('alert').filter({ hasText: 'not 128 hexadecimal' }).waitFor();
+      await proof.fill(sign(null, Buffer.from('something else'), own.privateKey).toString('hex'));
+      await page.getByRole('button', { name: 'Register it' }).click();
+      await page.getByRole('alert').filter({ hasText: 'is not this key' }).waitFor();
+      await proof.fill(sign(null, said, own.privateKey).toString('hex'));
+      await page.getByRole('button', { name: 'Register it' }).click();
+      await listed.filter({ hasText: 'Laptop' }).waitFor();
+
+      await page.getByRole('button', { name: 'Revoke Laptop' }).click();
+      await page.getByRole('button', { name: 'Revoke it' }).click();
+      await listed
+        .filter({ hasText: 'Laptop' })
+        .getByText(/^revoked /)
+        .waitFor();
+      assert.equal(await page.getByRole('button', { name: 'Revoke Laptop' }).count(), 0);
+      assert.deepEqual(await findings(page), []);
+      await shoot('signing-keys', { fullPage: true });
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('signing-keys-phone', { fullPage: true });
+
+      const office = await browser.newContext({ baseURL: settings.url });
+      const theirs = await office.newPage();
+      await signIn(theirs, settings);
+      await theirs.goto('/firms');
+      await theirs.getByText(publicKey).waitFor();
+      await office.close();
     },
   },
 

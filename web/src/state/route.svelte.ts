@@ -18,6 +18,7 @@ const ofSettings = {
   agents: 'aboard',
   schedule: 'schedule-rules',
   audit: 'audit',
+  keys: 'signing-keys',
 } as const;
 
 export type Route =
@@ -96,7 +97,7 @@ class RouteState {
       const link = event.target instanceof Element ? event.target.closest('a') : null;
       if (link?.target !== '' || link.origin !== location.origin) return;
       if (link.hash !== '' && link.pathname === location.pathname) return;
-      if (link.pathname.startsWith('/api/')) return;
+      if (link.pathname.startsWith('/api/') || link.hasAttribute('download')) return;
       event.preventDefault();
       this.go(link.href);
     };

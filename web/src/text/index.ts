@@ -21,6 +21,7 @@ import { platform } from './platform';
 import { reports } from './reports';
 import { schedule } from './schedule';
 import { settings } from './settings';
+import { signing } from './signing';
 import { trust } from './trust';
 import { vessels } from './vessels';
 
@@ -43,6 +44,7 @@ export const text = {
   ...fields,
   ...firms,
   ...settings,
+  ...signing,
   ...berth,
   ...binnacles,
 };
