@@ -204,10 +204,10 @@ mod tests {
         };
         assert_eq!(of(0), ("2026-10-12".to_owned(), 2, -1.0));
         assert_eq!(of(1), ("2026-10-14".to_owned(), 1, 0.5));
-        assert_eq!(found.intervals[0].rms_deg, 5.0_f64.sqrt());
+        assert!((found.intervals[0].rms_deg - 5.0_f64.sqrt()).abs() < 1e-12);
         assert_eq!(found.dots.residual_deg[3], None);
-        assert_eq!(found.dots.lon[0], -8.4);
-        assert_eq!(found.dots.deviation_deg[0], 2.34);
+        assert_eq!(found.dots.lon.first(), Some(&-8.4));
+        assert_eq!(found.dots.deviation_deg.first(), Some(&2.34));
     }
 
     #[test]
