@@ -26,7 +26,7 @@ use crate::model::Model;
 use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
-use changes::{Ended, Found, Known, find, sharpen};
+use changes::{Begun, Ended, Found, Known, find, sharpen};
 use either::either;
 use epoch::{Reference, Stretch, empty_epoch, epochs, fit_epoch, prior, reference, refuse};
 use reading::{Reading, readings};
@@ -36,7 +36,7 @@ use stuck::mark_stuck;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-15";
+pub const ESTIMATOR: &str = "state-space-16";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -208,6 +208,24 @@ pub fn analyse(
     }
 }
 
+/// Whether an epoch is one of the ship with her cargo on board: it began with the cargo, or
+/// with something else while she was laden and has been so for the most of it. Without
+/// these readings nothing would be known of her as she sails.
+fn is_laden(epoch: &Epoch, own: &[Reading]) -> bool {
+    if epoch.resumes.is_some() {
+        return false;
+    }
+    if epoch.begun_by_change == Some(Cause::MagneticCargo) {
+        return true;
+    }
+    let with_reason = |reason: Option<SampleReason>| {
+        let such = own.iter().filter(|r| r.diagnostic.reason == reason);
+        such.count()
+    };
+    epoch.begun_by_change.is_some()
+        && with_reason(Some(SampleReason::MagneticCargo)) > with_reason(None)
+}
+
 /// The epochs so far, with the readings of each.
 #[derive(Default)]
 struct Course {
@@ -309,6 +327,9 @@ impl Course {
                 sharpen(change, old, new, readings);
             }
         }
+        if let Some(begun) = found.unnoticed.as_ref().filter(|_| until.is_none()) {
+            self.allow_for_change(begun, readings, reference);
+        }
         self.changes.append(&mut found.changes);
     }
 
@@ -320,7 +341,7 @@ impl Course {
         readings: &mut [Reading],
         reference: &Reference,
     ) {
-        if epoch.begun_by_change == Some(Cause::MagneticCargo) && epoch.resumes.is_none() {
+        if is_laden(&epoch, &readings[own.clone()]) {
             // They tell of nothing but the ship with her cargo: of this epoch.
             for reading in &mut readings[own.clone()] {
                 let reason = &mut reading.diagnostic.reason;
@@ -354,6 +375,24 @@ impl Course {
         let open = base
             .zip(laden)
             .and_then(|(base, laden)| either(laden, &base, ended.probability));
+        if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
+            last.model = open;
+        }
+    }
+
+    /// Widens the last epoch's model where the ship may be another since a port call.
+    fn allow_for_change(&mut self, begun: &Begun, readings: &[Reading], reference: &Reference) {
+        let changed = Epoch {
+            begun_by_change: Some(Cause::Unknown),
+            ..empty_epoch(Some(begun.at), None)
+        };
+        let from = readings.partition_point(|r| r.sample().time < begun.at);
+        let stretch = self.stretch(&changed, from..readings.len(), reference);
+        let now = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
+        let open = stretch
+            .model(readings)
+            .zip(now)
+            .and_then(|(changed, now)| either(now, &changed, begun.probability));
         if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
             last.model = open;
         }

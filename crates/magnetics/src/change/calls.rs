@@ -143,13 +143,14 @@ impl Calls {
         self.calls.push(Call { at, returns });
     }
 
-    /// The ship as she was before the first step since her cargo came on board, if nothing
-    /// else has happened to her: the step's place in the list of events.
+    /// The ship as she was before the first step since her cargo came on board, if that and
+    /// all since were cargo's: the step's place in the list of events. What struck her at
+    /// sea does not leave with the cargo.
     fn before_loading(&self, loaded: Timestamp) -> Option<usize> {
         let since = |base: &&Base| base.latest.is_some_and(|latest| latest >= loaded);
-        let mut since = self.bases.iter().filter(since);
-        let first = since.next()?;
-        since.all(|base| base.at_port).then_some(first.event)
+        let mut since = self.bases.iter().filter(since).peekable();
+        let first = since.peek()?.event;
+        since.all(|base| base.at_port).then_some(first)
     }
 
     /// Takes in a row, linearised at what each return has of the ship.

@@ -22,6 +22,9 @@ mod symmetric;
 mod upset;
 
 pub(crate) use cause::{Circumstances, causes, odds};
-pub(crate) use detect::{Event, Given, Loaded, Perhaps, Snapshot, What, at_port, detect};
+pub(crate) use detect::{
+    Event, Given, Loaded, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port, detect,
+    rows_since,
+};
 pub use fleet::{Elsewhere, in_fleet};
 pub use found::{Cause, CauseProbability, Change, Step};

@@ -1,9 +1,12 @@
 //! Magnetic cargo: the base model is back when it is discharged, and not before.
 
-use crate::voyages::fleet::{Event, Happened, Name, sail_log};
-use crate::{HOUR_S, calm, entry, is_sound, of_the_ship, run};
+use crate::named::with_step;
+use crate::voyages::Variety;
+use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, sail_log};
+use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
 use binnacle_magnetics::analyse::{AnalysisSettings, LogbookEntry, LogbookKind, analyse};
 use binnacle_magnetics::change::Cause;
+use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 
 #[test]
@@ -79,4 +82,111 @@ fn cargo_that_stays_on_board_by_the_logbook_is_not_over_at_a_call() {
     }];
     let analysis = analyse(&log.samples, &stays, &settings);
     assert_eq!(analysis.current_epoch().unwrap().resumes, Some(0));
+}
+
+#[test]
+fn what_may_have_changed_in_port_unnoticed_widens_the_band() {
+    let varieties = [Variety::Rich, Variety::Medium, Variety::Poor];
+    for seed in [410_015_u64, 410_028, 410_044] {
+        let plan = Plan {
+            days: 80.0,
+            ..Plan::of(Event::Refit, varieties[(seed % 3) as usize])
+        };
+        let log = sail_log(seed, &plan);
+        let port = began(&log, Name::Refit);
+        let sailed = log.samples.partition_point(|s| s.time <= port);
+        let left = log.samples[sailed].time;
+        let day = |s: &Sample| s.time.seconds_since(left) < 24.0 * HOUR_S;
+        let after_a_day = log.samples.partition_point(day);
+        let variance = |until: usize| {
+            let analysis = run(&log.samples[..until]);
+            assert!(of_the_ship(&analysis).is_empty(), "seed {seed}");
+            let model = analysis.current_epoch().unwrap().model.as_ref();
+            let covariance = model.unwrap().covariance.unwrap();
+            covariance[0][0] + covariance[2][2]
+        };
+        let (before, after) = (variance(sailed), variance(after_a_day));
+        assert!(after > 1.5 * before, "seed {seed}: {after} of {before}");
+    }
+}
+
+/// A quiet voyage with cargo in the logbook from one port call to another, struck at sea two
+/// days after the first; when the second ended.
+fn struck_laden(seed: u64) -> (Log, LogbookEntry, Timestamp, usize) {
+    let mut plan = calm(Event::Nothing);
+    plan.days = 90.0;
+    let log = sail_log(seed, &plan);
+    let begun = log.samples[0].time;
+    let calls: Vec<usize> = (1..log.samples.len())
+        .filter(|&k| {
+            let [before, after] = [&log.samples[k - 1], &log.samples[k]];
+            after.time.seconds_since(before.time) > 12.0 * HOUR_S
+                && before.time.seconds_since(begun) > 40.0 * 24.0 * HOUR_S
+        })
+        .collect();
+    let (loaded, discharged) = (calls[0], calls[1]);
+    let in_port = |call: usize| log.samples[call].time.plus_seconds(-6.0 * HOUR_S);
+    let cargo = entry(
+        LogbookKind::MagneticCargo,
+        in_port(loaded),
+        Some(in_port(discharged)),
+    );
+    let struck = log.samples[loaded].time.plus_seconds(40.0 * HOUR_S);
+    let log = with_step(log, struck, [2000.0, -1500.0]);
+    (log, cargo, struck, discharged)
+}
+
+#[test]
+fn what_struck_her_at_sea_does_not_leave_with_her_cargo() {
+    for seed in [40, 41, 44] {
+        let (log, cargo, struck, sailed) = struck_laden(seed);
+        let strike = entry(LogbookKind::Lightning, struck, None);
+        for logbook in [vec![cargo.clone()], vec![cargo, strike]] {
+            let settings = AnalysisSettings::default();
+            let analysis = analyse(&log.samples[..=sailed], &logbook, &settings);
+            is_sound(&analysis);
+            let found = of_the_ship(&analysis);
+            assert_eq!(found.len(), 1, "seed {seed}: {found:?}");
+            assert_eq!(found[0].cause, Cause::LightningOrShock, "seed {seed}");
+            let resumed = analysis.current_epoch().unwrap().resumes;
+            assert_eq!(resumed, None, "seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn a_ship_struck_with_cargo_on_board_has_a_model_of_what_she_is_now() {
+    let (log, cargo, struck, _) = struck_laden(40);
+    let later = struck.plus_seconds(3.0 * 24.0 * HOUR_S);
+    let until = log.samples.partition_point(|s| s.time < later);
+    let open = LogbookEntry { to: None, ..cargo };
+    let analysis = analyse(&log.samples[..until], &[open], &AnalysisSettings::default());
+    let epoch = analysis.current_epoch().unwrap();
+    assert_eq!(epoch.begun_by_change, Some(Cause::LightningOrShock));
+    assert!(epoch.model.is_some(), "{:?}", epoch.refusal);
+}
+
+#[test]
+fn a_change_at_a_discharge_in_the_logbook_is_not_cargo_that_lasts() {
+    let mut plan = calm(Event::Cargo);
+    plan.days = 90.0;
+    let log = sail_log(40, &plan);
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
+    // The log begins when she was laden already.
+    let since: Vec<Sample> = log
+        .samples
+        .iter()
+        .filter(|s| s.time > cargo.from)
+        .cloned()
+        .collect();
+    let loaded = since[0].time.plus_seconds(-20.0 * 24.0 * HOUR_S);
+    let entry = LogbookEntry {
+        from: loaded,
+        ..reported(cargo)
+    };
+    let analysis = analyse(&since, &[entry], &AnalysisSettings::default());
+    let found = of_the_ship(&analysis);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].cause, Cause::MagneticCargo);
+    assert!(found[0].ended.is_some(), "{found:?}");
 }

@@ -144,7 +144,7 @@ fn a_report_dates_what_happened_between_two_samples() {
 }
 
 /// The same ship with a step of so much in (bx, by) at a time.
-fn with_step(mut log: Log, at: Timestamp, [bx_nt, by_nt]: [f64; 2]) -> Log {
+pub(crate) fn with_step(mut log: Log, at: Timestamp, [bx_nt, by_nt]: [f64; 2]) -> Log {
     for sample in log.samples.iter_mut().filter(|s| s.time >= at) {
         let earth = field(FieldModel::Igrf14, sample.position, 0.0, sample.time).unwrap();
         let (sin, cos) = sample.compass.degrees().to_radians().sin_cos();

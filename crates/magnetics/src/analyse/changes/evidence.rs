@@ -6,6 +6,8 @@ use crate::change::{Circumstances, Event, What, odds};
 const WILD_DEG: f64 = 8.0;
 /// Beyond this a compass points no way at all, degrees.
 const POINTLESS_DEG: f64 = 90.0;
+/// No drift is told as a smaller one, degrees: it would read as none.
+const TOLD_DEG: f64 = 0.1;
 /// Said of a disturbance that other ships may speak for.
 const FAINT: &str = "too faint to be certain by this ship alone";
 
@@ -32,8 +34,8 @@ pub(super) fn evidence(
             likelier(event.over_step)
         ),
         What::Drift => format!(
-            "the deviation goes on changing, by up to {worst_deg:.1} degrees so far: a drift is \
-             {} one sudden change",
+            "{}: a drift is {} one sudden change",
+            drifted(worst_deg),
             likelier(event.over_step)
         ),
         What::Reference => format!(
@@ -99,6 +101,16 @@ pub(super) fn evidence(
     told
 }
 
+/// How far a drift has gone.
+fn drifted(worst_deg: f64) -> String {
+    if worst_deg < TOLD_DEG {
+        return format!(
+            "the deviation goes to and fro, and is now within {TOLD_DEG:.1} degrees of what it was"
+        );
+    }
+    format!("the deviation goes on changing, by up to {worst_deg:.1} degrees so far")
+}
+
 /// By how much likelier than something one is that leads it by so many nats, with the
 /// temper of `causes`: the models are only nearly right.
 fn likelier(nats: f64) -> String {
@@ -111,5 +123,17 @@ fn likelier(nats: f64) -> String {
         ..1000.0 => format!("{:.0} times likelier than", (odds / 100.0).round() * 100.0),
         ..1e6 => "more than a thousand times likelier than".to_owned(),
         _ => "more than a million times likelier than".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::drifted;
+
+    #[test]
+    fn a_drift_that_has_come_back_is_not_told_as_one_of_no_degrees() {
+        assert!(!drifted(0.02).contains("0.0 degrees"));
+        assert!(drifted(0.02).contains("within 0.1 degrees"));
+        assert!(drifted(0.26).contains("up to 0.3 degrees so far"));
     }
 }

@@ -29,6 +29,8 @@ pub(super) struct Found {
     pub(super) boundaries: Vec<Boundary>,
     /// The end that a change may have had, if that is open.
     pub(super) perhaps: Option<Ended>,
+    /// A change that may have begun at a port call, and has not been told.
+    pub(super) unnoticed: Option<Begun>,
 }
 
 impl Found {
@@ -47,6 +49,12 @@ pub(super) struct Ended {
     pub(super) at: Timestamp,
     /// Its place in the list.
     pub(super) change: usize,
+    pub(super) probability: f64,
+}
+
+/// A change that may have begun.
+pub(super) struct Begun {
+    pub(super) at: Timestamp,
     pub(super) probability: f64,
 }
 
@@ -77,6 +85,7 @@ pub(super) fn find(
         changes: Vec::new(),
         boundaries: Vec::new(),
         perhaps: None,
+        unnoticed: None,
     };
     let usable = |reading: &Reading| {
         matches!(
@@ -155,6 +164,9 @@ pub(super) fn find(
         }
         found.changes.push(change);
     }
+    found.unnoticed = told
+        .unnoticed
+        .and_then(|unnoticed| teller.begun(&unnoticed));
     found.perhaps = told.perhaps.and_then(|perhaps| {
         let change = place_of.get(perhaps.of).copied().flatten()?;
         let evidence = &mut found.changes[change].evidence;

@@ -1,9 +1,12 @@
 //! Puts events into words and dates.
 
 use super::evidence::evidence;
-use super::{Ended, cause_of, size};
+use super::{Begun, Ended, cause_of, size};
 use crate::analyse::logbook::LogbookEntry;
-use crate::change::{Cause, Change, Circumstances, Event, Perhaps, What, at_port, causes};
+use crate::change::{
+    Cause, Change, Circumstances, Event, Perhaps, SAILED_SINCE, Unnoticed, What, at_port, causes,
+    rows_since,
+};
 use crate::fit::Observation;
 use crate::ship::EarthField;
 use crate::time::Timestamp;
@@ -127,9 +130,13 @@ impl Teller<'_> {
             in_a_day: self.in_a_day(index),
             over_step: event.over_step,
             told_after_s: self.time(event.told).seconds_since(from),
-            reported: self.reported(from_earliest, from_latest),
+            reported: self.reported(event, at_port),
         };
         let causes = causes(event.what, &known);
+        let cause = causes.first().map_or(Cause::Unknown, |c| c.cause);
+        let was_discharge = cause == Cause::MagneticCargo
+            && event.what == What::Step
+            && self.is_said_discharge(event);
         let seen_deg = astray.map(|astray| astray.seen_deg);
         let has_step = matches!(event.what, What::Step | What::Drift);
         let worst = match event.what {
@@ -140,18 +147,25 @@ impl Teller<'_> {
                 self.earth(event.told),
             ),
         };
+        let mut told = evidence(event, &known, worst, seen_deg);
+        if was_discharge {
+            told.push("the logbook has it that cargo was discharged then".to_owned());
+        }
+        // What left her with the cargo does not last.
+        let over = ended_row.map(|row| self.time(row));
+        let over = over.or_else(|| was_discharge.then(|| self.time(event.first)));
         Change {
             from,
             from_earliest: from_earliest.min(from),
             from_latest: from_latest.max(from),
             detected_at: self.time(event.told),
             confirmed: event.confirmed,
-            cause: causes.first().map_or(Cause::Unknown, |c| c.cause),
-            evidence: evidence(event, &known, worst, seen_deg),
+            cause,
+            evidence: told,
             causes,
             deviation_change_deg: event.what.is_lasting().then_some(worst),
             step: has_step.then(|| size::step(&event.before, &event.after)),
-            ended: ended_row.map(|row| self.time(row)),
+            ended: over,
         }
     }
 
@@ -175,6 +189,14 @@ impl Teller<'_> {
             at: self.date(perhaps.first),
             change,
             probability,
+        })
+    }
+
+    /// That a change may have begun unnoticed, if that is likely enough to matter.
+    pub(super) fn begun(&self, unnoticed: &Unnoticed) -> Option<Begun> {
+        (unnoticed.probability > SELDOM).then(|| Begun {
+            at: self.date(unnoticed.first),
+            probability: unnoticed.probability,
         })
     }
 
@@ -214,8 +236,15 @@ impl Teller<'_> {
         if is_sudden(event) { others.count() } else { 0 }
     }
 
-    /// What people reported around the interval.
-    fn reported(&self, earliest: Timestamp, latest: Timestamp) -> Vec<Cause> {
+    /// What people reported around the time from which the event may date.
+    fn reported(&self, event: &Event, at_port: Option<bool>) -> Vec<Cause> {
+        let (first, last) = event.between;
+        let (earliest, latest) = (self.time(first.saturating_sub(1)), self.time(last));
+        // It comes and goes in port, not after hours of sailing.
+        let at_the_quay = |time: Timestamp| {
+            let sailed = rows_since(&self.observations[..first], time);
+            at_port == Some(true) || sailed < SAILED_SINCE
+        };
         // What happens from one time to another may change the ship all the while, but
         // cargo does so when it comes on board and when it goes.
         let near = |from: Timestamp, to: Timestamp, before_s: f64, after_s: f64| {
@@ -224,8 +253,9 @@ impl Teller<'_> {
         let is_near = |entry: &&LogbookEntry| {
             let to = entry.to.unwrap_or(entry.from);
             if cause_of(entry.kind) == Some(Cause::MagneticCargo) {
-                near(entry.from, entry.from, LOADED_BEFORE_S, REPORT_S)
-                    || near(to, to, LOADED_BEFORE_S, REPORT_S)
+                [entry.from, to]
+                    .into_iter()
+                    .any(|time| near(time, time, LOADED_BEFORE_S, REPORT_S) && at_the_quay(time))
             } else if entry.kind.ends_an_epoch() {
                 near(entry.from, to, REPORT_S, WORKED_BEFORE_S)
             } else {
@@ -234,6 +264,23 @@ impl Teller<'_> {
         };
         let entries = self.logbook.iter().filter(is_near);
         entries.filter_map(|entry| cause_of(entry.kind)).collect()
+    }
+
+    /// Whether the logbook has the end of cargo's time on board at an event, and no
+    /// beginning.
+    fn is_said_discharge(&self, event: &Event) -> bool {
+        let (earliest, latest) = event.between;
+        let (earliest, latest) = (self.time(earliest.saturating_sub(1)), self.time(latest));
+        let is_then = |time: Timestamp| {
+            earliest.seconds_since(time) < LOADED_BEFORE_S
+                && latest.seconds_since(time) > -LOADED_BEFORE_S
+        };
+        let cargo = || {
+            let entries = self.logbook.iter();
+            entries.filter(|entry| cause_of(entry.kind) == Some(Cause::MagneticCargo))
+        };
+        cargo().filter_map(|entry| entry.to).any(is_then)
+            && !cargo().any(|entry| is_then(entry.from))
     }
 
     /// When people say that something happened between two rows.

@@ -113,12 +113,14 @@ impl Search<'_> {
     }
 
     /// A burst that went on until now ended where a change is dated; if it began
-    /// there too, it was the change's first sign and nothing else.
+    /// there too, or nothing before the change told of it, it was the change's first sign
+    /// and nothing else.
     pub(super) fn supersede_burst(&mut self, first: usize) {
         let Some(event) = self.burst.take() else {
             return;
         };
-        if self.events[event].first + 2 * EVERY >= first {
+        let burst = &self.events[event];
+        if burst.first + 2 * EVERY >= first || burst.told >= first {
             self.events.remove(event);
         } else {
             self.events[event].last = Some(first - 1);

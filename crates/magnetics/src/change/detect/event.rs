@@ -1,6 +1,6 @@
 //! What the search is told, and what it tells.
 
-use super::Loaded;
+use super::{Loaded, Unnoticed};
 use crate::change::filter::{CONSTANT_STATE, Filter};
 use crate::estimate::{NoiseLevels, POPULATION_SD, Prior};
 use crate::model::{Covariance, Parameters};
@@ -90,6 +90,8 @@ pub(crate) struct Told {
     pub(crate) events: Vec<Event>,
     /// A return that may have been, and is not among the events.
     pub(crate) perhaps: Option<Perhaps>,
+    /// A step that may have been, and is not among them either.
+    pub(crate) unnoticed: Option<Unnoticed>,
 }
 
 /// Something that is as yet neither likely enough to be believed nor unlikely

@@ -2,10 +2,14 @@
 
 use super::Search;
 use crate::change::calls::Said;
+use crate::fit::Observation;
 use crate::time::Timestamp;
 
 /// People write down the day, or when the hatches were shut.
 const ABOUT_S: f64 = 12.0 * 3600.0;
+/// A step that is dated after so many rows or more of sailing since was not the loading:
+/// half of it for what people write, half for dating.
+pub(crate) const SAILED_SINCE: usize = 36;
 
 /// Cargo that moves the compass, as the logbook has it.
 #[derive(Clone, Copy, Debug)]
@@ -45,6 +49,7 @@ impl Search<'_> {
 
     /// Whether the logbook has it that cargo came on board when a step happened.
     pub(super) fn is_said_loaded(&self, (earliest, latest): (usize, usize)) -> bool {
+        let sailed = &self.observations[..earliest];
         let earliest = self.around(earliest).map(|around| around.0);
         let Some((earliest, latest)) = earliest.zip(self.observations[latest].time) else {
             return false;
@@ -52,6 +57,7 @@ impl Search<'_> {
         self.cargo.iter().any(|loaded| {
             loaded.from.seconds_since(earliest) > -2.0 * ABOUT_S
                 && loaded.from.seconds_since(latest) < ABOUT_S
+                && rows_since(sailed, loaded.from) < SAILED_SINCE
         })
     }
 
@@ -70,4 +76,10 @@ impl Search<'_> {
         let before = self.observations[k.checked_sub(1)?].time?;
         Some((before, self.observations[k].time?))
     }
+}
+
+/// Rows after a time, of rows in order of time.
+pub(crate) fn rows_since(rows: &[Observation], time: Timestamp) -> usize {
+    let before = rows.partition_point(|row| row.time.is_none_or(|row| row <= time));
+    rows.len() - before
 }

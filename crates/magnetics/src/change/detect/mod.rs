@@ -14,11 +14,13 @@ mod learn;
 mod logged;
 mod port;
 mod rival;
+mod unnoticed;
 mod unsettled;
 
 pub(crate) use event::{Event, Given, Perhaps, Snapshot, Told, What};
-pub(crate) use logged::Loaded;
+pub(crate) use logged::{Loaded, SAILED_SINCE, rows_since};
 pub(crate) use port::at_port;
+pub(crate) use unnoticed::Unnoticed;
 
 use super::bank::{Bank, Kind, Lead};
 use super::calls::Calls;
@@ -32,6 +34,7 @@ use crate::time::Timestamp;
 use faint::Faint;
 use learn::{Learnt, Lesson};
 use rival::Rival;
+use unnoticed::Ports;
 use unsettled::Unsettled;
 
 /// Rows between times that are tried: about an hour of sailing.
@@ -94,6 +97,7 @@ struct Search<'a> {
     spawned: usize,
     /// What the ship was before steps, and where she may have become it again.
     calls: Calls,
+    ports: Ports,
     /// A reference's fault that goes on, if one does: its place in the list of
     /// events, and the filter before.
     misled: Option<(usize, Filter)>,
@@ -129,6 +133,7 @@ impl<'a> Search<'a> {
             bank: Bank::default(),
             spawned: 0,
             calls: Calls::default(),
+            ports: Ports::default(),
             misled: None,
             misaligned: None,
             unsettled: Unsettled::default(),
@@ -160,6 +165,9 @@ impl<'a> Search<'a> {
         if self.is_call(k) || self.is_said_discharged(k) {
             let said = self.said_at(k);
             self.calls.call(k, &self.null, usize::MAX, said);
+        }
+        if self.is_call(k) {
+            self.ports.call(k, &self.null);
         }
         let surprise = self.null.take(&m, &self.noise, None);
         let mut calls = std::mem::take(&mut self.calls);
@@ -274,11 +282,14 @@ impl<'a> Search<'a> {
             first: candidate.at,
             probability: candidate.any,
         });
+        let returned = perhaps.map_or(0.0, |perhaps| perhaps.probability);
+        let unnoticed = self.unnoticed(&leads, returned);
         self.suspect();
         self.settle_faint(self.observations.len().saturating_sub(1), true);
         Told {
             events: self.events,
             perhaps,
+            unnoticed,
         }
     }
 

@@ -178,6 +178,7 @@ impl Search<'_> {
         let event = &mut self.events[of];
         event.what = rival.what;
         event.over_step = nats;
+        event.before = snapshot(&rival.before);
         event.after = snapshot(&rival.filter);
         (event.first, event.between) = (rival.first, rival.between);
         self.unsettled = match rival.what {

@@ -1,0 +1,115 @@
+//! What a port call may have changed that the rows since have not told.
+//!
+//! What always holds: it is no event and moves no date; it is only to make the band as
+//! wide as what is not known.
+
+use super::{Event, Leads, Search, What};
+use crate::change::bank::Kind;
+use crate::change::cause::odds;
+use crate::change::filter::Filter;
+use crate::change::upset::upset;
+
+/// How likely a ship is another magnet after a port call, and a reference off.
+const CHANGED: f64 = 0.02;
+const MISLED: f64 = 0.002;
+/// Calls that are asked about: the last few among so many rows.
+const ROWS: usize = 288;
+const CALLS: usize = 3;
+/// What passes leaves rows out when it leads by this, nats.
+const ASTRAY_NATS: f64 = 3.0;
+/// Odds beyond this are certainty.
+const MOST: f64 = 1e9;
+
+/// A step at a port call that may have been.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unnoticed {
+    /// The first row after it.
+    pub(crate) first: usize,
+    pub(crate) probability: f64,
+}
+
+/// The last port calls, each with its first row after it and the filter there.
+#[derive(Default)]
+pub(super) struct Ports(Vec<(usize, Filter)>);
+
+impl Ports {
+    pub(super) fn call(&mut self, at: usize, now: &Filter) {
+        if self.0.len() == CALLS {
+            self.0.remove(0);
+        }
+        self.0.push((at, now.clone()));
+    }
+}
+
+impl Search<'_> {
+    /// The likeliest of the last port calls for a step that has not been told, and how
+    /// likely one at any of them is; `returned` is how likely she is herself again.
+    pub(super) fn unnoticed(&self, leads: &Leads, returned: f64) -> Option<Unnoticed> {
+        let last = self.observations.len().checked_sub(1)?;
+        let earliest = last.saturating_sub(ROWS).max(self.first());
+        // A filter that did not know of what was told since is of no use.
+        let told = |event: &&Event| !matches!(event.what, What::Burst | What::Reference);
+        let told = self.events.iter().filter(told).map(|event| event.told);
+        let earliest = told.max().map_or(earliest, |told| earliest.max(told + 1));
+        let ports = self.ports.0.iter().filter(|(at, _)| *at >= earliest);
+        let likely: Vec<(usize, f64)> = ports
+            .map(|(at, before)| {
+                let nats = self.nats_of_step(*at, before, leads);
+                (*at, CHANGED / (1.0 - CHANGED) * odds(nats).min(MOST))
+            })
+            .collect();
+        let (first, _) = likely.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let sum: f64 = likely.iter().map(|(_, odds)| odds).sum();
+        // Against nothing, a reference's fault, and her being herself again.
+        let fault = leads[Kind::Reference as usize]
+            .filter(|lead| self.bank.spawns[lead.spawn].at >= *first)
+            .map_or(0.0, |lead| MISLED * odds(lead.nats).min(MOST));
+        let others = (1.0 + fault) / (1.0 - returned).max(f64::MIN_POSITIVE);
+        Some(Unnoticed {
+            first: *first,
+            probability: sum / (sum + others),
+        })
+    }
+
+    /// By how much likelier it is that the ship changed before row `call` than that she did
+    /// not, by the rows that nothing passing spoilt.
+    fn nats_of_step(&self, call: usize, before: &Filter, leads: &Leads) -> f64 {
+        let rows: Vec<usize> = (call..self.observations.len())
+            .filter(|row| !self.is_spoilt(*row, leads))
+            .collect();
+        let run = |filter: &Filter| {
+            let mut at = self.null.unknowns();
+            let mut end = filter.clone();
+            // Twice, for the rows are to be linearised at where the ship would be now.
+            for _ in 0..2 {
+                end = rows.iter().fold(filter.clone(), |mut filter, row| {
+                    filter.take(&self.measure(*row, &at), &self.noise, None);
+                    filter
+                });
+                at = end.unknowns();
+            }
+            end.log_likelihood
+        };
+        run(&upset(before, Kind::Step)) - run(before)
+    }
+
+    /// Whether a passing disturbance or a fault of a reference, told or leading, is of
+    /// this row.
+    fn is_spoilt(&self, row: usize, leads: &Leads) -> bool {
+        let leads_now = leads[Kind::Burst as usize]
+            .filter(|lead| lead.nats > ASTRAY_NATS)
+            .is_some_and(|lead| self.began(lead) <= row);
+        let told = self.events.iter().enumerate().any(|(place, event)| {
+            let last = match event.what {
+                What::Burst => event.last,
+                What::Reference => self.events[place + 1..]
+                    .iter()
+                    .find(|later| later.what == What::Return(place))
+                    .map(|later| later.first.saturating_sub(1)),
+                _ => return false,
+            };
+            (event.first..=last.unwrap_or(usize::MAX)).contains(&row)
+        });
+        leads_now || told
+    }
+}
