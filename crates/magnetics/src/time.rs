@@ -1,6 +1,6 @@
 //! Instants, in UTC, to the microsecond.
 
-use chrono::{DateTime, Datelike, SecondsFormat, TimeZone, Utc};
+use chrono::{DateTime, Datelike, NaiveDateTime, SecondsFormat, TimeZone, Utc};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -13,8 +13,11 @@ pub struct Timestamp(i64);
 /// Why something is not an instant.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TimestampError {
+    /// The text would be one, if it said in which time zone.
+    #[error("{0:?} says no time zone; write Z for UTC or an offset as +01:00")]
+    NoZone(String),
     /// The text does not read as RFC 3339.
-    #[error("{0:?} is not an RFC 3339 time")]
+    #[error("{0:?} is not an RFC 3339 time as 2026-12-01T08:00:00Z")]
     NotRfc3339(String),
     /// The instant lies outside the years 1 to 9999.
     #[error("{0} microseconds since 1970 lies outside the years 1 to 9999")]
@@ -23,6 +26,8 @@ pub enum TimestampError {
 
 /// 0001-01-01T00:00:00Z.
 const FIRST_MICROS: i64 = -62_135_596_800_000_000;
+/// So much of a wrong text is said again, in characters.
+const SAID_AGAIN: usize = 40;
 /// 9999-12-31T23:59:59.999999Z.
 const LAST_MICROS: i64 = 253_402_300_799_999_999;
 
@@ -42,11 +47,22 @@ impl Timestamp {
     /// Reads RFC 3339 with any offset.
     ///
     /// # Errors
-    /// When the text is not RFC 3339.
+    /// When the text is not RFC 3339, and in so many words when only the zone is missing.
     pub fn parse(text: &str) -> Result<Timestamp, TimestampError> {
-        let parsed = DateTime::parse_from_rfc3339(text.trim())
-            .map_err(|_| TimestampError::NotRfc3339(text.to_owned()))?;
-        Timestamp::from_micros(parsed.timestamp_micros())
+        let given = text.trim();
+        if let Ok(parsed) = DateTime::parse_from_rfc3339(given) {
+            return Timestamp::from_micros(parsed.timestamp_micros());
+        }
+        let without = given.replace(' ', "T");
+        let lacks_zone = ["%Y-%m-%dT%H:%M:%S%.f", "%Y-%m-%dT%H:%M"]
+            .iter()
+            .any(|format| NaiveDateTime::parse_from_str(&without, format).is_ok());
+        let short = text.chars().take(SAID_AGAIN).collect();
+        Err(if lacks_zone {
+            TimestampError::NoZone(short)
+        } else {
+            TimestampError::NotRfc3339(short)
+        })
     }
 
     /// Microseconds since 1970-01-01T00:00:00Z.
@@ -124,6 +140,22 @@ mod tests {
             assert_eq!(Timestamp::parse(text).unwrap().to_string(), text);
         }
         assert!(Timestamp::parse("21.11.2026").is_err());
+    }
+
+    #[test]
+    fn a_time_without_a_zone_is_refused_as_such() {
+        for text in [
+            "2026-12-01T08:00:00",
+            "2026-12-01 08:00",
+            "2026-12-01T08:00",
+        ] {
+            let refused = Timestamp::parse(text);
+            assert_eq!(refused, Err(TimestampError::NoZone(text.to_owned())));
+        }
+        for text in ["tomorrow", "2026-12-01", ""] {
+            let refused = Timestamp::parse(text);
+            assert_eq!(refused, Err(TimestampError::NotRfc3339(text.to_owned())));
+        }
     }
 
     #[test]
