@@ -2,7 +2,9 @@
 //!
 //! The first line names the columns: `id`, `vessel`, `port`, `eta`, `etd`, and if wanted
 //! `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`, `berth_heading_deg`. A file for one
-//! ship needs no `vessel`, and a call without `id` is named after its port and ETA.
+//! ship needs no `vessel`, and a call without `id` is named after its port and ETA. Fields
+//! are separated by commas, or by semicolons, as spreadsheets of much of Europe write them,
+//! with a comma in figures then.
 //!
 //! What always holds: memory is bounded by a line and by the calls that were read,
 //! however large the file; what is wrong is said with its line and column; what is
@@ -63,13 +65,17 @@ pub fn read(
     now: Instant,
 ) -> Result<Vec<Located>, FileError> {
     let (mut header, mut calls, mut line) = (None, Vec::new(), 0);
+    let mut separator = ',';
     let mut ids = BTreeMap::new();
     while let Some(text) = next_line(&mut file, line + 1)? {
         line += 1;
         if text.trim().is_empty() {
             continue;
         }
-        let cells = cells(&text, line)?;
+        if header.is_none() {
+            separator = separator_of(&text, line)?;
+        }
+        let cells = cells(&text, separator, line)?;
         let Some(header) = &header else {
             header = Some(columns(cells, line)?);
             continue;
@@ -81,7 +87,7 @@ pub fn read(
                 format!("more than {MOST_CALLS} calls"),
             ));
         }
-        let call = row(header, &cells, vessel, now, line)?;
+        let call = row(header, &cells, separator, vessel, now, line)?;
         must_be_new(&mut ids, &call, line)?;
         calls.push(Located { line, call });
     }
@@ -179,8 +185,21 @@ fn next_line(file: &mut impl BufRead, line: usize) -> Result<Option<String>, Fil
     Ok(Some(text.to_owned()))
 }
 
+/// What separates the fields of a file whose first line this is: no column's name has
+/// either of them.
+fn separator_of(header: &str, line: usize) -> Result<char, FileError> {
+    match (header.contains(','), header.contains(';')) {
+        (true, true) => {
+            let what = "has both commas and semicolons between its fields; write one of them";
+            Err(FileError::new(line, "row", what))
+        }
+        (false, true) => Ok(';'),
+        (_, false) => Ok(','),
+    }
+}
+
 /// A line's cells (RFC 4180, but for line ends within quotes), without blanks around.
-fn cells(text: &str, line: usize) -> Result<Vec<String>, FileError> {
+fn cells(text: &str, separator: char, line: usize) -> Result<Vec<String>, FileError> {
     let mut cells = vec![String::new()];
     let mut quoted = false;
     let mut letters = text.trim_end_matches(['\r', '\n']).chars().peekable();
@@ -189,7 +208,7 @@ fn cells(text: &str, line: usize) -> Result<Vec<String>, FileError> {
         match letter {
             '"' if quoted && letters.peek() == Some(&'"') => cell.extend(letters.next()),
             '"' => quoted = !quoted,
-            ',' if !quoted => cells.push(String::new()),
+            _ if letter == separator && !quoted => cells.push(String::new()),
             _ => cell.push(letter),
         }
     }
@@ -224,6 +243,7 @@ fn columns(header: Vec<String>, line: usize) -> Result<Vec<String>, FileError> {
 fn row(
     header: &[String],
     cells: &[String],
+    separator: char,
     vessel: Option<&str>,
     now: Instant,
     line: usize,
@@ -244,7 +264,12 @@ fn row(
     let instant = |name: &str| {
         Instant::parse(needed(name)?).map_err(|error| FileError::new(line, name, error.to_string()))
     };
-    let number = |name: &str| match cell(name).map(|text| (text, text.parse::<f64>())) {
+    // Where a semicolon separates fields, a comma may stand for the point.
+    let read = |text: &str| match separator {
+        ';' => text.replace(',', ".").parse::<f64>(),
+        _ => text.parse::<f64>(),
+    };
+    let number = |name: &str| match cell(name).map(|text| (text, read(text))) {
         None => Ok(None),
         Some((_, Ok(number))) if number.is_finite() => Ok(Some(number)),
         Some((text, _)) => Err(FileError::new(

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 on_both!(
     a_csv_is_taken_once_however_often_it_comes,
+    a_csv_of_a_european_spreadsheet_is_taken,
     a_csv_with_one_wrong_line_leaves_nothing,
     a_file_that_replaces_withdraws_what_is_not_in_it_any_more,
     a_csv_of_the_fleet_names_vessels_by_number_name_or_id,
@@ -49,6 +50,35 @@ async fn a_csv_is_taken_once_however_often_it_comes(shore: Shore) {
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][0]["source"], "csv");
     assert_eq!(list["items"][0]["revision"], 2);
+    shore.finish().await;
+}
+
+async fn a_csv_of_a_european_spreadsheet_is_taken(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = ada.create_vessel("Nao").await;
+    let csv = format!("{}.csv", path(&nao));
+    let file = "\u{feff}id;port;eta;etd;berth;eta_uncertainty_h\r\n\
+                a;NLRTM;2026-12-08T06:00:00Z;2026-12-09T18:00:00Z;\"A5, south\";1,5\r\n";
+    assert_eq!(send(&ada, &csv, file).await.good(), did(1, 0, 0, 0, 0));
+    let list = ada.get(&path(&nao)).await.good();
+    assert_eq!(list["items"][0]["berth"], "A5, south");
+    assert_eq!(list["items"][0]["eta_uncertainty_h"], 1.5);
+    for (file, said) in [
+        ("id;port,eta;etd\n", "has both commas and semicolons"),
+        (
+            "id;port;eta;etd\na,NLRTM,x,y\n",
+            "1 fields, where the first line has 4",
+        ),
+        (
+            "id;port;eta;etd\na;NLRTM;2026-12-10T06:00:00;2026-12-11T06:00:00Z\n",
+            "line 2: eta: \"2026-12-10T06:00:00\" says no time zone",
+        ),
+    ] {
+        let refused = send(&ada, &csv, file).await;
+        assert_eq!(refused.problem(), "invalid");
+        let detail = refused.json()["detail"].as_str().unwrap().to_owned();
+        assert!(detail.contains(said), "{detail}");
+    }
     shore.finish().await;
 }
 
