@@ -73,8 +73,8 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
         "is empty"
     } else if value.chars().count() > MAX_TEXT {
         "is longer than 200 characters"
-    } else if value.chars().any(char::is_control) {
-        "has control characters"
+    } else if value.chars().any(is_control) {
+        "has control characters, or such as turn the direction of writing"
     } else {
         return Ok(value.to_owned());
     };
@@ -82,6 +82,15 @@ pub fn text(field: &'static str, value: &str) -> Result<String> {
         field,
         detail: detail.to_owned(),
     })
+}
+
+/// Whether a character is not to be seen, but changes what is: ends a line, or turns the
+/// direction of writing, so that a name reads as another (Unicode Standard Annex 9,
+/// section 2).
+pub fn is_control(c: char) -> bool {
+    let turns = matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}'
+                            | '\u{2066}'..='\u{2069}');
+    turns || c.is_control() || matches!(c, '\u{2028}' | '\u{2029}')
 }
 
 /// The same where there may be none: what is blank is none.

@@ -13,6 +13,8 @@ mod routes;
 
 pub use amended::Amended;
 pub use file::{file, file_name};
-pub use json::{Id, Json, Params, Valid, ValidOrNone, degrees, optional_text, text, time};
+pub use json::{
+    Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, time,
+};
 pub use page::{Listed, Page};
 pub use routes::{MAX_JSON_BYTES, openapi, router};

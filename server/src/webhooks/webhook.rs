@@ -2,6 +2,7 @@
 
 use super::send::{Reach, check_url};
 use crate::error::{Error, Result};
+use crate::http::is_control;
 use crate::ids::WebhookId;
 use crate::outbox::Kind;
 use crate::tenants::Tenant;
@@ -90,6 +91,12 @@ impl NewWebhook {
     /// When it cannot, or would never be.
     pub(super) fn checked(mut self, tenant: Tenant, reach: Reach) -> Result<NewWebhook> {
         let invalid = |field, detail| Err(Error::Invalid { field, detail });
+        // A blank that came along when it was copied; within, a reader of addresses may pass
+        // over it, and the request would go elsewhere than what is shown.
+        self.url = self.url.trim().to_owned();
+        if self.url.chars().any(|c| c.is_whitespace() || is_control(c)) {
+            return invalid("url", "has blanks or control characters".to_owned());
+        }
         if let Err(problem) = check_url(&self.url, reach) {
             return invalid("url", problem.to_string());
         }
