@@ -124,9 +124,15 @@ async fn pin(
         });
     }
     let firms = firms::of_operator(&app.db, writer.operator).await?;
-    let mut planned_with = firms.iter().filter(|(_, _, terms)| terms.is_some());
-    if !planned_with.any(|(firm, _, _)| *firm == new.firm_id) {
+    let pinned = firms.iter().find(|(firm, _, _)| *firm == new.firm_id);
+    let Some((_, name, Some(terms))) = pinned else {
         return Err(Error::NotFound("firm"));
+    };
+    if let Some(problem) = terms.problems().first() {
+        return Err(Error::Invalid {
+            field: "firm_id",
+            detail: format!("the schedule leaves {name} out: {problem}"),
+        });
     }
     let note = optional_text("note", new.note.as_deref())?;
     let mut tx = app.db.begin().await?;

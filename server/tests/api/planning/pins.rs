@@ -1,6 +1,6 @@
 //! What a person wants as it is stays, and moves only for cause.
 
-use super::{compass_of, due_vessel, enter, first, planned_firm, solve};
+use super::{compass_of, due_vessel, enter, first, planned_firm, put, solve, terms};
 use crate::on_both;
 use crate::port_calls;
 use crate::support::{Answer, Shore};
@@ -99,6 +99,18 @@ async fn what_cannot_be_pinned_is_refused(shore: Shore) {
         let answer = ada.post("/schedule/pins", &wrong).await;
         assert_eq!(answer.problem(), "not-found", "{wrong}");
     }
+    // A firm that the schedule leaves out: it would give way at once.
+    let mut idle = terms();
+    idle["working_days"] = json!([]);
+    put(&ada, &format!("/firms/{firm}/terms"), &idle)
+        .await
+        .good();
+    let nobody = ada
+        .post("/schedule/pins", &pin(&nao, &call, &firm, day))
+        .await;
+    assert_eq!(nobody.problem(), "invalid");
+    let why = "the schedule leaves Maas Compass out: working_days";
+    assert!(nobody.text.contains(why), "{nobody:?}");
     let theirs = eve
         .post("/schedule/pins", &pin(&nao, &call, &firm, day))
         .await;
