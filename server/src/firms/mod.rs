@@ -148,11 +148,13 @@ async fn engage_firm(
 
 /// Have an operator work with a firm no more
 ///
-/// For platform admins. Orders that the firm has stay with it.
+/// For platform admins. Not while the firm is asked for an order of the operator's or has
+/// one that is not done: it is cancelled or given back before.
 #[utoipa::path(delete, path = "/operators/{id}/firms/{firm}", tag = "platform",
     params(("id" = OperatorId, Path), ("firm" = FirmId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
-              (status = 404, body = Problem)))]
+              (status = 404, body = Problem),
+              (status = 409, description = "It is asked for an order or has one", body = Problem)))]
 async fn dismiss_firm(
     State(app): State<App>,
     admin: Platform,
@@ -160,8 +162,19 @@ async fn dismiss_firm(
 ) -> Result<StatusCode> {
     admin.who_may_write()?;
     let mut tx = app.db.begin().await?;
+    let orders = store::orders_between(&mut tx, operator, firm).await?;
     if !store::dismiss(&mut tx, operator, firm).await? {
         return Err(Error::NotFound("firm"));
+    }
+    if orders > 0 {
+        let orders = match orders {
+            1 => "one order".to_owned(),
+            more => format!("{more} orders"),
+        };
+        return Err(Error::WrongState(format!(
+            "the firm is asked for {orders} of the operator's or has them: they are cancelled, \
+             or given back, before"
+        )));
     }
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)

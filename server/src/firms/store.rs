@@ -75,6 +75,25 @@ pub(super) async fn dismiss(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> 
     Ok(ended > 0)
 }
 
+/// How many of an operator's orders that are not done a firm is asked for or has. Whoever
+/// books the firm meanwhile waits.
+pub(super) async fn orders_between(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<i64> {
+    execute!(&mut *tx, "UPDATE firms SET name = name WHERE id = $1", firm)?;
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(*) FROM work_order_offers f
+         JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
+         JOIN vessels v ON v.id = o.vessel_id
+         WHERE f.firm_id = $1 AND v.operator_id = $2
+           AND f.state IN ('waiting', 'open', 'proposed', 'accepted')
+           AND o.state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')",
+        firm,
+        operator
+    )?;
+    Ok(found.map_or(0, |(orders,)| orders))
+}
+
 /// Keeps the terms on which a firm works for an operator.
 pub(super) async fn put_terms(
     tx: &mut Tx,

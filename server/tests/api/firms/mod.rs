@@ -3,14 +3,18 @@
 mod migration;
 
 use crate::commands::{assert_refused, good, run};
+use crate::offers::Trade;
 use crate::on_both;
 use crate::support::{Answer, Shore};
+use binnacle_server::ids::FirmId;
 use reqwest::Method;
 use serde_json::{Value, json};
 
 on_both!(
     a_platform_admin_brings_an_operator_and_a_firm_together,
     only_a_platform_admin_manages_operators_and_firms,
+    a_firm_that_has_an_order_is_not_parted_with,
+    a_name_is_what_it_shows,
     an_operator_sees_the_firms_that_it_works_with,
     a_firm_that_is_entered_twice_under_one_key_is_one,
     an_adjuster_has_no_fleet,
@@ -51,6 +55,54 @@ async fn a_platform_admin_brings_an_operator_and_a_firm_together(shore: Shore) {
     assert_eq!(names(&ada.get("/firms").await.good()), [""; 0]);
     let again = Answer::of(root.request(Method::DELETE, &between)).await;
     assert_eq!(again.problem(), "not-found");
+    shore.finish().await;
+}
+
+async fn a_firm_that_has_an_order_is_not_parted_with(shore: Shore) {
+    let trade = Trade::offered(&shore, 2).await;
+    let root = trade.ada.platform_admin(&shore).await;
+    let part = async |firm: FirmId| {
+        let between = format!("/operators/{}/firms/{firm}", trade.ada.operator);
+        Answer::of(root.request(Method::DELETE, &between)).await
+    };
+    let [(asked, rosa), (waits, _)] = &trade.firms[..] else {
+        unreachable!("there are two")
+    };
+    for firm in [asked, waits] {
+        let refused = part(*firm).await;
+        assert_eq!(refused.problem(), "wrong-state");
+        assert!(refused.text.contains("asked for one order"), "{refused:?}");
+    }
+    trade.post(rosa, "/accept", &json!({})).await.good();
+    // Who waits is asked when who has it gives it back.
+    for firm in [asked, waits] {
+        assert_eq!(part(*firm).await.problem(), "wrong-state");
+    }
+    let sold = json!({ "text": "sold" });
+    trade.post(&trade.ada, "/cancel", &sold).await.good();
+    for firm in [asked, waits] {
+        assert_eq!(part(*firm).await.status, 204);
+    }
+    shore.finish().await;
+}
+
+async fn a_name_is_what_it_shows(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    for turned in [
+        "Nao \u{202e}tsoC",
+        "\u{2066}Nao",
+        "Nao\u{200f}",
+        "Na\u{2028}o",
+    ] {
+        let refused = ada.post("/vessels", &json!({ "name": turned })).await;
+        assert_eq!(refused.problem(), "invalid", "{turned:?}");
+        assert!(refused.text.contains("direction of writing"), "{refused:?}");
+    }
+    // Of any script, and with what joins its letters.
+    for name in ["سفينة", "ספינה", "می\u{200c}خواهم"] {
+        let made = ada.post("/vessels", &json!({ "name": name })).await;
+        assert_eq!(made.good()["name"], name);
+    }
     shore.finish().await;
 }
 
