@@ -6,7 +6,11 @@ token of the firm's (scope `write`) come from the environment:
 
     export BINNACLE_SERVER=https://binnacle.example BINNACLE_TOKEN=bna_...
     python3 firm_client.py orders
+    python3 firm_client.py propose ORDER --fee 900 --text "Two teams are needed."
     python3 firm_client.py accept ORDER --adjuster "M. Etxeberria" --licence ES-CA-114
+    python3 firm_client.py say ORDER --text "Is there a crane alongside?"
+    python3 firm_client.py messages ORDER
+    python3 firm_client.py events
     python3 firm_client.py on-board ORDER
     python3 firm_client.py adjust ORDER --reading reading.json
     python3 firm_client.py complete ORDER --adjuster "M. Etxeberria" --licence ES-CA-114
@@ -22,6 +26,7 @@ try it out.
 import argparse
 import hashlib
 import hmac
+import http.client
 import json
 import os
 import subprocess
@@ -91,6 +96,27 @@ class Binnacle:
             if page["next"] is None:
                 return
             after = joint + "after=" + page["next"]
+
+
+    def events(self, last=None):
+        """Follows what happens to the firm's orders: (id, event), one after the other.
+
+        The server ends a stream after half an hour, and a connection may break: go on from
+        the last id, and what was missed comes first.
+        """
+        headers = {"Authorization": "Bearer " + self.token}
+        if last is not None:
+            headers["Last-Event-ID"] = last
+        request = urllib.request.Request(self.base + "/events", headers=headers)
+        with urllib.request.urlopen(request, timeout=60) as stream:
+            fields = {}
+            for line in stream:
+                name, _, value = line.decode().rstrip("\r\n").partition(":")
+                if name:
+                    fields[name] = value.strip()
+                elif line.strip() == b"" and "data" in fields:
+                    yield fields.get("id"), json.loads(fields["data"])
+                    fields = {}
 
 
 def problem_of(error):
@@ -186,12 +212,45 @@ def show(order):
     print("%s  %s  %s  %s  %s" % (order["id"], order["planned_at"], where, who, state))
 
 
+def show_fee(order):
+    """What the firm is offered and, once it has the order, what was agreed on."""
+    for offer in order["offers"]:
+        if offer["fee_eur"] is not None:
+            print("offered at %.2f euros" % offer["fee_eur"])
+        if offer["terms"] is not None:
+            print("terms: " + json.dumps(offer["terms"]))
+    if order["fee_eur"] is not None:
+        print("agreed at %.2f euros" % order["fee_eur"])
+
+
+def follow(api, last, count):
+    """Prints events; begins again where a stream ends, and stops after `count` of them."""
+    while True:
+        try:
+            for last, event in api.events(last):
+                print("%s  %s  order %s" % (last, event["kind"], event.get("order_id")), flush=True)
+                if count is not None:
+                    count -= 1
+                    if count == 0:
+                        return
+        except urllib.error.HTTPError as error:
+            if error.code < 500:
+                raise Refused(problem_of(error)) from error
+        except (OSError, http.client.HTTPException):
+            pass
+        time.sleep(2)
+
+
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("orders", help="list your orders")
     for name, words in [
+        ("order", "show an order, and for how much it is offered"),
         ("accept", "take an order as it is offered"),
+        ("propose", "propose another time, berth or fee"),
+        ("messages", "read what you and the operator wrote"),
+        ("say", "write to the operator"),
         ("decline", "decline an offer, or give an order back"),
         ("on-board", "say that the adjuster is on board"),
         ("adjust", "read the berth and do the plan's steps"),
@@ -204,8 +263,14 @@ def arguments():
         if name in ("accept", "complete"):
             command.add_argument("--adjuster", required=True)
             command.add_argument("--licence", required=True)
-        if name == "decline":
+        if name == "propose":
+            command.add_argument("--at", help="RFC 3339, as 2026-12-08T13:00:00Z")
+            command.add_argument("--berth")
+            command.add_argument("--fee", type=float, help="euros")
+        if name in ("decline", "propose"):
             command.add_argument("--text")
+        if name == "say":
+            command.add_argument("--text", required=True)
         if name == "adjust":
             command.add_argument("--reading", required=True, help="a JSON file")
             command.add_argument("--as-foretold", action="store_true")
@@ -213,6 +278,9 @@ def arguments():
             command.add_argument("--key", required=True, help="an Ed25519 key, PEM")
         if name == "evidence":
             command.add_argument("--out", required=True)
+    command = commands.add_parser("events", help="follow what happens to your orders")
+    command.add_argument("--last", help="the id of the last event that you saw")
+    command.add_argument("--count", type=int, help="stop after so many")
     command = commands.add_parser("register-key", help="register a key of the firm's")
     command.add_argument("--key", required=True, help="an Ed25519 key, PEM")
     command.add_argument("--name", required=True)
@@ -234,11 +302,28 @@ def run(asked):
         for order in api.every("/work-orders"):
             show(order)
         return 0
+    if asked.command == "events":
+        follow(api, asked.last, asked.count)
+        return 0
     if asked.command == "register-key":
         print("registered as " + register_key(api, asked.key, asked.name)["id"])
         return 0
     path = "/work-orders/" + asked.order
-    if asked.command == "accept":
+    if asked.command == "order":
+        order = api.get(path)
+        show(order)
+        show_fee(order)
+    elif asked.command == "propose":
+        # What is left out is as it was offered.
+        new = {"planned_at": asked.at, "berth": asked.berth, "fee_eur": asked.fee}
+        terms = {name: value for name, value in new.items() if value is not None}
+        show(api.post(path + "/propose", {"terms": terms, "text": asked.text}))
+    elif asked.command == "messages":
+        for message in api.every(path + "/messages"):
+            print("%s  %s: %s" % (message["at"], message["by"], message["text"]))
+    elif asked.command == "say":
+        api.post(path + "/messages", {"text": asked.text})
+    elif asked.command == "accept":
         who = {"adjuster_name": asked.adjuster, "adjuster_licence": asked.licence}
         show(api.post(path + "/accept", who))
     elif asked.command == "decline":

@@ -7,7 +7,7 @@
 use super::store;
 use crate::access::{Reader, Writer};
 use crate::app::App;
-use crate::db::Db;
+use crate::db::{Db, Tx};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, text};
 use crate::ids::{FirmId, OperatorId};
@@ -164,6 +164,15 @@ pub async fn of_operator(
     };
     let found = store::with_terms(db, operator).await?;
     found.into_iter().map(read).collect()
+}
+
+/// The fee for one compass, euros, by the terms on which a firm works for an operator; none
+/// where nobody has said them.
+pub async fn fee_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<f64>> {
+    let said = store::terms_of(tx, firm).await?;
+    let said = said.into_iter().find(|(whose, _)| *whose == operator);
+    let terms = said.map(|(_, text)| serde_json::from_str::<Terms>(&text));
+    Ok(terms.transpose()?.map(|terms| f64::from(terms.fee_eur)))
 }
 
 /// Say on what terms a firm works for you

@@ -1,7 +1,8 @@
 //! `/schedule/offer`: a planned job becomes work orders that are offered to its firm.
 //!
 //! What always holds: a compass has one order under way at a time, a firm is offered no more
-//! ships on a day than it has teams for, and a job is offered whole or not at all.
+//! ships on a day than it has teams for, and a job is offered whole or not at all. The fees
+//! of its orders come to the fee that the plan has for the job.
 
 use super::orders;
 use super::plan::{Job, Plan};
@@ -9,6 +10,7 @@ use super::store;
 use crate::access::Writer;
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
+use crate::firms::{self, Terms};
 use crate::http::{Json, Valid, optional_text};
 use crate::ids::{CompassId, FirmId, OrderId};
 use crate::work_orders::{self, NewOffer, NewOrder};
@@ -16,6 +18,7 @@ use axum::extract::State;
 use axum::http::StatusCode;
 use binnacle_schedule::input::JobState;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
@@ -85,12 +88,18 @@ async fn offer_job(
     let text = optional_text("text", new.text.as_deref())?;
     let plan = store::current(&app.db, writer.operator).await?;
     let job = job_of(plan.as_ref(), &new)?;
+    let terms = firms::of_operator(&app.db, writer.operator).await?;
+    let terms: BTreeMap<FirmId, Terms> = terms
+        .into_iter()
+        .filter_map(|(firm, _, terms)| Some((firm, terms?)))
+        .collect();
     let mut tx = app.db.begin().await?;
     for compass in &job.compasses {
         work_orders::lock_compass(&mut tx, job.vessel_id, compass.compass_id).await?;
     }
     let (mut orders, mut told) = (Vec::new(), Vec::new());
-    for compass in &job.compasses {
+    for (nth, compass) in job.compasses.iter().enumerate() {
+        let fees = |(firm, terms): (&FirmId, &Terms)| (*firm, fee(job, *firm, terms, nth));
         let offer = NewOffer {
             firms: std::iter::once(job.firm_id)
                 .chain(new.then.iter().copied().filter(|firm| *firm != job.firm_id))
@@ -98,6 +107,7 @@ async fn offer_job(
             answer_within_hours: new.answer_within_hours.unwrap_or(48),
             at_once: false,
             text: text.clone(),
+            fees_eur: terms.iter().map(fees).collect(),
         };
         let id = OrderId::new();
         orders::at_call(&mut tx, job.vessel_id, id, job.call_id).await?;
@@ -115,6 +125,28 @@ async fn offer_job(
     }
     app.work.notify_one();
     Ok((StatusCode::CREATED, Json(Offered { orders })))
+}
+
+/// A firm's fee for the nth compass of a job. The first bears the visit's; those of the firm
+/// that it is planned with come to what the plan has.
+fn fee(job: &Job, firm: FirmId, terms: &Terms, nth: usize) -> f64 {
+    let extra = f64::from(terms.extra_compass_eur);
+    if firm != job.firm_id {
+        return if nth == 0 {
+            f64::from(terms.fee_eur)
+        } else {
+            extra
+        };
+    }
+    #[allow(clippy::cast_precision_loss, reason = "a ship has few compasses")]
+    let compasses = job.compasses.len() as f64;
+    // The terms may be others than those that it was planned by.
+    let extra = extra.min(job.fee_eur / compasses);
+    if nth == 0 {
+        job.fee_eur - extra * (compasses - 1.0)
+    } else {
+        extra
+    }
 }
 
 fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job> {

@@ -90,7 +90,7 @@ async fn accept_work_order(
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<Json<Order>> {
     let request = request(&app, writer, id, key, "yes", &answer)?;
-    let answer = answer.checked()?;
+    let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = request.begin_on(vessel).await? {
         match writer.tenant {
@@ -120,7 +120,7 @@ async fn decline_work_order(
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<StatusCode> {
     let request = request(&app, writer, id, key, "no", &answer)?;
-    let answer = answer.checked()?;
+    let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     if let Some(mut change) = request.begin_on(vessel).await? {
         match writer.tenant {
@@ -135,7 +135,8 @@ async fn decline_work_order(
 
 /// Propose other terms
 ///
-/// For a firm that is asked. The operator accepts or declines, with a deadline of its own.
+/// For a firm that is asked: another fee, time or berth, one of them or all. What it leaves
+/// out is as it was offered. The operator accepts or declines, with a deadline of its own.
 #[utoipa::path(post, path = "/work-orders/{id}/propose", tag = "adjusting",
     params(("id" = OrderId, Path), Key), request_body = Proposal,
     responses((status = 200, body = Order), (status = 401, body = Problem),
@@ -158,7 +159,7 @@ async fn propose_terms(
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     let now = app.clock.now().into();
     if let Some(mut change) = request.begin_on(vessel).await? {
-        let proposal = proposal.checked(now)?;
+        let proposal = proposal.checked(change.whole.summary.planned_at, now)?;
         firm_says(&mut change, firm, FirmSays::Instead(proposal)).await?;
         change.commit().await?;
     }

@@ -1,6 +1,7 @@
 //! Adjustments that were completed in a time, for reports.
 
 use super::find::whole;
+use super::offers::Offer;
 use super::order::State;
 use crate::db::{Db, rows};
 use crate::error::Result;
@@ -31,7 +32,7 @@ pub struct Done {
     pub firm_id: Option<FirmId>,
     /// How it stands.
     pub state: State,
-    /// The fee that was agreed on, euros.
+    /// The fee that was agreed on, as it was offered or proposed, euros.
     pub agreed_eur: Option<f64>,
 }
 
@@ -70,11 +71,8 @@ pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>
     let mut done = Vec::with_capacity(found.len());
     for (order,) in found {
         let whole = whole(db, Tenant::Operator(operator), order).await?;
-        let terms = whole
-            .standing()
-            .offers
-            .holder()
-            .and_then(|offer| offer.terms.clone());
+        let offers = whole.standing().offers;
+        let agreed_eur = offers.holder().and_then(Offer::fee);
         let summary = whole.summary;
         let Some(completed_at) = summary.completed_at else {
             continue;
@@ -90,7 +88,7 @@ pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>
             firm: summary.firm,
             firm_id: summary.firm_id,
             state: summary.state,
-            agreed_eur: terms.and_then(|terms| terms.fee_eur),
+            agreed_eur,
         });
     }
     Ok(done)

@@ -3,7 +3,7 @@
 //! What always holds: a message is an entry of the order's log; no other firm reads it.
 
 use super::entry::Content;
-use super::offering::message;
+use super::offering::{message, must_be_own};
 use super::offers::{Between, Offer, OfferState, Offers};
 use super::request;
 use super::store;
@@ -126,6 +126,7 @@ async fn send_message(
     Valid(new): Valid<NewMessage>,
 ) -> Result<StatusCode> {
     let request = request(&app, writer, id, key, "message", &new)?;
+    must_be_own(writer.tenant, new.firm_id)?;
     let text = message(&new.text)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     if summary.state.is_over() {

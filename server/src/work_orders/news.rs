@@ -206,6 +206,7 @@ fn message(kind: Kind, summary: &Summary, entry: &Entry, now: Time) -> Message {
     let entry = json!({
         "seq": entry.seq, "kind": what, "at": entry.at, "by": entry.author.name,
         "firm_id": said.map(|said| said.firm.firm_id),
+        "fee_eur": said.and_then(|said| said.fee_eur),
         "terms": said.and_then(|said| said.terms.as_ref()),
         "text": said.and_then(|said| said.text.as_ref()),
         "call": call,

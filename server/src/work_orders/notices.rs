@@ -202,6 +202,8 @@ fn said(content: &Content) -> Option<String> {
         let fee = fee.map_or_else(String::new, |eur| format!(", for {eur:.2} euros"));
         format!("{}{berth}{fee}.", terms.planned_at.to_the_minute())
     });
-    let words: Vec<String> = terms.into_iter().chain(said.text.clone()).collect();
+    let fee = said.fee_eur.map(|eur| format!("For {eur:.2} euros."));
+    let words = fee.into_iter().chain(terms).chain(said.text.clone());
+    let words: Vec<String> = words.collect();
     (!words.is_empty()).then(|| words.join(" "))
 }

@@ -2,17 +2,19 @@
 
 use super::change::Change;
 use super::entry::Content;
-use super::offers::{Asked, Between, OfferState, Offered, Terms};
+use super::offers::{Asked, Between, OfferState, Offered, OfferedTo, Terms};
 use super::order::{State, must_be_near};
 use super::place;
 use super::retime::at_its_call;
 use crate::db::Tx;
 use crate::error::{Error, Result};
 use crate::firms::{self, Told, Visit};
-use crate::http::{optional_text, text};
+use crate::http::{is_control, optional_text, text};
 use crate::ids::{FirmId, OperatorId};
+use crate::tenants::Tenant;
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use utoipa::ToSchema;
 
 /// So many firms at most.
@@ -43,6 +45,10 @@ pub struct NewOffer {
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
+    /// The fees that a plan has for some of them; for others, what their terms say for a
+    /// compass alone.
+    #[serde(skip)]
+    pub fees_eur: BTreeMap<FirmId, f64>,
 }
 
 pub(super) fn two_days() -> u32 {
@@ -81,12 +87,30 @@ pub(super) struct Answer {
     "text": "Our team is at Santander until noon."
 }))]
 pub(super) struct Proposal {
-    /// The terms.
-    pub terms: Terms,
+    /// The terms: what is left out is as it was offered.
+    pub terms: NewTerms,
     /// In words.
     #[serde(default)]
     #[schema(max_length = 200)]
     pub text: Option<String>,
+}
+
+/// What a firm would have otherwise: at least one of these.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = ProposedTerms, example = json!({ "fee_eur": 900.0 }))]
+pub(super) struct NewTerms {
+    /// When it is to be done, if at another time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub planned_at: Option<Time>,
+    /// The berth, if another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(max_length = 200)]
+    pub berth: Option<String>,
+    /// The fee, euros, if another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(minimum = 0, maximum = 1_000_000)]
+    pub fee_eur: Option<f64>,
 }
 
 /// When the adjuster went on board.
@@ -115,15 +139,20 @@ impl NewOffer {
             let detail = format!("{hours} is outside 1 to {LONGEST_H}");
             return invalid("answer_within_hours", detail);
         }
-        let mut firms: Vec<Asked> = Vec::new();
+        let mut firms: Vec<OfferedTo> = Vec::new();
         for firm_id in self.firms {
-            if firms.iter().any(|asked| asked.firm_id == firm_id) {
+            if firms.iter().any(|one| one.firm.firm_id == firm_id) {
                 return invalid("firms", format!("{firm_id} stands there twice"));
             }
             let Some(firm_name) = firms::name_for(tx, operator, firm_id).await? else {
                 return invalid("firms", format!("{firm_id} is no firm that you work with"));
             };
-            firms.push(Asked { firm_id, firm_name });
+            let fee_eur = match self.fees_eur.get(&firm_id) {
+                Some(fee) => Some(*fee),
+                None => firms::fee_for(tx, operator, firm_id).await?,
+            };
+            let firm = Asked { firm_id, firm_name };
+            firms.push(OfferedTo { firm, fee_eur });
         }
         Ok(Offered {
             firms,
@@ -134,9 +163,24 @@ impl NewOffer {
     }
 }
 
+/// Refuses a firm that speaks for another.
+pub(super) fn must_be_own(tenant: Tenant, named: Option<FirmId>) -> Result<()> {
+    match (tenant.firm(), named) {
+        (Some(own), Some(firm)) if own != firm => Err(Error::Invalid {
+            field: "firm_id",
+            detail: format!("{firm} is not your firm"),
+        }),
+        _ => Ok(()),
+    }
+}
+
 impl Answer {
     /// The same, its words trimmed.
-    pub(super) fn checked(self) -> Result<Answer> {
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a firm answers for another.
+    pub(super) fn checked(self, tenant: Tenant) -> Result<Answer> {
+        must_be_own(tenant, self.firm_id)?;
         let optional = |field, value: Option<String>| optional_text(field, value.as_deref());
         Ok(Answer {
             firm_id: self.firm_id,
@@ -157,28 +201,68 @@ impl Answer {
     }
 }
 
+/// Terms at a time to come.
+pub(super) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
+    if terms.planned_at <= now {
+        return Err(Error::Invalid {
+            field: "planned_at",
+            detail: format!("{} is over", terms.planned_at.0),
+        });
+    }
+    must_be_near(terms.planned_at, now)?;
+    checked_words(terms)
+}
+
+/// Terms, their berth trimmed, for a fee that can be.
+fn checked_words(terms: Terms) -> Result<Terms> {
+    if let Some(fee) = terms.fee_eur
+        && !(0.0..=MOST_EUR).contains(&fee)
+    {
+        return Err(Error::Invalid {
+            field: "fee_eur",
+            detail: format!("{fee} is outside 0 to {MOST_EUR}"),
+        });
+    }
+    Ok(Terms {
+        berth: optional_text("berth", terms.berth.as_deref())?,
+        ..terms
+    })
+}
+
 impl Proposal {
-    /// The same, at a time to come.
-    pub(super) fn checked(self, now: Time) -> Result<Proposal> {
-        let invalid = |field, detail: String| Err(Error::Invalid { field, detail });
-        if self.terms.planned_at <= now {
-            let detail = format!("{} is over", self.terms.planned_at.0);
-            return invalid("planned_at", detail);
+    /// What a firm proposes for an order that is planned for some time, and its words.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where it proposes nothing, or what cannot be.
+    pub(super) fn checked(self, planned_at: Time, now: Time) -> Result<Proposed> {
+        let new = self.terms;
+        let terms = Terms {
+            planned_at: new.planned_at.unwrap_or(planned_at),
+            berth: new.berth,
+            fee_eur: new.fee_eur,
+        };
+        // A time that stands is not judged again: the firm may still say yes to it.
+        let terms = match new.planned_at {
+            Some(_) => checked_terms(terms, now)?,
+            None => checked_words(terms)?,
+        };
+        if new.planned_at.is_none() && terms.berth.is_none() && terms.fee_eur.is_none() {
+            return Err(Error::Invalid {
+                field: "terms",
+                detail: "say nothing else: give planned_at, berth or fee_eur".to_owned(),
+            });
         }
-        must_be_near(self.terms.planned_at, now)?;
-        if let Some(fee) = self.terms.fee_eur
-            && !(0.0..=MOST_EUR).contains(&fee)
-        {
-            return invalid("fee_eur", format!("{fee} is outside 0 to {MOST_EUR}"));
-        }
-        Ok(Proposal {
-            terms: Terms {
-                berth: optional_text("berth", self.terms.berth.as_deref())?,
-                ..self.terms
-            },
+        Ok(Proposed {
+            terms,
             text: optional_text("text", self.text.as_deref())?,
         })
     }
+}
+
+/// What a firm proposes, whole.
+pub(super) struct Proposed {
+    terms: Terms,
+    text: Option<String>,
 }
 
 impl Boarded {
@@ -201,7 +285,7 @@ impl Boarded {
 /// What is said in a message: lines of text.
 pub(super) fn message(said: &str) -> Result<String> {
     let said = said.trim();
-    if said.chars().any(|c| c.is_control() && c != '\n') || said.chars().count() > MAX_MESSAGE {
+    if said.chars().any(|c| is_control(c) && c != '\n') || said.chars().count() > MAX_MESSAGE {
         return Err(Error::Invalid {
             field: "text",
             detail: format!("has control characters, or more than {MAX_MESSAGE} characters"),
@@ -225,7 +309,7 @@ fn due(change: &Change<'_>, hours: u32) -> Time {
 /// [`Error::WrongState`] when one of the firms has no team left that day.
 pub(super) async fn offer(change: &mut Change<'_>, offered: Offered) -> Result<()> {
     // Everybody locks them in one order.
-    let mut firms: Vec<&Asked> = offered.firms.iter().collect();
+    let mut firms: Vec<&Asked> = offered.firms.iter().map(|one| &one.firm).collect();
     firms.sort_by_key(|firm| firm.firm_id.0);
     let at = change.whole.summary.planned_at;
     for firm in firms {
@@ -270,6 +354,7 @@ pub(super) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
     for next in offers.next() {
         let asked = Between {
             answer_by: Some(answer_by),
+            fee_eur: next.fee_eur,
             text: next.text.clone(),
             ..Between::with(next.firm())
         };
@@ -282,7 +367,7 @@ pub(super) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
 pub(super) enum FirmSays {
     Yes(Answer),
     No(Answer),
-    Instead(Proposal),
+    Instead(Proposed),
 }
 
 /// Takes a firm's answer.
@@ -310,9 +395,11 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
         FirmSays::Yes(answer) => {
             let at = change.whole.summary.planned_at;
             must_have_room(change, &asked, at, Told::Firm).await?;
-            change
-                .append(Content::Accepted(answer.between(asked)))
-                .await
+            let taken = Between {
+                fee_eur: offer.fee_eur,
+                ..answer.between(asked)
+            };
+            change.append(Content::Accepted(taken)).await
         }
         FirmSays::No(answer) => {
             change
@@ -323,7 +410,9 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
         FirmSays::Instead(proposal) => {
             let at = proposal.terms.planned_at;
             must_have_room(change, &asked, at, Told::Firm).await?;
-            place::must_be_there(change, at, "planned_at").await?;
+            if at != change.whole.summary.planned_at {
+                place::must_be_there(change, at, "planned_at").await?;
+            }
             let proposed = Between {
                 answer_by: Some(answer_by(change, offers.answer_within_hours, at)),
                 terms: Some(proposal.terms),
@@ -362,17 +451,22 @@ pub(super) async fn operator_says(
     if offer.answer_by.is_some_and(|by| by < change.now) {
         return wrong("the proposal has lapsed");
     }
-    let between = Between {
+    let mut between = Between {
         terms: offer.terms.clone(),
         text: answer.text,
         ..Between::with(offer.firm())
     };
     if yes {
-        let firm = between.firm.clone();
-        if let Some(terms) = &between.terms {
-            place::must_be_there(change, terms.planned_at, "planned_at").await?;
-            must_have_room(change, &firm, terms.planned_at, Told::Operator).await?;
-            at_its_call(change, terms.planned_at).await?;
+        let (firm, fee_eur) = (between.firm.clone(), offer.fee());
+        if let Some(terms) = &mut between.terms {
+            // What a firm says nothing of is as it was offered.
+            terms.fee_eur = fee_eur;
+            let at = terms.planned_at;
+            must_have_room(change, &firm, at, Told::Operator).await?;
+            if at != change.whole.summary.planned_at {
+                place::must_be_there(change, at, "planned_at").await?;
+                at_its_call(change, at).await?;
+            }
         }
         return change.append(Content::ProposalAccepted(between)).await;
     }

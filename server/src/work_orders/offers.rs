@@ -15,7 +15,7 @@ use utoipa::ToSchema;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Offered {
     /// The firms.
-    pub firms: Vec<Asked>,
+    pub firms: Vec<OfferedTo>,
     /// So long they have for an answer.
     pub answer_within_hours: u32,
     /// Whether all are asked at once.
@@ -23,6 +23,17 @@ pub struct Offered {
     /// What is said to them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
+}
+
+/// A firm that is to be asked, and for how much.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OfferedTo {
+    /// The firm.
+    #[serde(flatten)]
+    pub firm: Asked,
+    /// The fee that it is offered, euros; none where nobody has said on what terms it works.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fee_eur: Option<f64>,
 }
 
 /// A firm, by its name then.
@@ -43,6 +54,9 @@ pub struct Between {
     /// Until when an answer is waited for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub answer_by: Option<Time>,
+    /// The fee that is offered, or at which it is taken as it was offered, euros.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fee_eur: Option<f64>,
     /// What is proposed, or agreed on.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub terms: Option<Terms>,
@@ -110,6 +124,10 @@ pub(super) struct Offer {
     /// Until when an answer is waited for.
     #[schema(required)]
     pub answer_by: Option<Time>,
+    /// The fee that it was offered, euros, without travel; none where nobody has said on
+    /// what terms the firm works.
+    #[schema(required)]
+    pub fee_eur: Option<f64>,
     /// What the firm proposes, or what was agreed on.
     #[schema(required)]
     pub terms: Option<Terms>,
@@ -170,14 +188,15 @@ impl Offers {
         // Firms of an earlier round stay known: they see that it is over.
         let asked = |offer: &Offer| {
             let mut firms = offered.firms.iter();
-            firms.any(|firm| firm.firm_id == offer.firm_id)
+            firms.any(|one| one.firm.firm_id == offer.firm_id)
         };
         self.all.retain(|offer| !asked(offer));
-        let waiting = offered.firms.iter().map(|firm| Offer {
-            firm_id: firm.firm_id,
-            firm_name: firm.firm_name.clone(),
+        let waiting = offered.firms.iter().map(|one| Offer {
+            firm_id: one.firm.firm_id,
+            firm_name: one.firm.firm_name.clone(),
             state: OfferState::Waiting,
             answer_by: None,
+            fee_eur: one.fee_eur,
             terms: None,
             new_terms: None,
             text: offered.text.clone(),
@@ -305,6 +324,13 @@ impl Offer {
             firm_name: self.firm_name.clone(),
         }
     }
+
+    /// The fee by the terms that it stands at: what was offered holds where nothing else
+    /// is said.
+    pub(super) fn fee(&self) -> Option<f64> {
+        let said = self.terms.as_ref().and_then(|terms| terms.fee_eur);
+        said.or(self.fee_eur)
+    }
 }
 
 impl Between {
@@ -313,6 +339,7 @@ impl Between {
         Between {
             firm,
             answer_by: None,
+            fee_eur: None,
             terms: None,
             adjuster_name: None,
             adjuster_licence: None,

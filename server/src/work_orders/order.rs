@@ -227,6 +227,10 @@ pub(super) struct Order {
     /// In a line.
     #[serde(flatten)]
     pub summary: Summary,
+    /// The fee that was agreed on with the firm that has it, euros, without travel; none
+    /// while no firm has it, or where none was said.
+    #[schema(required)]
+    pub fee_eur: Option<f64>,
     /// What became of its port call since its time was agreed; none where it has not moved.
     #[schema(required)]
     pub call_change: Option<CallChange>,
@@ -330,6 +334,7 @@ impl Order {
                 _ if verified => "verified at sea",
                 _ => NOT_A_CERTIFICATE,
             },
+            fee_eur: standing.offers.holder().and_then(Offer::fee),
             call_change: standing.call,
             limits: standing.limits,
             next_step,

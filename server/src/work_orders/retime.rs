@@ -7,7 +7,7 @@
 use super::change::Change;
 use super::entry::Content;
 use super::moved::CallFit;
-use super::offering::{Answer, LONGEST_H, Proposal, answer_by, must_have_room, two_days};
+use super::offering::{Answer, LONGEST_H, answer_by, checked_terms, must_have_room, two_days};
 use super::offers::{Asked, Between, Offer, Terms};
 use super::order::{Order, State};
 use super::place;
@@ -17,7 +17,7 @@ use crate::access::{PartyWriter, Writer};
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::firms::{Told, port_meant};
-use crate::http::{Id, Json, Valid, ValidOrNone};
+use crate::http::{Id, Json, Valid, ValidOrNone, optional_text};
 use crate::idempotency::Key;
 use crate::ids::OrderId;
 use crate::port_calls;
@@ -87,19 +87,16 @@ async fn propose_retime(
             detail: format!("{hours} is outside 1 to {LONGEST_H}"),
         });
     }
-    let asked = Proposal {
-        terms: retime.terms,
-        text: retime.text,
-    };
-    let asked = asked.checked(app.clock.now().into())?;
+    let terms = checked_terms(retime.terms, app.clock.now().into())?;
+    let text = optional_text("text", retime.text.as_deref())?;
     whole.must_be(&[State::Accepted], "a firm that has it is asked")?;
     if let Some(mut change) = request.begin(&whole).await? {
         let holder = holder(&change)?;
-        must_be_possible(&mut change, &holder.firm(), &asked.terms, Told::Operator).await?;
+        must_be_possible(&mut change, &holder.firm(), &terms, Told::Operator).await?;
         let between = Between {
-            answer_by: Some(answer_by(&change, hours, asked.terms.planned_at)),
-            terms: Some(asked.terms),
-            text: asked.text,
+            answer_by: Some(answer_by(&change, hours, terms.planned_at)),
+            terms: Some(terms),
+            text,
             ..Between::with(holder.firm())
         };
         change.append(Content::RetimeProposed(between)).await?;
@@ -126,7 +123,7 @@ async fn accept_retime(
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<Json<Order>> {
     let request = request(&app, writer, id, key, "yes to another time", &answer)?;
-    let answer = answer.checked()?;
+    let answer = answer.checked(writer.tenant)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     let Tenant::Firm(firm) = writer.tenant else {
         return Err(Error::WrongState(
@@ -143,7 +140,7 @@ async fn accept_retime(
         let agreed = offer.terms.clone();
         let terms = Terms {
             berth: (terms.berth).or_else(|| agreed.as_ref()?.berth.clone()),
-            fee_eur: (terms.fee_eur).or_else(|| agreed.as_ref()?.fee_eur),
+            fee_eur: terms.fee_eur.or_else(|| offer.fee()),
             ..terms
         };
         must_be_possible(&mut change, &offer.firm(), &terms, Told::Firm).await?;
@@ -176,7 +173,7 @@ async fn decline_retime(
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<Json<Order>> {
     let request = request(&app, writer, id, key, "no to another time", &answer)?;
-    let answer = answer.checked()?;
+    let answer = answer.checked(writer.tenant)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     if let Some(mut change) = request.begin_on(summary.vessel_id).await? {
         let offer = holder(&change)?;
@@ -186,6 +183,12 @@ async fn decline_retime(
             .is_some_and(|firm| firm != offer.firm_id)
         {
             return Err(Error::NotFound("work order"));
+        }
+        if answer.firm_id.is_some_and(|firm| firm != offer.firm_id) {
+            return Err(Error::Invalid {
+                field: "firm_id",
+                detail: "is not the firm that has the order".to_owned(),
+            });
         }
         asked_terms(&change, &offer)?;
         let between = Between {

@@ -13,6 +13,7 @@ use super::plan::Planned;
 use super::reading::Read;
 use super::steps::{StepSaid, Verdict};
 use super::verification::Verified;
+use crate::time::Time;
 use binnacle_magnetics::adjust::{Limits, Step, Verification};
 use binnacle_magnetics::binnacle::{Binnacle, Setting};
 
@@ -23,6 +24,8 @@ pub(super) struct Standing {
     pub state: State,
     /// What became of its offers to firms.
     pub offers: Offers,
+    /// For when it is, as it was written or agreed.
+    planned_at: Option<Time>,
     /// What became of its port call since its time was agreed.
     pub call: Option<CallChange>,
     /// The port that it is for, where its call has ever moved.
@@ -60,6 +63,7 @@ impl Standing {
         let mut standing = Standing {
             state: State::Planned,
             offers: Offers::default(),
+            planned_at: None,
             call: None,
             port: None,
             limits: Limits::default(),
@@ -84,12 +88,14 @@ impl Standing {
     /// Goes on by an entry.
     pub(super) fn take(&mut self, content: &Content) {
         self.offers.take(content);
-        if matches!(
-            content,
-            Content::ProposalAccepted(_) | Content::RetimeAccepted(_)
-        ) {
-            // Another time was agreed, as the call is now.
-            self.call = None;
+        if let Content::ProposalAccepted(said) | Content::RetimeAccepted(said) = content
+            && let Some(terms) = &said.terms
+        {
+            let at = Some(terms.planned_at);
+            // Another time was agreed, as the call is now; a fee alone says nothing of it.
+            if self.planned_at != at || matches!(content, Content::RetimeAccepted(_)) {
+                (self.planned_at, self.call) = (at, None);
+            }
         }
         match content {
             Content::Offered(_)
@@ -107,7 +113,10 @@ impl Standing {
             Content::OnBoard(_) => self.state = State::OnBoard,
             Content::Photo(photo) => self.photos.push(photo.clone()),
             Content::Signature(signature) => self.signatures.push(signature.clone()),
-            Content::Opened(opened) => self.limits = opened.order.limits.unwrap_or_default(),
+            Content::Opened(opened) => {
+                self.limits = opened.order.limits.unwrap_or_default();
+                self.planned_at = Some(opened.order.planned_at);
+            }
             Content::RetimeProposed(_)
             | Content::RetimeAccepted(_)
             | Content::RetimeDeclined(_)

@@ -1,5 +1,6 @@
 //! A firm's whole way through an order, by the example program of the documentation.
 
+use super::Trade;
 use crate::on_both;
 use crate::support::{Answer, Person, Shore};
 use crate::webhooks::{Receiver, deliver, make};
@@ -11,9 +12,11 @@ use std::path::Path;
 use std::process::Stdio;
 use tokio::io::AsyncWriteExt;
 use tokio::process::Command;
+use uuid::Uuid;
 
 on_both!(
     the_example_client_carries_an_order_to_its_end,
+    the_example_client_bargains_writes_and_listens,
     a_firm_reads_of_the_ship_only_while_the_order_is_open,
     a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked,
 );
@@ -170,6 +173,47 @@ async fn the_example_client_carries_an_order_to_its_end(shore: Shore) {
     assert_eq!((code, said.trim()), (Some(0), "from Binnacle"));
     let forged = body.replace("adjusted", "verified");
     assert_eq!(client.run(&check, forged.as_bytes()).await.0, Some(1));
+    shore.finish().await;
+}
+
+async fn the_example_client_bargains_writes_and_listens(shore: Shore) {
+    let trade = Trade::planned(&shore, 1).await;
+    let (firm, rosa) = &trade.firms[0];
+    let terms = json!({ "fee_eur": 1800 });
+    let path = format!("/firms/{firm}/terms");
+    let put = trade.ada.request(Method::PUT, &path).json(&terms);
+    Answer::of(put).await.good();
+    trade
+        .post(&trade.ada, "/offer", &trade.offer())
+        .await
+        .good();
+    let folder = tempfile::tempdir().unwrap();
+    let client = Client::of(&shore, rosa, folder.path()).await;
+    let order = trade.order.as_str();
+    let offered = client.good(&["order", order]).await;
+    assert!(offered.contains("offered at 1800.00 euros"), "{offered}");
+    let (code, said) = client.run(&["propose", order], b"").await;
+    assert_eq!(code, Some(2), "{said}");
+    let fee = ["propose", order, "--fee", "2100", "--text", "Two teams."];
+    assert!(client.good(&fee).await.contains("proposed"));
+    client
+        .good(&["say", order, "--text", "Is there a crane?"])
+        .await;
+    let yes = json!({ "text": "Done." });
+    trade.post(&trade.ada, "/messages", &yes).await;
+    let read = client.good(&["messages", order]).await;
+    assert!(read.contains("Is there a crane?"), "{read}");
+    assert!(read.contains("Done."), "{read}");
+    trade.post(&trade.ada, "/accept", &json!({})).await.good();
+    let agreed = client.good(&["order", order]).await;
+    assert!(agreed.contains("agreed at 2100.00 euros"), "{agreed}");
+    // All that there was since before the first: offer, proposal, both messages, agreement.
+    let none = Uuid::nil().to_string();
+    let heard = client
+        .good(&["events", "--last", &none, "--count", "5"])
+        .await;
+    let of_order = format!("work_order  order {order}");
+    assert_eq!(heard.matches(&of_order).count(), 5, "{heard}");
     shore.finish().await;
 }
 

@@ -1,6 +1,7 @@
 //! The schedule: what it is made from, and that it follows what changes.
 
 mod concurrent;
+mod fees;
 mod firms;
 mod moved;
 mod needs;
