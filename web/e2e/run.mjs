@@ -4,8 +4,9 @@
  * Environment: BINNACLE_URL, BINNACLE_EMAIL, BINNACLE_PASSWORD (an admin whose
  * fleet has at least one vessel with a model), BINNACLE_ADJUSTER (the e-mail of one of
  * a firm that works for it, with the same password), BINNACLE_PLATFORM (the e-mail of who
- * runs the platform, with the same password), BINNACLE_CHROMIUM (else the
- * system's). Screenshots go to tests/artefacts. Exit code 1 on the first failure.
+ * runs the platform, with the same password), BINNACLE_OIDC_ISSUER (a provider by whose word
+ * the admin may sign in) with BINNACLE_PUBLIC_URL (where the provider sends people back to),
+ * BINNACLE_CHROMIUM (else the system's). Screenshots go to tests/artefacts. Exit code 1 on the first failure.
  */
 import { mkdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -52,6 +53,8 @@ const settings = {
   password: required('BINNACLE_PASSWORD'),
   adjuster: process.env.BINNACLE_ADJUSTER,
   platform: process.env.BINNACLE_PLATFORM,
+  issuer: process.env.BINNACLE_OIDC_ISSUER,
+  publicUrl: process.env.BINNACLE_PUBLIC_URL,
 };
 
 /** All of them, those of a group, or those with the words in their names: `npm run e2e -- fleet`. */
@@ -66,7 +69,9 @@ await mkdir(artefacts, { recursive: true });
 const browser = await chromium.launch({ executablePath: browserPath(), args: flags });
 let failed = 0;
 try {
-  for (const [name, { viewport, colorScheme, serviceWorkers, allowedErrors = [], run }] of chosen) {
+  for (const [name, scenario] of chosen) {
+    const { viewport, colorScheme, serviceWorkers, allowedErrors = [], hosts, run } = scenario;
+    const known = [settings.url, ...(hosts?.(settings) ?? [])];
     const context = await browser.newContext({
       baseURL: settings.url,
       viewport: viewport ?? { width: 1440, height: 900 },
@@ -84,7 +89,7 @@ try {
     });
     page.on('request', (request) => {
       const { origin } = new URL(request.url());
-      if (origin !== settings.url) complaints.push(`request to another host: ${origin}`);
+      if (!known.includes(origin)) complaints.push(`request to another host: ${origin}`);
     });
     const shoot = (what, options = {}, part = page) =>
       part.screenshot({ path: `${artefacts}browser-${what}.png`, ...options });

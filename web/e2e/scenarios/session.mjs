@@ -65,6 +65,36 @@ export const session = {
     },
   },
 
+  'a person signs in by the word of a provider, and one whom nobody knows does not': {
+    allowedErrors: [notSignedIn],
+    hosts: ({ issuer, publicUrl }) => [issuer, publicUrl],
+    async run({ page, settings, shoot }) {
+      // The name that the server has for the world leads to where it listens here.
+      await page.route(`${settings.publicUrl}/**`, (route) => {
+        const { pathname, search } = new URL(route.request().url());
+        const location = `${settings.url}${pathname}${search}`;
+        return route.fulfill({ status: 302, headers: { location } });
+      });
+      await page.goto('/');
+      const begin = page.getByRole('link', { name: 'Sign in with Test Lines' });
+      await begin.waitFor();
+      await shoot('sign-in-provider');
+      await begin.click();
+      await page.getByRole('link', { name: 'Continue as nobody@test.example' }).click();
+      const unknown = page.getByRole('alert').getByText('Nobody with your e-mail address');
+      await unknown.waitFor();
+      await begin.click();
+      await page.getByRole('link', { name: `Continue as ${settings.email}` }).click();
+      await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
+      const { items } = await (await page.request.get('/api/v1/sessions')).json();
+      assert.ok(items.some(({ provider }) => provider === 'Test Lines'));
+      const me = await (await page.request.get('/api/v1/me')).json();
+      assert.equal(me.email, settings.email);
+      await page.getByRole('button', { name: 'Sign out' }).click();
+      await page.getByRole('button', { name: 'Sign in' }).waitFor();
+    },
+  },
+
   'signing out ends the session': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {
