@@ -1,8 +1,10 @@
 /** The schedule: calls entered, the plan made, a job pinned, dragged and offered. */
 import assert from 'node:assert/strict';
-import { fitsItsWidth, notSignedIn, phone, signIn, struck } from '../helpers.mjs';
+import { findings } from '../axe.mjs';
+import { fitsItsWidth, notSignedIn, phone, signIn, signInAs, struck } from '../helpers.mjs';
 
-const dayMs = 86_400_000;
+const hourMs = 3_600_000;
+const dayMs = 24 * hourMs;
 const written = { headers: { 'X-Binnacle-Request': '1' } };
 const iso = (at) => new Date(at).toISOString();
 
@@ -44,6 +46,31 @@ async function due(page, vessel) {
   before.setUTCFullYear(before.getUTCFullYear() - 2);
   const adjusted = { kind: 'adjustment', from: before.toISOString() };
   await good(page.request.post(`${path}/logbook`, { ...written, data: adjusted }));
+}
+
+/** A call of the vessel to whom nothing happened, and an order at it, offered to a firm. */
+async function offered(page) {
+  const { id: hit } = await struck(page);
+  const { items } = await good(page.request.get('/api/v1/vessels'));
+  const vessel = items.find((one) => one.model && one.id !== hit);
+  const from = monday() + 21 * dayMs + 6 * hourMs;
+  const data = { port: 'NLRTM', eta: iso(from), etd: iso(from + 36 * hourMs) };
+  const calls = `/api/v1/vessels/${vessel.id}/port-calls`;
+  const { id } = await good(page.request.post(calls, { ...written, data }));
+  const firms = await good(page.request.get('/api/v1/firms'));
+  const order = await good(
+    page.request.post('/api/v1/work-orders', {
+      ...written,
+      data: {
+        vessel_id: vessel.id,
+        compass_id: vessel.compasses[0].id,
+        port: 'NLRTM',
+        planned_at: iso(from + 2 * hourMs),
+        offer: { firms: [firms.items.find((firm) => firm.name === 'Ibaizabal Compass').id] },
+      },
+    }),
+  );
+  return { call: { path: `${calls}/${id}`, from }, order: order.id, name: vessel.name };
 }
 
 const jobs = (page) => page.getByTestId('jobs').locator('tbody tr');
@@ -213,6 +240,98 @@ export const schedule = {
       await jobs(page).filter({ hasText: hit.name }).getByText('Offered').waitFor();
       await panel.getByRole('link', { name: 'See the order' }).waitFor();
       await shoot('schedule-offered', {}, panel);
+    },
+  },
+
+  'a fee and another time are agreed on, and both sides see that the call has moved': {
+    allowedErrors: [notSignedIn],
+    async run({ page, context, settings, shoot }) {
+      await signIn(page, settings);
+      await firmsHaveTerms(page);
+      const { call, order, name } = await offered(page);
+      await page.goto(`/work-orders/${order}`);
+      await page.getByRole('heading', { name: `${name}: adjustment`, level: 1 }).waitFor();
+      const firms = page.getByRole('region', { name: 'Firms' });
+      await firms.getByText(/^Offered at € 1.?800, travel not counted$/).waitFor();
+
+      // The firm's adjuster, on a phone of their own.
+      const theirs = await context.browser().newContext({ baseURL: settings.url, viewport: phone });
+      const faults = [];
+      try {
+        const other = await theirs.newPage();
+        other.setDefaultTimeout(15_000);
+        other.on('pageerror', (error) => faults.push(error.message));
+        await signInAs(other, settings.adjuster, settings.password, 'My orders');
+        await other.goto(`/work-orders/${order}`);
+        const overview = other.getByRole('group', { name: 'Show' }).getByText('Overview');
+        const asked = other.getByRole('region', { name: 'Firms' });
+        await asked.getByText(/^Offered at € 1.?800/).waitFor();
+        await asked.getByRole('button', { name: 'Propose other terms' }).click();
+        await asked.getByRole('button', { name: 'Propose it' }).click();
+        await asked.getByRole('alert').getByText('Say another time').waitFor();
+        await asked.getByLabel('Fee in euros').fill('2100,50');
+        await asked.getByRole('button', { name: 'Propose it' }).click();
+        await asked.getByText('the operator has not answered yet').waitFor();
+
+        await firms.getByText(/^€ 2.?100\.50$/).waitFor();
+        await shoot('order-fee-proposed', {}, firms);
+        await firms.getByRole('button', { name: /^Agree to what/ }).click();
+        await firms.getByText(/: has it/).waitFor();
+        await page.getByText('Its terms were accepted').waitFor();
+
+        // She is two days late: both pages hear of it by themselves.
+        const day = call.from + 2 * dayMs;
+        const late = { eta: iso(day), etd: iso(day + 36 * hourMs) };
+        await good(page.request.patch(call.path, { ...written, data: late }));
+        await page.getByTestId('call').getByText('agree on a new day').waitFor();
+        if (await overview.isVisible()) await overview.click();
+        await other.getByTestId('call').getByText('agree on a new day').waitFor();
+        await fitsItsWidth(other);
+        const list = await context.newPage();
+        await list.goto('/work-orders');
+        const row = list.getByRole('row').filter({ hasText: 'Call moved: needs a new day' });
+        await row.getByText(name).waitFor();
+        await list.close();
+
+        // What is asked for may be taken back, and asked again.
+        await firms.getByRole('button', { name: 'Ask for another time…' }).click();
+        await firms.getByLabel('Hours for an answer').fill('0');
+        await firms.getByRole('button', { name: 'Ask the firm' }).click();
+        await firms.getByRole('alert').getByText('1 to 720').waitFor();
+        await firms.getByLabel('Hours for an answer').fill('24');
+        await firms.getByLabel('A word to them').fill('She is two days late.');
+        await firms.getByRole('button', { name: 'Ask the firm' }).click();
+        const question = firms.getByRole('region', { name: 'Another time is asked for' });
+        await question.getByRole('button', { name: 'Take the question back' }).click();
+        await question.waitFor({ state: 'detached' });
+        await firms.getByRole('button', { name: 'Ask for another time…' }).click();
+        await firms.getByRole('button', { name: 'Ask the firm' }).click();
+        await question.waitFor();
+        assert.deepEqual(await findings(page), []);
+        await shoot('order-retime', { fullPage: true });
+
+        const put = asked.getByRole('region', { name: 'Another time is asked for' });
+        await put.getByText('What was agreed stands until the firm agrees.').waitFor();
+        await fitsItsWidth(other);
+        assert.deepEqual(await findings(other), []);
+        await other.screenshot({
+          path: `${settings.artefacts}browser-firm-retime-phone.png`,
+          fullPage: true,
+        });
+        await put.getByRole('button', { name: 'Agree to the new time' }).click();
+        await put.waitFor({ state: 'detached' });
+        await question.waitFor({ state: 'detached' });
+        await page.getByTestId('call').waitFor({ state: 'detached' });
+        const agreed = await good(page.request.get(`/api/v1/work-orders/${order}`));
+        assert.equal(Date.parse(agreed.planned_at), day);
+        assert.equal(agreed.fee_eur, 2100.5, 'the fee stands');
+        assert.equal(agreed.call_fit, null);
+      } finally {
+        await theirs.close();
+      }
+      assert.deepEqual(faults, []);
+      const why = { ...written, data: { text: 'A test' } };
+      await good(page.request.post(`/api/v1/work-orders/${order}/cancel`, why));
     },
   },
 };

@@ -7,6 +7,7 @@ import type {
   BinnacleRevision,
   NewOffer,
   NewOrderMessage,
+  NewRetime,
   NewWorkOrder,
   OfferAnswer,
   OfferProposal,
@@ -103,6 +104,17 @@ export const declineOrder = (id: string, body: OfferAnswer, key: string) =>
 
 export const proposeTerms = (id: string, body: OfferProposal, key: string) =>
   answer(client.POST('/api/v1/work-orders/{id}/propose', { params: toPath(id, key), body }));
+
+/** The operator asks the firm that has an order for another time. */
+export const askRetime = (id: string, body: NewRetime, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/retime', { params: toPath(id, key), body }));
+
+export const acceptRetime = (id: string, body: OfferAnswer, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/retime/accept', { params: toPath(id, key), body }));
+
+/** The firm does not agree, or the operator takes its question back. */
+export const declineRetime = (id: string, body: OfferAnswer, key: string) =>
+  answer(client.POST('/api/v1/work-orders/{id}/retime/decline', { params: toPath(id, key), body }));
 
 /** What operator and firm wrote to each other, the oldest first. */
 export const listOrderMessages = (id: string) =>

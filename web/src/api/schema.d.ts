@@ -849,7 +849,8 @@ export interface paths {
         post?: never;
         /**
          * Have an operator work with a firm no more
-         * @description For platform admins. Orders that the firm has stay with it.
+         * @description For platform admins. Not while the firm is asked for an order of the operator's or has
+         *     one that is not done: it is cancelled or given back before.
          */
         delete: operations["dismiss_firm"];
         options?: never;
@@ -2731,7 +2732,8 @@ export interface paths {
         put?: never;
         /**
          * Propose other terms
-         * @description For a firm that is asked. The operator accepts or declines, with a deadline of its own.
+         * @description For a firm that is asked: another fee, time or berth, one of them or all. What it leaves
+         *     out is as it was offered. The operator accepts or declines, with a deadline of its own.
          */
         post: operations["propose_terms"];
         delete?: never;
@@ -6218,8 +6220,8 @@ export interface components {
          *     }
          */
         OfferProposal: {
-            /** @description The terms. */
-            terms: components["schemas"]["WorkOrderTerms"];
+            /** @description The terms: what is left out is as it was offered. */
+            terms: components["schemas"]["ProposedTerms"];
             /** @description In words. */
             text?: string | null;
         };
@@ -6985,6 +6987,22 @@ export interface components {
             title: string;
             /** @description Names the kind of problem; ends in a word that programs may act on. */
             type: string;
+        };
+        /**
+         * @description What a firm would have otherwise: at least one of these.
+         * @example {
+         *       "fee_eur": 900
+         *     }
+         */
+        ProposedTerms: {
+            /** @description The berth, if another. */
+            berth?: string | null;
+            /**
+             * Format: double
+             * @description The fee, euros, if another.
+             */
+            fee_eur?: number | null;
+            planned_at?: components["schemas"]["Time"] | null;
         };
         /**
          * @description A code from the app.
@@ -8356,6 +8374,12 @@ export interface components {
              */
             compass_deg: number | null;
             completion: components["schemas"]["CompletionMade"] | null;
+            /**
+             * Format: double
+             * @description The fee that was agreed on with the firm that has it, euros, without travel; none
+             *     while no firm has it, or where none was said.
+             */
+            fee_eur: number | null;
             last_step: components["schemas"]["StepSaid"] | null;
             /** @description What a plan must keep to. */
             limits: components["schemas"]["PlanLimits"];
@@ -8446,6 +8470,12 @@ export interface components {
         /** @description An offer to a firm. */
         WorkOrderOffer: {
             answer_by: components["schemas"]["Time"] | null;
+            /**
+             * Format: double
+             * @description The fee that it was offered, euros, without travel; none where nobody has said on
+             *     what terms the firm works.
+             */
+            fee_eur: number | null;
             /** @description The firm. */
             firm_id: components["schemas"]["FirmId"];
             /** @description Its name when it was offered. */
@@ -11954,6 +11984,15 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description It is asked for an order or has one */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -1,8 +1,9 @@
 /** An entry of an order's log as a line for people. Pure. */
 
-import type { WorkOrderEntry } from '../api/types';
+import type { WorkOrderEntry, WorkOrderTerms } from '../api/types';
 import { degrees, fineHeading } from '../format';
 import { text } from '../text';
+import { feeInWords, termsInWords } from './terms';
 
 interface Line {
   /** Neither is told of what is between the operator and another firm. */
@@ -31,6 +32,8 @@ interface Read {
     adjuster_name?: string;
     note?: string | null;
     port?: string;
+    fee_eur?: number;
+    terms?: WorkOrderTerms;
   };
 }
 
@@ -76,6 +79,12 @@ function words(kind: string, content: Read['content']): string {
     case 'verification':
       return content.words ?? '';
     default:
-      return content.text ?? content.note ?? '';
+      return [
+        feeInWords(content.fee_eur),
+        content.terms ? termsInWords(content.terms) : '',
+        content.text ?? content.note ?? '',
+      ]
+        .filter((part) => part !== '')
+        .join('. ');
   }
 }

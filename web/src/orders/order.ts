@@ -1,6 +1,6 @@
 /** What people need to know of an order's state. Pure. */
 
-import type { WorkOrderState, WorkOrderSummary } from '../api/types';
+import type { WorkOrderCallFit, WorkOrderState, WorkOrderSummary } from '../api/types';
 import { text } from '../text';
 
 /** States in which nothing is left to be done. */
@@ -35,6 +35,16 @@ export function tone(state: string): 'good' | 'notable' | 'bad' | 'plain' {
   if (state === 'verified') return 'good';
   if (state === 'adjusting' || state === 'measured' || state === 'proposed') return 'notable';
   return 'plain';
+}
+
+/** How loudly to tell of a port call that moved. */
+export const callTone = (fit: WorkOrderCallFit): 'plain' | 'notable' =>
+  fit === 'fits' ? 'plain' : 'notable';
+
+/** What a moved port call asks of an order, in a word; empty where it asks nothing. */
+export function callNeeds({ call_fit, state }: WorkOrderSummary): string {
+  if (call_fit === null || call_fit === 'fits' || !isUnderWay(state)) return '';
+  return text.offers.call.needs[call_fit];
 }
 
 /** Open orders by the day they are planned for, then those that are done, the newest first. */

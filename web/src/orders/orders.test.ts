@@ -1,9 +1,10 @@
 import { describe, expect, test } from 'vitest';
 import type { PlanOffer, PlanStep, WorkOrder, WorkOrderSummary } from '../api/types';
 import { ahead, expectedDeg, isAsExpected, offBy, wrapped } from './ahead';
-import { inOrder, isOpen, stateName } from './order';
+import { callNeeds, inOrder, isOpen, stateName } from './order';
 import { correctorName, standing, written } from './places';
 import { draftOf, fault, headingOf, horizontalNt, newReading, number, readingOf } from './reading';
+import { feeInWords, feeOf, isFee, termsInWords } from './terms';
 import { bearsOut, builtOn, isRefusal, nextToSend, type Content, type Write } from './writes';
 
 const step = (number: number, change_deg: number, tolerance_deg = 1): PlanStep => ({
@@ -279,4 +280,26 @@ describe('orders', () => {
     expect(isOpen('waiting_for_tide')).toBe(true);
     expect(isOpen('cancelled')).toBe(false);
   });
+});
+
+test('a fee is typed with a comma or a point, and told with its cents', () => {
+  expect(feeOf(' 900,5 ')).toBe(900.5);
+  expect(feeOf('')).toBeNull();
+  expect(isFee('')).toBe(true);
+  for (const wrong of ['a lot', '-1', '1000001']) expect(isFee(wrong), wrong).toBe(false);
+  expect(feeInWords(1800)).toBe('€ 1\u202f800');
+  expect(feeInWords(900.5)).toBe('€ 900.50');
+  expect(feeInWords(0)).toBe('€ 0');
+  expect(feeInWords(null)).toBe('');
+  const terms = { planned_at: '2026-12-08T13:00:00Z', berth: 'A7', fee_eur: 900 };
+  expect(termsInWords(terms)).toBe('8 Dec 2026, 13:00 UTC, A7, € 900');
+});
+
+test('a call that moved asks for something only while the order is under way', () => {
+  const moved = (call_fit: WorkOrderSummary['call_fit'], state: string) =>
+    callNeeds({ call_fit, state } as WorkOrderSummary);
+  expect(moved('needs_new_day', 'accepted')).toContain('new day');
+  expect(moved('fits', 'accepted')).toBe('');
+  expect(moved(null, 'accepted')).toBe('');
+  expect(moved('no_call', 'cancelled')).toBe('');
 });

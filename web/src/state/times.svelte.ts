@@ -35,9 +35,9 @@ class TimesState {
   #zoneAt(where: Where): number | undefined {
     if (!where) return undefined;
     if ('lon' in where) return zoneOf(where.lon);
-    const code = where.port;
-    // Only a UN/LOCODE is known: an order may name its port in words.
-    if (!code || this.clocks === 'utc' || !/^[A-Z]{2}[A-Z2-9]{3}$/.test(code)) return undefined;
+    // Only a UN/LOCODE is known, alone or behind the name: an order may name its port in words.
+    const code = /^(?:.*\()?([A-Z]{2}[A-Z2-9]{3})\)?$/.exec(where.port ?? '')?.[1];
+    if (code === undefined || this.clocks === 'utc') return undefined;
     if (!this.#asked.has(code)) {
       this.#asked.add(code);
       this.#last = this.#last.then(() => this.#learn(code));

@@ -27,6 +27,40 @@ export const offers = {
       berth: 'Berth',
       fee: 'Fee',
       euros: (fee: string) => `€ ${fee}`,
+      offered: (fee: string) => `Offered at ${fee}, travel not counted`,
+    },
+
+    call: {
+      title: 'Port call',
+      fit: {
+        fits: 'The port call has moved, and the agreed time still lies in it.',
+        other_hour:
+          'The port call has moved: she is alongside on the agreed day, but not from that hour. Agree on another.',
+        needs_new_day: 'The port call has moved: agree on a new day.',
+        no_call:
+          'The agreed time stands without a port call: agree on another time, or cancel the order.',
+      },
+      needs: {
+        other_hour: 'Call moved: needs another hour',
+        needs_new_day: 'Call moved: needs a new day',
+        no_call: 'Port call gone',
+      },
+      was: 'It was',
+      is: 'It is',
+      agreed: 'Agreed',
+      withdrawn: 'withdrawn',
+      span: (port: string, from: string, to: string) => `${port}, from ${from} to ${to}`,
+    },
+
+    retime: {
+      ask: 'Ask for another time…',
+      when: 'When instead',
+      submit: 'Ask the firm',
+      asked: 'Another time is asked for',
+      stands: 'What was agreed stands until the firm agrees.',
+      agree: 'Agree to the new time',
+      disagree: 'Keep what was agreed',
+      takeBack: 'Take the question back',
     },
 
     offer: 'Offer it to firms…',
@@ -57,6 +91,7 @@ export const offers = {
     berth: 'Berth, if another',
     fee: 'Fee in euros',
     feeWrong: 'A fee is a figure, 0 to 1 000 000.',
+    termsMissing: 'Say another time, another berth or another fee.',
     decline: 'Decline…',
     declineConfirm: 'Decline it',
     giveBack: 'Give it back…',
