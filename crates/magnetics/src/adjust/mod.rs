@@ -26,6 +26,7 @@ mod recheck;
 mod refusal;
 mod search;
 mod spheres;
+mod strength;
 mod tolerance;
 mod verify;
 

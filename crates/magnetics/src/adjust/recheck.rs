@@ -3,15 +3,12 @@
 
 use super::condition::Condition;
 use super::instructions::{NORMAL_99, Place, READING_SD_DEG, Step, change_deg, tolerance_deg};
+use super::strength::strength;
 use super::{AdjustError, Adjustment, Outcome, plan};
 use crate::angle::wrap_180;
-use crate::binnacle::{Axis, Binnacle, BinnacleForm, Calibrated, Setting, Soft};
-use crate::corrector::Iron;
+use crate::binnacle::{Axis, Binnacle, Setting};
 use crate::deviation::NORMAL_95;
 use serde::{Deserialize, Serialize};
-
-/// A corrector is not so much weaker or stronger than it is said to be.
-const STRENGTHS: std::ops::RangeInclusive<f64> = 0.3..=3.0;
 
 /// A card that turned by less may not have turned at all, degrees.
 const UNMOVED_DEG: f64 = 0.5;
@@ -56,7 +53,7 @@ pub enum Recheck {
         /// A plan from there.
         outcome: Box<Outcome>,
     },
-    /// No strength explains it: read again, see whether the ship moved, look for
+    /// No strength that it can have explains it: read again, see whether the ship moved, look for
     /// magnetism of its own in the iron.
     Unexplained {
         /// By how much it is off, degrees.
@@ -196,28 +193,24 @@ pub fn recheck(
             outcome,
         });
     }
-    let Some((share, binnacle)) = strength(adjustment, step, turned_deg)? else {
+    let Some(found) = strength(adjustment, step, turned_deg)? else {
         let unmoved = turned_deg.abs() <= UNMOVED_DEG;
         return Ok(Recheck::Unexplained { off_deg, unmoved });
     };
     let setting = step.setting_after.clone();
     let outcome = Box::new(plan(&Adjustment {
-        binnacle: &binnacle,
+        binnacle: &found.binnacle,
         now: Some(&setting),
         compass_deg: Some(after_deg),
         ..adjustment.clone()
     })?);
     Ok(Recheck::OtherStrength {
-        share,
-        share_sd: share_sd(step),
-        binnacle: Box::new(binnacle),
+        share: found.share,
+        share_sd: found.share_sd,
+        binnacle: Box::new(found.binnacle),
         setting,
         outcome,
     })
-}
-
-fn share_sd(step: &Step) -> f64 {
-    (0.5 / step.change_deg.abs()).min(0.5)
 }
 
 /// The setting with the step's magnets turned end for end, if that is what was read.
@@ -243,96 +236,4 @@ fn wrong_end(
     let (change, sd) = change_deg(adjustment, condition, &step.setting_before, &setting);
     let tolerance = (NORMAL_99 * sd).max(step.tolerance_deg);
     (wrap_180(turned_deg - change).abs() <= tolerance).then_some(setting)
-}
-
-/// How strong the corrector must be for what was read, with the binnacle that has it so.
-fn strength(
-    adjustment: &Adjustment<'_>,
-    step: &Step,
-    turned_deg: f64,
-) -> Result<Option<(f64, Binnacle)>, AdjustError> {
-    if !step.seen {
-        return Ok(None);
-    }
-    let change = |share: f64| -> Result<Option<(f64, Binnacle)>, AdjustError> {
-        let Some(binnacle) = scaled(adjustment.binnacle, step, share)? else {
-            return Ok(None);
-        };
-        let condition = Condition::new(&Adjustment {
-            binnacle: &binnacle,
-            ..adjustment.clone()
-        })?;
-        let (change, _) = change_deg(
-            adjustment,
-            &condition,
-            &step.setting_before,
-            &step.setting_after,
-        );
-        Ok(Some((change, binnacle)))
-    };
-    let mut known = (1.0, step.change_deg);
-    let mut share = turned_deg / step.change_deg;
-    for _ in 0..8 {
-        if !STRENGTHS.contains(&share) {
-            return Ok(None);
-        }
-        let Some((found, binnacle)) = change(share)? else {
-            return Ok(None);
-        };
-        if (found - turned_deg).abs() < 0.02 {
-            return Ok(Some((share, binnacle)));
-        }
-        let slope = (found - known.1) / (share - known.0);
-        known = (share, found);
-        share += (turned_deg - found) / slope;
-    }
-    Ok(None)
-}
-
-/// The binnacle with the step's corrector so much stronger.
-fn scaled(binnacle: &Binnacle, step: &Step, share: f64) -> Result<Option<Binnacle>, AdjustError> {
-    let sd = share_sd(step);
-    let mut form: BinnacleForm = binnacle.clone().into();
-    let entry = match step.to.as_ref().or(step.from.as_ref()) {
-        Some(Place::Magnets(tray)) => {
-            let Some(kind) = binnacle.design.magnet(&tray.magnet) else {
-                return Ok(None);
-            };
-            let moment = binnacle.moment(kind).am2 * share;
-            return Ok(Some(binnacle.with_moment(&tray.magnet, moment, sd)?));
-        }
-        Some(Place::Pair(pair)) => {
-            let soft = Soft {
-                quadrantal: Some(pair.clone()),
-                flinders: None,
-            };
-            let Some(found) = Iron::new(binnacle, &soft).pair else {
-                return Ok(None);
-            };
-            Calibrated::Quadrantal {
-                size: pair.size.clone(),
-                mark_mm: pair.mark_mm,
-                q: found.q() * share,
-                sd,
-            }
-        }
-        Some(Place::Bar(bar)) => {
-            let soft = Soft {
-                quadrantal: None,
-                flinders: Some(bar.clone()),
-            };
-            let Some(found) = Iron::new(binnacle, &soft).bar else {
-                return Ok(None);
-            };
-            Calibrated::Flinders {
-                length_mm: bar.length_mm,
-                c: found.c() * share,
-                sd,
-            }
-        }
-        _ => return Ok(None),
-    };
-    form.calibration.retain(|other| !other.same_place(&entry));
-    form.calibration.push(entry);
-    Ok(Some(Binnacle::try_from(form)?))
 }

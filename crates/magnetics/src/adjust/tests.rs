@@ -7,6 +7,7 @@ mod refused;
 mod sea;
 
 mod steps;
+mod strength;
 
 use super::*;
 use crate::angle::MagneticHeading;
