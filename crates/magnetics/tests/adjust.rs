@@ -188,7 +188,8 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
             }
         }
     }
-    assert!(planned > 20, "{planned}");
+    // A vertical part of other waters or in another unit is refused.
+    assert!(planned >= 10, "{planned}");
 }
 
 #[test]

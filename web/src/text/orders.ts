@@ -138,7 +138,8 @@ export const orders = {
       berthPlace: 'at the berth',
       lambda: (value: string) => `λ ${value}`,
       heeling: 'Heeling error on north',
-      heelingLeft: 'Heeling magnets stay as found: the vertical field was not read.',
+      heelingLeft:
+        'Heeling magnets stay as found: the vertical field was not read, or cannot be right.',
       heelingSaid: (before: string, after: string) =>
         `${before} per degree of heel as found, ${after} foretold.`,
       steps: 'Steps',

@@ -3,7 +3,9 @@
 //! `base` is she without correctors: what was measured less the effect of the setting
 //! then. The needles' part of that effect was fitted at a mean H of her waters.
 
+use super::heeling::VerticalReading;
 use super::tolerance::errors_of;
+use super::vertical::Vertical;
 use super::{AdjustError, Adjustment};
 use crate::berth::{BerthEstimate, JointCovariance, lambda_at_berth};
 use crate::binnacle::{BarSetting, Binnacle, Setting, Soft};
@@ -29,6 +31,8 @@ pub(super) struct Condition<'a> {
     reference_h_nt: f64,
     pub(super) may_move_pair: bool,
     pub(super) may_move_bar: bool,
+    /// The vertical field at the berth, if it was read so that it can be believed.
+    pub(super) vertical: Option<VerticalReading>,
 }
 
 impl<'a> Condition<'a> {
@@ -74,6 +78,9 @@ impl<'a> Condition<'a> {
             reference_h_nt,
             may_move_pair: true,
             may_move_bar: model.identifiable.is_none_or(|known| known.chi13),
+            vertical: adjustment
+                .vertical
+                .filter(|read| Vertical::new(*read, adjustment.earth, binnacle).is_believed()),
         };
         condition.may_move_pair = condition.lambda_sd_share() <= adjustment.limits.lambda_sd;
         Ok(condition)

@@ -1,4 +1,4 @@
-//! The heeling magnets: set only where the vertical force aboard was read.
+//! The heeling magnets: set only where the vertical force aboard was read, and can be.
 //!
 //! The card does not err in heel while the vertical force aboard is λ(1 − D) Z: what
 //! the athwartship force would be in a field as strong (docs/science.md, eq. 23).
@@ -26,11 +26,11 @@ pub struct VerticalReading {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeelingPlan {
     /// Degrees of heeling error for each degree of heel on north, at the berth, as it
-    /// is; none where the vertical force was not read.
+    /// is; none where the vertical force was not read, or not so that it can be believed.
     pub before_deg_per_deg: Option<f64>,
     /// The same afterwards.
     pub after_deg_per_deg: Option<f64>,
-    /// Whether they are left as found for want of a vertical reading.
+    /// Whether they are left as found for want of a vertical reading to be believed.
     pub left_as_found: bool,
 }
 
@@ -50,7 +50,7 @@ impl VerticalReading {
 
 /// What the magnetometer would read down with correctors of this effect, nT.
 fn down_nt(adjustment: &Adjustment<'_>, condition: &Condition<'_>, effect: &Effect) -> Option<f64> {
-    let read_nt = adjustment.vertical?.down_nt;
+    let read_nt = condition.vertical?.down_nt;
     let z_nt = adjustment.earth.z_nt;
     Some(read_nt + condition.chi33_change(effect) * z_nt + condition.bz_change(effect))
 }
@@ -71,7 +71,7 @@ pub(super) fn check(
     let tilted_nt = adjustment.earth.h_nt * errors.tilt_sd_deg.to_radians();
     // Read twice with the same instrument: noise and tilt differ, its scale does not.
     let instrument_nt = std::f64::consts::SQRT_2 * errors.field_sd_nt.hypot(tilted_nt);
-    let scale_nt = adjustment.scale_sd * (will_nt - adjustment.vertical?.down_nt);
+    let scale_nt = adjustment.scale_sd * (will_nt - condition.vertical?.down_nt);
     let of_correctors = errors_between(binnacle, &binnacle.setting, after);
     let squares = of_correctors.iter().map(|error| {
         let down_nt = error.chi[2][2] * adjustment.earth.z_nt + error.b_nt[2];
@@ -157,6 +157,6 @@ pub(super) fn said(
     HeelingPlan {
         before_deg_per_deg: of(&adjustment.binnacle.setting),
         after_deg_per_deg: of(setting),
-        left_as_found: adjustment.vertical.is_none(),
+        left_as_found: condition.vertical.is_none(),
     }
 }

@@ -29,9 +29,18 @@ pub enum Mistake {
     ForwardReversed,
     /// The heading is that of the stern, or the magnetometer lies the wrong way round.
     HeadingReversed,
+    /// Up was taken for positive.
+    DownReversed,
+    /// The vertical figure is in another unit than the other two.
+    DownInAnotherUnit,
+    /// Forward and down have changed places.
+    ForwardDownSwapped,
+    /// Starboard and down have changed places.
+    StarboardDownSwapped,
 }
 
 impl Mistake {
+    /// Those that the horizontal field tells.
     pub(super) const ALL: [Mistake; 8] = [
         // The commonest first: so they are told.
         Mistake::HeadingReversed,
@@ -55,6 +64,9 @@ impl Mistake {
             Mistake::StarboardReversed => "starboard",
             Mistake::ForwardReversed => "forward",
             Mistake::HeadingReversed => "heading_true_deg",
+            Mistake::DownReversed | Mistake::DownInAnotherUnit => "down",
+            Mistake::ForwardDownSwapped => "forward, down",
+            Mistake::StarboardDownSwapped => "starboard, down",
         }
     }
 
@@ -164,6 +176,16 @@ impl fmt::Display for Mistake {
             Mistake::StarboardReversed => "the magnetometer's athwartship axis points to port",
             Mistake::ForwardReversed => "the magnetometer's fore-and-aft axis points aft",
             Mistake::HeadingReversed => "the heading is 180 degrees off",
+            Mistake::DownReversed => "the magnetometer's vertical axis points up",
+            Mistake::DownInAnotherUnit => {
+                "the vertical figure is in another unit than the other two"
+            }
+            Mistake::ForwardDownSwapped => {
+                "the magnetometer's fore-and-aft and vertical axes are swapped"
+            }
+            Mistake::StarboardDownSwapped => {
+                "the magnetometer's athwartship and vertical axes are swapped"
+            }
         })
     }
 }

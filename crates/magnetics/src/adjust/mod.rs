@@ -29,6 +29,7 @@ mod spheres;
 mod strength;
 mod tolerance;
 mod verify;
+mod vertical;
 
 pub use again::{Again, AgainForm, Done, Learnt, Part, Slip, Verdict, read_again};
 pub use berth::{BerthCheck, Seen};
@@ -51,6 +52,7 @@ use crate::ship::EarthField;
 use condition::Condition;
 use search::{Found, Front};
 use serde::{Deserialize, Serialize};
+use vertical::Vertical;
 
 /// Everything that a plan rests on.
 #[derive(Clone, Debug)]
@@ -284,6 +286,8 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     let berth = BerthCheck::new(adjustment, &condition);
     let card = adjustment.card();
     refusals.extend(card.filter(Card::is_refused).map(Refusal::CardDisagrees));
+    let vertical = adjustment.vertical_judged();
+    refusals.extend(vertical.and_then(|vertical| vertical.refusal()));
     if !refusals.is_empty() {
         return Ok(refused(Some(berth), refusals));
     }
@@ -441,6 +445,12 @@ impl Adjustment<'_> {
     /// How the correctors stand now.
     pub fn standing(&self) -> &Setting {
         self.now.unwrap_or(&self.binnacle.setting)
+    }
+
+    /// The vertical field held against the earth's.
+    fn vertical_judged(&self) -> Option<Vertical> {
+        let judged = |read| Vertical::new(read, self.earth, self.binnacle);
+        self.vertical.map(judged)
     }
 
     /// The compass held against the field, while the correctors stand as they did when

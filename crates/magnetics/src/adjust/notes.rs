@@ -45,7 +45,29 @@ pub(super) fn notes(
                 .to_owned(),
         );
     }
+    notes.extend(
+        adjustment
+            .vertical_judged()
+            .and_then(|vertical| vertical.doubts()),
+    );
+    notes.extend(heeling_left(plans));
     notes
+}
+
+/// More heeling error than this is said, degrees for each degree of heel: two degrees in a
+/// roll of ten.
+const MOST_HEELING_ERROR: f64 = 0.2;
+
+fn heeling_left(plans: &[Plan]) -> Option<String> {
+    let heeling = plans.first()?.heeling;
+    let left = heeling.after_deg_per_deg?.abs();
+    (left > MOST_HEELING_ERROR).then(|| {
+        format!(
+            "on north and south {left:.2} degrees of heeling error are left for each degree of \
+             heel, more than {MOST_HEELING_ERROR}: the heeling magnets on board do no better with \
+             this iron; the compass will swing when she rolls"
+        )
+    })
 }
 
 /// Waters whose dips differ by less, as tangents, are one to a compass.

@@ -10,6 +10,7 @@ use super::VerticalReading;
 use super::card::Card;
 use super::mistakes::{Mistake, mistakes};
 use super::refusal::Refusal;
+use super::vertical::{Vertical, swapped};
 use crate::angle::{MagneticHeading, TrueHeading, Variation};
 use crate::berth::{
     Alignment, BerthError, BerthEstimate, BerthReading, ReadingErrors, lambda_at_berth,
@@ -262,24 +263,40 @@ impl ReadingForm {
             Ok((reading, estimate))
         });
         let (reading, estimate) = found.map_err(|error| {
-            let explain = self.mistakes(model, earth, variation);
+            let explain = self.mistakes(model, earth, variation, binnacle);
             Box::new(Refusal::of_reading(&error, explain).with_cures())
         })?;
         let card = |read_deg| Card::new(read_deg, &reading, earth, binnacle, model.constant_deg);
         let card = self.compass_deg.map(card).filter(Card::is_refused);
-        match card {
-            Some(card) => Err(Box::new(Refusal::CardDisagrees(card).with_cures())),
+        if let Some(card) = card {
+            return Err(Box::new(Refusal::CardDisagrees(card).with_cures()));
+        }
+        let vertical = self.vertical();
+        let vertical = vertical.map(|read| Vertical::new(read, earth, binnacle));
+        match vertical.and_then(|vertical| vertical.refusal()) {
+            Some(refusal) => Err(Box::new(refusal.with_cures())),
             None => Ok((reading, estimate)),
         }
     }
 
-    fn mistakes(&self, model: &Model, earth: EarthField, variation: Variation) -> Vec<Mistake> {
+    fn mistakes(
+        &self,
+        model: &Model,
+        earth: EarthField,
+        variation: Variation,
+        binnacle: &Binnacle,
+    ) -> Vec<Mistake> {
         let Ok(magnetic) = self.magnetic(variation) else {
             return Vec::new();
         };
         let (field_nt, unit) = (self.field_nt(), self.unit);
         let (errors, alignment) = (self.errors(), self.alignment());
-        mistakes(model, earth, magnetic, field_nt, unit, errors, alignment)
+        let mut found = mistakes(model, earth, magnetic, field_nt, unit, errors, alignment);
+        let reading = BerthReading::new(magnetic, field_nt, errors, alignment);
+        if let (Ok(reading), Some(vertical)) = (reading, self.vertical()) {
+            found.extend(swapped(model, earth, &reading, vertical, binnacle));
+        }
+        found
     }
 
     fn field_nt(&self) -> [f64; 2] {

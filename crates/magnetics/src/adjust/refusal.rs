@@ -3,6 +3,7 @@
 use super::card::Card;
 use super::mistakes::{Mistake, mistakes};
 use super::read::Unit;
+use super::vertical::swapped;
 use super::{AdjustError, Adjustment, Refused};
 use crate::berth::{BerthError, Consistency};
 use serde::{Deserialize, Serialize};
@@ -295,15 +296,19 @@ pub(super) fn of_berth(
 ) -> Result<Refusal, AdjustError> {
     let reading = adjustment.reading;
     let mistakes = || {
-        mistakes(
-            adjustment.model,
-            adjustment.earth,
+        let (model, earth) = (adjustment.model, adjustment.earth);
+        let mut found = mistakes(
+            model,
+            earth,
             reading.magnetic(),
             reading.field_nt(),
             Unit::Nanotesla,
             reading.errors(),
             reading.alignment(),
-        )
+        );
+        let with = |vertical| swapped(model, earth, reading, vertical, adjustment.binnacle);
+        found.extend(adjustment.vertical.map(with).unwrap_or_default());
+        found
     };
     match error {
         BerthError::Inconsistent(_) | BerthError::Implausible(_) => {

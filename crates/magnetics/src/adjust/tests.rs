@@ -8,6 +8,7 @@ mod sea;
 
 mod steps;
 mod strength;
+mod vertical;
 
 use super::*;
 use crate::angle::MagneticHeading;

@@ -269,7 +269,7 @@ fn plan(paper: &mut Paper, record: &Value) {
         ),
         _ => paper.fact(
             "Heeling magnets",
-            "left as found: the vertical field was not read",
+            "left as found: the vertical field was not read, or cannot be right",
         ),
     }
     for note in plan["notes"].as_array().into_iter().flatten() {
