@@ -2,11 +2,13 @@
 
 use super::condition::Condition;
 use super::moves;
+use super::thinned::{self, Item};
 use crate::binnacle::{Axis, BarSetting, Binnacle, PairSetting, Setting, Soft, Tray};
 use crate::corrector::{Iron, Vector, magnet_field};
+use std::ops::RangeInclusive;
 
-/// More settings of one axis than this are not gone through: fewer trays are then
-/// used at once than there are.
+/// More settings of one axis than this are not all gone through: of those with more trays,
+/// one of each few nT is then taken.
 const MOST_SETTINGS: usize = 40_000;
 /// Kinds of magnets are counted in a byte each.
 const KINDS: usize = 8;
@@ -61,6 +63,14 @@ struct Holding {
     field: usize,
 }
 
+/// What a rack can take, by the fields of single magnets.
+struct Capacity {
+    at_once: usize,
+    magnets_each: f64,
+    /// Of each kind that fits, how many are on board.
+    aboard: Vec<f64>,
+}
+
 /// One way to set the magnets of an axis.
 #[derive(Clone, Debug)]
 pub(super) struct Magnets {
@@ -89,6 +99,9 @@ pub(super) struct AxisCandidates {
     pub(super) settings: Vec<Magnets>,
     /// Most trays or holes in use at once.
     pub(super) trays: u8,
+    /// Whether every setting is among them.
+    pub(super) is_whole: bool,
+    capacity: Capacity,
 }
 
 impl AxisCandidates {
@@ -126,6 +139,16 @@ impl AxisCandidates {
             singles,
             settings: Vec::new(),
             trays: 0,
+            is_whole: true,
+            capacity: Capacity {
+                at_once: usize::from(rack.at_once),
+                magnets_each: f64::from(rack.magnets_each),
+                aboard: rack
+                    .magnets
+                    .iter()
+                    .map(|magnet| f64::from(binnacle.magnets_aboard(magnet)))
+                    .collect(),
+            },
         };
         let as_it_stands = candidates.of_trays(binnacle, standing);
         candidates.settings.push(as_it_stands);
@@ -133,6 +156,7 @@ impl AxisCandidates {
         for trays in 1..=rack.at_once {
             let chosen = choices(&holdings, usize::from(trays));
             if candidates.settings.len() + 2 * chosen.len() > MOST_SETTINGS {
+                candidates.thinned(&(trays..=rack.at_once), binnacle, &holdings, standing);
                 break;
             }
             candidates.trays = trays;
@@ -143,30 +167,113 @@ impl AxisCandidates {
         candidates
     }
 
+    /// Of the settings with so many trays one of each few nT.
+    fn thinned(
+        &mut self,
+        trays: &RangeInclusive<u8>,
+        binnacle: &Binnacle,
+        holdings: &[Holding],
+        standing: &[Tray],
+    ) {
+        (self.is_whole, self.trays) = (false, *trays.end());
+        let stock = stock(binnacle);
+        let fields = self.fields(binnacle, &Iron::default());
+        let along = usize::from(self.axis == Axis::Athwartship);
+        for positive in [true, false] {
+            let red = self.axis.red(positive);
+            let item = |h: &Holding| {
+                let tray = Tray {
+                    red,
+                    ..h.tray.clone()
+                };
+                let alone = standing.iter().map(|stood| {
+                    moves::trays(std::slice::from_ref(stood), std::slice::from_ref(&tray))
+                });
+                Item {
+                    hole: tray.hole,
+                    field_nt: (f64::from(tray.count) * fields[h.field][along]).abs(),
+                    used: h.used,
+                    stands: standing.contains(&tray),
+                    cost: 8 * alone.min().unwrap_or(1).min(2) + u32::from(tray.count),
+                }
+            };
+            let items: Vec<Item> = holdings.iter().map(item).collect();
+            for chosen in thinned::sets(&items, trays, stock) {
+                self.add_with(positive, &chosen, holdings, standing);
+            }
+        }
+    }
+
+    /// No setting of the rack, gone through or not, makes a stronger field than this, nT:
+    /// forward and to starboard, either way.
+    pub(super) fn reach_nt(&self, single: &[Vector]) -> [f64; 2] {
+        let Capacity {
+            at_once,
+            magnets_each,
+            aboard,
+        } = &self.capacity;
+        let kinds = aboard.len().max(1);
+        [0, 1].map(|part| {
+            let of = |index: usize| single[index][part].abs();
+            // Each hole with its strongest kind, however few of it there are.
+            let holes = (0..single.len()).step_by(kinds);
+            let mut strongest: Vec<f64> = holes
+                .map(|first| (first..first + kinds).map(of).fold(0.0, f64::max))
+                .collect();
+            strongest.sort_by(|a, b| b.total_cmp(a));
+            let with_holes = magnets_each * strongest.iter().take(*at_once).sum::<f64>();
+            // Each kind with the whole rack for itself, as many of it as there are.
+            let with_stock = (0..kinds).map(|kind| {
+                let mut of_kind: Vec<f64> = (kind..single.len()).step_by(kinds).map(of).collect();
+                of_kind.sort_by(|a, b| b.total_cmp(a));
+                let mut left = aboard.get(kind).copied().unwrap_or(0.0);
+                let mut sum = 0.0;
+                for one in of_kind.into_iter().take(*at_once) {
+                    let count = magnets_each.min(left);
+                    sum += count * one;
+                    left -= count;
+                }
+                sum
+            });
+            with_holes.min(with_stock.sum())
+        })
+    }
+
     fn add(&mut self, chosen: &[usize], holdings: &[Holding], standing: &[Tray], stock: Used) {
-        let held = || chosen.iter().map(|index| &holdings[*index]);
-        let used = held().fold(Used::default(), |sum, h| sum.plus(h.used));
+        let held = chosen.iter().map(|index| &holdings[*index]);
+        let used = held.fold(Used::default(), |sum, h| sum.plus(h.used));
         if !used.within(stock) {
             return;
         }
         for positive in [true, false] {
-            let red = self.axis.red(positive);
-            let with_red = |h: &Holding| Tray {
-                red,
-                ..h.tray.clone()
-            };
-            let trays: Vec<Tray> = held().map(with_red).collect();
-            let moves = moves::trays(standing, &trays);
-            // What stands so already is there, and nothing has no other end.
-            if moves > 0 && (positive || !trays.is_empty()) {
-                let parts = held().map(|h| (h.field, red.sign() * f64::from(h.tray.count)));
-                self.settings.push(Magnets {
-                    parts: parts.collect(),
-                    trays,
-                    used,
-                    moves,
-                });
-            }
+            self.add_with(positive, chosen, holdings, standing);
+        }
+    }
+
+    fn add_with(
+        &mut self,
+        positive: bool,
+        chosen: &[usize],
+        holdings: &[Holding],
+        standing: &[Tray],
+    ) {
+        let held = || chosen.iter().map(|index| &holdings[*index]);
+        let red = self.axis.red(positive);
+        let with_red = |h: &Holding| Tray {
+            red,
+            ..h.tray.clone()
+        };
+        let trays: Vec<Tray> = held().map(with_red).collect();
+        let moves = moves::trays(standing, &trays);
+        // What stands so already is there, and nothing has no other end.
+        if moves > 0 && (positive || !trays.is_empty()) {
+            let parts = held().map(|h| (h.field, red.sign() * f64::from(h.tray.count)));
+            self.settings.push(Magnets {
+                parts: parts.collect(),
+                trays,
+                used: held().fold(Used::default(), |sum, h| sum.plus(h.used)),
+                moves,
+            });
         }
     }
 

@@ -27,6 +27,7 @@ mod refusal;
 mod search;
 mod spheres;
 mod strength;
+mod thinned;
 mod tolerance;
 mod verify;
 mod vertical;
@@ -187,7 +188,8 @@ pub struct Refused {
 /// How well the search knows that nothing is better.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimality {
-    /// Whether every setting of the catalogue was gone through or excluded.
+    /// Whether every setting of the catalogue was gone through or excluded: none is better
+    /// by more than a gap that no card shows.
     pub proven: bool,
     /// No setting's worst residual, weighted over the waters, is better than the best
     /// plan's by more than this, degrees.
@@ -305,10 +307,14 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     }
     // What is beyond the limits is no alternative either.
     if plans.is_empty() {
-        return Ok(refused(Some(berth), refusals));
+        return Ok(Outcome {
+            notes: notes::left_out(&front.optimality).into_iter().collect(),
+            optimality: Some(front.optimality),
+            ..refused(Some(berth), refusals)
+        });
     }
     Ok(Outcome {
-        notes: notes::notes(adjustment, &condition, &berth, &plans),
+        notes: notes::notes(adjustment, &condition, &berth, &plans, &front.optimality),
         berth: Some(berth),
         refusals: Vec::new(),
         plans,

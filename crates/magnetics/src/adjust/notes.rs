@@ -1,7 +1,7 @@
 //! What an adjuster should know of the plans that are given.
 
 use super::condition::Condition;
-use super::{Adjustment, BerthCheck, Plan, mistakes};
+use super::{Adjustment, BerthCheck, Optimality, Plan, mistakes};
 
 /// All of it, the gravest first.
 pub(super) fn notes(
@@ -9,6 +9,7 @@ pub(super) fn notes(
     condition: &Condition<'_>,
     berth: &BerthCheck,
     plans: &[Plan],
+    optimality: &Optimality,
 ) -> Vec<String> {
     let mut notes: Vec<String> = only_here(adjustment, plans).into_iter().collect();
     notes.extend(berth.in_words());
@@ -51,7 +52,19 @@ pub(super) fn notes(
             .and_then(|vertical| vertical.doubts()),
     );
     notes.extend(heeling_left(plans));
+    notes.extend(left_out(optimality));
     notes
+}
+
+/// What a search that did not prove its best leaves open.
+pub(super) fn left_out(optimality: &Optimality) -> Option<String> {
+    (!optimality.proven).then(|| {
+        format!(
+            "not every setting of the correctors on board was gone through: another may leave up \
+             to {:.2} degrees less than the best one found",
+            optimality.gap_deg
+        )
+    })
 }
 
 /// More heeling error than this is said, degrees for each degree of heel: two degrees in a

@@ -115,8 +115,17 @@ impl<'a> Objective<'a> {
 
     /// No magnets within the box make it better than this, degrees.
     pub(super) fn bound_deg(&self, within: &Box2) -> f64 {
+        self.bound_by(STRIDE, within)
+    }
+
+    /// The same by every heading, for boxes that are small.
+    pub(super) fn fine_bound_deg(&self, within: &Box2) -> f64 {
+        self.bound_by(1, within)
+    }
+
+    fn bound_by(&self, stride: usize, within: &Box2) -> f64 {
         self.weighted(|water| {
-            let each = water.fixed.iter().zip(&self.compass.read).step_by(STRIDE);
+            let each = water.fixed.iter().zip(&self.compass.read).step_by(stride);
             each.map(|(fixed, read)| least_tangent(*fixed, *read, within))
                 .fold(0.0, f64::max)
         })

@@ -397,8 +397,8 @@ impl fmt::Display for Refusal {
                 mostly,
             } => write!(
                 f,
-                "at {} the correctors on board leave {worst_deg:.1} degrees, {reach_deg:.1} \
-                 with the band, of {limit_deg:.1} at most; most of it is {mostly}",
+                "at {} the best setting found of the correctors on board leaves {worst_deg:.1} \
+                 degrees, {reach_deg:.1} with the band, of {limit_deg:.1} at most; most of it is {mostly}",
                 said(place)
             ),
             Refusal::MagnetometerTooPoor { lambda_sd, limit } => write!(

@@ -4,8 +4,10 @@
 //! What always holds: of every number of moves the best setting found is kept, and a
 //! family of settings is left out only where a bound says that none of it beats what is
 //! known for its moves by more than `SLACK_DEG`. So the result is the best of the whole
-//! catalogue for every number of moves, unless `MOST_NODES` ended the search; then the
-//! gap says how much better something could be that was not looked at.
+//! catalogue for every number of moves, unless `MOST_NODES` ended the search, or a rack has
+//! more settings than can be gone through. Then the gap says how much better than the best
+//! something could be that was not looked at: the racks' reach is taken for a continuum
+//! that magnets can be set to at will, and bounded as everything else.
 
 use super::candidates::{AxisCandidates, Magnets, Used, iron, stock, used_by};
 use super::condition::Condition;
@@ -18,6 +20,15 @@ use crate::corrector::{Effect, Iron, heeling_effect};
 const SLACK_DEG: f64 = 0.005;
 /// About ten seconds of one core.
 const MOST_NODES: u64 = 6_000_000;
+/// A search that can leave out nothing better than this has proven its best, degrees: no
+/// card is read as well.
+const PROVEN_DEG: f64 = 0.05;
+/// About a second of one core.
+const MOST_RELAXED: u64 = 200_000;
+/// A smaller box of the continuum is not divided, nT.
+const SMALLEST_NT: f64 = 2.0;
+/// A smaller box is bounded on every heading, nT.
+const SMALL_NT: f64 = 300.0;
 /// No setting takes more moves.
 const MOST_MOVES: usize = 32;
 
@@ -134,10 +145,13 @@ pub(super) fn search(adjustment: &Adjustment<'_>, condition: &Condition<'_>) -> 
     for choice in &choices {
         search.magnets(choice, &mut front);
     }
-    if front.optimality.nodes >= MOST_NODES {
-        front.optimality.proven = false;
-        front.optimality.gap_deg = (front.at(u32::MAX) - front.left_out_deg).max(SLACK_DEG);
+    if !search.axes.iter().all(|axis| axis.is_whole) {
+        search.relaxed(&choices, &mut front);
     }
+    let best_deg = front.at(u32::MAX);
+    let optimality = &mut front.optimality;
+    optimality.gap_deg = (best_deg - front.left_out_deg).max(SLACK_DEG);
+    optimality.proven = optimality.gap_deg <= PROVEN_DEG;
     front
 }
 
@@ -279,6 +293,31 @@ impl Search<'_> {
         }
     }
 
+    /// Bounds what settings that were not gone through could do.
+    fn relaxed(&self, choices: &[Choice], front: &mut Front) {
+        let mut left_deg = front.left_out_deg.min(front.at(u32::MAX) - SLACK_DEG);
+        let mut nodes = 0;
+        for choice in choices {
+            if choice.bound_deg >= left_deg {
+                continue;
+            }
+            let reach = |axis: usize| {
+                let fields = self.axes[axis].fields(self.condition.binnacle, &choice.iron);
+                self.axes[axis].reach_nt(&fields)
+            };
+            let (one, other) = (reach(0), reach(1));
+            let [x, y] = [0, 1].map(|part| one[part] + other[part]);
+            let within = Box2 {
+                x: [-x, x],
+                y: [-y, y],
+            };
+            let objective = self.objective(&choice.effect);
+            left_deg = relaxed_within(&objective, within, left_deg, &mut nodes);
+        }
+        front.optimality.nodes += nodes;
+        front.left_out_deg = left_deg;
+    }
+
     /// Goes down both trees at once, the better half first.
     fn descend(
         &self,
@@ -362,4 +401,52 @@ impl Pair<'_> {
 
 fn extent(within: Box2) -> f64 {
     (within.x[1] - within.x[0]).max(within.y[1] - within.y[0])
+}
+
+/// The lesser of what is known to be left and what magnets of any field within a box would
+/// leave, degrees: a bound from below.
+fn relaxed_within(
+    objective: &Objective<'_>,
+    within: Box2,
+    mut left_deg: f64,
+    nodes: &mut u64,
+) -> f64 {
+    let bound = |within: &Box2| {
+        if extent(*within) < SMALL_NT {
+            objective.fine_bound_deg(within)
+        } else {
+            objective.bound_deg(within)
+        }
+    };
+    let mut open = vec![(within, bound(&within))];
+    while let Some((within, bound_deg)) = open.pop() {
+        if bound_deg >= left_deg {
+            continue;
+        }
+        *nodes += 1;
+        if extent(within) < SMALLEST_NT || *nodes >= MOST_RELAXED {
+            left_deg = bound_deg;
+            continue;
+        }
+        let mut halves = halved(within).map(|half| (half, bound(&half)));
+        // The last one in is the first out.
+        if halves[0].1 < halves[1].1 {
+            halves.swap(0, 1);
+        }
+        open.extend(halves);
+    }
+    left_deg
+}
+
+fn halved(within: Box2) -> [Box2; 2] {
+    let along_x = within.x[1] - within.x[0] >= within.y[1] - within.y[0];
+    let [low, high] = if along_x { within.x } else { within.y };
+    let middle = f64::midpoint(low, high);
+    [[low, middle], [middle, high]].map(|part| {
+        if along_x {
+            Box2 { x: part, ..within }
+        } else {
+            Box2 { y: part, ..within }
+        }
+    })
 }

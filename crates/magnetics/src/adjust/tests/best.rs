@@ -324,3 +324,85 @@ fn magnets_against_what_the_vertical_field_induces_are_for_one_dip_and_that_is_s
     assert_eq!(first_note(-0.05, 2), None);
     assert_eq!(first_note(-0.002, 1), None);
 }
+
+/// A class A binnacle whose fore-and-aft rack has four trays of two magnets.
+fn four_trays(magnets: u16, each: u8) -> Binnacle {
+    let mut form: BinnacleForm = class_a().into();
+    let mut design: DesignForm = form.design.into();
+    for rack in [&mut design.fore_and_aft, &mut design.athwartship] {
+        (rack.at_once, rack.magnets_each) = (4, each);
+        rack.magnets = vec!["100 mm".to_owned()];
+    }
+    form.design = design.try_into().unwrap();
+    form.setting.fore_and_aft.clear();
+    form.setting.athwartship.clear();
+    form.aboard.magnets[0].magnet = "100 mm".to_owned();
+    form.aboard.magnets[0].count = magnets;
+    Binnacle::try_from(form).unwrap()
+}
+
+/// What only four trays together reach is found, though they are too many to go through.
+#[test]
+fn every_tray_of_a_rack_is_used_where_it_takes_them() {
+    let mut ship = bare();
+    ship.b_nt = [12_000.0, -1_900.0, 0.0];
+    let mut case = Case::new(ship, four_trays(40, 2), 40.0);
+    case.waters.truncate(1);
+    let outcome = case.plan();
+    let best = &outcome.plans[0];
+    assert_eq!(best.setting.fore_and_aft.len(), 4, "{:?}", best.setting);
+    assert!(best.worst_residual_deg < 1.5, "{}", best.worst_residual_deg);
+    let optimality = outcome.optimality.unwrap();
+    assert_eq!(optimality.trays_in_use, [4, 4]);
+    assert!(
+        optimality.proven && optimality.gap_deg <= 0.05,
+        "{optimality:?}"
+    );
+}
+
+/// A ship beyond what the racks reach: no setting that was not gone through would do, and
+/// that is known.
+#[test]
+fn a_ship_beyond_all_trays_is_refused_and_that_is_proven() {
+    let mut ship = bare();
+    ship.b_nt = [16_000.0, -1_900.0, 0.0];
+    let mut case = Case::new(ship, four_trays(40, 2), 40.0);
+    case.waters.truncate(1);
+    let mut adjustment = case.adjustment();
+    adjustment.limits = Limits::default();
+    let outcome = plan(&adjustment).unwrap();
+    assert!(outcome.plans.is_empty());
+    let optimality = outcome.optimality.unwrap();
+    assert!(optimality.proven, "{optimality:?}");
+    assert!(outcome.notes.is_empty(), "{:?}", outcome.notes);
+}
+
+/// No magnets that a rack takes are beyond its reach, whatever iron stands and however few
+/// magnets are on board.
+#[test]
+fn nothing_is_beyond_the_reach_that_a_rack_is_said_to_have() {
+    for (magnets, each) in [(40, 2), (5, 4), (3, 1), (12, 3)] {
+        let case = Case::new(bare(), four_trays(magnets, each), 40.0);
+        let adjustment = case.adjustment();
+        let condition = Condition::new(&adjustment).unwrap();
+        for axis in Axis::BOTH {
+            let standing = &case.binnacle.setting;
+            let rack = candidates::AxisCandidates::new(&case.binnacle, axis, standing);
+            for (soft, _) in candidates::iron(&condition, standing).iter().step_by(37) {
+                let iron = crate::corrector::Iron::new(&case.binnacle, soft);
+                let fields = rack.fields(&case.binnacle, &iron);
+                let reach = rack.reach_nt(&fields);
+                let mut nearest = 0.0_f64;
+                for magnets in &rack.settings {
+                    let field = magnets.field_nt(&fields);
+                    for part in 0..2 {
+                        assert!(field[part].abs() <= reach[part] + 1e-6);
+                    }
+                    let along = usize::from(axis == Axis::Athwartship);
+                    nearest = nearest.max(field[along].abs() / reach[along]);
+                }
+                assert!(nearest > 0.999, "{magnets} {each} {axis}: {nearest}");
+            }
+        }
+    }
+}
