@@ -66,7 +66,8 @@ export const session = {
   },
 
   'a person signs in by the word of a provider, and one whom nobody knows does not': {
-    allowedErrors: [notSignedIn],
+    // The page is left and come back to: the service worker takes over between.
+    allowedErrors: [notSignedIn, /cross-world service worker resource mismatch/],
     hosts: ({ issuer, publicUrl }) => [issuer, publicUrl],
     async run({ page, settings, shoot }) {
       // The name that the server has for the world leads to where it listens here.
