@@ -5,7 +5,7 @@
 //! open or over. An analysis neither raises nor clears it.
 
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
-use super::look::{bring_in_line, tell};
+use super::look::{OVER, bring_in_line, tell};
 use super::store;
 use crate::db::{Result as DbResult, Tx, execute, row};
 use crate::error::Result;
@@ -40,7 +40,7 @@ pub async fn from_ship(
         .collect();
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause == Cause::ReportedAboard);
-    let news = bring_in_line(tx, vessel, compass, &known, &wanted, now).await?;
+    let news = bring_in_line(tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
     tell(tx, vessel, &news, now).await
 }
 

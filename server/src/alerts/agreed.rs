@@ -5,7 +5,7 @@
 //! schedule that found them, and each compass has one.
 
 use super::alert::{AlertWanted, Cause};
-use super::look::{bring_in_line, tell};
+use super::look::{OVER, bring_in_line, tell};
 use super::store;
 use crate::db::{Tx, rows};
 use crate::error::Result;
@@ -40,7 +40,7 @@ pub async fn of_schedule(
         let mut known = store::known(tx, vessel, compass).await?;
         known.retain(|alert| alert.cause == Cause::AgreedJobAtRisk);
         let wanted: Vec<AlertWanted> = wanted.remove(&(vessel, compass)).into_iter().collect();
-        let news = bring_in_line(tx, vessel, compass, &known, &wanted, now).await?;
+        let news = bring_in_line(tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
         events.extend(tell(tx, vessel, &news, now).await?);
     }
     Ok(events)

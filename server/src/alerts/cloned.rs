@@ -6,7 +6,7 @@
 //! over when the agent's token is revoked, or when nothing has shown it for a week.
 
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
-use super::look::{bring_in_line, tell};
+use super::look::{OVER, bring_in_line, tell};
 use super::store;
 use crate::access::Agent;
 use crate::app::App;
@@ -82,7 +82,7 @@ async fn in_line(
     store::lock(tx, vessel, compass).await?;
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause == Cause::ClonedAgent);
-    let news = bring_in_line(tx, vessel, compass, &known, wanted, now).await?;
+    let news = bring_in_line(tx, vessel, compass, &known, wanted, |_| OVER, now).await?;
     tell(tx, vessel, &news, now).await
 }
 

@@ -27,7 +27,9 @@ use tracing::{error, info};
 /// How often to look for what time alone brings.
 const LOOK_EVERY: Duration = Duration::from_mins(1);
 /// Why an alert cleared itself.
-const OVER: &str = "it is over";
+pub(super) const OVER: &str = "it is over";
+const NOT_KNOWN: &str = "there is no model any more that could tell whether it still is so: it is \
+                         not known to be over";
 const FOLLOWED: &str = "another of its cause followed";
 
 /// A change of an alert: what became of it, or only other words.
@@ -67,8 +69,19 @@ pub async fn after_analysis(
     let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();
     let mut wanted = alerts_of(&findings, limits, &open);
     wanted.extend(work_orders::alert(tx, vessel, compass).await?);
-    let news = bring_in_line(tx, vessel, compass, &known, &wanted, now).await?;
+    let why = |cause| why_cleared(cause, &findings);
+    let news = bring_in_line(tx, vessel, compass, &known, &wanted, why, now).await?;
     tell(tx, vessel, &news, now).await
+}
+
+/// What clears an alert that an analysis calls for no more. Without a model nothing is
+/// known of what the compass shows.
+fn why_cleared(cause: Cause, findings: &Findings) -> &'static str {
+    match cause {
+        Cause::DeviationOverLimit if findings.worst.is_none() => NOT_KNOWN,
+        Cause::WideBand if findings.widest_band95_deg.is_none() => NOT_KNOWN,
+        _ => OVER,
+    }
 }
 
 /// Looks which agents have fallen silent, and which have not.
@@ -92,7 +105,7 @@ pub async fn for_silence(app: &App) -> Result<()> {
         let mut known = store::known(&mut tx, vessel, compass).await?;
         known.retain(|alert| alert.cause.is_of_the_clock());
         let wanted: Vec<AlertWanted> = wanted.into_iter().collect();
-        let news = bring_in_line(&mut tx, vessel, compass, &known, &wanted, now).await?;
+        let news = bring_in_line(&mut tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
         let event = tell(&mut tx, vessel, &news, now).await?;
         tx.commit().await?;
         if let Some(event) = event {
@@ -130,6 +143,7 @@ pub(super) async fn bring_in_line(
     compass: CompassId,
     known: &[Known],
     wanted: &[AlertWanted],
+    why_cleared: impl Fn(Cause) -> &'static str,
     now: Time,
 ) -> Result<Vec<News>> {
     let mut news = Vec::new();
@@ -137,7 +151,7 @@ pub(super) async fn bring_in_line(
         if wanted.iter().any(|wanted| wanted.cause == alert.cause) {
             continue;
         }
-        store::end(tx, vessel, alert.id, OVER, now).await?;
+        store::end(tx, vessel, alert.id, why_cleared(alert.cause), now).await?;
         if alert.state != State::Cleared {
             news.push(News::of(alert.id, Kind::AlertCleared));
         }

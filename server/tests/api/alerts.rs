@@ -18,6 +18,7 @@ on_both!(
     the_list_filters_and_pages,
     another_operators_alerts_are_not_there,
     after_an_adjustment_the_old_card_is_withdrawn_at_once,
+    without_a_model_an_alert_is_not_said_to_be_over,
 );
 
 const DAY: &str = "2026-11-15T00:00:00Z";
@@ -315,6 +316,24 @@ async fn another_operators_alerts_are_not_there(shore: Shore) {
         );
     }
     assert_eq!(ada.get(&path(&alert, "")).await.good()["state"], "raised");
+    shore.finish().await;
+}
+
+async fn without_a_model_an_alert_is_not_said_to_be_over(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = with_model(&shore, &ada).await;
+    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    let open = list(&ada, "?open=true").await.remove(0);
+    assert_eq!(open["cause"], "deviation_over_limit");
+
+    // The samples are all of the time before.
+    let adjusted = json!({ "kind": "adjustment", "from": "2026-11-18T06:00:00Z" });
+    ada.post(&nao.path("/logbook"), &adjusted).await.good();
+    shore.work().await;
+    let alert = ada.get(&path(&open, "")).await.good();
+    assert_eq!(alert["state"], "cleared");
+    let reason = alert["clearing_reason"].as_str().unwrap();
+    assert!(reason.ends_with("it is not known to be over"), "{reason}");
     shore.finish().await;
 }
 
