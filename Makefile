@@ -3,6 +3,8 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := help
 export PATH := $(CURDIR)/.tools/bin:$(HOME)/.cargo/bin:$(PATH)
 CARGO ?= cargo
+# What has tests, and the programs that tests drive: benchmarks and studies are no part of it.
+TESTED := --lib --bins --tests --example changes_baselines
 
 .PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes study study-adjust study-changes study-losses methods clean
 
@@ -33,23 +35,24 @@ test-web: web ## Test the dashboard's own functions
 	@scripts/web test
 
 test-rust: web ## Test every crate and, end to end, the real programs on both databases
-	$(CARGO) build --locked --workspace --all-targets
-	@scripts/with-postgres $(CARGO) test --locked --workspace
+	$(CARGO) build --locked --workspace $(TESTED)
+	@scripts/with-postgres $(CARGO) test --locked --workspace $(TESTED)
+	$(CARGO) test --locked --workspace --doc
 
 test-api: web ## Ask the real server all that its document allows, and much that it does not
-	$(CARGO) build --locked --workspace --all-targets
+	$(CARGO) build --locked --workspace $(TESTED)
 	@scripts/fuzz-api
 
 test-browser: web ## Drive the dashboard in a real Chromium
-	$(CARGO) build --locked --workspace --all-targets
+	$(CARGO) build --locked --workspace $(TESTED)
 	@scripts/browser-test
 
 lint: web ## Formatter, linters, licences, advisories, documentation
 	@scripts/lint
 
 soak: web ## The long tests: many kills, many voyages
-	$(CARGO) build --locked --workspace --all-targets
-	@BINNACLE_SOAK=1 scripts/with-postgres $(CARGO) test --locked --workspace
+	$(CARGO) build --locked --workspace $(TESTED)
+	@BINNACLE_SOAK=1 scripts/with-postgres $(CARGO) test --locked --workspace $(TESTED)
 	@PHASES=examples,coverage,fuzzing,stateful CASES=200 scripts/fuzz-api
 
 bench: setup ## Run the benchmarks of BENCHMARKS.md
