@@ -6,6 +6,7 @@
 
 use super::Aboard;
 use crate::sentences::{TALKER, framed};
+use binnacle_wire::alert::ShipAlertState;
 use std::time::Duration;
 use tokio::time::Instant;
 
@@ -39,7 +40,7 @@ impl AlarmSentence {
 fn body(aboard: Option<&Aboard>) -> String {
     let talker = String::from_utf8_lossy(&TALKER);
     let Some(aboard) = aboard else {
-        return format!("{talker}ALR,,{NUMBER},V,A,COMPASS AND GYRO AGREE");
+        return format!("{talker}ALR,,{NUMBER},V,A,NO ALERT OF THE COMPASS");
     };
     let time = aboard.alert.at.to_string();
     // 2026-11-21T07:05:00Z
@@ -49,10 +50,10 @@ fn body(aboard: Option<&Aboard>) -> String {
         .take(8)
         .filter(|c| *c != ':')
         .collect();
-    let (condition, text) = if aboard.is_open() {
-        ('A', "COMPASS AND GYRO PARTED")
-    } else {
-        ('V', "COMPASS AND GYRO AGREE")
+    let (condition, text) = match aboard.alert.state {
+        ShipAlertState::Open => ('A', "COMPASS AND GYRO PARTED"),
+        ShipAlertState::Agree => ('V', "COMPASS AND GYRO AGREE"),
+        ShipAlertState::NotJudged => ('V', "COMPASS AND GYRO NOT JUDGED"),
     };
     let acknowledged = if aboard.acknowledged { 'A' } else { 'V' };
     format!("{talker}ALR,{time}.00,{NUMBER},{condition},{acknowledged},{text}")
@@ -62,7 +63,7 @@ fn body(aboard: Option<&Aboard>) -> String {
 mod tests {
     use super::*;
     use binnacle_magnetics::time::Timestamp;
-    use binnacle_wire::alert::{ShipAlert, ShipAlertState};
+    use binnacle_wire::alert::ShipAlert;
     use uuid::Uuid;
 
     fn aboard(state: ShipAlertState, acknowledged: bool) -> Aboard {
@@ -115,6 +116,17 @@ mod tests {
         let seen = aboard(ShipAlertState::Open, true);
         assert!(text(alarm.due(Some(&seen), after(33))).contains(",001,A,A,"));
         let over = aboard(ShipAlertState::Agree, true);
-        assert!(text(alarm.due(Some(&over), after(34))).contains(",001,V,A,"));
+        let said = text(alarm.due(Some(&over), after(34)));
+        assert!(said.contains(",001,V,A,COMPASS AND GYRO AGREE*"), "{said}");
+    }
+
+    #[test]
+    fn what_nobody_judged_is_not_said_to_agree() {
+        let withdrawn = aboard(ShipAlertState::NotJudged, true);
+        for aboard in [Some(&withdrawn), None] {
+            let said = text(AlarmSentence::default().due(aboard, Instant::now()));
+            assert!(said.contains(",001,V,"), "{said}");
+            assert!(!said.contains("AGREE"), "{said}");
+        }
     }
 }
