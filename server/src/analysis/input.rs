@@ -7,6 +7,7 @@ use crate::{logbook, settings};
 use anyhow::Context;
 use binnacle_magnetics::analyse::{AnalysisSettings, ESTIMATOR, LogbookEntry};
 use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -27,10 +28,18 @@ pub(super) struct Stored {
     batches: Vec<(Vec<u8>,)>,
     logbook: Vec<LogbookEntry>,
     settings: AnalysisSettings,
+    /// When the next of the entries comes true that are written down ahead.
+    pub(super) comes_true: Option<Timestamp>,
 }
 
-/// Reads what is stored of a compass.
-pub(super) async fn load(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Stored> {
+/// Reads what is stored of a compass. What the logbook has of times to come is no part of
+/// it: the card holds until the work that is planned is done.
+pub(super) async fn load(
+    db: &Db,
+    vessel: VesselId,
+    compass: CompassId,
+    now: Timestamp,
+) -> Result<Stored> {
     let batches = rows!(
         db,
         (Vec<u8>,),
@@ -41,9 +50,14 @@ pub(super) async fn load(db: &Db, vessel: VesselId, compass: CompassId) -> Resul
         vessel,
         compass
     )?;
+    let (logbook, ahead): (Vec<_>, Vec<_>) = logbook::of_compass(db, vessel, compass)
+        .await?
+        .into_iter()
+        .partition(|entry| entry.from <= now);
     Ok(Stored {
         batches,
-        logbook: logbook::of_compass(db, vessel, compass).await?,
+        logbook,
+        comes_true: ahead.iter().map(|entry| entry.from).min(),
         settings: settings::find(db, vessel).await?.analysis,
     })
 }

@@ -6,6 +6,7 @@ use crate::app::App;
 use crate::error::{Error, Result};
 use crate::events;
 use crate::ids::{CompassId, VesselId};
+use crate::time::Time;
 use crate::{alerts, compasses, settings, work_orders};
 use binnacle_magnetics::advice::sail_next;
 use binnacle_magnetics::analyse::analyse;
@@ -109,15 +110,23 @@ async fn keep_lease(app: &App, job: queue::Job) -> Infallible {
 /// Analyses a vessel's compasses and stores what is new.
 async fn work(app: &App, job: queue::Job) -> Result<usize> {
     let mut news = Vec::new();
+    let mut comes_true = None;
+    let now: Time = app.clock.now().into();
     let compasses = compasses::of_vessel(&app.db, job.vessel_id).await?;
     for compass in &compasses {
-        news.extend(analyse_compass(app, job.vessel_id, compass.id).await?);
+        let stored = input::load(&app.db, job.vessel_id, compass.id, now.0).await?;
+        comes_true = comes_true.into_iter().chain(stored.comes_true).min();
+        news.extend(analyse_compass(app, job.vessel_id, compass.id, stored).await?);
     }
     let limits = settings::find(&app.db, job.vessel_id).await?.alerts;
-    let now = app.clock.now().into();
+    let now: Time = app.clock.now().into();
     let mut tx = app.db.begin().await?;
     if !queue::finish(&mut tx, job).await? {
         return Err(Error::Internal(anyhow::anyhow!("the lease was lost")));
+    }
+    if let Some(time) = comes_true {
+        let delay_s = time.seconds_since(now.0).max(0.0);
+        queue::enqueue(&mut tx, job.vessel_id, now, delay_s).await?;
     }
     let mut events = Vec::new();
     for found in &news {
@@ -144,8 +153,8 @@ async fn analyse_compass(
     app: &App,
     vessel_id: VesselId,
     compass_id: CompassId,
+    stored: input::Stored,
 ) -> Result<Option<Found>> {
-    let stored = input::load(&app.db, vessel_id, compass_id).await?;
     let last_hash = store::last_hash(&app.db, vessel_id, compass_id).await?;
     let found = tokio::task::spawn_blocking(move || -> anyhow::Result<Option<Found>> {
         let input = stored.decode()?;

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 on_both!(
     samples_with_magnetic_cargo_are_left_out_until_the_report_is_withdrawn,
     an_adjustment_opens_an_epoch_of_its_own_compass,
+    an_adjustment_that_is_planned_withdraws_the_card_when_it_comes,
     words_alone_make_no_new_model,
     without_a_model_it_is_said_what_the_logbook_leaves_out,
     entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline,
@@ -102,6 +103,26 @@ async fn an_adjustment_opens_an_epoch_of_its_own_compass(shore: Shore) {
     shore.finish().await;
 }
 
+async fn an_adjustment_that_is_planned_withdraws_the_card_when_it_comes(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    nao.put(1, &passage(DAY, 200)).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let at = shore.app.clock.now().plus_seconds(7200.0);
+    let planned = json!({ "kind": "adjustment", "from": at.to_string() });
+    nao.report(&ada, &planned).await;
+    shore.work().await;
+    let model = ada.get(&nao.path("/model")).await.good();
+    assert_eq!(model["version"], 1, "the card holds until then");
+    assert!(shore.work().await.is_empty(), "nothing is due before");
+    shore.advance(7201.0);
+    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    let withdrawn = ada.get(&nao.path("/model")).await;
+    assert_eq!(withdrawn.status, 404);
+    shore.finish().await;
+}
+
 async fn words_alone_make_no_new_model(shore: Shore) {
     let ada = shore.admin("ada").await;
     let nao = shore.ship(&ada, "Nao").await;
@@ -168,11 +189,7 @@ async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
     shore.advance(A_WHILE_S);
     assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
     let epochs = sound_epochs(&ada, &nao).await;
-    let begun: Vec<&Value> = epochs.iter().map(|epoch| &epoch["begun_by"]).collect();
-    assert_eq!(
-        begun,
-        [&Value::Null, &json!("adjustment"), &json!("dry_docking")]
-    );
+    assert_eq!(begun_by(&epochs), [&Value::Null, &json!("adjustment")]);
     assert_eq!(epochs[0]["refusal"]["reason"], "too_few_samples");
     assert!(
         epochs[1]["samples_used"].as_u64().unwrap() > 200,
@@ -182,7 +199,20 @@ async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
     // Six hours at a sample every ten minutes, each left out once.
     let out = left_out(&ada, &nao, "magnetic_cargo").await + left_out(&ada, &nao, "berth").await;
     assert_eq!(out, 36);
+
+    // The work begins at noon.
+    shore.advance(5.0 * 3600.0);
+    assert!(matches!(shore.work().await[..], [Worked::Analysed(_, 1)]));
+    let epochs = sound_epochs(&ada, &nao).await;
+    assert_eq!(
+        begun_by(&epochs),
+        [&Value::Null, &json!("adjustment"), &json!("dry_docking")]
+    );
     shore.finish().await;
+}
+
+fn begun_by(epochs: &[Value]) -> Vec<&Value> {
+    epochs.iter().map(|epoch| &epoch["begun_by"]).collect()
 }
 
 async fn a_thousand_entries_are_one_analysis(shore: Shore) {
