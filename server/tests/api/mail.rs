@@ -221,12 +221,13 @@ async fn a_recipient_hears_of_nothing_less_bad_than_asked(shore: Shore) {
 async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
     let ada = shore.admin("ada").await;
     let relay = Relay::start().await;
-    let injected = json!({ "name": "Nao\r\nBcc: eve@example.com" });
-    let refused = ada.post("/vessels", &injected).await;
-    assert_eq!(refused.problem(), "invalid");
+    for ending in ["\r\n", "\u{2028}", "\u{2029}"] {
+        let injected = json!({ "name": format!("Nao{ending}Bcc: eve@example.com") });
+        let refused = ada.post("/vessels", &injected).await;
+        assert_eq!(refused.problem(), "invalid", "{ending:?}");
+    }
     let names = [
         "Ñandú Ærø 北京号".to_owned(),
-        "Nao\u{2028}Bcc: eve@example.com\u{2029}.".to_owned(),
         "=?utf-8?q?Bcc=3A_eve?= <eve@example.com>, \"quoted\\".to_owned(),
         "Наш корабль ".repeat(16).trim().to_owned(),
     ];
@@ -236,10 +237,9 @@ async fn names_make_no_headers_and_come_through_whole(shore: Shore) {
     add(&ada, "bridge@example.com", "notice").await;
     shore.advance(4.0 * DAY_S);
     alerts::for_silence(&shore.app).await.unwrap();
-    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 4]);
+    assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 3]);
     let mut got: Vec<Value> = relay.got().iter().map(read).collect();
-    let shown = names.map(|name| name.replace(['\u{2028}', '\u{2029}'], " "));
-    for name in shown {
+    for name in names {
         let subject = format!("{name}: notice, no word from the vessel").replace("=?", "= ?");
         let place = got
             .iter()
