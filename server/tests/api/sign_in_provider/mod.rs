@@ -2,7 +2,7 @@
 
 use crate::second_factor::{app_code, now_s, set_up};
 use crate::support::{
-    Answer, Engine, PASSWORD, Person, Provider, Shore, attempt, provider_settings,
+    Answer, Engine, PASSWORD, Person, Provider, Shore, Signer, attempt, provider_settings,
 };
 use binnacle_server::time::Time;
 use binnacle_server::users;
@@ -36,6 +36,7 @@ with_provider!(
     people_of_every_company_sign_in_as_themselves,
     whoever_has_a_second_factor_is_asked_for_it,
     another_key_of_the_providers_is_looked_for,
+    a_provider_that_signs_with_rsa_is_believed,
     an_email_may_be_told_only_to_who_asks_for_it,
     a_sign_in_is_in_the_audit_log,
     a_person_who_begins_anew_is_found_anew,
@@ -272,6 +273,24 @@ async fn another_key_of_the_providers_is_looked_for(world: World) {
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=untrusted");
     world.shore.advance(60.0);
     assert_eq!(outcome(&world.sign_in().await), "/");
+    world.shore.finish().await;
+}
+
+async fn a_provider_that_signs_with_rsa_is_believed(world: World) {
+    world.provider.signs_by_rsa();
+    assert_eq!(world.me().await["email"], "ada@example.com");
+    for signer in [Signer::Stranger, Signer::Secret, Signer::Nobody] {
+        world.provider.signed_by(signer);
+        assert_eq!(outcome(&world.sign_in().await), "/?sign-in=untrusted");
+    }
+    world.provider.signed_by(Signer::Itself);
+    world.shore.advance(60.0);
+    world.provider.changes_its_key();
+    assert_eq!(
+        outcome(&world.sign_in().await),
+        "/",
+        "another RSA key is looked for"
+    );
     world.shore.finish().await;
 }
 

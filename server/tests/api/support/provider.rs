@@ -11,10 +11,14 @@ use axum::routing::{get, post};
 use axum::{Json, Router};
 use binnacle_magnetics::time::Timestamp;
 use ring::rand::SystemRandom;
-use ring::signature::{ECDSA_P256_SHA256_FIXED_SIGNING, EcdsaKeyPair, KeyPair};
+use ring::rsa::PublicKeyComponents;
+use ring::signature::{
+    ECDSA_P256_SHA256_FIXED_SIGNING, EcdsaKeyPair, KeyPair, RSA_PKCS1_SHA256, RsaKeyPair,
+};
 use ring::{digest, hmac};
 use serde_json::{Value, json};
 use std::collections::HashMap;
+use std::process::Command;
 use std::sync::{Arc, Mutex};
 use tokio::net::TcpListener;
 use uuid::Uuid;
@@ -40,8 +44,17 @@ pub(crate) struct Provider {
     said: Arc<Mutex<Said>>,
 }
 
+/// What it signs with, as most providers do and as some.
+#[derive(Clone)]
+enum Key {
+    /// RS256, which every provider has (OpenID Connect Core 1.0, section 15.1).
+    Rsa(Arc<RsaKeyPair>),
+    /// ES256.
+    Ecdsa(Arc<EcdsaKeyPair>),
+}
+
 struct Said {
-    key: Arc<EcdsaKeyPair>,
+    key: Key,
     key_id: String,
     claims: Value,
     signer: Signer,
@@ -64,11 +77,76 @@ pub(crate) fn provider_settings(issuer: &str) -> [&str; 8] {
     ]
 }
 
-fn new_key() -> Arc<EcdsaKeyPair> {
-    let random = SystemRandom::new();
-    let algorithm = &ECDSA_P256_SHA256_FIXED_SIGNING;
-    let key = EcdsaKeyPair::generate_pkcs8(algorithm, &random).unwrap();
-    Arc::new(EcdsaKeyPair::from_pkcs8(algorithm, key.as_ref(), &random).unwrap())
+impl Key {
+    fn ecdsa() -> Key {
+        let random = SystemRandom::new();
+        let algorithm = &ECDSA_P256_SHA256_FIXED_SIGNING;
+        let key = EcdsaKeyPair::generate_pkcs8(algorithm, &random).unwrap();
+        let key = EcdsaKeyPair::from_pkcs8(algorithm, key.as_ref(), &random).unwrap();
+        Key::Ecdsa(Arc::new(key))
+    }
+
+    /// Made by openssl: ring makes none.
+    fn rsa() -> Key {
+        let made = Command::new("openssl")
+            .args(["genpkey", "-algorithm", "RSA", "-outform", "DER"])
+            .args(["-pkeyopt", "rsa_keygen_bits:2048"])
+            .output()
+            .unwrap();
+        assert!(made.status.success(), "{made:?}");
+        // By its version it writes PKCS #8 or PKCS #1.
+        let key = RsaKeyPair::from_pkcs8(&made.stdout);
+        let key = key.or_else(|_| RsaKeyPair::from_der(&made.stdout));
+        Key::Rsa(Arc::new(key.unwrap()))
+    }
+
+    /// Another of the same kind.
+    fn another(&self) -> Key {
+        match self {
+            Key::Rsa(_) => Key::rsa(),
+            Key::Ecdsa(_) => Key::ecdsa(),
+        }
+    }
+
+    fn algorithm(&self) -> &'static str {
+        match self {
+            Key::Rsa(_) => "RS256",
+            Key::Ecdsa(_) => "ES256",
+        }
+    }
+
+    fn sign(&self, message: &[u8]) -> Vec<u8> {
+        let random = SystemRandom::new();
+        match self {
+            Key::Rsa(key) => {
+                let mut signature = vec![0; key.public().modulus_len()];
+                key.sign(&RSA_PKCS1_SHA256, &random, message, &mut signature)
+                    .unwrap();
+                signature
+            }
+            Key::Ecdsa(key) => key.sign(&random, message).unwrap().as_ref().to_vec(),
+        }
+    }
+
+    /// As a provider shows it (RFC 7517).
+    fn shown(&self, key_id: &str) -> Value {
+        match self {
+            Key::Rsa(key) => {
+                let parts = PublicKeyComponents::<Vec<u8>>::from(key.public());
+                json!({
+                    "kty": "RSA", "use": "sig", "alg": "RS256", "kid": key_id,
+                    "n": base64url(&parts.n), "e": base64url(&parts.e),
+                })
+            }
+            Key::Ecdsa(key) => {
+                let point = key.public_key().as_ref();
+                json!({
+                    "kty": "EC", "crv": "P-256", "use": "sig", "alg": "ES256", "kid": key_id,
+                    "x": base64url(&point[1..33]), "y": base64url(&point[33..]),
+                })
+            }
+        }
+    }
 }
 
 fn start_s() -> i64 {
@@ -85,7 +163,7 @@ impl Provider {
         let provider = Provider {
             issuer: format!("http://{}", listener.local_addr().unwrap()),
             said: Arc::new(Mutex::new(Said {
-                key: new_key(),
+                key: Key::ecdsa(),
                 key_id: "first".to_owned(),
                 claims: json!({}),
                 signer: Signer::Itself,
@@ -128,7 +206,13 @@ impl Provider {
     /// Another key under another name, and the one before is gone.
     pub(crate) fn changes_its_key(&self) {
         let mut said = self.said.lock().unwrap();
-        (said.key, said.key_id) = (new_key(), "second".to_owned());
+        (said.key, said.key_id) = (said.key.another(), "second".to_owned());
+    }
+
+    /// Signs with an RSA key from now on, which nobody has seen.
+    pub(crate) fn signs_by_rsa(&self) {
+        let mut said = self.said.lock().unwrap();
+        (said.key, said.key_id) = (Key::rsa(), "rsa".to_owned());
     }
 
     /// Every code and token that it gave.
@@ -147,17 +231,13 @@ async fn configuration(State(provider): State<Provider>) -> Json<Value> {
         "jwks_uri": at("/keys"),
         "response_types_supported": ["code"],
         "subject_types_supported": ["public"],
-        "id_token_signing_alg_values_supported": ["ES256", "HS256", "none"],
+        "id_token_signing_alg_values_supported": ["RS256", "ES256", "HS256", "none"],
     }))
 }
 
 async fn keys(State(provider): State<Provider>) -> Json<Value> {
     let said = provider.said.lock().unwrap();
-    let point = said.key.public_key().as_ref();
-    Json(json!({ "keys": [{
-        "kty": "EC", "crv": "P-256", "use": "sig", "alg": "ES256", "kid": said.key_id,
-        "x": base64url(&point[1..33]), "y": base64url(&point[33..]),
-    }] }))
+    Json(json!({ "keys": [said.key.shown(&said.key_id)] }))
 }
 
 /// The person is asked nothing: it is who the test says.
@@ -231,7 +311,7 @@ async fn user_info(State(provider): State<Provider>, headers: HeaderMap) -> Resp
 impl Said {
     fn sign(&self, claims: &str) -> String {
         let algorithm = match self.signer {
-            Signer::Itself | Signer::Stranger => "ES256",
+            Signer::Itself | Signer::Stranger => self.key.algorithm(),
             Signer::Secret => "HS256",
             Signer::Nobody => "none",
         };
@@ -241,13 +321,9 @@ impl Said {
             base64url(head.as_bytes()),
             base64url(claims.as_bytes())
         );
-        let ecdsa = |key: &EcdsaKeyPair| {
-            let signature = key.sign(&SystemRandom::new(), signed.as_bytes());
-            signature.unwrap().as_ref().to_vec()
-        };
         let signature = match self.signer {
-            Signer::Itself => ecdsa(&self.key),
-            Signer::Stranger => ecdsa(&new_key()),
+            Signer::Itself => self.key.sign(signed.as_bytes()),
+            Signer::Stranger => self.key.another().sign(signed.as_bytes()),
             Signer::Secret => {
                 let key = hmac::Key::new(hmac::HMAC_SHA256, CLIENT_SECRET.as_bytes());
                 hmac::sign(&key, signed.as_bytes()).as_ref().to_vec()
