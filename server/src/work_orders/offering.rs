@@ -214,7 +214,7 @@ pub(super) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
 }
 
 /// Terms, their berth trimmed, for a fee that can be.
-fn checked_words(terms: Terms) -> Result<Terms> {
+fn checked_words(mut terms: Terms) -> Result<Terms> {
     if let Some(fee) = terms.fee_eur
         && !(0.0..=MOST_EUR).contains(&fee)
     {
@@ -223,10 +223,8 @@ fn checked_words(terms: Terms) -> Result<Terms> {
             detail: format!("{fee} is outside 0 to {MOST_EUR}"),
         });
     }
-    Ok(Terms {
-        berth: optional_text("berth", terms.berth.as_deref())?,
-        ..terms
-    })
+    terms.berth = optional_text("berth", terms.berth.as_deref())?;
+    Ok(terms)
 }
 
 impl Proposal {

@@ -177,7 +177,7 @@ fn a_change_at_a_discharge_in_the_logbook_is_not_cargo_that_lasts() {
         .samples
         .iter()
         .filter(|s| s.time > cargo.from)
-        .cloned()
+        .copied()
         .collect();
     let loaded = since[0].time.plus_seconds(-20.0 * 24.0 * HOUR_S);
     let entry = LogbookEntry {
