@@ -126,7 +126,8 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     assert!(after.iter().all(|status| status == "verified"), "{after:?}");
 
     // A magnet that somebody moved ends it,
-    let moved = json!({ "kind": "corrector_change", "from": "2027-01-27T20:00:00Z" });
+    let now = shore.app.clock.now().to_string();
+    let moved = json!({ "kind": "corrector_change", "from": now });
     job.person
         .post(&job.ship.path("/logbook"), &moved)
         .await
