@@ -1,6 +1,6 @@
 //! `/ports`: sea ports by name or UN/LOCODE.
 
-use crate::access::Reader;
+use crate::access::PartyReader;
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params};
@@ -58,8 +58,8 @@ struct PortList {
 /// From UNECE's list of UN/LOCODEs; names are found with and without accents.
 #[utoipa::path(get, path = "/ports", tag = "adjusting", params(Search),
     responses((status = 200, body = PortList), (status = 401, body = Problem),
-              (status = 422, body = Problem)))]
-async fn search_ports(_: Reader, Params(search): Params<Search>) -> Result<Json<PortList>> {
+              (status = 403, body = Problem), (status = 422, body = Problem)))]
+async fn search_ports(_: PartyReader, Params(search): Params<Search>) -> Result<Json<PortList>> {
     if search.q.chars().count() > MOST {
         return Err(Error::Invalid {
             field: "q",
