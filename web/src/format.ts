@@ -171,6 +171,12 @@ export function microtesla(nanotesla: number | null | undefined): string {
   return `${plain(nanotesla / 1000, 1)}\u00a0µT`;
 }
 
+/** A field to a hundredth of a microtesla: what a magnetometer shows. */
+export function microteslaFine(nanotesla: number | null | undefined): string {
+  if (nanotesla === null || nanotesla === undefined || !Number.isFinite(nanotesla)) return unknown;
+  return `${plain(nanotesla / 1000, 2)}\u00a0µT`;
+}
+
 /** A count with thin spaces between thousands: `12 480`. */
 export function count(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return unknown;

@@ -25,6 +25,7 @@ use crate::ids::{BinnacleId, CompassId, VesselId};
 use crate::session;
 use crate::time::Time;
 use crate::vessels;
+use crate::work_orders;
 use axum::extract::State;
 use axum::http::header::{CONTENT_DISPOSITION, HeaderName};
 use binnacle_magnetics::binnacle::{Binnacle, BinnacleError, BinnacleForm};
@@ -122,6 +123,7 @@ async fn put_binnacle(
         .once(&mut tx, writer.operator, &request, wanted.0, now)
         .await?;
     if made == wanted.0 {
+        work_orders::must_not_be_adjusting(&mut tx, vessel, compass).await?;
         let author = Author {
             id: writer.user.0,
             name: session::name_of(&mut tx, writer.user).await?,

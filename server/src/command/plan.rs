@@ -1,12 +1,14 @@
 //! `plan`: from a model, a binnacle and a reading at the berth, how to set the
-//! correctors.
+//! correctors; and from another reading after the steps, whether they stand so.
 //!
 //! A refusal is an answer: it says why, and what would cure it. A mistake in a file that
 //! alone explains a berth that does not fit is bad input.
 
 use super::{BadInput, answer, input, json};
 use crate::config::Plan;
-use binnacle_magnetics::adjust::{AdjustError, BerthForm, Outcome, plan as find_plans};
+use binnacle_magnetics::adjust::{
+    AdjustError, Adjustment, AfterForm, BerthForm, Done, Outcome, plan as find_plans, read_again,
+};
 use binnacle_magnetics::binnacle::Binnacle;
 use binnacle_magnetics::model::Model;
 use serde::Serialize;
@@ -45,11 +47,61 @@ fn find(arguments: &Plan) -> Result<String, BadInput> {
         AdjustError::Deviation(error) => of(&arguments.model, error),
         error => of(&arguments.berth, error),
     })?;
+    if let Some(after) = &arguments.after {
+        return read_after(
+            arguments,
+            after,
+            &form,
+            &berth.adjustment(&model, &binnacle),
+            outcome,
+        );
+    }
     let refused = !outcome.refusals.is_empty();
     Ok(json(&Planned {
         verdict: if refused { "refused" } else { "planned" },
         outcome,
     }))
+}
+
+/// What the magnetometer says of the steps of a plan that were done.
+fn read_after(
+    arguments: &Plan,
+    file: &Path,
+    form: &BerthForm,
+    adjustment: &Adjustment<'_>,
+    mut outcome: Outcome,
+) -> Result<String, BadInput> {
+    if let Some(refused) = outcome.refusals.first() {
+        return Err(of(
+            &arguments.berth,
+            format!("no plan was given: {}", refused.words),
+        ));
+    }
+    let after: AfterForm = input::json_file(file)?;
+    let plans = outcome.plans.len();
+    if after.plan == 0 || after.plan > plans {
+        return Err(of(file, format!("plan: there are plans 1 to {plans}")));
+    }
+    let plan = outcome.plans.remove(after.plan - 1);
+    if after.turned_deg.len() > plan.steps.len() {
+        let steps = plan.steps.len();
+        return Err(of(file, format!("turned_deg: the plan has {steps} steps")));
+    }
+    let there = form.read_after(&after).map_err(|error| of(file, error))?;
+    let steps = plan.steps.into_iter().enumerate();
+    let done: Vec<Done> = steps
+        .map(|(index, step)| Done {
+            step,
+            turned_deg: after.turned_deg.get(index).copied().flatten(),
+        })
+        .collect();
+    let adjustment = Adjustment {
+        now: Some(&plan.setting),
+        ..adjustment.clone()
+    };
+    let unit = after.reading.unit;
+    let again = read_again(&adjustment, &done, &there.reading, there.vertical, unit);
+    Ok(json(&again.map_err(|error| of(file, error))?))
 }
 
 fn of(file: &Path, what: impl std::fmt::Display) -> BadInput {

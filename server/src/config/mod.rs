@@ -383,6 +383,9 @@ pub struct Plan {
     /// What was found at the berth (docs/plan.md)
     #[arg(long)]
     pub berth: PathBuf,
+    /// What the magnetometer read after the steps: says whether they were done as planned
+    #[arg(long)]
+    pub after: Option<PathBuf>,
 }
 
 /// `analyse`.

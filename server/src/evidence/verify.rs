@@ -14,6 +14,16 @@ use zip::ZipArchive;
 /// More than this is no evidence of one adjustment.
 const MOST_BYTES: u64 = 1 << 30;
 
+/// The files of every archive; photographs are those of the log.
+const OF_THE_FORM: [&str; 6] = [
+    "README.txt",
+    "entries.ndjson",
+    "manifest.json",
+    "predicted.csv",
+    "record.json",
+    "record.pdf",
+];
+
 /// What was found.
 #[derive(Clone, Debug, Default)]
 pub struct Found {
@@ -111,6 +121,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     let mut previous: Option<String> = None;
     let mut signed = 0;
     let mut withheld: Vec<String> = Vec::new();
+    let mut known: Vec<String> = OF_THE_FORM.map(str::to_owned).to_vec();
     let mut completed: Option<Completed> = None;
     let mut entries: i64 = 0;
     let recorded = covered::head(files);
@@ -138,7 +149,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
                 completed = content(&entry, &at, found);
                 record(completed.as_ref(), files, found);
             }
-            Some("photo") => photo(&entry, entries, &at, files, found),
+            Some("photo") => known.extend(photo(&entry, entries, &at, files, found)),
             Some("signature") => {
                 signed += signature(&entry, completed.as_ref(), &at, found);
             }
@@ -160,6 +171,9 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
         {
             found.wrong(format!("{at} is not the one that record.json names"));
         }
+    }
+    for name in files.keys().filter(|name| !known.contains(name)) {
+        found.wrong(format!("{name} is no part of this evidence"));
     }
     if !withheld.is_empty() {
         found.facts.push(format!(
@@ -215,16 +229,15 @@ fn record(completed: Option<&Completed>, files: &BTreeMap<String, Vec<u8>>, foun
     }
 }
 
+/// The name of its file.
 fn photo(
     entry: &Value,
     number: i64,
     at: &str,
     files: &BTreeMap<String, Vec<u8>>,
     found: &mut Found,
-) {
-    let Some(photo) = content::<PhotoTaken>(entry, at, found) else {
-        return;
-    };
+) -> Option<String> {
+    let photo = content::<PhotoTaken>(entry, at, found)?;
     let name = photo.file(number);
     match files.get(&name) {
         None => found.wrong(format!("{name} is missing")),
@@ -233,6 +246,7 @@ fn photo(
         }
         Some(_) => {}
     }
+    Some(name)
 }
 
 /// How many signatures hold: one or none.

@@ -81,7 +81,7 @@ pub(super) struct BerthReadingSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Unit")]
-enum FieldUnit {
+pub(super) enum FieldUnit {
     Nanotesla,
     Microtesla,
     Gauss,

@@ -21,6 +21,7 @@ use crate::port_calls;
 use crate::time::Time;
 use axum::extract::State as Shared;
 use binnacle_magnetics::adjust::{Outcome, ReadingForm};
+use binnacle_magnetics::angle::wrap_180;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
@@ -115,7 +116,8 @@ fn must_not_be_moved(whole: &Whole) -> Result<()> {
     )?;
     if whole.standing().was_moved() {
         return Err(Error::WrongState(
-            "correctors were moved since the reading, and the model does not know them so: put \
+            "correctors were moved since the reading, and the model does not know them so: what \
+             the magnetometer reads after the steps is a second reading. To begin again, put \
              them back as they stood, say so under corrector-settings, and read again; or cancel \
              the order, which notes how they stand, and let headings at sea make a model"
                 .to_owned(),
@@ -216,6 +218,7 @@ async fn read_step(
         detail: "the compass has not been read before".to_owned(),
     })?;
     degrees("before_deg", before_deg, 0.0, 360.0)?;
+    must_lie_still(before_deg, standing.compass_deg)?;
     let prepared = standing.prepared()?;
     let judged = calculate(&app, move || judge(&prepared, step, before_deg, after_deg)).await?;
     if let Some(mut change) = request.begin(&whole).await? {
@@ -223,6 +226,28 @@ async fn read_step(
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await
+}
+
+/// At a berth a compass that nothing was done to turns by no more, degrees.
+const LIES_STILL_DEG: f64 = 3.0;
+
+/// What a step turns the compass by is foretold for the heading on which the berth was read.
+fn must_lie_still(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
+    let Some(last_deg) = last_deg else {
+        return Ok(());
+    };
+    let turned_deg = wrap_180(before_deg - last_deg);
+    if turned_deg.abs() <= LIES_STILL_DEG {
+        return Ok(());
+    }
+    Err(Error::Invalid {
+        field: "before_deg",
+        detail: format!(
+            "is {:.1} degrees off the {last_deg:.1} that it read last: read it once more; if the \
+             ship has swung, wait until she lies as she did when the berth was read",
+            turned_deg.abs()
+        ),
+    })
 }
 
 /// Say how the correctors stand

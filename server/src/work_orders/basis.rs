@@ -1,9 +1,12 @@
 //! What a reading is held against and a plan rests on: model, field, binnacle and
 //! waters, as they were when the magnetometer was read.
 
+use super::order::State;
+use super::store;
 use crate::analysis;
 use crate::app::App;
 use crate::binnacles;
+use crate::db::row;
 use crate::error::{Error, Result};
 use crate::ids::{CompassId, ModelId, VesselId};
 use crate::logbook;
@@ -19,6 +22,7 @@ use binnacle_magnetics::model::Model;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::ship::EarthField;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 
 /// What a plan rests on.
@@ -57,6 +61,10 @@ pub struct ModelUsed {
     pub estimator: String,
     /// The time of its last sample.
     pub data_until: Time,
+    /// The time of the last heading behind it, where an adjustment foretold it and no
+    /// heading at sea has confirmed that.
+    #[serde(default)]
+    pub headings_until: Option<Time>,
     /// The model with its covariance.
     pub model: Model,
 }
@@ -116,7 +124,10 @@ impl Basis {
             binnacle: binnacle.binnacle.0,
             waters: waters(app, vessel, compass, earth.for_ship()).await?,
             cargo_on_board: cargo || given.cargo_on_board,
-            model: ModelUsed::from(model),
+            model: ModelUsed {
+                headings_until: headings_until(app, vessel, &model).await?,
+                ..ModelUsed::from(model)
+            },
         })
     }
 
@@ -142,6 +153,7 @@ impl From<StoredModel> for ModelUsed {
             input_hash: stored.input_hash,
             estimator: stored.estimator,
             data_until: stored.data_until,
+            headings_until: None,
             model: stored.model.0,
         }
     }
@@ -150,7 +162,9 @@ impl From<StoredModel> for ModelUsed {
 impl Prepared {
     /// What the planner is asked.
     pub(super) fn adjustment(&self) -> Adjustment<'_> {
-        let age_s = self.given.at.seconds_since(self.basis.model.data_until.0);
+        let model = &self.basis.model;
+        let until = model.headings_until.unwrap_or(model.data_until);
+        let age_s = self.given.at.seconds_since(until.0);
         Adjustment {
             model: &self.basis.model.model,
             earth: self.basis.earth(),
@@ -168,6 +182,32 @@ impl Prepared {
             limits: self.limits,
         }
     }
+}
+
+/// Until when there are headings behind a model that an order foretold, where none at sea
+/// has confirmed it: what is foretold is no fresher than what it was foretold from.
+async fn headings_until(app: &App, vessel: VesselId, model: &StoredModel) -> Result<Option<Time>> {
+    let Some(order) = model.foretold_by else {
+        return Ok(None);
+    };
+    let state = row!(
+        &app.db,
+        (State,),
+        "SELECT state FROM work_orders WHERE vessel_id = $1 AND id = $2",
+        vessel,
+        order
+    )?;
+    if state.is_some_and(|(state,)| state == State::Verified) {
+        return Ok(None);
+    }
+    let Some(record) = store::record(&app.db, vessel, order).await? else {
+        return Ok(None);
+    };
+    let record: Value = serde_json::from_str(&record)?;
+    let data = &record["data"];
+    let until = [&data["headings_until"], &data["until"]];
+    let until = until.into_iter().find(|until| !until.is_null());
+    Ok(until.map(Time::deserialize).transpose()?)
 }
 
 /// Cells of the horizontal and the vertical field, nT: within one a compass feels the same.

@@ -5,11 +5,12 @@
 //! stands now, the logbook's entry at the moment of the adjustment and the model that
 //! is foretold from then on all come about, or none of them.
 
+use super::again::AgainVerdict;
 use super::change::Change;
 use super::entry::{Content, sha256_hex};
 use super::record::{self, Aboard};
 use super::standing::Standing;
-use super::store;
+use super::store::{self, Whole};
 use crate::binnacles;
 use crate::error::{Error, Result};
 use crate::events::Kind;
@@ -18,6 +19,7 @@ use crate::ids::{BinnacleId, EntryId, FirmId, KeyId, ModelId};
 use crate::logbook;
 use crate::models::{self, ModelJson, StoredModel};
 use crate::time::Time;
+use binnacle_magnetics::adjust::Learnt;
 use binnacle_magnetics::binnacle::Setting;
 use binnacle_magnetics::model::Model;
 use ring::signature::{ED25519, UnparsedPublicKey};
@@ -119,13 +121,28 @@ pub struct KnownKey {
 
 impl Word {
     /// The word, its words trimmed, at a moment that can be.
-    pub(super) fn checked(self, standing: &Standing, now: Time) -> Result<(Word, Time)> {
+    pub(super) fn checked(self, whole: &Whole, now: Time) -> Result<(Word, Time)> {
+        let standing = whole.standing();
         let at = self.at.unwrap_or(now);
-        let read_at = standing.read.as_ref().map(|read| Time(read.given.at));
+        let again = standing.again.as_ref().map(|again| again.given.at);
+        let read = standing.read.as_ref().map(|read| read.given.at);
+        let read_at = again.or(read).map(Time);
         if at > now || read_at.is_some_and(|read_at| at < read_at) {
             return Err(Error::Invalid {
                 field: "at",
-                detail: "lies in the future, or before the reading at the berth".to_owned(),
+                detail: "lies in the future, or before the last reading at the berth".to_owned(),
+            });
+        }
+        let moved = whole.log.iter().rev().find(|entry| {
+            matches!(
+                entry.content,
+                Content::Step(_) | Content::CorrectorSettings(_)
+            )
+        });
+        if moved.is_some_and(|moved| moved.at.0.seconds_since(at.0) > SENT_LATER_S) {
+            return Err(Error::Invalid {
+                field: "at",
+                detail: "lies long before the last step".to_owned(),
             });
         }
         let word = Word {
@@ -145,12 +162,23 @@ impl Word {
     }
 }
 
+/// What is done without a connection is sent so much later at most, seconds.
+const SENT_LATER_S: f64 = 12.0 * 3600.0;
+
 /// The plan's setting, if it stands so.
-fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
+pub(super) fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
     let wrong = |detail: String| Err(Error::WrongState(detail));
     let Some(plan) = &standing.plan else {
         return wrong("there is no plan for how the correctors stand: choose one".to_owned());
     };
+    if let Some(again) = &standing.again
+        && again.said.verdict != AgainVerdict::AsPlanned
+    {
+        return wrong(format!(
+            "the second reading does not confirm it: {}",
+            again.said.words
+        ));
+    }
     if let Some(step) = standing.next_step() {
         let number = step.number;
         return wrong(format!(
@@ -164,20 +192,20 @@ fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
 pub(super) async fn complete(
     change: &mut Change<'_>,
     aboard: &Aboard,
+    learnt: Learnt,
     word: Word,
     at: Time,
 ) -> Result<()> {
     let standing = change.whole.standing();
     let setting = must_stand_as_planned(&standing)?.clone();
-    let (Some(plan), Some(basis), Some(binnacle)) = (
-        standing.plan.as_ref(),
+    let (Some(basis), Some(binnacle)) = (
         standing.read.as_ref().and_then(|read| read.basis.as_ref()),
         standing.binnacle.as_ref(),
     ) else {
         return Err(Error::WrongState("there is no plan".to_owned()));
     };
     let after = binnacle.with_setting(setting)?;
-    let record = record::text(aboard, &change.whole, &standing, &word, &after)?;
+    let record = record::text(aboard, &change.whole, &standing, &learnt, &word, &after)?;
     let (vessel, compass) = (
         change.whole.summary.vessel_id,
         change.whole.summary.compass_id,
@@ -191,7 +219,7 @@ pub(super) async fn complete(
         record_sha256: sha256_hex(record.as_bytes()),
         logbook_entry: EntryId::new(),
         model_id: ModelId::new(),
-        model_after: plan.plan.model_after.clone(),
+        model_after: learnt.model_after,
     };
     change.whole.summary.adjuster_name = Some(word.adjuster_name);
     change.whole.summary.adjuster_licence = Some(word.adjuster_licence);

@@ -4,6 +4,7 @@
 //! and is kept as that text; its hash is the SHA-256 of the text, and the next entry
 //! names it. So a log can be checked with nothing but SHA-256.
 
+use super::again::ReadAgain;
 use super::completion::{Completed, SignedBy};
 use super::moved::CallMoved;
 use super::offering::Boarded;
@@ -109,6 +110,8 @@ pub enum Content {
     Plan(Box<Planned>),
     /// A step was done, and the compass read.
     Step(Box<StepDone>),
+    /// The magnetometer was read once more, after the steps.
+    SecondReading(Box<ReadAgain>),
     /// How the correctors stand, as they were found.
     CorrectorSettings(Box<Moved>),
     /// A photograph.

@@ -4,7 +4,7 @@ use super::completion::{self, Signed, SignedBy, Word};
 use super::entry::Content;
 use super::order::{Order, State};
 use super::photos::{Caption, MAX_BYTES, MOST, PhotoTaken};
-use super::plan::{must_keep_to_limits, must_still_hold};
+use super::plan::{foretold, must_have_turned, must_keep_to_limits, must_still_hold};
 use super::record::Aboard;
 use super::store::{self, Whole};
 use super::view;
@@ -151,13 +151,17 @@ async fn complete_work_order(
         return shown(&app, writer.tenant, id).await;
     }
     whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
-    let prepared = whole.standing().prepared()?;
+    let standing = whole.standing();
+    let prepared = standing.prepared()?;
     must_still_hold(&app, &whole.summary, &prepared).await?;
-    must_keep_to_limits(&whole.standing())?;
-    let (word, at) = word.checked(&whole.standing(), app.clock.now().into())?;
+    must_keep_to_limits(&standing)?;
+    let (word, at) = word.checked(&whole, app.clock.now().into())?;
+    completion::must_stand_as_planned(&standing)?;
+    must_have_turned(&app, &standing, prepared).await?;
+    let learnt = foretold(&app, &standing).await?;
     let aboard = aboard(&app, &whole).await?;
     if let Some(mut change) = request.begin(&whole).await? {
-        completion::complete(&mut change, &aboard, word, at).await?;
+        completion::complete(&mut change, &aboard, learnt, word, at).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await

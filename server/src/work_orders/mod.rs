@@ -11,6 +11,7 @@
 //!   certificate.
 
 mod aboard;
+mod again;
 mod answers;
 mod asked;
 mod at_berth;
@@ -53,7 +54,7 @@ pub use moved::{Alongside, Moving, calls_move};
 pub use offering::NewOffer;
 pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};
-pub use store::lock_compass;
+pub use store::{lock_compass, must_not_be_adjusting};
 pub use verification::{after_analysis, alert};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
@@ -91,6 +92,7 @@ pub fn router() -> OpenApiRouter<App> {
         .routes(routes!(cancel_work_order))
         .routes(routes!(close_work_order))
         .merge(at_berth::router())
+        .merge(again::router())
         .merge(answers::router())
         .merge(retime::router())
         .merge(messages::router())

@@ -188,6 +188,7 @@ fn kind(content: &Content) -> Option<Kind> {
         | Content::BerthReading(_)
         | Content::Plan(_)
         | Content::Step(_)
+        | Content::SecondReading(_)
         | Content::CorrectorSettings(_)
         | Content::Photo(_)
         | Content::Remark(_)

@@ -1,5 +1,6 @@
 //! An order to adjust a compass, as it is asked for and shown.
 
+use super::again::AgainSaid;
 use super::asked::{BerthReadingSchema, LimitsSchema};
 use super::completion::{Completed, KnownKey, SignedBy};
 use super::moved::{CallChange, CallFit};
@@ -18,6 +19,7 @@ use crate::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 use binnacle_magnetics::adjust::{Limits, ReadingForm, Step};
+use binnacle_magnetics::angle::wrap_360;
 use binnacle_magnetics::binnacle::Setting;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
@@ -257,6 +259,9 @@ pub(super) struct Order {
     /// What became of the last step.
     #[schema(required, value_type = Option<VerdictSchema>)]
     pub last_step: Option<super::steps::StepSaid>,
+    /// What the magnetometer said after the steps, the correctors standing as they stand.
+    #[schema(required)]
+    pub second_reading: Option<AgainSaid>,
     /// How the correctors stand now; none before the first reading.
     #[schema(required, value_type = Option<SettingSchema>)]
     pub setting: Option<Setting>,
@@ -322,7 +327,16 @@ impl Summary {
 impl Order {
     /// The order with what follows from its log.
     pub(super) fn new(summary: Summary, standing: Standing, tenant: Tenant) -> Order {
-        let (next_step, setting) = (standing.next_step().cloned(), standing.setting().cloned());
+        let setting = standing.setting().cloned();
+        // Held against what the compass reads now, as the next step will be.
+        let next_step = standing.next_step().map(|step| Step {
+            expected_compass_deg: standing
+                .compass_deg
+                .map_or(step.expected_compass_deg, |now_deg| {
+                    wrap_360(now_deg + step.change_deg)
+                }),
+            ..step.clone()
+        });
         let verified = standing.is_verified();
         let of_firm = tenant.firm();
         let closed = of_firm.is_some() && summary.state.is_over();
@@ -342,6 +356,7 @@ impl Order {
             steps_done: standing.steps_done,
             compass_deg: standing.compass_deg,
             last_step: standing.last_step,
+            second_reading: standing.again.map(|again| again.said),
             reading: standing.read.as_ref().map(|read| read.given.clone()),
             berth_check: standing.read.and_then(|read| read.checked),
             // The plan is a firm's business while the order is open.

@@ -2,12 +2,15 @@
 
 use super::basis::Prepared;
 use super::order::Summary;
-use super::refusal::Refusal;
+use super::refusal::{Cure, Refusal};
 use super::standing::Standing;
 use crate::app::App;
+use crate::binnacles;
 use crate::error::{Error, Result};
 use crate::models;
-use binnacle_magnetics::adjust::{AdjustError, Optimality, Outcome, Plan, plan};
+use binnacle_magnetics::adjust::{
+    AdjustError, Learnt, Optimality, Outcome, Plan, by_compass, plan, turned_in_all,
+};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -75,7 +78,8 @@ impl Standing {
 /// What is read at a berth holds no longer: by then she may lie elsewhere.
 pub(super) const READING_HOLDS_S: f64 = 48.0 * 3600.0;
 
-/// Refuses a reading that is too old, or older than a change of the ship's magnetism.
+/// Refuses a reading that is too old, or older than a change of the ship's magnetism or of
+/// what is known of her binnacle.
 ///
 /// # Errors
 /// [`Error::WrongState`].
@@ -90,7 +94,15 @@ pub(super) async fn must_still_hold(
         let words = format!("the berth was read {hours:.0} hours ago: read it again");
         return Err(Error::WrongState(words));
     }
-    let model = models::current(&app.db, summary.vessel_id, summary.compass_id).await?;
+    let (vessel, compass) = (summary.vessel_id, summary.compass_id);
+    let binnacle = binnacles::current(&app.db, vessel, compass).await?;
+    if binnacle.is_some_and(|now| now.revision != prepared.basis.binnacle_revision) {
+        return Err(Error::WrongState(
+            "the binnacle was written anew since the berth was read: read the berth again"
+                .to_owned(),
+        ));
+    }
+    let model = models::current(&app.db, vessel, compass).await?;
     let known_until = prepared.basis.model.data_until;
     let holds = model.is_some_and(|model| model.epoch_from.is_none_or(|from| from <= known_until));
     if !holds {
@@ -118,12 +130,82 @@ pub(super) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
     }
 }
 
+/// Refuses to complete what in all turned the compass otherwise than planned, where
+/// neither the magnetometer nor anyone's eyes have said since that the correctors stand so:
+/// small errors of steps, each within its own tolerance, add up.
+///
+/// # Errors
+/// [`Error::WrongState`].
+pub(super) async fn must_have_turned(
+    app: &App,
+    standing: &Standing,
+    prepared: Prepared,
+) -> Result<()> {
+    let looked = standing.looked_at == standing.steps.len();
+    let read = (prepared.given.compass_deg, prepared.compass_deg);
+    let (Some(first_deg), Some(now_deg)) = read else {
+        return Ok(());
+    };
+    if standing.learnt().is_some() || looked {
+        return Ok(());
+    }
+    let in_all = calculate(app, move || {
+        let adjustment = prepared.adjustment();
+        turned_in_all(&adjustment, first_deg, adjustment.standing(), now_deg)
+    });
+    let in_all = in_all.await?;
+    if in_all.agrees() {
+        return Ok(());
+    }
+    Err(Error::WrongState(format!(
+        "{}: read the field again (second reading), or look at each corrector and say how they \
+         stand",
+        in_all.in_words()
+    )))
+}
+
+/// What is foretold of the correctors as they stand: by the magnetometer after the steps,
+/// or by what the compass showed at them, which leaves more open.
+///
+/// # Errors
+/// [`Error::NotAdjustable`] where what is left open is beyond the order's limits.
+pub(super) async fn foretold(app: &App, standing: &Standing) -> Result<Learnt> {
+    if let Some(learnt) = standing.learnt() {
+        return Ok(learnt.clone());
+    }
+    let prepared = standing.prepared()?;
+    let (limits, waters) = (standing.limits, prepared.basis.waters.clone());
+    let steps = standing.steps.clone();
+    let learnt = calculate(app, move || by_compass(&prepared.adjustment(), &steps)).await?;
+    let Some(beyond) = learnt.beyond(&limits, &waters) else {
+        return Ok(learnt);
+    };
+    let mut refusal = Refusal::from(&beyond);
+    refusal.words = format!(
+        "by what the compass showed of the steps, {}: read the field again",
+        refusal.words
+    );
+    refusal.cures.insert(0, Cure::ReadAgain);
+    Err(Error::NotAdjustable(vec![refusal]))
+}
+
 /// What the planner offers, or why it offers nothing.
 ///
 /// # Errors
 /// [`Error::NotAdjustable`] with what would cure it.
 pub(super) async fn offer(app: &App, prepared: Prepared) -> Result<Outcome> {
-    let outcome = calculate(app, move || plan(&prepared.adjustment())).await?;
+    let unproved = prepared.basis.model.headings_until;
+    let mut outcome = calculate(app, move || plan(&prepared.adjustment())).await?;
+    if let Some(until) = unproved {
+        outcome.notes.insert(
+            0,
+            format!(
+                "no heading at sea has confirmed the last adjustment, and the model is foretold \
+                 by it: the last heading behind it is of {}",
+                until.to_the_minute()
+            ),
+        );
+    }
     if outcome.plans.is_empty() {
         return Err(Error::NotAdjustable(refusals(&outcome)));
     }

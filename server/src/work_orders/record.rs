@@ -11,6 +11,7 @@ use super::store::Whole;
 use crate::compasses::Compass;
 use crate::error::Result;
 use crate::time::Time;
+use binnacle_magnetics::adjust::Learnt;
 use binnacle_magnetics::binnacle::Binnacle;
 use serde_json::json;
 
@@ -28,13 +29,19 @@ pub(super) fn text(
     aboard: &Aboard,
     whole: &Whole,
     standing: &Standing,
+    learnt: &Learnt,
     word: &Word,
     after: &Binnacle,
 ) -> Result<String> {
     let summary = &whole.summary;
-    let read = standing.read.as_ref();
+    let first = standing.first.as_ref();
+    let read = first.map(|(read, _)| read).or(standing.read.as_ref());
     let basis = read.and_then(|read| read.basis.as_ref());
     let plan = standing.plan.as_ref();
+    let before = first.map(|(_, before)| before);
+    let before = before.or(plan.map(|plan| &plan.plan.before));
+    let again: Vec<_> = whole.log.iter().filter_map(second_reading).collect();
+    let hidden = standing.hidden_steps();
     let steps: Vec<_> = whole.log.iter().filter_map(step).collect();
     let photos: Vec<_> = whole.log.iter().filter_map(photo).collect();
     canonical(&json!({
@@ -59,7 +66,8 @@ pub(super) fn text(
         },
         "data": basis.map(|basis| json!({
             "sha256": basis.model.input_hash, "estimator": basis.model.estimator,
-            "until": basis.model.data_until, "model_version": basis.model.version,
+            "until": basis.model.data_until, "headings_until": basis.model.headings_until,
+            "model_version": basis.model.version,
         })),
         "model_before": basis.map(|basis| &basis.model.model),
         "earth_at_berth": basis.map(|basis| json!({
@@ -82,12 +90,26 @@ pub(super) fn text(
             "optimality": plan.optimality, "offered": plan.offered, "notes": plan.notes,
         })),
         "steps_as_read": steps,
-        "predicted_before": plan.map(|plan| &plan.plan.before),
-        "predicted_after": plan.map(|plan| &plan.plan.after),
-        "model_after": plan.map(|plan| &plan.plan.model_after),
+        "second_readings": again,
+        "not_shown": (!hidden.is_empty()).then(|| json!({ "steps": hidden, "words": NOT_SHOWN })),
+        "predicted_before": before,
+        "predicted_after": learnt.after,
+        "model_after": learnt.model_after,
         "photos": photos,
         "log": { "entries": summary.last_seq, "last_sha256": summary.last_sha256 },
     }))
+}
+
+/// Of steps that neither compass nor magnetometer has shown.
+const NOT_SHOWN: &str = "the compass does not show these steps on the berth's heading, and no \
+    second reading of the magnetometer confirms them: a slip in one of them can only be found \
+    by headings at sea";
+
+fn second_reading(entry: &super::entry::Entry) -> Option<serde_json::Value> {
+    let Content::SecondReading(read) = &entry.content else {
+        return None;
+    };
+    Some(json!({ "at": at(entry.at), "given": read.given, "said": read.said }))
 }
 
 fn step(entry: &super::entry::Entry) -> Option<serde_json::Value> {

@@ -3,6 +3,7 @@
 //! What always holds: it is a function of the log alone, so that the state in the
 //! database can be derived again.
 
+use super::again::{AgainVerdict, ReadAgain};
 use super::completion::{Completed, SignedBy};
 use super::entry::Content;
 use super::moved::CallChange;
@@ -11,10 +12,11 @@ use super::order::State;
 use super::photos::PhotoTaken;
 use super::plan::Planned;
 use super::reading::Read;
-use super::steps::{StepSaid, Verdict};
+use super::steps::{Moved, StepSaid, Verdict};
 use super::verification::Verified;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{Limits, Step, Verification};
+use binnacle_magnetics::adjust::{Done, Learnt, Limits, PredictedTable, Step, Verification};
+use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::binnacle::{Binnacle, Setting};
 
 /// How an order stands.
@@ -45,6 +47,15 @@ pub(super) struct Standing {
     pub steps_done: usize,
     /// What became of the last step.
     pub last_step: Option<StepSaid>,
+    /// All steps that were done since the last reading, with what the compass showed.
+    pub steps: Vec<Done>,
+    /// At how many of them someone has looked since, to say how the correctors stand.
+    pub looked_at: usize,
+    /// What the magnetometer said after them, the correctors standing as they stand.
+    pub again: Option<ReadAgain>,
+    /// The first reading of an order that was planned anew from a second one, and what was
+    /// foretold of the deviations before.
+    pub first: Option<(Read, Vec<PredictedTable>)>,
     /// What the compass read last at the berth, degrees.
     pub compass_deg: Option<f64>,
     /// How it was completed.
@@ -73,6 +84,10 @@ impl Standing {
             plan: None,
             steps_done: 0,
             last_step: None,
+            steps: Vec::new(),
+            looked_at: 0,
+            again: None,
+            first: None,
             compass_deg: None,
             completed: None,
             verified: None,
@@ -123,9 +138,15 @@ impl Standing {
             | Content::RetimeLapsed(_)
             | Content::Remark(_)
             | Content::Message(_) => {}
-            Content::BerthReading(read) => self.take_reading(read),
+            Content::BerthReading(read) => {
+                if self.take_reading(read) {
+                    self.first = None;
+                }
+            }
+            Content::SecondReading(read) => self.take_again(read),
             Content::Plan(planned) => self.follow(planned.as_ref().clone()),
             Content::Step(done) => {
+                self.keep_only_a_disproof();
                 // What nothing explains is read again, from where it was.
                 if done.said.verdict != Verdict::Unexplained {
                     self.compass_deg = Some(done.said.after_deg);
@@ -139,6 +160,11 @@ impl Standing {
                 }
                 if done.said.is_confirmed() {
                     self.steps_done += 1;
+                    let turned_deg = wrap_180(done.said.after_deg - done.said.before_deg);
+                    self.steps.push(Done {
+                        step: done.step.clone(),
+                        turned_deg: Some(turned_deg),
+                    });
                 } else if done.setting.is_some() {
                     self.plan = None;
                     self.state = State::Measured;
@@ -147,23 +173,7 @@ impl Standing {
                     self.follow(plan.as_ref().clone());
                 }
             }
-            Content::CorrectorSettings(moved) => {
-                let stands = self.setting() == Some(&moved.after);
-                // What it read before they were moved says nothing of how it reads now.
-                let still = self.compass_deg.filter(|_| stands);
-                self.compass_deg = moved.compass_deg.or(still);
-                self.moved_to = Some(moved.after.clone());
-                match &self.plan {
-                    Some(plan) if plan.plan.setting == moved.after => {
-                        self.steps_done = plan.plan.steps.len();
-                    }
-                    // Another way than the plan's: there has to be another plan.
-                    _ => {
-                        self.plan = None;
-                        self.state = State::Measured;
-                    }
-                }
-            }
+            Content::CorrectorSettings(moved) => self.take_settings(moved),
             Content::Completion(completed) => {
                 self.completed = Some(completed.as_ref().clone());
                 self.state = State::Adjusted;
@@ -181,27 +191,83 @@ impl Standing {
         }
     }
 
-    fn take_reading(&mut self, read: &Read) {
+    /// Whether it was taken.
+    fn take_reading(&mut self, read: &Read) -> bool {
         let Some(basis) = &read.basis else {
-            return;
+            return false;
         };
         if read.refusal.is_some() {
-            return;
+            return false;
         }
         self.binnacle = Some(basis.binnacle.clone());
         self.moved_to = None;
         self.plan = None;
         self.steps_done = 0;
         self.last_step = None;
+        self.steps.clear();
+        self.looked_at = 0;
+        self.again = None;
         self.compass_deg = read.given.compass_deg;
         self.read = Some(read.clone());
         self.state = State::Measured;
+        true
+    }
+
+    fn take_settings(&mut self, moved: &Moved) {
+        let stands = self.setting() == Some(&moved.after);
+        // What it read before they were moved says nothing of how it reads now.
+        let still = self.compass_deg.filter(|_| stands);
+        self.compass_deg = moved.compass_deg.or(still);
+        // Someone has looked at every one of them.
+        self.looked_at = self.steps.len();
+        if !stands {
+            self.again = None;
+        }
+        self.moved_to = Some(moved.after.clone());
+        match &self.plan {
+            Some(plan) if plan.plan.setting == moved.after => {
+                self.steps_done = plan.plan.steps.len();
+            }
+            // Another way than the plan's: there has to be another plan.
+            _ => {
+                self.plan = None;
+                self.state = State::Measured;
+            }
+        }
+    }
+
+    fn take_again(&mut self, read: &ReadAgain) {
+        if let (Some(anew), Some(first), Some(plan)) = (&read.anew, &self.read, &self.plan) {
+            let before = (first.clone(), plan.plan.before.clone());
+            if self.take_reading(anew) {
+                self.first.get_or_insert(before);
+            }
+        }
+        self.again = Some(read.clone());
     }
 
     fn follow(&mut self, planned: Planned) {
+        // Only a plan from a second reading knows what that has shown.
+        if self.is_read_anew() {
+            self.again = None;
+        }
+        self.keep_only_a_disproof();
         self.plan = Some(planned);
         self.steps_done = 0;
         self.state = State::Adjusting;
+    }
+
+    /// Whether the second reading is the one to plan from.
+    fn is_read_anew(&self) -> bool {
+        let anew = self.again.as_ref().and_then(|again| again.anew.as_ref());
+        anew.is_some_and(|anew| anew.refusal.is_none())
+    }
+
+    /// What confirmed the correctors as they stood says nothing of how they stand now; what
+    /// did not is not undone by moving more of them.
+    fn keep_only_a_disproof(&mut self) {
+        let again = self.again.take();
+        self.again = again.filter(|again| again.said.verdict != AgainVerdict::AsPlanned);
     }
 
     /// The step to do now.
@@ -220,8 +286,27 @@ impl Standing {
 
     /// Whether a corrector was moved.
     pub(super) fn was_moved(&self) -> bool {
+        if self.first.is_some() {
+            return true;
+        }
         let as_read = self.binnacle.as_ref().map(|binnacle| &binnacle.setting);
         self.moved_to.is_some() && self.moved_to.as_ref() != as_read
+    }
+
+    /// What the magnetometer said after the steps, where it confirmed them.
+    pub(super) fn learnt(&self) -> Option<&Learnt> {
+        let again = self.again.as_ref()?;
+        let confirmed = again.said.verdict == AgainVerdict::AsPlanned;
+        again.learnt.as_ref().filter(|_| confirmed)
+    }
+
+    /// Steps that neither the compass on this heading nor the magnetometer has shown.
+    pub(super) fn hidden_steps(&self) -> Vec<&str> {
+        if self.learnt().is_some() {
+            return Vec::new();
+        }
+        let hidden = self.steps.iter().filter(|done| !done.step.seen);
+        hidden.map(|done| done.step.words.as_str()).collect()
     }
 
     /// Whether the sea has confirmed it.

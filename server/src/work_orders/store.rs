@@ -104,6 +104,34 @@ pub(super) async fn is_under_way(
     Ok(found.is_some_and(|(orders,)| orders > 0))
 }
 
+/// Refuses to write a binnacle whose correctors are being moved.
+///
+/// # Errors
+/// [`Error::WrongState`].
+pub async fn must_not_be_adjusting(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<()> {
+    lock_compass(tx, vessel, compass).await?;
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(*) FROM work_orders
+         WHERE vessel_id = $1 AND compass_id = $2 AND state = 'adjusting'",
+        vessel,
+        compass
+    )?;
+    if found.is_none_or(|(orders,)| orders == 0) {
+        return Ok(());
+    }
+    Err(Error::WrongState(
+        "this compass is being adjusted: how its correctors stand is said to its work order, \
+         which writes the binnacle when it is completed or cancelled"
+            .to_owned(),
+    ))
+}
+
 /// The compass's last order that was completed, if it stands in a state.
 pub(super) async fn last_completed(
     tx: &mut Tx,

@@ -1,7 +1,7 @@
 //! `plan`, run as a user runs it.
 
 use crate::commands::{assert_refused, good, run};
-use binnacle_magnetics::binnacle::{Binnacle, SHIPPED};
+use binnacle_magnetics::binnacle::{Binnacle, SHIPPED, Setting};
 use binnacle_magnetics::corrector::effect;
 use binnacle_magnetics::ship::{EarthField, ShipMagnetism};
 use serde_json::{Value, json};
@@ -34,26 +34,37 @@ fn binnacle() -> Value {
     })
 }
 
-/// A ship's model, and what is read aboard her on true heading 63.
-fn ship() -> (Value, [f64; 2]) {
+/// The ship with correctors that stand so, in so strong a field.
+fn ship_with(setting: &Setting, h_nt: f64) -> ShipMagnetism {
     let binnacle: Binnacle = serde_json::from_value(binnacle()).unwrap();
-    let correctors = effect(&binnacle, &binnacle.setting);
-    let bare = ShipMagnetism {
+    let there = effect(&binnacle, setting).as_ship(h_nt);
+    let mut ship = ShipMagnetism {
         chi: [[-0.06, 0.002, -0.021], [0.003, -0.15, 0.002], [0.0; 3]],
         b_nt: [2_600.0, -1_900.0, 800.0],
     };
-    let with = |h_nt: f64| {
-        let there = correctors.as_ship(h_nt);
-        let mut ship = bare;
-        for row in 0..3 {
-            ship.b_nt[row] += there.b_nt[row];
-            for column in 0..3 {
-                ship.chi[row][column] += there.chi[row][column];
-            }
+    for row in 0..3 {
+        ship.b_nt[row] += there.b_nt[row];
+        for column in 0..3 {
+            ship.chi[row][column] += there.chi[row][column];
         }
-        ship
-    };
-    let parameters = with(BERTH.h_nt).parameters_over_lambda().unwrap();
+    }
+    ship
+}
+
+/// What is read aboard her on true heading 63.
+fn read_with(setting: &Setting) -> [f64; 2] {
+    // With variation 3 W that is magnetic 66; no needles, bowl out.
+    let earth = BERTH.in_ship_axes(66_f64.to_radians());
+    let [forward, starboard, _] = ship_with(setting, f64::INFINITY).field_aboard(earth);
+    [forward, starboard]
+}
+
+/// Her model, and what is read aboard her as she is found.
+fn ship() -> (Value, [f64; 2]) {
+    let found: Setting = serde_json::from_value(binnacle()["setting"].clone()).unwrap();
+    let parameters = ship_with(&found, BERTH.h_nt)
+        .parameters_over_lambda()
+        .unwrap();
     let mut covariance = [[0.0; 8]; 8];
     for (index, sd) in [60.0_f64, 1.5e-3, 50.0, 1.5e-3, 2e-3, 2e-3, 2e-3, 0.3]
         .iter()
@@ -62,10 +73,7 @@ fn ship() -> (Value, [f64; 2]) {
         covariance[index][index] = sd * sd;
     }
     let model = json!({ "parameters_over_lambda": parameters, "covariance": covariance });
-    // True heading 63 with variation 3 W is magnetic 66; no needles, bowl out.
-    let earth = BERTH.in_ship_axes(66_f64.to_radians());
-    let [forward, starboard, _] = with(f64::INFINITY).field_aboard(earth);
-    (model, [forward, starboard])
+    (model, read_with(&found))
 }
 
 fn berth([forward, starboard]: [f64; 2]) -> Value {
@@ -194,6 +202,60 @@ fn a_refusal_is_an_answer_with_its_cure() {
         assert_eq!(found["refusals"][0]["cures"][0], cure);
         assert_eq!(found["plans"], json!([]));
     }
+}
+
+#[test]
+fn plan_says_whether_the_field_after_the_steps_is_what_was_planned() {
+    let folder = tempfile::tempdir().unwrap();
+    let (model, read) = ship();
+    let output = plan(folder.path(), &model, &binnacle(), &berth(read));
+    let found: Value = serde_json::from_str(&good(&output)).unwrap();
+    let best = &found["plans"][0];
+    let after = |setting: &Setting| {
+        let [forward, starboard] = read_with(setting);
+        json!({ "reading": {
+            "at": "2026-11-21T11:40:00Z", "unit": "nanotesla",
+            "forward": forward, "starboard": starboard,
+        } })
+    };
+    let judged = |after: &Value| {
+        std::fs::write(folder.path().join("after.json"), after.to_string()).unwrap();
+        let files = ["--model", "model.json", "--binnacle", "binnacle.json"];
+        let berths = ["--berth", "berth.json", "--after", "after.json"];
+        run(
+            folder.path(),
+            &[&["plan"], &files[..], &berths[..]].concat(),
+        )
+    };
+    let said = |after: &Value| -> Value { serde_json::from_str(&good(&judged(after))).unwrap() };
+    let planned: Setting = serde_json::from_value(best["setting"].clone()).unwrap();
+    let right = said(&after(&planned));
+    assert_eq!(right["verdict"], "as_planned", "{right}");
+    assert_eq!(right["parts"].as_array().unwrap().len(), 2);
+    // Nobody has turned a hand.
+    let found: Setting = serde_json::from_value(binnacle()["setting"].clone()).unwrap();
+    let wrong = said(&after(&found));
+    assert_ne!(wrong["verdict"], "as_planned", "{wrong}");
+    let with = |path: &str, value: Value| {
+        let mut after = after(&planned);
+        after[path] = value;
+        after
+    };
+    let refused = |after: &Value, words: &[&str]| {
+        assert_refused(&judged(after), &[&["after.json"], words].concat());
+    };
+    refused(&with("plan", json!(99)), &["there are plans 1 to"]);
+    refused(
+        &with("turned_deg", json!(vec![0.0; 40])),
+        &["turned_deg", "steps"],
+    );
+    refused(
+        &with("turned_deg", json!([400.0])),
+        &["turned_deg[0]", "180"],
+    );
+    let mut early = after(&planned);
+    early["reading"]["at"] = json!("2026-11-21T09:00:00Z");
+    refused(&early, &["reading.at", "before the first"]);
 }
 
 #[test]

@@ -216,7 +216,34 @@ export const adjusting = {
       await page.getByLabel('What it shows').fill('Trays as they stand');
       await page.getByRole('button', { name: 'Add it' }).first().click();
       await waiting.getByText(`${steps + 2} things are waiting to be sent`).waitFor();
+
+      // The field once more: as though nothing had been done, then as it was foretold.
+      await context.setOffline(false);
+      await waiting.waitFor({ state: 'detached', timeout: 60_000 });
+      const again = page.getByRole('region', { name: 'Read the field once more' });
+      await again.locator('summary').click();
+      const sendField = async (forward, starboard) => {
+        await again.getByLabel(/^Forward/).fill(forward);
+        await again.getByLabel(/^Starboard/).fill(starboard);
+        await again.getByRole('button', { name: 'Send what it reads' }).click();
+      };
       const sign = page.getByRole('button', { name: 'Sign and complete' });
+      await sign.waitFor();
+      await sendField(field.forward, field.starboard);
+      await again.getByRole('alert').waitFor();
+      await sign.waitFor({ state: 'detached' });
+      await fitsItsWidth(page);
+      await shoot('berth-again-phone', { fullPage: true });
+      await again.getByRole('button', { name: 'I have looked: they stand as planned' }).click();
+      await waiting.waitFor({ state: 'detached' });
+      await sign.waitFor({ state: 'detached' });
+      const foretold = async (part) =>
+        (await again.getByTestId(`foretold-${part}`).innerText()).replace(/\s*µT/, '');
+      await sendField(await foretold(0), await foretold(1));
+      await again.getByText('The field is as planned', { exact: true }).waitFor();
+      await sign.waitFor();
+      await fitsItsWidth(page);
+      await context.setOffline(true);
       await page.getByLabel('Type your name once more').fill('somebody else');
       await sign.click();
       await page.getByRole('alert').getByText('The signature is not the name above').waitFor();
@@ -237,7 +264,15 @@ export const adjusting = {
       const log = await (await page.request.get(`/api/v1/work-orders/${id}/entries`)).json();
       const kinds = log.items.map((line) => line.entry.kind);
       assert.equal(kinds.filter((kind) => kind === 'step').length, steps, 'each step once');
-      assert.deepEqual(kinds.slice(-3), ['remark', 'photo', 'completion']);
+      assert.deepEqual(kinds.slice(-6), [
+        'remark',
+        'photo',
+        'second_reading',
+        'corrector_settings',
+        'second_reading',
+        'completion',
+      ]);
+      assert.equal(done.second_reading.verdict, 'as_planned');
     },
   },
 

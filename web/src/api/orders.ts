@@ -174,6 +174,14 @@ export function sendWrite({ order, key, content }: Write): Promise<WorkOrder> {
           signal,
         }),
       );
+    case 'second_reading':
+      return answer(
+        client.POST('/api/v1/work-orders/{id}/second-reading', {
+          params,
+          body: content.body,
+          signal,
+        }),
+      );
     case 'remark':
       return answer(
         client.POST('/api/v1/work-orders/{id}/remarks', {

@@ -2840,6 +2840,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders/{id}/second-reading": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send what the magnetometer reads after the steps
+         * @description With it a slip that the berth's heading hides is found: the field shows what the compass
+         *     on one heading cannot. Optional; without it such a slip can only be found at sea.
+         */
+        post: operations["read_field_again"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/work-orders/{id}/signatures": {
         parameters: {
             query?: never;
@@ -7850,6 +7871,95 @@ export interface components {
             /** @description The same as an address, to be shown as a QR code or opened on the telephone. */
             uri: string;
         };
+        /**
+         * @description What the magnetometer of the first reading read after the steps, in the same place.
+         * @example {
+         *       "at": "2026-11-22T10:05:00Z",
+         *       "forward": 15.1,
+         *       "starboard": 17.7,
+         *       "unit": "microtesla"
+         *     }
+         */
+        SecondReading: {
+            /** @description When it was read. */
+            at: components["schemas"]["Time"];
+            /**
+             * Format: double
+             * @description What the compass read before the bowl was taken out, degrees.
+             */
+            compass_deg?: number | null;
+            /**
+             * Format: double
+             * @description Vertical field there, down positive.
+             */
+            down?: number | null;
+            /**
+             * Format: double
+             * @description Horizontal field at the card's centre, bowl out, forward positive.
+             */
+            forward: number;
+            /**
+             * Format: double
+             * @description The ship's true heading, by the same means, where it is no longer what it was.
+             */
+            heading_true_deg?: number | null;
+            /**
+             * Format: double
+             * @description The same, starboard positive.
+             */
+            starboard: number;
+            /** @description What all three are in. */
+            unit: components["schemas"]["FieldUnit"];
+        };
+        /** @description One part of the field, nT. */
+        SecondReadingPart: {
+            /**
+             * Format: double
+             * @description What was foretold.
+             */
+            expected_nt: number;
+            /** Format: double */
+            read_nt: number;
+            /**
+             * Format: double
+             * @description Of the difference.
+             */
+            standard_error_nt: number;
+        };
+        /** @description What a second reading told. */
+        SecondReadingSaid: {
+            /** @description Mistakes each of which alone would explain it. */
+            could_be?: string[];
+            /** @description Forward, to starboard and, where it was read both times, down. */
+            parts: components["schemas"]["SecondReadingPart"][];
+            /** @description What is beyond the limits. */
+            refusals?: components["schemas"]["AdjustmentRefusal"][];
+            setting?: components["schemas"]["CorrectorSetting"] | null;
+            /**
+             * Format: int32
+             * @description The step that is suspected, of all that were done since the first reading, from 1.
+             */
+            step?: number | null;
+            /** @description In a word. */
+            verdict: components["schemas"]["SecondReadingVerdict"];
+            /**
+             * Format: double
+             * @description The widest 95 % band now, degrees.
+             */
+            widest_band_deg?: number | null;
+            /** @description In words. */
+            words: string;
+            /**
+             * Format: double
+             * @description The worst residual foretold now, degrees.
+             */
+            worst_residual_deg?: number | null;
+        };
+        /**
+         * @description What a second reading came to, in a word.
+         * @enum {string}
+         */
+        SecondReadingVerdict: "as_planned" | "replan" | "slip" | "unexplained";
         /** @description A port that a firm serves. */
         ServedPort: {
             /**
@@ -8393,6 +8503,7 @@ export interface components {
             photos: components["schemas"]["OrderPhoto"][];
             plan: components["schemas"]["ChosenPlan"] | null;
             reading: components["schemas"]["BerthReading"] | null;
+            second_reading: components["schemas"]["SecondReadingSaid"] | null;
             setting: components["schemas"]["CorrectorSetting"] | null;
             /** @description Signatures over the record by firms' keys, and whose they are. */
             signatures: components["schemas"]["WorkOrderSignature"][];
@@ -20912,6 +21023,107 @@ export interface operations {
                 };
             };
             /** @description Nothing is asked, or not any more */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Payload Too Large */
+            413: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unsupported Media Type */
+            415: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unprocessable Entity */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_field_again: {
+        parameters: {
+            query?: never;
+            header?: {
+                /** @description The same key with the same request again creates nothing more */
+                "Idempotency-Key"?: string;
+            };
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SecondReading"];
+            };
+        };
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WorkOrder"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not before all steps are done */
             409: {
                 headers: {
                     [name: string]: unknown;

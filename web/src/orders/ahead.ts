@@ -18,7 +18,7 @@ export interface Ahead {
   /** What the compass read last. */
   compassDeg: number | null;
   /** What the server has to answer before anything else can be done. */
-  waitingFor: 'reading' | 'plan' | 'step' | 'settings' | 'completion' | null;
+  waitingFor: 'reading' | 'plan' | 'step' | 'settings' | 'second_reading' | 'completion' | null;
 }
 
 /** An angle in (−180°, 180°]. */
@@ -90,6 +90,7 @@ function after(now: Ahead, { content }: Write, offer?: PlanOffer): Ahead {
     }
     case 'reading':
     case 'settings':
+    case 'second_reading':
     case 'completion':
       return { ...now, waitingFor: content.kind };
   }

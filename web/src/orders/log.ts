@@ -74,6 +74,8 @@ function words(kind: string, content: Read['content']): string {
     }
     case 'photo':
       return content.caption ?? '';
+    case 'second_reading':
+      return text.berth.again.verdict[content.verdict ?? ''] ?? content.words ?? '';
     case 'completion':
       return content.adjuster_name ?? '';
     case 'verification':

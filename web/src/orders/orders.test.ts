@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
-import type { PlanOffer, PlanStep, WorkOrder, WorkOrderSummary } from '../api/types';
+import type { BerthReading, PlanOffer, PlanStep, WorkOrder, WorkOrderSummary } from '../api/types';
+import { againOf, faultAgain, newAgain } from './again';
 import { ahead, expectedDeg, isAsExpected, offBy, wrapped } from './ahead';
 import { callNeeds, inOrder, isOpen, stateName } from './order';
 import { correctorName, standing, written } from './places';
@@ -142,6 +143,18 @@ describe('the queue', () => {
     expect(bearsOut(read(1, 3).content, answered('not_seen'))).toBe(true);
     expect(bearsOut(read(1, 3).content, answered('wrong_end'))).toBe(false);
     expect(bearsOut({ kind: 'remark', text: 'x' }, answered('wrong_end'))).toBe(true);
+  });
+
+  test('takes a second reading as borne out only where it confirms', () => {
+    const again = write({ kind: 'second_reading', body: {} as never });
+    const answered = (verdict: string) => ({ second_reading: { verdict } }) as WorkOrder;
+    expect(bearsOut(again.content, answered('as_planned'))).toBe(true);
+    for (const verdict of ['slip', 'replan', 'unexplained']) {
+      expect(bearsOut(again.content, answered(verdict))).toBe(false);
+    }
+    const signed = write({ kind: 'completion', body: {} as never });
+    expect(builtOn([again, signed], again)).toEqual([signed]);
+    expect(ahead(order({}), [again]).waitingFor).toBe('second_reading');
   });
 
   test('tells a refusal from a fault on the way', () => {
@@ -302,4 +315,32 @@ test('a call that moved asks for something only while the order is under way', (
   expect(moved('fits', 'accepted')).toBe('');
   expect(moved(null, 'accepted')).toBe('');
   expect(moved('no_call', 'cancelled')).toBe('');
+});
+
+describe('a reading after the steps', () => {
+  const now = new Date('2026-11-22T10:05:00Z');
+  const first = { unit: 'milligauss' } as BerthReading;
+  const good = { ...newAgain(first, now), forward: '151', starboard: '−142,5' };
+
+  test('is made of what is typed, in the first reading’s unit', () => {
+    expect(faultAgain(good)).toBeNull();
+    expect(againOf(good)).toEqual({
+      at: '2026-11-22T10:05:00.000Z',
+      forward: 151,
+      starboard: -142.5,
+      unit: 'milligauss',
+    });
+    const whole = againOf({ ...good, down: '369', compass: '312.5', heading: '40' });
+    expect(whole).toMatchObject({ down: 369, compass_deg: 312.5, heading_true_deg: 40 });
+    expect(newAgain(null, now).unit).toBe('microtesla');
+  });
+
+  test('names the field that is wrong', () => {
+    expect(faultAgain({ ...good, forward: '' })?.field).toBe('forward');
+    expect(faultAgain({ ...good, starboard: 'x' })?.field).toBe('starboard');
+    expect(faultAgain({ ...good, down: 'x' })?.field).toBe('down');
+    expect(faultAgain({ ...good, compass: '400' })?.field).toBe('compass');
+    expect(faultAgain({ ...good, heading: '-1' })?.field).toBe('heading');
+    expect(faultAgain({ ...good, at: '' })?.field).toBe('at');
+  });
 });

@@ -103,7 +103,9 @@ export function headingOf(typed: string): number | null {
 }
 
 /** Size of the horizontal field that is typed, nT; `null` until there is one. */
-export function horizontalNt(draft: ReadingDraft): number | null {
+export function horizontalNt(
+  draft: Pick<ReadingDraft, 'forward' | 'starboard' | 'unit'>,
+): number | null {
   const [forward, starboard] = [number(draft.forward), number(draft.starboard)];
   if (forward === null || starboard === null) return null;
   return Math.hypot(forward, starboard) * nanotesla[draft.unit];

@@ -11,6 +11,7 @@ import type {
   BerthReading,
   Completion,
   CorrectorSettings,
+  SecondReading,
   WorkOrder,
 } from '../api/types';
 
@@ -21,6 +22,7 @@ export type Content =
   | { kind: 'plan'; plan: number }
   | { kind: 'step'; number: number; body: { before_deg?: number; after_deg: number } }
   | { kind: 'settings'; body: CorrectorSettings }
+  | { kind: 'second_reading'; body: SecondReading }
   | { kind: 'remark'; text: string }
   | { kind: 'photo'; caption: string; file: Blob }
   | { kind: 'completion'; body: Completion };
@@ -51,7 +53,7 @@ export interface Write {
 
 /** What follows from a plan and its steps, and is void with them. */
 const builtUpon: Content['kind'][] = ['plan', 'step', 'completion'];
-const foundations: Content['kind'][] = ['reading', 'plan', 'step', 'settings'];
+const foundations: Content['kind'][] = ['reading', 'plan', 'step', 'settings', 'second_reading'];
 
 /** The write to be sent now. */
 export function nextToSend(writes: Write[], user: string): Write | undefined {
@@ -71,6 +73,9 @@ export function builtOn(writes: Write[], failed: Write): Write[] {
 
 /** Whether an answer bears out what was written, so that what was built upon it holds. */
 export function bearsOut(content: Content, answered: WorkOrder): boolean {
+  if (content.kind === 'second_reading') {
+    return answered.second_reading?.verdict === 'as_planned';
+  }
   if (content.kind !== 'step') return true;
   const verdict = answered.last_step?.verdict;
   return verdict === 'confirmed' || verdict === 'not_seen';

@@ -21,6 +21,7 @@ export const berth = {
         plan: 'Choice of a plan',
         step: 'Step',
         settings: 'How the correctors stand',
+        second_reading: 'Field after the steps',
         remark: 'Remark',
         photo: 'Photograph',
         completion: 'Completion',
@@ -35,6 +36,8 @@ export const berth = {
       plan: 'Your choice is waiting to be sent.',
       step: 'What the compass read is not what was expected. What to do follows from ashore: as soon as there is a connection. Leave the correctors as they are.',
       settings: 'How the correctors stand is waiting to be sent; the plan from there follows.',
+      second_reading:
+        'The reading is waiting to be sent. Whether it is as planned is said from ashore: as soon as there is a connection.',
       completion: 'The completion is signed and waiting to be sent.',
     },
     board: {
@@ -199,6 +202,45 @@ export const berth = {
         unexplained:
           'Nothing explains what was read. See whether the ship moved, and look for iron nearby; then read the compass again. If it stays so, say how the correctors really stand.',
       } as Record<string, string>,
+    },
+    again: {
+      title: 'Read the field once more',
+      lead: 'Bowl out again, the same magnetometer in the same place, lying the same way: it finds slips that the compass cannot show on this heading.',
+      hidden: (n: number) =>
+        n === 1
+          ? 'One step could hardly be seen on this heading. Without this reading, a slip in it is found only at sea.'
+          : `${n} steps could hardly be seen on this heading. Without this reading, a slip in them is found only at sea.`,
+      seen: 'The compass showed every step. This reading is one more proof.',
+      compassHelp: 'before the bowl came out',
+      downHelp: 'downwards positive; only if it was read before too',
+      heading: 'True heading, if the ship has moved',
+      submit: 'Send what it reads',
+      looked: 'I have looked: they stand as planned',
+      lookedNote: 'looked at after the second reading: they stand as planned',
+      verdict: {
+        as_planned: 'The field is as planned',
+        replan: 'As planned, but more is left than allowed',
+        slip: 'A step seems to have gone wrong',
+        unexplained: 'The field is not as planned',
+      } as Record<string, string>,
+      todo: {
+        as_planned:
+          'The correctors do what was planned. What is foretold has been sharpened by it.',
+        replan: 'Choose a plan: it starts from this reading.',
+        slip: 'Look at that step before you turn anything. Where it stands wrong, put it right and read again, or say how it really stands. The order is not completed before the field agrees.',
+        unexplained:
+          'Look at every step, at the magnetometer’s place and axes, and for iron nearby; then read again. The order is not completed before the field agrees.',
+      } as Record<string, string>,
+      foretold: (residual: string, band: string) => `Foretold now: ${residual} at worst, ${band}.`,
+      parts: {
+        caption: 'What was read, and what was foretold',
+        part: 'Part',
+        names: ['Forward', 'Starboard', 'Down'],
+        read: 'Read',
+        expected: 'Foretold',
+        sd: 'Standard error',
+      },
+      couldBe: 'It could be that:',
     },
     finish: {
       title: 'Complete and sign',

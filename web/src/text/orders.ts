@@ -213,6 +213,7 @@ export const orders = {
         berth_reading: 'Field read at the berth',
         plan: 'Plan chosen',
         step: 'Step done',
+        second_reading: 'Field read after the steps',
         corrector_settings: 'Correctors set otherwise',
         photo: 'Photograph',
         remark: 'Remark',

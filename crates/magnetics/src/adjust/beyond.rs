@@ -6,7 +6,7 @@
 
 use super::condition::Condition;
 use super::refusal::{Coefficient, Refusal, said};
-use super::{Adjustment, Limits, Plan, PredictedTable, Refused, Water, spheres};
+use super::{Adjustment, Learnt, Limits, Plan, PredictedTable, Refused, Water, spheres};
 use crate::deviation::Coefficients;
 use crate::model::Model;
 use crate::ship::EarthField;
@@ -29,6 +29,14 @@ pub(super) fn beyond_limits(
 impl Plan {
     /// Which of these limits it breaks in these waters, with what would cure that; nothing
     /// that [`super::plan`] offers breaks those it was asked for.
+    #[must_use]
+    pub fn beyond(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
+        beyond(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)
+    }
+}
+
+impl Learnt {
+    /// Which of these limits it breaks in these waters, with what would cure that.
     #[must_use]
     pub fn beyond(&self, limits: &Limits, waters: &[Water]) -> Option<Refused> {
         beyond(&self.after, &self.model_after, limits, waters).map(Refusal::with_cures)

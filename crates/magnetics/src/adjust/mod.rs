@@ -32,7 +32,7 @@ mod tolerance;
 mod verify;
 mod vertical;
 
-pub use again::{Again, AgainForm, Done, Learnt, Part, Slip, Verdict, read_again};
+pub use again::{Again, AgainForm, Done, Learnt, Part, Slip, Verdict, by_compass, read_again};
 pub use berth::{BerthCheck, Seen};
 pub use card::Card;
 pub use form::{AfterForm, Berth, BerthForm, FieldForm, FormError, WaterForm};

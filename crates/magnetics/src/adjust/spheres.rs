@@ -54,3 +54,31 @@ fn weighted_worst_deg(adjustment: &Adjustment<'_>, after: &[PredictedTable]) -> 
     });
     sum / weights
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::case;
+    use super::*;
+
+    /// What the search makes small is the mean over the waters; what the limit holds for is
+    /// the worst of them.
+    #[test]
+    fn the_mean_over_the_waters_is_not_the_worst_of_them() {
+        let case = case(60.0);
+        let adjustment = case.adjustment();
+        let mut after = case.plan().plans.remove(0).after;
+        for (table, worst_deg) in after.iter_mut().zip([9.0, 1.0, 4.0]) {
+            table.worst_deg = Some(worst_deg);
+        }
+        // Two parts of her time in the first water, one in the second; the berth counts for
+        // nothing.
+        let mean_deg = weighted_worst_deg(&adjustment, &after);
+        assert!((mean_deg - 2.0).abs() < 1e-12, "{mean_deg}");
+        after[2].worst_deg = None;
+        let mean_deg = weighted_worst_deg(&adjustment, &after);
+        assert!(
+            (mean_deg - (2.0 + AMBIGUOUS_DEG) / 3.0).abs() < 1e-12,
+            "{mean_deg}"
+        );
+    }
+}

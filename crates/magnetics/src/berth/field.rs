@@ -3,7 +3,7 @@
 
 use super::{Alignment, BerthError, BerthReading};
 use crate::deviation::Coefficients;
-use crate::model::{Covariance, Model};
+use crate::model::{Covariance, Model, Parameters};
 use crate::ship::{EarthField, PARAMETERS};
 
 /// Seven parameters and the constant.
@@ -33,6 +33,34 @@ pub(super) struct Spread {
     pub(super) reading_variance: f64,
 }
 
+/// Slope of the field over λ by the magnetic heading, nT a radian; the earth's field in
+/// ship axes.
+fn slope_by_heading(p: &Parameters, [hx, hy, _]: [f64; 3]) -> Vector {
+    let d = p.chi11_minus_chi22 / 2.0;
+    // As the ship turns to starboard the field turns to port: dHx = Hy, dHy = −Hx.
+    [(1.0 + d) * hy - p.chi12 * hx, p.chi21 * hy - (1.0 - d) * hx]
+}
+
+/// Slopes of the field over λ by the parameters in their order and by the constant's
+/// degrees, a degree of which makes the heading more by so many radians.
+pub(crate) fn slopes(
+    p: &Parameters,
+    earth: [f64; 3],
+    heading_by_constant: f64,
+) -> [Vector; UNKNOWNS] {
+    let [hx, hy, z] = earth;
+    [
+        [1.0, 0.0],
+        [z, 0.0],
+        [0.0, 1.0],
+        [0.0, z],
+        [hx / 2.0, -hy / 2.0],
+        [hy, 0.0],
+        [0.0, hx],
+        slope_by_heading(p, earth).map(|slope| slope * heading_by_constant),
+    ]
+}
+
 impl Expected {
     /// What the model expects for a reading.
     pub(super) fn new(
@@ -55,23 +83,11 @@ impl Expected {
                 directive_force,
             });
         }
-        let [hx, hy, z] = earth.in_ship_axes(magnetic_rad);
-        let d = p.chi11_minus_chi22 / 2.0;
-        // As the ship turns to starboard the field turns to port: dHx = Hy, dHy = −Hx.
-        let by_heading = [(1.0 + d) * hy - p.chi12 * hx, p.chi21 * hy - (1.0 - d) * hx];
+        let aboard = earth.in_ship_axes(magnetic_rad);
         Ok(Expected {
             u: p.field_over_lambda(magnetic_rad, earth),
-            by_heading,
-            by_unknown: [
-                [1.0, 0.0],
-                [z, 0.0],
-                [0.0, 1.0],
-                [0.0, z],
-                [hx / 2.0, -hy / 2.0],
-                [hy, 0.0],
-                [0.0, hx],
-                by_heading.map(|slope| slope * heading_by_constant),
-            ],
+            by_heading: slope_by_heading(p, aboard),
+            by_unknown: slopes(p, aboard, heading_by_constant),
         })
     }
 

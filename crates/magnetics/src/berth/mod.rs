@@ -17,6 +17,7 @@ mod reading;
 
 pub use consistency::{Consistency, Suspect, Verdict};
 pub use error::BerthError;
+pub(crate) use field::slopes;
 pub use lambda::{
     BerthEstimate, FullParameters, GREATEST_LAMBDA, JointCovariance, LEAST_LAMBDA, USUAL_LAMBDA,
     lambda_at_berth,

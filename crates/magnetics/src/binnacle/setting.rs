@@ -3,7 +3,7 @@
 use super::BinnacleForm;
 use super::design::{DesignForm, Hole, Side};
 use super::error::BinnacleError;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
 /// Where every corrector stands; an empty list or null is none.
@@ -60,6 +60,7 @@ pub enum Red {
 #[serde(deny_unknown_fields)]
 pub struct Tray {
     /// Number of the hole, from the bottom.
+    #[serde(deserialize_with = "numbered")]
     pub hole: u16,
     /// Their kind.
     pub magnet: String,
@@ -100,6 +101,7 @@ pub struct BarSetting {
 #[serde(deny_unknown_fields)]
 pub struct HeelingSetting {
     /// Number of its position, from the bottom.
+    #[serde(deserialize_with = "numbered")]
     pub position: u16,
     /// How many magnets.
     pub count: u8,
@@ -177,6 +179,15 @@ impl Setting {
             flinders: self.flinders.clone(),
         }
     }
+}
+
+/// A number of a hole or position; what cannot be one is said in an adjuster's words.
+fn numbered<'de, D: Deserializer<'de>>(from: D) -> Result<u16, D::Error> {
+    let number = i64::deserialize(from)?;
+    u16::try_from(number).map_err(|_| {
+        let what = format!("there is no {number}: holes and positions are numbered from 1");
+        serde::de::Error::custom(what)
+    })
 }
 
 /// Whether two lengths or angles of a form are the same one.

@@ -80,6 +80,15 @@ fn a_binnacle_comes_back_from_json_as_it_went() {
 }
 
 #[test]
+fn a_hole_below_the_first_is_said_in_an_adjusters_words() {
+    let text = serde_json::to_string(&class_a()).unwrap();
+    let text = text.replacen("\"hole\":5", "\"hole\":-1", 1);
+    let error = serde_json::from_str::<Binnacle>(&text).unwrap_err();
+    let says = "there is no -1: holes and positions are numbered from 1";
+    assert!(error.to_string().contains(says), "{error}");
+}
+
+#[test]
 fn a_hole_that_does_not_exist_is_named() {
     let error = refused(|form| form.setting.athwartship[0].hole = 21);
     assert_eq!(

@@ -9,7 +9,7 @@ use super::adjusting::wrap;
 use super::tally::{mean, quantile};
 use binnacle_magnetics::adjust::{
     Adjustment, Done, Outcome, Place, PredictedTable, Recheck, Step, Unit, Verdict,
-    VerticalReading, plan, read_again, recheck,
+    VerticalReading, by_compass, plan, read_again, recheck,
 };
 use binnacle_magnetics::berth::BerthReading;
 use binnacle_magnetics::binnacle::{Axis, Binnacle, Setting, Tray};
@@ -191,7 +191,10 @@ impl Hands {
             } else if ending == Ending::ReadAgain {
                 self.read_again(scene, work)
             } else {
-                self.end(scene, &outcome.plans[0].after, work);
+                let standing = work.standing.clone();
+                let adjustment = work.adjustment(scene, &standing);
+                let learnt = by_compass(&adjustment, &work.done).unwrap();
+                self.end(scene, &learnt.after, work);
                 Next::Ended("done")
             };
             match next {

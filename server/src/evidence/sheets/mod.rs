@@ -27,6 +27,7 @@ pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
     tables::correctors(&mut paper, &record)?;
     plan(&mut paper, &record);
     tables::steps(&mut paper, &record);
+    tables::second_readings(&mut paper, &record);
     tables::predicted(&mut paper, &record);
     tables::parameters(&mut paper, &record);
     photos(&mut paper, &record);
@@ -198,17 +199,21 @@ fn rests_on(paper: &mut Paper, record: &Value) {
 }
 
 fn magnetometer(read: &Value) -> String {
-    let unit = match read["unit"].as_str() {
-        Some("nanotesla") => "nT",
-        Some("microtesla") => "µT",
-        Some("gauss") => "G",
-        _ => "mG",
+    let (unit, microtesla) = match read["unit"].as_str() {
+        Some("nanotesla") => ("nT", 1e-3),
+        Some("microtesla") => ("µT", 1.0),
+        Some("gauss") => ("G", 100.0),
+        _ => ("mG", 0.1),
     };
     let part = |name: &str, to: &str| {
         let value = read[name].as_f64();
         value.map_or(String::new(), |value| {
-            format!("{} {unit} {to}", short(value))
+            format!("{:.2} µT {to}", value * microtesla).replace('-', "−")
         })
+    };
+    let read_in = match unit {
+        "µT" => String::new(),
+        other => format!("read in {other}"),
     };
     joined(&[
         word(&read["magnetometer"]),
@@ -216,14 +221,8 @@ fn magnetometer(read: &Value) -> String {
         part("forward", "forward"),
         part("starboard", "to starboard"),
         part("down", "down"),
+        read_in,
     ])
-}
-
-/// Five figures, with a true minus sign.
-fn short(value: f64) -> String {
-    let whole = value.abs().max(1e-9).log10().floor() as i32;
-    let decimals = usize::try_from(4 - whole).unwrap_or(0);
-    format!("{value:.decimals$}").replace('-', "−")
 }
 
 fn plan(paper: &mut Paper, record: &Value) {

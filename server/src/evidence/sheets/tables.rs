@@ -71,6 +71,50 @@ pub(super) fn steps(paper: &mut Paper, record: &Value) {
     }
 }
 
+/// What the magnetometer told after the steps, and which of them nothing has shown.
+pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
+    let readings = record["second_readings"].as_array();
+    let readings = readings.into_iter().flatten();
+    for (index, reading) in readings.enumerate() {
+        paper.room_for(5);
+        if index == 0 {
+            paper.title("The magnetometer after the steps");
+        }
+        let said = &reading["said"];
+        let parts = said["parts"].as_array().into_iter().flatten();
+        let parts = parts.zip(["forward", "to starboard", "down"]);
+        let microtesla = |value: &Value| format!("{:.2}", number(value) / 1e3);
+        let parts: Vec<String> = parts
+            .map(|(part, to)| {
+                let (read, foretold) = (&part["read_nt"], &part["expected_nt"]);
+                let figures = format!(
+                    "{to} {} µT, foretold {} ± {}",
+                    microtesla(read),
+                    microtesla(foretold),
+                    microtesla(&part["standard_error_nt"])
+                );
+                figures.replace('-', "−")
+            })
+            .collect();
+        let says = format!(
+            "{}: {}",
+            minute(&reading["given"]["at"]),
+            word(&said["words"])
+        );
+        paper.lines(LEFT, Style::plain(SIZE), &says);
+        paper.lines(LEFT + 12.0, Style::plain(SIZE).grey(60), &parts.join("; "));
+    }
+    let hidden = &record["not_shown"];
+    if !hidden.is_object() {
+        return;
+    }
+    let steps = hidden["steps"].as_array().into_iter().flatten();
+    let steps: Vec<String> = steps.map(word).collect();
+    paper.room_for(4);
+    paper.fact("Not shown", &steps.join("; "));
+    paper.fact("which means", &word(&hidden["words"]));
+}
+
 /// Deviation by heading, before at the berth and afterwards at each place.
 pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     let of = |name: &str| record[name].as_array().into_iter().flatten();

@@ -239,6 +239,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("POST /work-orders/{id}/retime", FLEET_WRITES),
     ("POST /work-orders/{id}/retime/accept", PARTY_WRITES),
     ("POST /work-orders/{id}/retime/decline", PARTY_WRITES),
+    ("POST /work-orders/{id}/second-reading", PARTY_WRITES),
     ("POST /work-orders/{id}/signatures", PARTY_WRITES),
     ("POST /work-orders/{id}/steps/{n}", PARTY_WRITES),
 ];

@@ -148,6 +148,13 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
         assert_eq!(problems.len(), 1, "{name}: {problems:?}");
         assert!(problems[0].starts_with(name), "{problems:?}");
     }
+    // who adds a file by the form of the archive,
+    for name in ["certificate.pdf", "photos/0099.png"] {
+        let mut forged = files.clone();
+        forge(&mut forged, name, b"CERTIFICATE".to_vec());
+        let problems = evidence::verify(&packed(&forged)).problems;
+        assert_eq!(problems, [format!("{name} is no part of this evidence")]);
+    }
     // a log that lost a line by its chain, and one that lost its end by its head.
     let log = String::from_utf8(files["entries.ndjson"].clone()).unwrap();
     let lines: Vec<&str> = log.lines().collect();

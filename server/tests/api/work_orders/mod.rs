@@ -1,18 +1,23 @@
 //! Work orders: from the berth's reading to the evidence and the proof at sea.
 
+mod again;
 mod card;
 mod codes;
 mod evidence;
+mod held;
 mod limits;
 mod refusals;
 mod way;
 
 use crate::binnacles::{binnacle, put};
 use crate::support::{Answer, Person, Ship, Shore, days_at_sea, days_in, truth};
+use binnacle_magnetics::binnacle::{Binnacle, Setting};
+use binnacle_magnetics::corrector::effect;
 use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -149,14 +154,40 @@ fn word() -> Value {
     })
 }
 
-/// What a good magnetometer reads aboard the ship of these tests.
-pub(crate) fn reading() -> Value {
+/// What the same magnetometer reads there with correctors that stand so, where nothing
+/// was in use before.
+fn read_again(setting: &Value) -> Value {
+    let setting: Setting = serde_json::from_value(setting.clone()).unwrap();
+    let aboard: Binnacle = serde_json::from_value(binnacle()).unwrap();
+    let of_correctors = effect(&aboard, &setting);
+    let (magnetic_deg, earth) = at_berth();
+    let earth = earth.in_ship_axes(magnetic_deg.to_radians());
+    let first = reading();
+    let part = |name: &str, axis: usize| {
+        let induced: f64 = (0..3).map(|c| of_correctors.chi[axis][c] * earth[c]).sum();
+        let added_ut = (of_correctors.b_nt[axis] + induced) / 1000.0;
+        first[name].as_f64().unwrap() + added_ut
+    };
+    json!({
+        "at": AT, "unit": "microtesla",
+        "forward": part("forward", 0), "starboard": part("starboard", 1),
+    })
+}
+
+/// Magnetic heading and the earth's field.
+fn at_berth() -> (f64, EarthField) {
     let position = Position::new(BERTH.0, BERTH.1).unwrap();
     let time = Timestamp::parse(AT).unwrap();
     let earth = field(FieldModel::Igrf14, position, 0.0, time).unwrap();
     let magnetic_deg = HEADING_DEG - earth.declination().degrees_east();
+    (magnetic_deg, earth.for_ship())
+}
+
+/// What a good magnetometer reads aboard the ship of these tests.
+pub(crate) fn reading() -> Value {
+    let (magnetic_deg, earth) = at_berth();
     let parameters = truth().parameters_over_lambda;
-    let u = parameters.field_over_lambda(magnetic_deg.to_radians(), earth.for_ship());
+    let u = parameters.field_over_lambda(magnetic_deg.to_radians(), earth);
     let [forward, starboard] = u.map(|part| LAMBDA * part / 1000.0);
     // A compass points along the field.
     let compass_deg = (-starboard).atan2(forward).to_degrees().rem_euclid(360.0);

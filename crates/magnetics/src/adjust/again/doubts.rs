@@ -63,6 +63,21 @@ pub(super) struct Weighed {
     pub(super) squared: f64,
 }
 
+/// All doubts as the compass alone leaves them, but for what no step has to do with.
+pub(super) fn weigh_by_compass(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    known: &Known<'_>,
+    news: &News,
+    done: &[Done],
+) -> Vec<Weighed> {
+    let covariance = known.model.covariance.unwrap_or_default();
+    let covariance = SMatrix::from_fn(|r, c| covariance[r][c]);
+    let doubts = doubts(adjustment, condition, known, news, done).into_iter();
+    let doubts = doubts.filter(|doubt| doubt.what != What::Elsewhere);
+    shared(doubts.map(|doubt| doubt.unread(&covariance)).collect())
+}
+
 /// All doubts as the reading leaves them; shares add up to one.
 pub(super) fn weigh(
     adjustment: &Adjustment<'_>,
@@ -78,6 +93,11 @@ pub(super) fn weigh(
         .into_iter()
         .filter_map(|doubt| doubt.weighed(news, &covariance))
         .collect();
+    shared(found)
+}
+
+/// Shares of belief by its logarithms.
+fn shared(found: Vec<(f64, Weighed)>) -> Vec<Weighed> {
     let likeliest = found
         .iter()
         .map(|(log, _)| *log)
@@ -91,6 +111,19 @@ pub(super) fn weigh(
 }
 
 impl Doubt {
+    /// The same where the field was not read.
+    fn unread(self, covariance: &SMatrix<f64, EIGHT, EIGHT>) -> (f64, Weighed) {
+        let wider = self.wider.iter().map(|cause| cause.of_model);
+        let weighed = Weighed {
+            what: self.what,
+            share: 0.0,
+            correction: self.shift.map_or_else(Eight::zeros, |shift| shift.of_model),
+            covariance: wider.fold(*covariance, |sum, way| sum + way * way.transpose()),
+            squared: 0.0,
+        };
+        (self.log_prior, weighed)
+    }
+
     /// Its belief as a logarithm, and what it makes of the model.
     fn weighed(
         self,
@@ -149,9 +182,11 @@ fn doubts(
         let more = Effect::default();
         let more = more.plus(&magnets(condition, &known.setting, &kind));
         let more = more.less(&magnets(condition, &condition.binnacle.setting, &kind));
-        let cause = news.cause(known, &more.times(MOMENT_SD));
+        let (off, sd, log_shown) = moment_shown(done, &kind);
         doubts.push(Doubt {
-            wider: vec![cause],
+            shift: Some(news.cause(known, &more.times(off))),
+            wider: vec![news.cause(known, &more.times(sd))],
+            log_prior: OTHER_MOMENT.ln() + log_shown,
             ..Doubt::of(What::Moment(kind), OTHER_MOMENT)
         });
     }
@@ -165,6 +200,38 @@ fn doubts(
         ..Doubt::of(What::Elsewhere, ELSEWHERE)
     });
     doubts
+}
+
+/// What the compass showed of another moment of a kind at the steps with it: the share by
+/// which it is off and the standard deviation of that, and the logarithm of how much better
+/// that explains the turns than the moment that is said.
+fn moment_shown(done: &[Done], kind: &str) -> (f64, f64, f64) {
+    let of_kind = |place: &Option<Place>| match place {
+        Some(Place::Magnets(tray)) => tray.magnet == kind,
+        _ => true,
+    };
+    let (mut weight, mut sum) = (1.0 / MOMENT_SD.powi(2), 0.0);
+    for Done { step, turned_deg } in done {
+        let magnets = matches!(
+            step.corrector,
+            Corrector::ForeAndAft | Corrector::Athwartship
+        );
+        let Some(turned_deg) = turned_deg else {
+            continue;
+        };
+        if !magnets || !of_kind(&step.from) || !of_kind(&step.to) {
+            continue;
+        }
+        // All of the turn is theirs, and grows with their moment.
+        let by_share = step.change_deg;
+        let off_deg = wrap_180(turned_deg - step.change_deg);
+        let sd_deg = step.tolerance_deg / NORMAL_99;
+        weight += (by_share / sd_deg).powi(2);
+        sum += by_share * off_deg / sd_deg.powi(2);
+    }
+    let off = sum / weight;
+    let log_shown = (off * sum - (weight * MOMENT_SD.powi(2)).ln()) / 2.0;
+    (off, weight.sqrt().recip(), log_shown)
 }
 
 impl Doubt {

@@ -27,7 +27,7 @@ use crate::binnacle::{Binnacle, Setting};
 use crate::deviation::DeviationError;
 use crate::model::{Model, Parameters};
 use crate::ship::PARAMETERS;
-use doubts::{Weighed, What, weigh};
+use doubts::{Weighed, What, weigh, weigh_by_compass};
 use nalgebra::SMatrix;
 use news::{EIGHT, Eight, News};
 use serde::{Deserialize, Serialize};
@@ -122,7 +122,7 @@ pub enum Slip {
     NotDone,
 }
 
-/// What is foretold after the second reading.
+/// What is foretold after the second reading, or after the steps without one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Learnt {
     /// The model that holds from now on, with covariance.
@@ -171,6 +171,22 @@ pub fn read_again(
     })
 }
 
+/// What is foretold of correctors that stand as `adjustment.now` says after these steps,
+/// where the field was not read again: what the compass leaves open of slips and of
+/// magnets' moments is in the band.
+///
+/// # Errors
+/// When the adjustment itself cannot be.
+pub fn by_compass(adjustment: &Adjustment<'_>, done: &[Done]) -> Result<Learnt, AdjustError> {
+    super::check(adjustment)?;
+    let condition = Condition::new(adjustment)?;
+    let known = condition.known_with(adjustment.standing())?;
+    let reading = adjustment.reading;
+    let news = News::new(adjustment, &condition, &known, reading, adjustment.vertical);
+    let weighed = weigh_by_compass(adjustment, &condition, &known, &news, done);
+    learnt(adjustment, &condition, &known, &weighed)
+}
+
 fn parts(news: &News) -> Vec<Part> {
     let count = if news.is_vertical_known { 3 } else { 2 };
     let part = |axis: usize| Part {
@@ -214,7 +230,8 @@ impl Judge<'_> {
         if share_of(|what| matches!(what, What::Step(..))) > LIKELY {
             return self.slip(weighed);
         }
-        let learnt = Box::new(self.learnt(weighed)?);
+        let learnt = learnt(self.adjustment, self.condition, self.known, weighed)?;
+        let learnt = Box::new(learnt);
         let beyond = beyond_limits(
             self.adjustment,
             self.condition,
@@ -284,33 +301,6 @@ impl Judge<'_> {
         })
     }
 
-    /// The mean of all that may be, and its spread.
-    fn learnt(&self, weighed: &[Weighed]) -> Result<Learnt, AdjustError> {
-        let mean: Eight = weighed.iter().map(|one| one.correction * one.share).sum();
-        let mut spread = SMatrix::<f64, EIGHT, EIGHT>::zeros();
-        for one in weighed {
-            let apart = one.correction - mean;
-            spread += (one.covariance + apart * apart.transpose()) * one.share;
-        }
-        let spread = (spread + spread.transpose()) / 2.0;
-        let model_after = corrected(&self.known.model, &mean, &spread);
-        let after = tables_by(self.adjustment, |earth| {
-            let foretold =
-                self.condition
-                    .model_at(&self.known.model, &self.known.setting, earth)?;
-            Ok::<Model, DeviationError>(corrected(&foretold, &mean, &spread))
-        })?;
-        let greatest = |of: fn(&PredictedTable) -> Option<f64>| {
-            after.iter().filter_map(of).fold(0.0, f64::max)
-        };
-        Ok(Learnt {
-            worst_residual_deg: greatest(|table| table.worst_deg),
-            widest_band_deg: greatest(|table| table.widest_band_deg),
-            model_after,
-            after,
-        })
-    }
-
     /// What done otherwise with the magnetometer would make it as planned.
     fn mistakes(&self) -> Vec<Mistake> {
         let explains = |mistake: &Mistake| {
@@ -332,6 +322,35 @@ impl Judge<'_> {
         };
         Mistake::ALL.into_iter().filter(explains).collect()
     }
+}
+
+/// The mean of all that may be, and its spread.
+fn learnt(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    known: &Known<'_>,
+    weighed: &[Weighed],
+) -> Result<Learnt, AdjustError> {
+    let mean: Eight = weighed.iter().map(|one| one.correction * one.share).sum();
+    let mut spread = SMatrix::<f64, EIGHT, EIGHT>::zeros();
+    for one in weighed {
+        let apart = one.correction - mean;
+        spread += (one.covariance + apart * apart.transpose()) * one.share;
+    }
+    let spread = (spread + spread.transpose()) / 2.0;
+    let model_after = corrected(&known.model, &mean, &spread);
+    let after = tables_by(adjustment, |earth| {
+        let foretold = condition.model_at(&known.model, &known.setting, earth)?;
+        Ok::<Model, DeviationError>(corrected(&foretold, &mean, &spread))
+    })?;
+    let greatest =
+        |of: fn(&PredictedTable) -> Option<f64>| after.iter().filter_map(of).fold(0.0, f64::max);
+    Ok(Learnt {
+        worst_residual_deg: greatest(|table| table.worst_deg),
+        widest_band_deg: greatest(|table| table.widest_band_deg),
+        model_after,
+        after,
+    })
 }
 
 fn greatest(news: &News) -> f64 {

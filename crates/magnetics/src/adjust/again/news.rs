@@ -10,7 +10,7 @@ use super::super::Adjustment;
 use super::super::condition::{Condition, Known};
 use super::super::heeling::VerticalReading;
 use super::super::tolerance::errors_of;
-use crate::berth::{Alignment, BerthReading};
+use crate::berth::{Alignment, BerthReading, slopes};
 use crate::corrector::Effect;
 use crate::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
@@ -125,24 +125,12 @@ impl News {
         known: &Known<'_>,
         reading: &BerthReading,
     ) {
-        let [hx, hy, z] = self.earth;
         let p = &adjustment.model.parameters_over_lambda;
-        let d = p.chi11_minus_chi22 / 2.0;
         let heading_by_constant = match reading.alignment() {
             Alignment::Keel => 0.0,
             Alignment::AsFitted => -1_f64.to_radians(),
         };
-        let turned = [(1.0 + d) * hy - p.chi12 * hx, p.chi21 * hy - (1.0 - d) * hx];
-        let by_unknown = [
-            [1.0, 0.0],
-            [z, 0.0],
-            [0.0, 1.0],
-            [0.0, z],
-            [hx / 2.0, -hy / 2.0],
-            [hy, 0.0],
-            [0.0, hx],
-            turned.map(|part| part * heading_by_constant),
-        ];
+        let by_unknown = slopes(p, self.earth, heading_by_constant);
         let over_lambda = p.of_ship_axes(self.earth);
         let lambda = condition.lambda();
         let by_nine = SMatrix::<f64, 3, NINE>::from_fn(|axis, unknown| match axis {

@@ -252,6 +252,51 @@ fn causes_and_model_add_up_to_the_covariance_of_the_plan() {
     }
 }
 
+/// What each step turned the compass by, of what it should have.
+fn turned(adjusted: &Adjusted, share: f64) -> Vec<Done> {
+    let steps = adjusted.plan.steps.iter();
+    steps
+        .map(|step| {
+            let magnets = matches!(step.to, Some(Place::Magnets(_)));
+            let share = if magnets { share } else { 1.0 };
+            Done {
+                step: step.clone(),
+                turned_deg: Some(share * step.change_deg),
+            }
+        })
+        .collect()
+}
+
+/// Steps within their tolerance leave more open than the plan says, and weak magnets are
+/// known by what all of them showed.
+#[test]
+fn what_the_compass_leaves_open_of_the_steps_is_in_the_band() {
+    let adjusted = Adjusted::new(45.0);
+    let mut adjustment = adjusted.case.adjustment();
+    adjustment.now = Some(&adjusted.plan.setting);
+    let by = |share: f64| by_compass(&adjustment, &turned(&adjusted, share)).unwrap();
+    let planned = &adjusted.plan;
+    let right = by(1.0);
+    let wider_deg = right.widest_band_deg - planned.widest_band_deg;
+    assert!((0.0..0.8).contains(&wider_deg), "{wider_deg}");
+    let weak = by(0.8);
+    assert!(weak.widest_band_deg > planned.widest_band_deg);
+    // Magnets that do less leave more of what they were to take away.
+    let left = |learnt: &Learnt| {
+        let after = learnt.model_after.parameters_over_lambda;
+        let before = adjusted.case.model.parameters_over_lambda;
+        let plan = planned.model_after.parameters_over_lambda;
+        [
+            (after.bx_nt - plan.bx_nt) / (before.bx_nt - plan.bx_nt),
+            (after.by_nt - plan.by_nt) / (before.by_nt - plan.by_nt),
+        ]
+    };
+    for (right, weak) in left(&right).iter().zip(left(&weak)) {
+        assert!(weak > right + 0.05, "{right} {weak}");
+        assert!(right.abs() < 0.03, "{right}");
+    }
+}
+
 /// The second reading of docs/plan.md is one at the berth beside it.
 #[test]
 fn the_second_reading_in_the_documentation_reads() {
