@@ -26,6 +26,8 @@ export async function openVessel(page) {
   const name = await row.getByRole('link').innerText();
   await row.getByRole('link').click();
   await page.getByRole('heading', { name, level: 1 }).waitFor();
+  // It is drawn when it is about to be seen.
+  await chart(page).scrollIntoViewIfNeeded();
   await curve(page).waitFor();
   return name;
 }

@@ -379,7 +379,9 @@ export const adjusting = {
       await plan
         .getByText(/^Foretold at worst \d\.\d° on \d{3}°; with its band \d\.\d°\.$/)
         .waitFor();
-      await plan.getByTestId('plan-chart').locator('svg [aria-label="line"] path').nth(1).waitFor();
+      const drawing = plan.getByTestId('plan-chart');
+      await drawing.scrollIntoViewIfNeeded();
+      await drawing.locator('svg [aria-label="line"] path').nth(1).waitFor();
       await plan.locator('summary', { hasText: 'Foretold on each heading' }).click();
       assert.equal(await plan.getByTestId('predicted-table').locator('tbody tr').count(), 24);
       await page.getByText('predicted, not a certificate').first().waitFor();

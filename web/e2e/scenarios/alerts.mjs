@@ -216,6 +216,7 @@ export const alerts = {
       assert.equal(await show.getAttribute('aria-expanded'), 'false');
       await show.press('Enter');
       const picture = changes.getByTestId('compared-chart');
+      await picture.scrollIntoViewIfNeeded();
       await picture.locator('svg [aria-label="line"] path').nth(1).waitFor();
       assert.equal(await picture.locator('svg [aria-label="area"] path').count(), 2);
       assert.match(

@@ -11,6 +11,16 @@ import {
   struck,
 } from '../helpers.mjs';
 
+/** How many dots a chart has. */
+const dots = (picture) =>
+  picture.locator('svg .dots path').evaluateAll(
+    (paths) =>
+      paths
+        .map((path) => path.getAttribute('d'))
+        .join('')
+        .match(/M/g)?.length,
+  );
+
 export const vessel = {
   'an officer signs in, opens a vessel and sees the curve with its samples': {
     allowedErrors: [notSignedIn],
@@ -27,8 +37,8 @@ export const vessel = {
       assert.ok(path.length > 500, 'the curve has points all round');
       assert.ok(!/NaN/.test(path), 'the curve has no hole');
       await chart(page).locator('svg [aria-label="area"] path').first().waitFor();
-      const samples = chart(page).locator('svg [aria-label="dot"] circle');
-      await samples.nth(20).waitFor();
+      await chart(page).locator('svg .dots path').first().waitFor({ state: 'attached' });
+      assert.ok((await dots(chart(page))) > 100, 'the samples are drawn');
       assert.match(
         await chart(page).getByRole('img').getAttribute('aria-label'),
         /° [EW] on \d{3}°/,
@@ -47,7 +57,11 @@ export const vessel = {
         assert.match(row, /\d+\.\d°( [EW])?\s+± \d+\.\d°\s+\d{3}\.\d°/);
       }
 
-      await page.getByTestId('residual-chart').locator('svg circle').first().waitFor();
+      const residuals = page.getByTestId('residual-chart');
+      await residuals.waitFor();
+      assert.equal(await residuals.locator('svg').count(), 0, 'drawn only when it is near');
+      await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      assert.ok((await dots(residuals)) > 100, 'on paper it is drawn all the same');
       const rose = page.getByTestId('coverage-rose');
       assert.match(await rose.getAttribute('aria-label'), /^Samples by compass heading/);
       assert.ok((await rose.locator('path.cell').count()) >= 24, 'the rose has its sectors');
@@ -339,7 +353,7 @@ export const vessel = {
       await fitsItsWidth(page);
       await shoot('vessels-phone', { fullPage: true });
       await openVessel(page);
-      await chart(page).locator('svg [aria-label="dot"] circle').first().waitFor();
+      await chart(page).locator('svg .dots path').first().waitFor({ state: 'attached' });
       await page.getByTestId('coverage-table').waitFor();
       await fitsItsWidth(page);
       await shoot('vessel-phone', { fullPage: true });

@@ -1,4 +1,4 @@
-/** What the charts share: colours that follow day and night, ticks, spans. */
+/** What the charts share: colours that follow day and night, heights, ticks, spans. */
 
 import { eastWest } from '../format';
 
@@ -13,6 +13,11 @@ export const colours = {
   notable: 'var(--notable)',
   surface: 'var(--surface)',
 } as const;
+
+/** Known before the drawing is, so that its room can be kept. */
+export const comparedHeight = (width: number): number => (width < 520 ? 280 : 340);
+export const deviationHeight = (width: number): number => (width < 520 ? 300 : 410);
+export const residualsHeight = (width: number): number => (width < 520 ? 220 : 260);
 
 /** `4° E`, `0°`, `2.5° W` */
 export function sideTick(value: number): string {

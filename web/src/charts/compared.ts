@@ -6,9 +6,7 @@ import type { Pair } from '../changes';
 import { compassPoint, eastWest, heading, plusMinus } from '../format';
 import { closed } from '../science/curve';
 import { text } from '../text';
-import { colours, sideTick, spanned } from './common';
-
-export const comparedHeight = (width: number): number => (width < 520 ? 280 : 340);
+import { colours, comparedHeight, sideTick, spanned } from './common';
 
 const low = (row: DeviationRow) => row.deviation_deg - (row.band95_deg ?? 0);
 const high = (row: DeviationRow) => row.deviation_deg + (row.band95_deg ?? 0);

@@ -5,7 +5,8 @@ import type { DeviationRow } from '../api/types';
 import { compassPoint, eastWest, fineHeading, heading, plusMinus } from '../format';
 import { closed } from '../science/curve';
 import { text } from '../text';
-import { colours, sideTick, spanned } from './common';
+import { colours, deviationHeight, sideTick, spanned } from './common';
+import { crosses, dots as dotted } from './dots';
 
 export interface Dot {
   compassDeg: number;
@@ -13,14 +14,16 @@ export interface Dot {
   used: boolean;
 }
 
-export const deviationHeight = (width: number): number => (width < 520 ? 300 : 410);
-
 export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number): Element {
   const line = closed(rows);
   const banded = line.filter((row) => typeof row.band95_deg === 'number');
   const low = (row: DeviationRow) => row.deviation_deg - (row.band95_deg ?? 0);
   const high = (row: DeviationRow) => row.deviation_deg + (row.band95_deg ?? 0);
   const narrow = width < 520;
+  const at = (used: boolean) =>
+    dots
+      .filter((dot) => dot.used === used)
+      .map(({ compassDeg, deviationDeg }) => ({ x: compassDeg, y: deviationDeg }));
   return Plot.plot({
     width,
     height: deviationHeight(width),
@@ -62,31 +65,8 @@ export function drawDeviation(rows: DeviationRow[], dots: Dot[], width: number):
       ),
       Plot.gridY({ ticks: narrow ? 5 : 7, stroke: colours.grid, strokeOpacity: 1 }),
       Plot.ruleY([0], { stroke: colours.axis, strokeWidth: 1 }),
-      Plot.dot(
-        dots.filter((dot) => dot.used),
-        {
-          x: 'compassDeg',
-          y: 'deviationDeg',
-          r: narrow ? 1.8 : 2.2,
-          fill: colours.sample,
-          fillOpacity: 0.45,
-          clip: true,
-          ariaHidden: 'true',
-        },
-      ),
-      Plot.dot(
-        dots.filter((dot) => !dot.used),
-        {
-          x: 'compassDeg',
-          y: 'deviationDeg',
-          r: 2.4,
-          symbol: 'times',
-          stroke: colours.unused,
-          strokeOpacity: 0.8,
-          clip: true,
-          ariaHidden: 'true',
-        },
-      ),
+      dotted(at(true), narrow ? 1.8 : 2.2, colours.sample, 0.45),
+      crosses(at(false), colours.unused),
       Plot.areaY(banded, {
         x: 'compass_deg',
         y1: low,

@@ -5,9 +5,8 @@ import { day } from '../format';
 import type { Interval, Residual } from '../science/residuals';
 import { text } from '../text';
 import type { Mark, Range } from '../timeline';
-import { colours, sideTick, spanned } from './common';
-
-export const residualsHeight = (width: number): number => (width < 520 ? 220 : 260);
+import { colours, residualsHeight, sideTick, spanned } from './common';
+import { crosses, dots } from './dots';
 
 /** What the axis holds besides residuals. */
 export interface Axis {
@@ -27,6 +26,10 @@ export function drawResiduals(
   const middle = (interval: Interval) =>
     new Date((interval.from.getTime() + interval.to.getTime()) / 2);
   const span = range.toMs - range.fromMs;
+  const at = (used: boolean) =>
+    residuals
+      .filter((residual) => residual.used === used)
+      .map(({ time, residualDeg }) => ({ x: time, y: residualDeg }));
   return Plot.plot({
     width,
     height: residualsHeight(width),
@@ -71,31 +74,8 @@ export function drawResiduals(
         strokeWidth: 1.5,
         strokeDasharray: '5 3',
       }),
-      Plot.dot(
-        residuals.filter((residual) => residual.used),
-        {
-          x: 'time',
-          y: 'residualDeg',
-          r: 1.7,
-          fill: colours.sample,
-          fillOpacity: 0.4,
-          clip: true,
-          ariaHidden: 'true',
-        },
-      ),
-      Plot.dot(
-        residuals.filter((residual) => !residual.used),
-        {
-          x: 'time',
-          y: 'residualDeg',
-          r: 2.2,
-          symbol: 'times',
-          stroke: colours.unused,
-          strokeOpacity: 0.8,
-          clip: true,
-          ariaHidden: 'true',
-        },
-      ),
+      dots(at(true), 1.7, colours.sample, 0.4),
+      crosses(at(false), colours.unused),
       Plot.lineY(intervals, {
         x: middle,
         y: 'meanDeg',

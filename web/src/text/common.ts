@@ -8,6 +8,7 @@ export const common = {
   skip: 'Skip to content',
   loading: 'Loading…',
   retry: 'Try again',
+  chartNotLoaded: 'The drawing could not be loaded. Its figures stand in the table.',
   cancel: 'Cancel',
   copy: 'Copy',
   copied: 'Copied',

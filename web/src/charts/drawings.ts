@@ -1,0 +1,5 @@
+/** What is drawn with the chart library, all in one file of its own: see library.ts. */
+
+export { drawCompared } from './compared';
+export { drawDeviation } from './deviation';
+export { drawResiduals } from './residuals';
