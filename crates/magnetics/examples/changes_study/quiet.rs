@@ -1,7 +1,7 @@
 //! False alarms where nothing happens but storms, anomalies, gyro faults and outliers.
 
 use crate::voyages::fleet::{Event, Happened, Name, Plan, sail_log};
-use crate::{HOUR_S, alarms, each, near, run, seeds, variety, was_withdrawn};
+use crate::{HOUR_S, each, near, run, seeds, variety, was_withdrawn};
 use binnacle_magnetics::change::{Cause, Change};
 
 pub(crate) fn quiet(ships: u64) {
@@ -12,16 +12,22 @@ pub(crate) fn quiet(ships: u64) {
         };
         let log = sail_log(seed, &plan);
         let analysis = run(&log.samples);
-        for c in alarms(&analysis) {
+        // What was told and then withdrawn was told.
+        let told = || {
+            let changes = analysis.changes.iter();
+            changes.filter(|c| (c.confirmed || c.withdrawn) && c.cause.is_the_ships())
+        };
+        for c in told() {
             println!(
-                "  seed {seed} {:?} {} +{:.1} h {:?}",
+                "  seed {seed} {:?}{} {} +{:.1} h {:?}",
                 c.cause,
+                if c.withdrawn { ", withdrawn," } else { "" },
                 c.from,
                 c.detected_at.seconds_since(c.from) / HOUR_S,
                 c.evidence
             );
         }
-        for c in alarms(&analysis) {
+        for c in told() {
             for h in log.happened.iter().filter(|h| near(h, c)) {
                 println!(
                     "    {:?} {} {:?}",
@@ -53,18 +59,26 @@ pub(crate) fn quiet(ships: u64) {
         let passed: Vec<&Change> = analysis.changes.iter().filter(passing).collect();
         let false_passing = passed.iter().filter(|c| !truly(c)).count();
         [
-            alarms(&analysis).count(),
+            told().count(),
             references.count(),
             passed.len(),
             false_passing,
             passed.iter().filter(|c| was_withdrawn(c)).count(),
+            told().filter(|c| c.withdrawn).count(),
         ]
     });
     let sum = |i: usize| found.iter().map(|f| f[i]).sum::<usize>();
     let years = ships as f64;
     println!("no event, {ships} vessel-years, false alarms a vessel-year:");
     println!("  change of magnetism {:.2}", sum(0) as f64 / years);
-    println!("  the same, withdrawn  {:.2}", sum(4) as f64 / years);
+    println!(
+        "    of these, withdrawn by what came after {:.2}",
+        sum(5) as f64 / years
+    );
+    println!(
+        "  the same, gone again within a day {:.2}",
+        sum(4) as f64 / years
+    );
     println!("  reference fault     {:.2}", sum(1) as f64 / years);
     println!(
         "  passing disturbance {:.2} (and {:.2} that were)",

@@ -5,6 +5,8 @@ use crate::{
     DAY_S, HOUR_S, alarms, each, planned, quantile, run, seeds, settled_hours, share, variety,
 };
 
+use binnacle_magnetics::time::Timestamp;
+
 /// What became of one step.
 struct Found {
     /// By the clock; infinite where it was not found.
@@ -13,6 +15,7 @@ struct Found {
     settled_h: f64,
     date_off_s: f64,
     was_called_off: bool,
+    was_withdrawn: bool,
 }
 
 pub(crate) fn steps(name: &str, event: Event, ships: u64) {
@@ -22,6 +25,9 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
         let analysis = run(&log.samples);
         let told = alarms(&analysis)
             .find(|c| c.detected_at >= from && c.from.seconds_since(from).abs() < 3.0 * DAY_S);
+        let near = |at: Timestamp| at.seconds_since(from).abs() < 3.0 * DAY_S;
+        let mut changes = analysis.changes.iter();
+        let was_withdrawn = changes.any(|c| c.withdrawn && near(c.from));
         let Some(told) = told else {
             let since = analysis.changes.iter().filter(|c| c.detected_at >= from);
             println!(
@@ -35,6 +41,7 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
                 settled_h: f64::INFINITY,
                 date_off_s: f64::NAN,
                 was_called_off: false,
+                was_withdrawn,
             });
         };
         Some(Found {
@@ -42,6 +49,7 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
             settled_h: settled_hours(&log, from, told.detected_at),
             date_off_s: told.from.seconds_since(from).abs(),
             was_called_off: told.ended.is_some(),
+            was_withdrawn,
         })
     });
     let found: Vec<Found> = found.into_iter().flatten().collect();
@@ -54,7 +62,7 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
     println!(
         "{name}: {} ships, found after {:.2} h of settled sailing (median; 90 % {:.1} h), by the \
          clock {:.2} h (95 % {:.2} d); within 1 d {:.0} %, 3 d {:.0} %; date off median {:.0} min, \
-         90 % {:.1} h; called off {:.1} %",
+         90 % {:.1} h; called off {:.1} %, withdrawn {:.1} %",
         found.len(),
         quantile(&mut settled, 0.5),
         quantile(&mut settled, 0.9),
@@ -65,6 +73,7 @@ pub(crate) fn steps(name: &str, event: Event, ships: u64) {
         quantile(&mut dates, 0.5) / 60.0,
         quantile(&mut dates, 0.9) / HOUR_S,
         share(&found, |f| f.was_called_off),
+        share(&found, |f| f.was_withdrawn),
     );
 }
 

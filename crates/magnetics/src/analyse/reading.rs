@@ -14,6 +14,7 @@ use std::cmp::Ordering;
 const DAY_MICROS: i64 = 86_400_000_000;
 
 /// A sample on its way through the analysis.
+#[derive(Clone)]
 pub(super) struct Reading {
     /// The gyro's heading with its speed error taken out.
     pub(super) gyro: Option<TrueHeading>,

@@ -216,6 +216,7 @@ fn told(readings: &[Reading], found: &Stuck) -> Change {
         from_latest: from,
         detected_at: readings[found.showed].sample().time,
         confirmed: true,
+        withdrawn: false,
         cause: Cause::CompassFault,
         causes: vec![CauseProbability {
             cause: Cause::CompassFault,

@@ -48,7 +48,7 @@ pub fn in_fleet(
     others: &[Elsewhere],
 ) -> Change {
     let mut change = change.clone();
-    if change.confirmed && !change.cause.passes_by() {
+    if change.withdrawn || (change.confirmed && !change.cause.passes_by()) {
         return change;
     }
     let span = (change.from, change.ended.unwrap_or(until).max(change.from));
@@ -162,6 +162,7 @@ mod tests {
             from_latest: at(10.0),
             detected_at: at(10.5),
             confirmed: true,
+            withdrawn: false,
             cause: Cause::LocalAnomaly,
             causes: [(Cause::LocalAnomaly, 0.8), (Cause::MagneticStorm, 0.2)]
                 .map(|(cause, probability)| CauseProbability { cause, probability })

@@ -17,6 +17,9 @@ pub struct Change {
     /// Whether it is certain enough to act on; if not, something is up and more
     /// samples will tell what.
     pub confirmed: bool,
+    /// Whether it had been certain, until what came after did not bear it out: it was none.
+    #[serde(default)]
+    pub withdrawn: bool,
     /// The likeliest cause.
     pub cause: Cause,
     /// All causes that may be, the likeliest first.

@@ -4,7 +4,9 @@ use crate::named::with_step;
 use crate::voyages::Variety;
 use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, sail_log};
 use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::{AnalysisSettings, LogbookEntry, LogbookKind, analyse};
+use binnacle_magnetics::analyse::{
+    Analysis, AnalysisSettings, LogbookEntry, LogbookKind, SampleReason, analyse,
+};
 use binnacle_magnetics::change::Cause;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
@@ -189,4 +191,37 @@ fn a_change_at_a_discharge_in_the_logbook_is_not_cargo_that_lasts() {
     assert_eq!(found.len(), 1, "{found:?}");
     assert_eq!(found[0].cause, Cause::MagneticCargo);
     assert!(found[0].ended.is_some(), "{found:?}");
+}
+
+/// What was loaded does not move the compass, and nobody wrote down that it was discharged.
+#[test]
+fn cargo_that_nobody_closed_is_said_to_leave_samples_out_and_after_weeks_leaves_out_none() {
+    let log = sail_log(11, &calm(Event::Nothing));
+    let loaded = log.start.plus_seconds(15.0 * 86_400.0);
+    let open = [entry(LogbookKind::MagneticCargo, loaded, None)];
+    let sailed = |days: f64| {
+        let until = loaded.plus_seconds(days * 86_400.0);
+        let samples = log.samples.partition_point(|s| s.time < until);
+        analyse(&log.samples[..samples], &open, &AnalysisSettings::default())
+    };
+    let left_out = |analysis: &Analysis| {
+        let reasons = analysis.samples.iter().map(|s| s.reason);
+        let cargo = reasons.filter(|reason| *reason == Some(SampleReason::MagneticCargo));
+        cargo.count()
+    };
+    let soon = sailed(10.0);
+    assert!(left_out(&soon) > 300);
+    assert_eq!(soon.notices.len(), 1, "{:?}", soon.notices);
+    let count = format!("{} samples are left out", left_out(&soon));
+    assert!(soon.notices[0].contains(&count), "{:?}", soon.notices);
+    assert!(soon.notices[0].contains("give the entry its end"));
+    let late = sailed(29.0);
+    is_sound(&late);
+    assert_eq!(left_out(&late), 0);
+    assert_eq!(late.epochs.len(), 1);
+    assert!(late.notices[0].contains("taken for the ship as she is"));
+    let used = |analysis: &Analysis| analysis.epochs[0].model.as_ref().unwrap().samples_used;
+    assert!(used(&late) as f64 > 0.9 * late.samples.len() as f64);
+    let closed = analyse(&log.samples, &[], &AnalysisSettings::default());
+    assert!(closed.notices.is_empty());
 }

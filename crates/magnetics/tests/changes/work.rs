@@ -15,6 +15,7 @@ fn with(log: &Log, logbook: &[LogbookEntry]) -> Analysis {
 
 #[test]
 fn a_strike_the_day_after_an_adjustment_is_found_within_hours() {
+    let mut asked = 0;
     for seed in [1, 3, 6] {
         let log = sail_log(seed, &calm(Event::Step(2500.0)));
         let struck = began(&log, Name::Step);
@@ -29,6 +30,43 @@ fn a_strike_the_day_after_an_adjustment_is_found_within_hours() {
         assert_eq!(strike.cause, Cause::LightningOrShock, "seed {seed}");
         let delay_h = strike.detected_at.seconds_since(struck) / HOUR_S;
         assert!((0.0..12.0).contains(&delay_h), "seed {seed}: {delay_h} h");
+        let asks = |line: &String| line.contains("correct the entry");
+        let is_soon = strike.from.seconds_since(adjusted) < DAY_S;
+        assert_eq!(strike.evidence.iter().any(asks), is_soon, "{strike:?}");
+        asked += usize::from(is_soon);
+    }
+    assert!(asked > 0);
+}
+
+#[test]
+fn work_that_was_planned_for_an_earlier_hour_begins_one_epoch_when_it_was_done() {
+    for seed in [1, 2, 5] {
+        let log = sail_log(seed, &calm(Event::Refit));
+        let worked = began(&log, Name::Refit);
+        let planned = worked.plus_seconds(-20.0 * HOUR_S);
+        let analysis = with(&log, &[entry(LogbookKind::Adjustment, planned, None)]);
+        is_sound(&analysis);
+        let found = of_the_ship(&analysis);
+        assert_eq!(found.len(), 1, "seed {seed}: {found:?}");
+        assert_eq!(found[0].cause, Cause::AdjustmentOrRepair, "seed {seed}");
+        let said = found[0]
+            .evidence
+            .iter()
+            .any(|line| line.contains("later than"));
+        assert!(said, "{found:?}");
+        assert_eq!(analysis.epochs.len(), 2, "seed {seed}");
+        let begun = analysis.epochs[1].from.unwrap();
+        let sailed = log.samples.iter().find(|s| s.time > worked).unwrap().time;
+        assert!(planned < begun && begun <= sailed, "seed {seed}: {begun}");
+        // What was sampled until then is of the ship before it.
+        let before = log.samples.iter().filter(|s| s.time < begun);
+        let used = analysis.epochs[0].model.as_ref().unwrap().samples_used;
+        assert!(used as f64 > 0.95 * before.count() as f64, "seed {seed}");
+        let told = &analysis.changes;
+        assert!(
+            told.iter().all(|c| c.confirmed || c.is_faint()),
+            "seed {seed}"
+        );
     }
 }
 

@@ -11,6 +11,10 @@ const TOLD_DEG: f64 = 0.1;
 /// Said of a disturbance that other ships may speak for.
 const FAINT: &str = "too faint to be certain by this ship alone";
 
+/// Said of a change that was none.
+const WITHDRAWN: &str = "it was held to be certain, and is withdrawn: the samples since do not \
+                         bear it out";
+
 /// The evidence of an event; `seen_deg` is how far the compass was seen astray.
 pub(super) fn evidence(
     event: &Event,
@@ -93,7 +97,10 @@ pub(super) fn evidence(
     if !known.reported.is_empty() {
         told.push("the logbook has a report of that time".to_owned());
     }
-    match (event.confirmed, event.last) {
+    if event.withdrawn.is_some() {
+        told.push(WITHDRAWN.to_owned());
+    }
+    match (event.confirmed || event.withdrawn.is_some(), event.last) {
         (true, _) => {}
         (false, None) => told.push("not yet certain: more samples will tell".to_owned()),
         (false, Some(_)) => told.push(FAINT.to_owned()),

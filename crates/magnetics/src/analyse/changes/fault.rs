@@ -57,6 +57,7 @@ pub(super) fn faults(all: &[Seen], changes: &mut Vec<Change>) {
             from_latest: first.1,
             detected_at: spell[FAULT_ROWS - 1].1,
             confirmed: true,
+            withdrawn: false,
             cause: Cause::ReferenceFault,
             causes: vec![CauseProbability {
                 cause: Cause::ReferenceFault,

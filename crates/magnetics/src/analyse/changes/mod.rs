@@ -19,8 +19,9 @@ use crate::time::Timestamp;
 use fault::{Seen, faults, merge_faults};
 use teller::Teller;
 
-/// Work may have been done so long before the logbook says so, seconds.
-const LATE_S: f64 = 86_400.0;
+/// Work may have been done so long before the logbook says so, or after, seconds: people
+/// write down when they noticed, or what was planned.
+pub(super) const MISTIMED_S: f64 = 86_400.0;
 
 /// What was found in one epoch of the logbook.
 pub(super) struct Found {
@@ -38,8 +39,20 @@ impl Found {
     /// after: people write down when they noticed.
     pub(super) fn reported_late(&self, said: Timestamp) -> Option<Timestamp> {
         let last = self.boundaries.last().filter(|last| !last.resumes)?;
-        let is_work = self.changes[last.change].cause == Cause::AdjustmentOrRepair;
-        (is_work && said.seconds_since(last.at) < LATE_S).then_some(last.at)
+        (self.is_work(last) && said.seconds_since(last.at) < MISTIMED_S).then_some(last.at)
+    }
+
+    /// When the work was done of which the logbook says that it was done at a time before.
+    pub(super) fn reported_early(&self, said: Timestamp) -> Option<Timestamp> {
+        let mut later = self.boundaries.iter().filter(|boundary| boundary.at > said);
+        let first = later.next().filter(|first| !first.resumes)?;
+        let after_s = self.changes[first.change].from_earliest.seconds_since(said);
+        let is_later = after_s > 0.0 && after_s < MISTIMED_S;
+        (self.is_work(first) && is_later).then_some(first.at)
+    }
+
+    fn is_work(&self, boundary: &Boundary) -> bool {
+        self.changes[boundary.change].cause == Cause::AdjustmentOrRepair
     }
 }
 
@@ -68,9 +81,9 @@ pub(super) struct Boundary {
 }
 
 /// What is known beforehand of the ship and of her instruments' noise.
-pub(super) struct Known<'a> {
-    pub(super) prior: &'a Prior,
-    pub(super) levels: Option<&'a NoiseLevels>,
+pub(super) struct Known {
+    pub(super) prior: Prior,
+    pub(super) levels: Option<NoiseLevels>,
 }
 
 /// Searches the readings of one epoch of the logbook and marks those that a
@@ -79,7 +92,7 @@ pub(super) fn find(
     readings: &mut [Reading],
     reference: &Reference,
     logbook: &[LogbookEntry],
-    known: &Known<'_>,
+    known: &Known,
 ) -> Found {
     let mut found = Found {
         changes: Vec::new(),
@@ -108,8 +121,8 @@ pub(super) fn find(
     let told = detect(
         &observations,
         &Given {
-            prior: known.prior,
-            levels: known.levels,
+            prior: &known.prior,
+            levels: known.levels.as_ref(),
             reported: &reported(logbook),
             cargo: &cargo(logbook),
         },

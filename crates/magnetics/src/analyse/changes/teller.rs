@@ -14,8 +14,10 @@ use crate::time::Timestamp;
 /// People write down when they noticed, not when it happened; cargo is not on board
 /// before it is loaded, but for the clerk's haste.
 const REPORT_S: f64 = 2.0 * 86_400.0;
-/// What happens after work has ended was hardly the work, but for a clock that is wrong.
+/// What happens at sea after work has ended was hardly the work, but for a clock that is
+/// wrong; in port it may be so much later than was planned.
 const WORKED_BEFORE_S: f64 = 6.0 * 3600.0;
+const PLANNED_S: f64 = 86_400.0;
 const LOADED_BEFORE_S: f64 = 6.0 * 3600.0;
 /// Steps at sea that follow each other within this but not within a day, in directions
 /// whose cosine is more than that, are of one drift, unless they showed within hours.
@@ -138,7 +140,8 @@ impl Teller<'_> {
             && event.what == What::Step
             && self.is_said_discharge(event);
         let seen_deg = astray.map(|astray| astray.seen_deg);
-        let has_step = matches!(event.what, What::Step | What::Drift);
+        let stands = event.withdrawn.is_none();
+        let has_step = matches!(event.what, What::Step | What::Drift) && stands;
         let worst = match event.what {
             What::Alignment => size::zero_change(&event.before, &event.after),
             _ => size::worst_change(
@@ -148,12 +151,20 @@ impl Teller<'_> {
             ),
         };
         let mut told = evidence(event, &known, worst, seen_deg);
+        if let Some(after_s) = self.work_before(event, &known.reported) {
+            told.push(format!(
+                "the logbook has work on ship or compass {:.0} hours before: if it was done at this \
+                 time, correct the entry",
+                after_s / 3600.0
+            ));
+        }
         if was_discharge {
             told.push("the logbook has it that cargo was discharged then".to_owned());
         }
         // What left her with the cargo does not last.
         let over = ended_row.map(|row| self.time(row));
         let over = over.or_else(|| was_discharge.then(|| self.time(event.first)));
+        let over = event.withdrawn.map(|row| self.time(row)).or(over);
         Change {
             from,
             from_earliest: from_earliest.min(from),
@@ -163,7 +174,8 @@ impl Teller<'_> {
             cause,
             evidence: told,
             causes,
-            deviation_change_deg: event.what.is_lasting().then_some(worst),
+            withdrawn: !stands,
+            deviation_change_deg: (event.what.is_lasting() && stands).then_some(worst),
             step: has_step.then(|| size::step(&event.before, &event.after)),
             ended: over,
         }
@@ -257,13 +269,28 @@ impl Teller<'_> {
                     .into_iter()
                     .any(|time| near(time, time, LOADED_BEFORE_S, REPORT_S) && at_the_quay(time))
             } else if entry.kind.ends_an_epoch() {
-                near(entry.from, to, REPORT_S, WORKED_BEFORE_S)
+                // As written beforehand: the work waits for the ship, or she for it.
+                let planned = near(entry.from, to, REPORT_S, PLANNED_S) && at_the_quay(to);
+                planned || near(entry.from, to, REPORT_S, WORKED_BEFORE_S)
             } else {
                 near(entry.from, to, REPORT_S, REPORT_S)
             }
         };
         let entries = self.logbook.iter().filter(is_near);
         entries.filter_map(|entry| cause_of(entry.kind)).collect()
+    }
+
+    /// How long before a step at sea there was work that does not explain it, seconds.
+    fn work_before(&self, event: &Event, reported: &[Cause]) -> Option<f64> {
+        if event.what != What::Step || reported.contains(&Cause::AdjustmentOrRepair) {
+            return None;
+        }
+        let at = self.time(event.first);
+        let work = self.logbook.iter().filter(|e| e.kind.ends_an_epoch());
+        let after_s = work.map(|entry| at.seconds_since(entry.to.unwrap_or(entry.from)));
+        after_s
+            .filter(|after_s| (0.0..PLANNED_S).contains(after_s))
+            .reduce(f64::min)
     }
 
     /// Whether the logbook has the end of cargo's time on board at an event, and no

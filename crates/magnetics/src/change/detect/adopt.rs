@@ -54,8 +54,10 @@ impl Search<'_> {
             Some((&before, &dated.filter)),
         );
         let mut rivals = Vec::new();
+        let mut doubt = None;
         if kind == Kind::Step {
             self.misaligned = None;
+            doubt = Some(self.doubt_of(k, &dated, &before, &leads));
             rivals = self.rivals_of(k, &dated, &before);
             // It may be that several steps were the same.
             rivals.append(&mut self.rivals);
@@ -68,6 +70,7 @@ impl Search<'_> {
         }
         self.take_over(k, dated.filter, dated.first);
         self.rivals = rivals;
+        self.doubt = doubt;
         if what == What::Reference {
             // Its noise may be another, too.
             self.lesson = Lesson::next(self.observations, dated.first, dated.first, 0.0);
@@ -225,6 +228,7 @@ impl Search<'_> {
         self.bank.clear();
         self.faint = None;
         self.rivals.clear();
+        self.doubt = None;
         self.spawned = k;
         self.learn_from = first;
         // Neither seas nor instruments changed: of fewer days there is less to learn.
@@ -251,6 +255,7 @@ impl Search<'_> {
             after: snapshot(after),
             last: None,
             confirmed: true,
+            withdrawn: None,
             was_step: false,
             over_step: 0.0,
         };

@@ -66,6 +66,8 @@ pub(crate) struct Event {
     pub(crate) last: Option<usize>,
     /// Whether it is certain.
     pub(crate) confirmed: bool,
+    /// The row that told that a step was none after all.
+    pub(crate) withdrawn: Option<usize>,
     /// Whether a burst was at first told as a step.
     pub(crate) was_step: bool,
     /// By how much it is likelier than the step for which it was first taken, nats.

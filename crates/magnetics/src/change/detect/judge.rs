@@ -68,7 +68,8 @@ impl Search<'_> {
         {
             return self.adopt_call(k, candidate, leads);
         }
-        if self.misled.is_none() && self.settle_rivals(k, &leads) {
+        if self.misled.is_none() && (self.settle_rivals(k, &leads) || self.settle_doubt(k, &leads))
+        {
             return;
         }
         let rival = nats(Kind::Step).max(nats(Kind::Reference));

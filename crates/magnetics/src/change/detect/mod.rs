@@ -5,6 +5,7 @@
 //! decides what it tells; every event lies between two rows; the search ends.
 
 mod adopt;
+mod borne_out;
 mod burst;
 mod date;
 mod event;
@@ -31,6 +32,7 @@ use crate::estimate::{
 };
 use crate::fit::Observation;
 use crate::time::Timestamp;
+use borne_out::Doubt;
 use faint::Faint;
 use learn::{Learnt, Lesson};
 use rival::Rival;
@@ -106,6 +108,8 @@ struct Search<'a> {
     unsettled: Unsettled,
     /// What else the last step may have been.
     rivals: Vec<Rival>,
+    /// That it may be none.
+    doubt: Option<Doubt>,
     /// The burst that goes on, if one does.
     burst: Option<usize>,
     /// A disturbance that leads by too little to be told.
@@ -138,6 +142,7 @@ impl<'a> Search<'a> {
             misaligned: None,
             unsettled: Unsettled::default(),
             rivals: Vec::new(),
+            doubt: None,
             burst: None,
             faint: None,
             events: Vec::new(),
@@ -174,6 +179,7 @@ impl<'a> Search<'a> {
         calls.take(|at| self.measure(k, at), &self.noise, &self.null);
         self.calls = calls;
         self.take_in_rivals(k);
+        self.take_in_doubt(k);
         let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
         let null = (&self.null, surprise);
         self.bank.take(k, m, &self.noise, null, earlier);
@@ -217,9 +223,18 @@ impl<'a> Search<'a> {
     /// The same for a ship that drifts by so much more in thirty days, variance in
     /// population units.
     fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
+        let unsettled = self.unsettled.variance(self.observations, k);
+        self.measured(k, at, unsettled.max(drift))
+    }
+
+    /// The same for a ship that drifts as ships do.
+    fn measure_settled(&self, k: usize, at: &Unknowns) -> Measurement {
+        self.measured(k, at, 0.0)
+    }
+
+    fn measured(&self, k: usize, at: &Unknowns, unsettled: f64) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
         let row = row(o, station, &Point::at(at, USUAL_FUSION));
-        let unsettled = self.unsettled.variance(self.observations, k).max(drift);
         measurement(station, &row, at, self.seconds(k), &self.noise, unsettled)
     }
 

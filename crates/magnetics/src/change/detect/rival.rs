@@ -141,8 +141,8 @@ impl Search<'_> {
         let back = back.max(of_kind(Kind::Return));
         let lead = |rival: &Rival| rival.filter.log_likelihood - self.null.log_likelihood;
         let later = |rival: &Rival| {
-            let later = self.events[rival.event + 1..].iter();
-            later.filter(|event| event.what == What::Step).count()
+            let later = rival.event + 1..self.events.len();
+            later.filter(|event| self.is_standing_step(*event)).count()
         };
         let worth = |place: usize| {
             let rival = &self.rivals[place];
@@ -153,7 +153,7 @@ impl Search<'_> {
             return false;
         };
         let (nats, of) = (lead(&self.rivals[place]), self.rivals[place].event);
-        let mut steps = (of..self.events.len()).filter(|&e| self.events[e].what == What::Step);
+        let mut steps = (of..self.events.len()).filter(|&e| self.is_standing_step(e));
         let is_drift = self.rivals[place].what == What::Drift;
         let in_port = is_drift && steps.all(|event| self.began_in_port(event));
         let mut enough = if later(&self.rivals[place]) > 0 {
@@ -222,8 +222,10 @@ impl Search<'_> {
     /// What the filter gained by being told of a burst, its rivals would have gained, too.
     pub(super) fn credit_rivals(&mut self, kind: Kind) {
         let gained = self.bank.lead(kind, &self.null).map_or(0.0, |l| l.nats);
-        for rival in &mut self.rivals {
-            rival.filter.log_likelihood += gained;
+        let rivals = self.rivals.iter_mut().map(|rival| &mut rival.filter);
+        let doubts = self.doubt.iter_mut().flat_map(|doubt| &mut doubt.without);
+        for filter in rivals.chain(doubts) {
+            filter.log_likelihood += gained;
         }
     }
 }

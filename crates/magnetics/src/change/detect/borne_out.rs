@@ -1,0 +1,118 @@
+//! Whether what came after a step bears it out.
+//!
+//! What always holds: a ship to whom nothing happened, or by whom something passed, is
+//! followed beside the filter that knows of the step, over the same rows; what is
+//! withdrawn stays so, whatever comes later, and its place in the list of events is kept.
+
+use super::date::Dated;
+use super::{Leads, Search, What};
+use crate::change::bank::Kind;
+use crate::change::filter::Filter;
+use crate::change::upset::calmed;
+
+/// That there was no step must be likelier by this than that there was one, nats, after so
+/// many rows: half a day of sailing.
+const WITHDRAWN_NATS: f64 = 3.0;
+const ROWS: usize = 72;
+/// One that trails by this is given up, nats: the step was one. So much more of it in the
+/// first rows, which told of the step by what may have been its like only.
+const HOPELESS_NATS: f64 = 25.0;
+const HOPELESS_AT_FIRST_NATS: f64 = 45.0;
+/// While what passes leads by this, the rows tell nothing of the ship, nats.
+const ASTRAY_NATS: f64 = 3.0;
+
+/// That the last step may be none.
+pub(super) struct Doubt {
+    /// The step's place in the list of events.
+    event: usize,
+    /// The row that told.
+    told: usize,
+    /// Where the stretch of learning began before it was told.
+    learn_from: usize,
+    /// Of a ship to whom nothing happened, and by whom something passed.
+    pub(super) without: Vec<Filter>,
+}
+
+impl Search<'_> {
+    /// The doubt of a step that was dated just now, and is the last event; `before` is the
+    /// filter before it.
+    pub(super) fn doubt_of(
+        &self,
+        k: usize,
+        dated: &Dated,
+        before: &Filter,
+        leads: &Leads,
+    ) -> Doubt {
+        let rows = dated.first..k + 1;
+        let nothing = self.run(before.clone(), rows, &before.unknowns());
+        let passed = leads[Kind::Burst as usize].and_then(|lead| {
+            let copy = self.bank.spawns[lead.spawn].copy(lead.kind)?;
+            Some(match lead.kind {
+                Kind::Wild => calmed(copy, &self.noise),
+                _ => copy.clone(),
+            })
+        });
+        Doubt {
+            event: self.events.len() - 1,
+            told: k,
+            learn_from: self.learn_from,
+            without: std::iter::once(nothing).chain(passed).collect(),
+        }
+    }
+
+    /// It reads the row that the filter has read.
+    pub(super) fn take_in_doubt(&mut self, k: usize) {
+        let Some(mut doubt) = self.doubt.take() else {
+            return;
+        };
+        for filter in &mut doubt.without {
+            // A ship that was not struck has nothing that fades.
+            let m = self.measure_settled(k, &filter.unknowns());
+            filter.take(&m, &self.noise, None);
+        }
+        let trails = if k < doubt.told + ROWS {
+            HOPELESS_AT_FIRST_NATS
+        } else {
+            HOPELESS_NATS
+        };
+        let hopeless = self.null.log_likelihood - trails;
+        doubt
+            .without
+            .retain(|filter| filter.log_likelihood > hopeless);
+        self.doubt = Some(doubt).filter(|doubt| !doubt.without.is_empty());
+    }
+
+    /// Withdraws the last step, if the rows since are likelier without it.
+    pub(super) fn settle_doubt(&mut self, k: usize, leads: &Leads) -> bool {
+        let of_kind = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
+        if self.burst.is_some() || of_kind(Kind::Burst) > ASTRAY_NATS {
+            return false;
+        }
+        let likelier = |doubt: &Doubt| {
+            let each = doubt.without.iter().enumerate();
+            let each = each.map(|(i, filter)| (i, filter.log_likelihood));
+            let (place, nats) = each.max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let enough = self.null.log_likelihood + WITHDRAWN_NATS;
+            (k >= doubt.told + ROWS && nats > enough).then_some(place)
+        };
+        let Some(place) = self.doubt.as_ref().and_then(likelier) else {
+            return false;
+        };
+        let Some(mut doubt) = self.doubt.take() else {
+            return false;
+        };
+        let event = &mut self.events[doubt.event];
+        event.confirmed = false;
+        event.withdrawn = Some(k);
+        self.calls.forget(doubt.event);
+        self.unsettled = super::Unsettled::default();
+        self.take_over(k, doubt.without.swap_remove(place), doubt.learn_from);
+        true
+    }
+
+    /// Whether an event is a step that still stands.
+    pub(super) fn is_standing_step(&self, event: usize) -> bool {
+        let event = &self.events[event];
+        event.what == What::Step && event.withdrawn.is_none()
+    }
+}
