@@ -2,18 +2,29 @@
 //!
 //! What always holds: revisions may come late, again and in any order; the highest of
 //! each alert counts, and the alert that the ship spoke of last is the one that is
-//! open or over. An analysis neither raises nor clears it.
+//! open or over. Those that follow each other within hours are one: it is over when they
+//! have not parted for [`QUIET_S`], by the ship's samples or the clock. An analysis
+//! neither raises it nor says anything else of it.
 
-use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
-use super::look::{OVER, bring_in_line, tell};
-use super::store;
-use crate::db::{Result as DbResult, Tx, execute, row};
+use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity, State};
+use super::look::{News, OVER, bring_in_line, tell};
+use super::store::{self, Known};
+use crate::app::App;
+use crate::db::{Result as DbResult, Tx, execute, rows};
 use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
+use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
 
+/// What has been quiet for so long is over, seconds: compass and gyro that part at the
+/// limit do so again and again.
+const QUIET_S: f64 = 6.0 * 3600.0;
+/// Alerts of the ship's that are looked at, the latest first.
+const MOST: i64 = 64;
+const NOT_JUDGED: &str = "the card by which it was judged is not in force any more: it is not known \
+                          to be over";
 /// A departure beyond this makes the compass, or the gyro, worse than none.
 const CRITICAL_DEG: f64 = 10.0;
 
@@ -32,16 +43,93 @@ pub async fn from_ship(
     for alert in alerts {
         keep(tx, vessel, compass, alert).await?;
     }
-    let wanted: Vec<AlertWanted> = latest(tx, vessel, compass)
-        .await?
-        .filter(|alert| alert.state == ShipAlertState::Open)
-        .map(|alert| wanted(&alert))
-        .into_iter()
-        .collect();
+    let said = alerts.iter().map(|alert| alert.at).max();
+    let news = in_line(tx, vessel, compass, said, now).await?;
+    tell(tx, vessel, &news, now).await
+}
+
+/// Holds the ship's own alert against the time that she is known to have sailed until;
+/// the compass's alerts are locked.
+pub(super) async fn in_line(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+    until: Option<Timestamp>,
+    now: Time,
+) -> Result<Vec<News>> {
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause == Cause::ReportedAboard);
-    let news = bring_in_line(tx, vessel, compass, &known, &wanted, |_| OVER, now).await?;
-    tell(tx, vessel, &news, now).await
+    let spoken = spoken(tx, vessel, compass).await?;
+    let Some(last) = spoken.first() else {
+        return Ok(Vec::new());
+    };
+    let wanted = called_for(&spoken, known.first(), until);
+    let why = match last.state {
+        ShipAlertState::NotJudged => NOT_JUDGED,
+        _ => OVER,
+    };
+    bring_in_line(tx, vessel, compass, &known, wanted.as_slice(), |_| why, now).await
+}
+
+/// Looks which of these alerts have been quiet for long, where no sample tells.
+pub(super) async fn look(app: &App) -> Result<()> {
+    let now: Time = app.clock.now().into();
+    let before = Time(now.0.plus_seconds(-QUIET_S));
+    for (vessel, compass) in store::unshown(&app.db, Cause::ReportedAboard, before).await? {
+        let mut tx = app.db.begin().await?;
+        store::lock(&mut tx, vessel, compass).await?;
+        let news = in_line(&mut tx, vessel, compass, Some(now.0), now).await?;
+        let event = tell(&mut tx, vessel, &news, now).await?;
+        tx.commit().await?;
+        if let Some(event) = event {
+            app.publish(event);
+        }
+    }
+    Ok(())
+}
+
+/// The alert that what the ship said calls for, the latest first.
+fn called_for(
+    spoken: &[ShipAlert],
+    known: Option<&Known>,
+    until: Option<Timestamp>,
+) -> Option<AlertWanted> {
+    let last = spoken.first()?;
+    let alert = match last.state {
+        ShipAlertState::Open => wanted(last),
+        _ => {
+            let quiet_s = until.map_or(0.0, |until| until.seconds_since(last.at));
+            quiet(last, known.filter(|_| quiet_s < QUIET_S)?)
+        }
+    };
+    // Cleared by a person, what parts anew is another.
+    let is_anew = known.is_some_and(|known| {
+        known.state == State::Cleared && known.cleared_at.is_some_and(|at| at.0 < last.since)
+    });
+    if is_anew {
+        return Some(alert);
+    }
+    let since: Time = since(spoken).unwrap_or(last.since).into();
+    Some(AlertWanted {
+        since,
+        dated: Dated {
+            from: Some(since),
+            ..alert.dated
+        },
+        ..alert
+    })
+}
+
+/// When the first of those began that followed each other within hours, up to the last.
+fn since(spoken: &[ShipAlert]) -> Option<Timestamp> {
+    let mut since = spoken.first()?.since;
+    for earlier in &spoken[1..] {
+        if since.seconds_since(earlier.at) >= QUIET_S {
+            break;
+        }
+        since = since.min(earlier.since);
+    }
+    Some(since)
 }
 
 async fn keep(tx: &mut Tx, vessel: VesselId, compass: CompassId, alert: &ShipAlert) -> Result<()> {
@@ -62,20 +150,44 @@ async fn keep(tx: &mut Tx, vessel: VesselId, compass: CompassId, alert: &ShipAle
     Ok(())
 }
 
-/// The alert that the ship spoke of last.
-async fn latest(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> Result<Option<ShipAlert>> {
-    let found: DbResult<Option<(String,)>> = row!(
+/// What the ship said, the latest first.
+async fn spoken(tx: &mut Tx, vessel: VesselId, compass: CompassId) -> Result<Vec<ShipAlert>> {
+    let found: DbResult<Vec<(String,)>> = rows!(
         in tx,
         (String,),
         "SELECT alert FROM ship_alerts WHERE vessel_id = $1 AND compass_id = $2
-         ORDER BY at DESC, id DESC LIMIT 1",
+         ORDER BY at DESC, id DESC LIMIT $3",
         vessel,
-        compass
+        compass,
+        MOST
     );
-    let text = found?;
-    Ok(text
+    let spoken = found?.into_iter();
+    Ok(spoken
         .map(|(text,)| serde_json::from_str(&text))
-        .transpose()?)
+        .collect::<std::result::Result<_, _>>()?)
+}
+
+/// What is said of one that is not open, and was until lately.
+fn quiet(last: &ShipAlert, known: &Known) -> AlertWanted {
+    let (who, _) = words(last);
+    let since = Time(last.at).to_the_minute();
+    let (so, advice) = match last.state {
+        ShipAlertState::NotJudged => (
+            format!("since {since} nobody can tell whether they still are apart"),
+            "Steer by gyro and take an azimuth until there is a card again.",
+        ),
+        _ => (
+            format!("since {since} they agree"),
+            "Keep comparing them each watch. If they stay together for six hours, this alert \
+             clears itself.",
+        ),
+    };
+    AlertWanted {
+        severity: known.severity,
+        summary: format!("{who} parted, reported by the ship's agent; {so}."),
+        advice,
+        ..wanted(last)
+    }
 }
 
 fn wanted(alert: &ShipAlert) -> AlertWanted {
@@ -105,7 +217,6 @@ fn wanted(alert: &ShipAlert) -> AlertWanted {
         cause: Cause::ReportedAboard,
         severity,
         since: alert.since.into(),
-        // The ship keeps to the date of each of her alerts.
         dated: Dated::exactly(alert.since.into()),
         summary: format!("{who} parted by {size_deg:.0}°, reported by the ship's agent."),
         advice,

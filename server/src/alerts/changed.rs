@@ -57,6 +57,15 @@ pub(super) fn changed(findings: &Findings, limits: &AlertLimits) -> Vec<AlertWan
     wanted
 }
 
+/// Whether the change that an alert was about was none after all.
+pub(super) fn is_withdrawn(cause: Cause, since: Time, findings: &Findings) -> bool {
+    findings.changes.iter().any(|found| {
+        found.change.withdrawn
+            && cause_of(found.change.cause) == cause
+            && dated(found, findings).includes(since)
+    })
+}
+
 fn cause_of(cause: change::Cause) -> Cause {
     match cause {
         change::Cause::LightningOrShock => Cause::LightningOrShock,

@@ -7,11 +7,12 @@
 //! the first.
 
 use super::alert::{Alert, AlertWanted, Cause, Severity, State};
-use super::cloned;
+use super::changed::is_withdrawn;
 use super::findings::Findings;
 use super::limits::AlertLimits;
 use super::store::{self, Known};
 use super::wanted::{alerts_of, silence};
+use super::{aboard, cloned};
 use crate::app::App;
 use crate::changes;
 use crate::db::Tx;
@@ -30,6 +31,7 @@ const LOOK_EVERY: Duration = Duration::from_mins(1);
 pub(super) const OVER: &str = "it is over";
 const NOT_KNOWN: &str = "there is no model any more that could tell whether it still is so: it is \
                          not known to be over";
+const WITHDRAWN: &str = "it is withdrawn: the samples since do not bear out that anything changed";
 const FOLLOWED: &str = "another of its cause followed";
 
 /// A change of an alert: what became of it, or only other words.
@@ -69,15 +71,17 @@ pub async fn after_analysis(
     let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();
     let mut wanted = alerts_of(&findings, limits, &open);
     wanted.extend(work_orders::alert(tx, vessel, compass).await?);
-    let why = |cause| why_cleared(cause, &findings);
-    let news = bring_in_line(tx, vessel, compass, &known, &wanted, why, now).await?;
+    let why = |alert: &Known| why_cleared(alert, &findings);
+    let mut news = bring_in_line(tx, vessel, compass, &known, &wanted, why, now).await?;
+    news.extend(aboard::in_line(tx, vessel, compass, findings.data_until, now).await?);
     tell(tx, vessel, &news, now).await
 }
 
 /// What clears an alert that an analysis calls for no more. Without a model nothing is
 /// known of what the compass shows.
-fn why_cleared(cause: Cause, findings: &Findings) -> &'static str {
-    match cause {
+fn why_cleared(alert: &Known, findings: &Findings) -> &'static str {
+    match alert.cause {
+        cause if is_withdrawn(cause, alert.since, findings) => WITHDRAWN,
         Cause::DeviationOverLimit if findings.worst.is_none() => NOT_KNOWN,
         Cause::WideBand if findings.widest_band95_deg.is_none() => NOT_KNOWN,
         _ => OVER,
@@ -121,6 +125,7 @@ pub async fn for_silence(app: &App) -> Result<()> {
 /// When the database cannot be asked.
 pub async fn by_the_clock(app: &App) -> Result<()> {
     for_silence(app).await?;
+    aboard::look(app).await?;
     cloned::look(app).await
 }
 
@@ -143,7 +148,7 @@ pub(super) async fn bring_in_line(
     compass: CompassId,
     known: &[Known],
     wanted: &[AlertWanted],
-    why_cleared: impl Fn(Cause) -> &'static str,
+    why_cleared: impl Fn(&Known) -> &'static str,
     now: Time,
 ) -> Result<Vec<News>> {
     let mut news = Vec::new();
@@ -151,7 +156,7 @@ pub(super) async fn bring_in_line(
         if wanted.iter().any(|wanted| wanted.cause == alert.cause) {
             continue;
         }
-        store::end(tx, vessel, alert.id, why_cleared(alert.cause), now).await?;
+        store::end(tx, vessel, alert.id, why_cleared(alert), now).await?;
         if alert.state != State::Cleared {
             news.push(News::of(alert.id, Kind::AlertCleared));
         }

@@ -19,6 +19,7 @@ pub(super) struct Known {
     #[sqlx(try_from = "String")]
     pub(super) evidence: Evidence,
     pub(super) since: Time,
+    pub(super) cleared_at: Option<Time>,
 }
 
 /// What a person says of an alert.
@@ -121,7 +122,8 @@ pub(super) async fn known(
     rows!(
         in tx,
         Known,
-        "SELECT id, cause, severity, state, summary, advice, evidence, since FROM alerts
+        "SELECT id, cause, severity, state, summary, advice, evidence, since, cleared_at
+         FROM alerts
          WHERE vessel_id = $1 AND compass_id = $2 AND holds
          ORDER BY id",
         vessel,

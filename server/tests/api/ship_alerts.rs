@@ -16,6 +16,8 @@ on_both!(
     revisions_in_any_order_and_again_end_alike,
     an_analysis_does_not_clear_what_the_ship_says,
     an_alert_of_a_spool_that_was_lost_does_not_stay_open,
+    what_parts_again_and_again_within_hours_is_one_alert,
+    what_a_person_cleared_is_another_alert_when_it_parts_anew,
     what_was_thinned_on_board_is_counted,
 );
 
@@ -47,6 +49,12 @@ async fn put(ship: &Ship, seq: u64, samples: Vec<Sample>, alerts: Vec<ShipAlert>
     };
     let bytes = binnacle_wire::encode(&batch).unwrap();
     ship.put_bytes(seq, bytes).await.good();
+}
+
+/// Nothing comes for hours.
+async fn hours_pass(shore: &Shore) {
+    shore.advance(7.0 * 3600.0);
+    alerts::by_the_clock(&shore.app).await.unwrap();
 }
 
 async fn list(person: &Person) -> Vec<Value> {
@@ -93,9 +101,15 @@ async fn revisions_in_any_order_and_again_end_alike(shore: Shore) {
     say(4, 3).await;
     say(2, 1).await;
     say(3, 2).await;
+    let quiet = list(&ada).await;
+    assert_eq!((quiet.len(), &quiet[0]["state"]), (1, &json!("raised")));
+    let summary = quiet[0]["summary"].as_str().unwrap();
+    assert!(summary.contains("they agree"), "{summary}");
+    hours_pass(&shore).await;
     let over = list(&ada).await;
     assert_eq!((over.len(), &over[0]["state"]), (1, &json!("cleared")));
     assert_eq!(over[0]["cleared_by"], Value::Null);
+    assert_eq!(over[0]["clearing_reason"], "it is over");
     shore.finish().await;
 }
 
@@ -125,7 +139,91 @@ async fn an_alert_of_a_spool_that_was_lost_does_not_stay_open(shore: Shore) {
     put(&nao, 2, Vec::new(), vec![alert(2, 1, Open)]).await;
     assert_eq!(list(&ada).await.len(), 1, "updated, not repeated");
     put(&nao, 3, Vec::new(), vec![alert(2, 2, NotJudged)]).await;
-    assert_eq!(list(&ada).await[0]["state"], "cleared");
+    hours_pass(&shore).await;
+    let cleared = &list(&ada).await[0];
+    assert_eq!(cleared["state"], "cleared");
+    let why = cleared["clearing_reason"].as_str().unwrap();
+    assert!(why.contains("not known to be over"), "{why}");
+    shore.finish().await;
+}
+
+async fn what_parts_again_and_again_within_hours_is_one_alert(shore: Shore) {
+    use ShipAlertState::{Agree, Open};
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let begun = Timestamp::parse("2026-11-20T04:00:00Z").unwrap();
+    let said = |id: u128, hours: f64, revision: u32, state| {
+        let since = begun.plus_seconds(3600.0 * hours);
+        let at = since.plus_seconds(1800.0 * f64::from(revision));
+        ShipAlert {
+            since,
+            at,
+            ..alert(id, revision, state)
+        }
+    };
+    let mut seq = 0;
+    for (id, hours) in [(1, 0.0), (2, 4.0), (3, 8.5)] {
+        for (revision, state) in [(1, Open), (2, Agree)] {
+            seq += 1;
+            put(
+                &nao,
+                seq,
+                Vec::new(),
+                vec![said(id, hours, revision, state)],
+            )
+            .await;
+        }
+    }
+    let one = list(&ada).await;
+    assert_eq!(
+        (one.len(), &one[0]["state"]),
+        (1, &json!("raised")),
+        "{one:?}"
+    );
+    assert_eq!(one[0]["since"], "2026-11-20T04:00:00Z");
+    // Samples tell, before the clock does, that they have stayed together.
+    put(&nao, 7, passage("2026-11-20T14:00:00Z", 60), Vec::new()).await;
+    shore.advance(3600.0);
+    shore.work().await;
+    let over = list(&ada).await;
+    let states: Vec<&Value> = over.iter().map(|alert| &alert["state"]).collect();
+    assert_eq!(states, [&json!("cleared")], "{over:?}");
+    // A day later it is another.
+    put(&nao, 8, Vec::new(), vec![said(4, 30.0, 1, Open)]).await;
+    assert_eq!(list(&ada).await.len(), 2);
+    shore.finish().await;
+}
+
+async fn what_a_person_cleared_is_another_alert_when_it_parts_anew(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let since = Timestamp::parse("2026-11-21T04:00:00Z").unwrap();
+    let open = ShipAlert {
+        since,
+        at: since.plus_seconds(1800.0),
+        ..alert(1, 1, ShipAlertState::Open)
+    };
+    put(&nao, 1, Vec::new(), vec![open]).await;
+    let id = list(&ada).await[0]["id"].as_str().unwrap().to_owned();
+    let reason = json!({ "reason": "gyro was set right" });
+    ada.post(&format!("/alerts/{id}/clear"), &reason)
+        .await
+        .good();
+    let again = ShipAlert {
+        revision: 2,
+        ..open
+    };
+    put(&nao, 2, Vec::new(), vec![again]).await;
+    assert_eq!(list(&ada).await.len(), 1, "of the same it has been said");
+    let anew = ShipAlert {
+        id: Uuid::from_u128(2),
+        since: open.since.plus_seconds(4.0 * 3600.0),
+        at: open.since.plus_seconds(4.5 * 3600.0),
+        ..open
+    };
+    put(&nao, 3, Vec::new(), vec![anew]).await;
+    let raised = list(&ada).await;
+    assert_eq!((raised.len(), &raised[0]["state"]), (2, &json!("raised")));
     shore.finish().await;
 }
 

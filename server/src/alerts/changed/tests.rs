@@ -15,6 +15,7 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
             from_latest: from,
             detected_at: at("2026-11-18T14:00:00Z"),
             confirmed: true,
+            withdrawn: false,
             cause,
             causes: vec![CauseProbability {
                 cause,
@@ -103,6 +104,23 @@ fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
     assert_eq!(learnt.severity, Severity::Warning);
     assert_eq!(told(8.0, Some(2.0)), []);
     assert_eq!(told(8.0, Some(4.0)).len(), 1, "not learnt yet");
+}
+
+#[test]
+fn a_change_that_is_withdrawn_calls_for_no_alert_and_clears_its_own() {
+    let mut none = found(Found::LightningOrShock, 3.0);
+    let told: Time = none.change.from.into();
+    let findings = |change: &FoundChange| Findings {
+        changes: vec![change.clone()],
+        ..Findings::default()
+    };
+    let is_gone = |cause, change: &FoundChange| is_withdrawn(cause, told, &findings(change));
+    assert!(!is_gone(Cause::LightningOrShock, &none));
+    (none.change.confirmed, none.change.withdrawn) = (false, true);
+    none.change.ended = Some(at("2026-11-20T00:00:00Z"));
+    assert!(is_gone(Cause::LightningOrShock, &none));
+    assert!(!is_gone(Cause::MagneticCargo, &none));
+    assert_eq!(sailed(vec![none], 0.5, Some(1.0)), []);
 }
 
 #[test]
