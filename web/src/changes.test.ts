@@ -32,6 +32,7 @@ const struck: Change = {
   from_latest: '2026-11-09T00:10:00Z',
   detected_at: '2026-11-09T02:00:00Z',
   confirmed: true,
+  withdrawn: false,
   cause: 'lightning_or_shock',
   causes: [{ cause: 'lightning_or_shock', probability: 0.96 }],
   evidence: ['it began at sea'],
@@ -52,6 +53,7 @@ const timeline: Timeline = {
     epoch({ from: struck.from, begun_by_change: 'lightning_or_shock', curve: curve(-1) }),
   ],
   changes: [struck],
+  notices: [],
 };
 
 const entry = (from: string, more: Partial<LogbookEntry> = {}): LogbookEntry =>

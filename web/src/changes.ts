@@ -23,7 +23,9 @@ const passing: readonly ChangeCause[] = [
   'berth_steel',
 ];
 
-export const isTheShips = (change: Change): boolean => !passing.includes(change.cause);
+/** Whether the ship's magnetism is another after it; what was withdrawn changed nothing. */
+export const isTheShips = (change: Change): boolean =>
+  !change.withdrawn && !passing.includes(change.cause);
 
 /** The first sample. A report from before it leaves the epochs before it empty. */
 export const sampledSince = ({ epochs }: Timeline): string | null =>

@@ -42,6 +42,9 @@ pub struct Findings {
     /// What changed the ship's magnetism, or seemed to, in order of time.
     #[serde(default)]
     pub changes: Vec<FoundChange>,
+    /// What entries of the logbook do to the samples, a sentence each.
+    #[serde(default)]
+    pub notices: Vec<String>,
     /// When the current epoch began.
     #[serde(default)]
     pub epoch_from: Option<Timestamp>,
@@ -98,6 +101,7 @@ pub fn findings_of(analysis: &Analysis, logbook: &[LogbookEntry]) -> Findings {
         },
         failed_lately: failed_lately(epoch, &analysis.samples),
         changes: found_changes(analysis, logbook),
+        notices: analysis.notices.clone(),
         epoch_from: epoch.from,
         last_place: analysis.last_place,
     }

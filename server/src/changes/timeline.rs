@@ -38,6 +38,10 @@ pub(super) struct Timeline {
     epochs: Vec<Epoch>,
     /// In order of time.
     changes: Vec<ChangeFound>,
+    /// What entries of the logbook do to the samples that people should know, a sentence
+    /// each.
+    #[schema(example = json!([]))]
+    notices: Vec<String>,
 }
 
 /// Where and when the last sample was taken, and the earth's field there.
@@ -122,6 +126,9 @@ pub(super) struct ChangeFound {
     detected_at: Time,
     /// Whether it is certain enough to act on; if not, more samples will tell.
     confirmed: bool,
+    /// Whether it had been certain, until what came after did not bear it out: it was none,
+    /// and `ended` is when that told.
+    withdrawn: bool,
     /// The likeliest cause.
     #[schema(value_type = CauseSchema)]
     cause: Cause,
@@ -171,6 +178,7 @@ pub(super) fn timeline(
             place: None,
             epochs: Vec::new(),
             changes: Vec::new(),
+            notices: Vec::new(),
         };
     };
     let place = findings.last_place;
@@ -178,6 +186,7 @@ pub(super) fn timeline(
         compass_id,
         analysed_at: Some(at),
         place: place.map(Place::from),
+        notices: findings.notices,
         changes: findings
             .changes
             .into_iter()
@@ -250,6 +259,7 @@ fn told(found: FoundChange) -> ChangeFound {
         from_latest: change.from_latest.into(),
         detected_at: change.detected_at.into(),
         confirmed: change.confirmed,
+        withdrawn: change.withdrawn,
         cause: change.cause,
         causes: change.causes,
         evidence: change.evidence,

@@ -4051,6 +4051,11 @@ export interface components {
             /** @description Nor after this. */
             from_latest: components["schemas"]["Time"];
             step: components["schemas"]["Step"] | null;
+            /**
+             * @description Whether it had been certain, until what came after did not bear it out: it was none,
+             *     and `ended` is when that told.
+             */
+            withdrawn: boolean;
         };
         /**
          * @description What changes what a compass shows.
@@ -8152,6 +8157,12 @@ export interface components {
             compass_id: components["schemas"]["CompassId"];
             /** @description In order of time, without gaps; the last one goes on. */
             epochs: components["schemas"]["Epoch"][];
+            /**
+             * @description What entries of the logbook do to the samples that people should know, a sentence
+             *     each.
+             * @example []
+             */
+            notices: string[];
             place: components["schemas"]["TimelinePlace"] | null;
         };
         /** @description Where and when the last sample was taken, and the earth's field there. */

@@ -161,6 +161,7 @@ describe('the timeline', () => {
     analysed_at: '2026-11-11T00:00:00Z',
     place: null,
     changes: [],
+    notices: [],
     epochs: [
       {
         from: null,
@@ -184,6 +185,7 @@ describe('the timeline', () => {
     from_latest: '2026-11-09T00:10:00Z',
     detected_at: '2026-11-09T02:00:00Z',
     confirmed: true,
+    withdrawn: false,
     cause: 'lightning_or_shock',
     causes: [
       { cause: 'lightning_or_shock', probability: 0.96 },
@@ -234,6 +236,26 @@ describe('the timeline', () => {
       expect(said).toContain(part);
     }
     expect(said).not.toContain('Slow drift');
+  });
+
+  test('says that a change was withdrawn, and that nothing changed', () => {
+    const none: Change = {
+      ...struck,
+      confirmed: false,
+      withdrawn: true,
+      deviation_change_deg: null,
+      step: null,
+      ended: '2026-11-19T06:00:00Z',
+    };
+    const said = shown({ ...calm, changes: [none] });
+    expect(said).toContain('Lightning or a shock withdrawn 19 Nov 2026, 06:00 UTC');
+    expect(said).not.toContain('not certain yet');
+    expect(said).toContain('The ship’s own magnetism did not change.');
+  });
+
+  test('says what an entry that nobody closed does to the samples', () => {
+    const said = shown({ ...calm, notices: ['612 samples are left out of the model'] });
+    expect(said).toContain('612 samples are left out of the model.');
   });
 
   test('blames the compass for nothing that a reference did', () => {

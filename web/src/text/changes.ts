@@ -23,6 +23,8 @@ export const changes = {
       unknown: 'A change of unknown cause',
     } satisfies Record<ChangeCause, string>,
     unconfirmed: 'not certain yet',
+    withdrawn: 'withdrawn',
+    withdrawnOn: (when: string) => `withdrawn ${when}`,
     overSince: (when: string) => `over since ${when}`,
     between: (earliest: string, latest: string) => `some time between ${earliest} and ${latest}`,
     found: (later: string) => `Found ${later} after that.`,

@@ -14,10 +14,8 @@ use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// People write down when they noticed, not when it happened, seconds; and what happens
-/// after work has ended was hardly the work.
+/// People write down when they noticed, not when it happened, or what was planned, seconds.
 const REPORTED_WITHIN_S: f64 = 2.0 * 86_400.0;
-const WORKED_BEFORE_S: f64 = 6.0 * 3600.0;
 /// Degrees of compass heading between those on which two models are compared.
 const STEP_DEG: u32 = 5;
 /// How far back the waters reach that stand for those ahead, and how far apart the
@@ -104,7 +102,7 @@ fn is_reported(change: &Change, logbook: &[LogbookEntry]) -> bool {
         .filter(|entry| entry.kind.ends_an_epoch())
         .any(|entry| {
             let until = entry.to.unwrap_or(entry.from);
-            change.from_earliest.seconds_since(until) < WORKED_BEFORE_S
+            change.from_earliest.seconds_since(until) < REPORTED_WITHIN_S
                 && entry.from.seconds_since(change.from_latest) < REPORTED_WITHIN_S
         })
 }
