@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { findings } from '../axe.mjs';
 import {
+  chart,
   curve,
   fitsItsWidth,
   notSignedIn,
@@ -34,7 +35,7 @@ const pages = [
   { name: 'alerts', path: '/alerts', ready: (page) => page.getByRole('heading', { level: 1 }) },
   { name: 'mail', path: '/mail', ready: (page) => page.getByRole('heading', { level: 1 }) },
   { name: 'webhooks', path: '/webhooks', ready: (page) => page.getByRole('heading', { level: 1 }) },
-  { name: 'vessel', path: (vessel) => `/vessels/${vessel.id}`, ready: curve },
+  { name: 'vessel', path: (vessel) => `/vessels/${vessel.id}`, ready: chart, drawn: curve },
   { name: 'schedule', path: '/schedule', ready: (page) => page.getByTestId('timeline') },
   {
     name: 'order',
@@ -77,9 +78,12 @@ async function each({ page, settings, shoot }, look) {
   found.push(...(await findings(page)).map((line) => `sign in: ${line}`));
   await signIn(page, settings);
   const vessel = await withModel(page);
-  for (const { name, path, ready } of pages) {
+  for (const { name, path, ready, drawn } of pages) {
     await page.goto(typeof path === 'string' ? path : await path(vessel, page));
     await ready(page).waitFor();
+    // Charts are drawn when they are near, or for paper.
+    await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+    await drawn?.(page).waitFor();
     await page.waitForTimeout(400);
     found.push(...(await findings(page)).map((line) => `${name}: ${line}`));
     await fitsItsWidth(page);
