@@ -1,6 +1,6 @@
 /** The live connection: what is missed while it is cut is shown when it is back. */
 import assert from 'node:assert/strict';
-import { signIn, withModel } from '../helpers.mjs';
+import { notSignedIn, signIn, withModel } from '../helpers.mjs';
 import { wireTo } from '../wire.mjs';
 
 export const live = {
@@ -27,15 +27,41 @@ export const live = {
         });
         assert.ok(answer.ok(), await answer.text());
         assert.equal(await logbook.getByText('While you were away').count(), 0);
+        // Said on the page too, when it lasts.
+        await page.getByText(/^Not connected since \d\d:\d\d UTC\. /).waitFor();
         await shoot('not-live', {}, page);
         wire.mend();
         await banner.getByText('Live', { exact: true }).waitFor({ timeout: 40_000 });
         await logbook.getByText('While you were away').waitFor();
+        assert.equal(await page.getByText(/^Not connected since/).count(), 0);
         assert.ok(await page.evaluate(() => window.sameDocument), 'the page was loaded anew');
       } finally {
         await context.close();
         wire.close();
       }
+    },
+  },
+
+  'a page opened without a connection says so, and comes when there is one': {
+    allowedErrors: [notSignedIn, /ERR_INTERNET_DISCONNECTED/],
+    async run({ page, context, settings, shoot }) {
+      await signIn(page, settings);
+      await page.goto('/alerts');
+      await page.getByRole('heading', { level: 1 }).waitFor();
+      // The browser keeps what the page is made of, once it has taken over.
+      await page.evaluate(() => navigator.serviceWorker.ready);
+      await page.waitForFunction(async () => {
+        const cache = await caches.open('binnacle-page-1');
+        return (await cache.keys()).some((kept) => kept.url.includes('/assets/index'));
+      });
+      await context.setOffline(true);
+      await page.reload();
+      await page.getByText('nothing of this is kept here').waitFor();
+      await page.getByRole('banner').getByText('Not live').waitFor();
+      await shoot('no-connection');
+      await context.setOffline(false);
+      await page.getByText('nothing of this is kept here').waitFor({ state: 'detached' });
+      await page.getByRole('banner').getByText('Live', { exact: true }).waitFor();
     },
   },
 };

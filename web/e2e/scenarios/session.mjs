@@ -58,7 +58,6 @@ export const session = {
       await page.getByRole('button', { name: 'Show', exact: true }).click();
       await page.getByText('The server cannot be reached', { exact: false }).waitFor();
       await context.setOffline(false);
-      await page.getByRole('button', { name: 'Try again' }).click();
       await page
         .getByText('The server cannot be reached', { exact: false })
         .waitFor({ state: 'detached' });

@@ -24,25 +24,28 @@ const longestWaitMs = 60_000;
 
 class LiveState {
   status = $state<'connecting' | 'live' | 'lost'>('connecting');
+  /** Since when it is lost; none while it is not. */
+  lostAt = $state.raw<Date | null>(null);
   #source: EventSource | null = null;
   #listeners = new Set<Listener>();
   #waitMs = firstWaitMs;
   #timer: ReturnType<typeof setTimeout> | undefined;
-  #wasOpened = false;
 
   start(): void {
     this.stop();
     this.status = 'connecting';
     this.#connect();
     addEventListener('online', this.#retryNow);
+    addEventListener('offline', this.#lost);
   }
 
   stop(): void {
     removeEventListener('online', this.#retryNow);
+    removeEventListener('offline', this.#lost);
     clearTimeout(this.#timer);
     this.#source?.close();
     this.#source = null;
-    this.#wasOpened = false;
+    this.lostAt = null;
     this.#waitMs = firstWaitMs;
   }
 
@@ -55,15 +58,16 @@ class LiveState {
     const source = new EventSource('/api/v1/events');
     this.#source = source;
     source.onopen = () => {
-      // After the browser's own resume the server repeats what was missed; after
-      // a new connection of ours nobody does.
-      if (this.#wasOpened && this.status === 'lost') this.#tell({ vesselId: null, kind: 'all' });
+      // After the browser's own resume the server repeats what was missed; after a new
+      // connection of ours nobody does, nor does anybody what a page asked for meanwhile.
+      const again = this.status === 'lost';
       this.status = 'live';
-      this.#wasOpened = true;
+      this.lostAt = null;
+      if (again) this.#tell({ vesselId: null, kind: 'all' });
       this.#waitMs = firstWaitMs;
     };
     source.onerror = () => {
-      this.status = 'lost';
+      this.#lost();
       if (source.readyState !== EventSource.CLOSED) return;
       this.#timer = setTimeout(() => {
         this.#reconnect();
@@ -93,8 +97,14 @@ class LiveState {
     );
   }
 
+  /** An open stream does not feel that the network is gone; the browser does. */
+  #lost = (): void => {
+    this.status = 'lost';
+    this.lostAt ??= new Date();
+  };
+
   #retryNow = (): void => {
-    if (this.status !== 'lost' || this.#source?.readyState !== EventSource.CLOSED) return;
+    if (this.status !== 'lost') return;
     clearTimeout(this.#timer);
     this.#reconnect();
   };
@@ -133,5 +143,18 @@ export function gathered(act: () => void, waitMs: number): { call: () => void; s
       clearTimeout(timer);
       timer = undefined;
     },
+  };
+}
+
+/** Acts when the connection is back; what calls it off. */
+export function whenBack(act: () => void): () => void {
+  const stop = live.listen((news) => {
+    if (news.kind === 'all') act();
+  });
+  // Whoever runs the platform hears nothing live.
+  addEventListener('online', act);
+  return () => {
+    stop();
+    removeEventListener('online', act);
   };
 }

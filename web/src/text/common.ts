@@ -75,10 +75,15 @@ export const common = {
     lost: 'Not live',
     liveLong: 'Shows new data as it arrives',
     lostLong: 'The live connection is lost; trying again',
+    /** Said on the page when it lasts. */
+    without: (since: string) =>
+      `Not connected since ${since}. What you see is of then or before, and what you change may not get through. It is brought up to date as soon as the connection is back.`,
   },
 
   problem: {
     offline: 'The server cannot be reached. Check the connection.',
+    offlineNothing:
+      'The server cannot be reached, and nothing of this is kept here. It comes as soon as the connection is back.',
     offlineStale: (since: string) =>
       `The server cannot be reached. What you see is from ${since}; it is refreshed as soon as the connection is back.`,
     stale: (since: string, detail: string) =>
