@@ -9,14 +9,14 @@ use crate::change::cause::odds;
 use crate::change::filter::Filter;
 use crate::change::upset::upset;
 
-/// How likely a ship is another magnet after a port call, and a reference off.
+/// How likely a ship is another magnet after a port call, a reference off, and the compass
+/// astray for hours by what passes.
 const CHANGED: f64 = 0.02;
 const MISLED: f64 = 0.002;
+const ASTRAY: f64 = 0.03;
 /// Calls that are asked about: the last few among so many rows.
 const ROWS: usize = 288;
 const CALLS: usize = 3;
-/// What passes leaves rows out when it leads by this, nats.
-const ASTRAY_NATS: f64 = 3.0;
 /// Odds beyond this are certainty.
 const MOST: f64 = 1e9;
 
@@ -54,17 +54,20 @@ impl Search<'_> {
         let ports = self.ports.0.iter().filter(|(at, _)| *at >= earliest);
         let likely: Vec<(usize, f64)> = ports
             .map(|(at, before)| {
-                let nats = self.nats_of_step(*at, before, leads);
+                let nats = self.nats_of_step(*at, before);
                 (*at, CHANGED / (1.0 - CHANGED) * odds(nats).min(MOST))
             })
             .collect();
         let (first, _) = likely.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
         let sum: f64 = likely.iter().map(|(_, odds)| odds).sum();
-        // Against nothing, a reference's fault, and her being herself again.
+        // Against nothing, a reference's fault, what passes, and her being herself again.
         let fault = leads[Kind::Reference as usize]
             .filter(|lead| self.bank.spawns[lead.spawn].at >= *first)
             .map_or(0.0, |lead| MISLED * odds(lead.nats).min(MOST));
-        let others = (1.0 + fault) / (1.0 - returned).max(f64::MIN_POSITIVE);
+        // What passes explains the same rows, where it is not known to be over.
+        let astray = leads[Kind::Burst as usize]
+            .map_or(0.0, |lead| ASTRAY * odds(lead.nats.max(0.0)).min(MOST));
+        let others = (1.0 + fault + astray) / (1.0 - returned).max(f64::MIN_POSITIVE);
         Some(Unnoticed {
             first: *first,
             probability: sum / (sum + others),
@@ -72,10 +75,10 @@ impl Search<'_> {
     }
 
     /// By how much likelier it is that the ship changed before row `call` than that she did
-    /// not, by the rows that nothing passing spoilt.
-    fn nats_of_step(&self, call: usize, before: &Filter, leads: &Leads) -> f64 {
+    /// not, by the rows that nothing spoilt that is over.
+    fn nats_of_step(&self, call: usize, before: &Filter) -> f64 {
         let rows: Vec<usize> = (call..self.observations.len())
-            .filter(|row| !self.is_spoilt(*row, leads))
+            .filter(|row| !self.is_spoilt(*row))
             .collect();
         let run = |filter: &Filter| {
             let mut at = self.null.unknowns();
@@ -93,14 +96,12 @@ impl Search<'_> {
         run(&upset(before, Kind::Step)) - run(before)
     }
 
-    /// Whether a passing disturbance or a fault of a reference, told or leading, is of
-    /// this row.
-    fn is_spoilt(&self, row: usize, leads: &Leads) -> bool {
-        let leads_now = leads[Kind::Burst as usize]
-            .filter(|lead| lead.nats > ASTRAY_NATS)
-            .is_some_and(|lead| self.began(lead) <= row);
-        let told = self.events.iter().enumerate().any(|(place, event)| {
+    /// Whether a passing disturbance that is over, or a fault of a reference, is of this row.
+    fn is_spoilt(&self, row: usize) -> bool {
+        let mut told = self.events.iter().enumerate();
+        told.any(|(place, event)| {
             let last = match event.what {
+                What::Burst if self.burst == Some(place) => return false,
                 What::Burst => event.last,
                 What::Reference => self.events[place + 1..]
                     .iter()
@@ -109,7 +110,6 @@ impl Search<'_> {
                 _ => return false,
             };
             (event.first..=last.unwrap_or(usize::MAX)).contains(&row)
-        });
-        leads_now || told
+        })
     }
 }
