@@ -307,6 +307,45 @@ export const vessel = {
     },
   },
 
+  'an entry that is amended stays when newer ones take its place in the list': {
+    allowedErrors: [notSignedIn, /status of 404 .*\/(model|deviation)\b/],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      const post = async (path, data) => {
+        const headers = { 'X-Binnacle-Request': '1' };
+        const answer = await page.request.post(path, { headers, data });
+        assert.ok(answer.ok(), await answer.text());
+        return answer.json();
+      };
+      const { id } = await post('/api/v1/vessels', { name: 'Long Book' });
+      const note = (day, words) =>
+        post(`/api/v1/vessels/${id}/logbook`, {
+          kind: 'note',
+          from: `2026-05-${String(day).padStart(2, '0')}T06:00:00Z`,
+          note: words,
+        });
+      await note(1, 'The oldest');
+      await page.goto(`/vessels/${id}`);
+      const logbook = page.getByRole('region', { name: 'Logbook' });
+      const oldest = logbook.getByRole('listitem').filter({ hasText: 'The oldest' });
+      await oldest.getByRole('button', { name: /^Amend/ }).click();
+      await logbook.getByLabel('Remarks').fill('Half a sen');
+      for (let day = 2; day <= 21; day++) await note(day, `The ${day}th`);
+      await logbook.getByText('The 21th').waitFor();
+      await logbook.getByText('Show earlier entries').waitFor();
+      assert.equal(await logbook.getByLabel('Remarks').inputValue(), 'Half a sen');
+      await logbook.getByLabel('Remarks').fill('Amended');
+      await logbook.getByRole('button', { name: 'Save' }).click();
+      await logbook
+        .getByRole('status')
+        .getByText('The entry has been amended.')
+        .waitFor({ state: 'attached' });
+      assert.equal(await logbook.getByLabel('Remarks').count(), 0);
+      await logbook.getByText('Show earlier entries').click();
+      await logbook.getByRole('listitem').nth(20).getByText('Amended', { exact: true }).waitFor();
+    },
+  },
+
   'an administrator makes an enrolment code': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {

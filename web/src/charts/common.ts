@@ -17,7 +17,7 @@ export const colours = {
 /** Known before the drawing is, so that its room can be kept. */
 export const comparedHeight = (width: number): number => (width < 520 ? 280 : 340);
 export const deviationHeight = (width: number): number => (width < 520 ? 300 : 410);
-export const residualsHeight = (width: number): number => (width < 520 ? 220 : 260);
+export const residualsHeight = (width: number): number => (width < 520 ? 236 : 276);
 
 /** `4° E`, `0°`, `2.5° W` */
 export function sideTick(value: number): string {

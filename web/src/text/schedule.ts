@@ -33,7 +33,7 @@ export const schedule = {
 
     line: {
       title: 'Time line',
-      lead: 'Bars are port calls, blocks are jobs, flags are due dates. Drag a job to another call or day, or open it and choose there.',
+      lead: 'Bars are port calls, blocks are jobs, flags are due dates. Drag a job to another call or day, or open it and choose there. Days begin at 00:00 UTC.',
       span: 'How much is shown',
       weeks: { 28: '4 weeks', 91: '3 months', 182: '6 months' } as Record<number, string>,
       earlier: 'Earlier',
