@@ -95,12 +95,11 @@ fn called_for(
     until: Option<Timestamp>,
 ) -> Option<AlertWanted> {
     let last = spoken.first()?;
-    let alert = match last.state {
-        ShipAlertState::Open => wanted(last),
-        _ => {
-            let quiet_s = until.map_or(0.0, |until| until.seconds_since(last.at));
-            quiet(last, known.filter(|_| quiet_s < QUIET_S)?)
-        }
+    let alert = if last.state == ShipAlertState::Open {
+        wanted(last)
+    } else {
+        let quiet_s = until.map_or(0.0, |until| until.seconds_since(last.at));
+        quiet(last, known.filter(|_| quiet_s < QUIET_S)?)
     };
     // Cleared by a person, what parts anew is another.
     let is_anew = known.is_some_and(|known| {
