@@ -99,8 +99,14 @@ fn read_after(
         now: Some(&plan.setting),
         ..adjustment.clone()
     };
-    let unit = after.reading.unit;
-    let again = read_again(&adjustment, &done, &there.reading, there.vertical, unit);
+    let again = read_again(
+        &adjustment,
+        &done,
+        &there.reading,
+        there.vertical,
+        after.reading.compass_deg,
+        after.reading.unit,
+    );
     Ok(json(&again.map_err(|error| of(file, error))?))
 }
 

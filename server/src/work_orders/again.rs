@@ -13,8 +13,7 @@ use super::plan::{calculate, must_still_hold};
 use super::reading::{Read, check, must_be_numbers};
 use super::refusal::Refusal;
 use super::standing::Standing;
-use super::store::Whole;
-use super::{request, shown};
+use super::{completion, request, shown};
 use crate::access::PartyWriter;
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
@@ -23,7 +22,8 @@ use crate::idempotency::Key;
 use crate::ids::OrderId;
 use axum::extract::State as Shared;
 use binnacle_magnetics::adjust::{
-    AdjustError, AgainForm, Done, Learnt, Part, ReadingForm, Slip, Verdict, read_again,
+    AdjustError, Again, AgainForm, Card, Corrector, Done, Learnt, Part, ReadingForm, Slip, Verdict,
+    read_again,
 };
 use binnacle_magnetics::berth::BerthReading;
 use binnacle_magnetics::binnacle::Setting;
@@ -44,6 +44,13 @@ pub struct ReadAgain {
     pub learnt: Option<Learnt>,
     /// The reading to plan from anew, where what is left is beyond the limits.
     pub anew: Option<Box<Read>>,
+}
+
+impl ReadAgain {
+    /// Whether it does not confirm how the correctors stand.
+    pub(super) fn is_disproof(&self) -> bool {
+        self.said.verdict != AgainVerdict::AsPlanned
+    }
 }
 
 /// What a second reading told.
@@ -148,7 +155,7 @@ pub(super) fn router() -> OpenApiRouter<App> {
     params(("id" = OrderId, Path), Key), request_body = AgainSchema,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Not before all steps are done", body = Problem),
+              (status = 409, description = "Not before all steps are done, or nothing was moved", body = Problem),
               (status = 422, body = Problem)))]
 async fn read_field_again(
     Shared(app): Shared<App>,
@@ -162,27 +169,22 @@ async fn read_field_again(
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
-    let standing = whole.standing();
-    must_be_done(&whole, &standing)?;
+    let mut standing = whole.standing();
+    standing.step_back();
+    must_be_done(&standing)?;
     let prepared = standing.prepared()?;
     must_still_hold(&app, &whole.summary, &prepared).await?;
-    let form = as_reading(&given, &prepared.given)?;
+    let second = Second::new(given, &prepared)?;
+    let form = second.form.clone();
     must_be_numbers(&form, app.clock.now().into())?;
-    let reading = form.reading(prepared.basis.variation()?);
-    let reading = reading.map_err(|error| Error::Invalid {
-        field: "forward, starboard",
-        detail: error.to_string(),
-    })?;
-    let second = Second {
-        given,
-        form: form.clone(),
-        reading,
-    };
+    completion::must_follow_the_steps(&whole, form.at.into())?;
+    must_answer_a_disproof(&standing, &form)?;
     // Of a step that someone has looked at since, no slip is suspected any more.
     let looked_at = standing.looked_at;
     let steps = standing.steps[looked_at..].to_vec();
-    let (mut judged, basis) =
-        calculate(&app, move || judge(&prepared, &steps, looked_at, second)).await?;
+    let planned = standing.plan.is_some();
+    let judge = move || second.judge(&prepared, &steps, looked_at, planned);
+    let (mut judged, basis) = calculate(&app, judge).await?;
     judged.anew = basis.map(|basis| from_here(basis, form)).transpose()?;
     if let Some(mut change) = request.begin(&whole).await? {
         change
@@ -193,20 +195,37 @@ async fn read_field_again(
     shown(&app, writer.tenant, id).await
 }
 
-fn must_be_done(whole: &Whole, standing: &Standing) -> Result<()> {
-    whole.must_be(&[State::Adjusting], "there is no plan that was followed")?;
-    standing.next_step().map_or(Ok(()), |step| {
+fn must_be_done(standing: &Standing) -> Result<()> {
+    if let Some(step) = standing.next_step() {
         let number = step.number;
-        Err(Error::WrongState(format!("step {number} is not done")))
+        return Err(Error::WrongState(format!("step {number} is not done")));
+    }
+    let is_moved = standing.state == State::Measured && standing.was_moved();
+    if standing.state == State::Adjusting || is_moved {
+        return Ok(());
+    }
+    Err(Error::WrongState(
+        "no corrector was moved since the berth was read".to_owned(),
+    ))
+}
+
+/// What a part of the field disproved is not confirmed without that part.
+fn must_answer_a_disproof(standing: &Standing, form: &ReadingForm) -> Result<()> {
+    let disproof = standing.disproof();
+    let was_whole = disproof.is_some_and(|again| again.said.parts.len() == WHOLE);
+    if form.down.is_some() || !was_whole {
+        return Ok(());
+    }
+    Err(Error::Invalid {
+        field: "down",
+        detail: "the last reading did not confirm the steps, and had a vertical part: read that \
+                 again too"
+            .to_owned(),
     })
 }
 
-fn as_reading(given: &AgainForm, first: &ReadingForm) -> Result<ReadingForm> {
-    given.as_reading(first).map_err(|error| Error::Invalid {
-        field: error.field,
-        detail: error.what,
-    })
-}
+/// Parts of a reading that has the vertical one.
+pub(super) const WHOLE: usize = 3;
 
 /// A second reading as it was given, as one of its own, and as the science takes it.
 struct Second {
@@ -215,80 +234,155 @@ struct Second {
     reading: BerthReading,
 }
 
-/// What it told, and what to plan from where it calls for a plan from itself.
-fn judge(
-    prepared: &Prepared,
-    steps: &[Done],
-    looked_at: usize,
-    second: Second,
-) -> std::result::Result<(ReadAgain, Option<Basis>), AdjustError> {
-    let vertical = second.form.vertical();
-    let again = read_again(
-        &prepared.adjustment(),
-        steps,
-        &second.reading,
-        vertical,
-        second.given.unit,
-    )?;
-    let mut said = AgainSaid {
-        verdict: AgainVerdict::AsPlanned,
-        words: "the correctors do what was planned".to_owned(),
-        parts: again.parts,
-        step: None,
-        setting: None,
-        worst_residual_deg: None,
-        widest_band_deg: None,
-        refusals: Vec::new(),
-        could_be: Vec::new(),
-    };
-    let (mut foretold, mut anew) = (None, None);
-    match again.verdict {
-        Verdict::AsPlanned { learnt } => foretold = Some(*learnt),
-        Verdict::Replan {
-            learnt,
-            refusals,
-            binnacle,
-            ..
-        } => {
-            said.verdict = AgainVerdict::Replan;
-            "the correctors stand as planned, but more is left than the limits allow: plan anew \
-             from this reading"
-                .clone_into(&mut said.words);
-            said.refusals = refusals.iter().map(Refusal::from).collect();
-            let mut basis = prepared.basis.clone();
-            basis.model.model = learnt.model_after.clone();
-            basis.binnacle = *binnacle;
-            anew = Some(basis);
-            foretold = Some(*learnt);
-        }
-        Verdict::Slip {
-            step,
-            slip,
-            setting,
-            ..
-        } => {
-            said.verdict = AgainVerdict::Slip;
-            said.words = suspected(steps, step, slip);
-            said.step = u32::try_from(looked_at).ok().map(|before| before + step);
-            said.setting = Some(setting);
-        }
-        Verdict::Unexplained { mistakes } => {
-            said.verdict = AgainVerdict::Unexplained;
-            "neither the plan nor a slip in one of its steps explains what was read: look at \
-             every step and at the magnetometer, and read again"
-                .clone_into(&mut said.words);
-            said.could_be = mistakes.iter().map(ToString::to_string).collect();
-        }
+impl Second {
+    fn new(given: AgainForm, prepared: &Prepared) -> Result<Second> {
+        let form = given.as_reading(&prepared.given);
+        let form = form.map_err(|error| Error::Invalid {
+            field: error.field,
+            detail: error.what,
+        })?;
+        let reading = form.reading(prepared.basis.variation()?);
+        let reading = reading.map_err(|error| Error::Invalid {
+            field: "forward, starboard",
+            detail: error.to_string(),
+        })?;
+        Ok(Second {
+            given,
+            form,
+            reading,
+        })
     }
-    said.worst_residual_deg = foretold.as_ref().map(|learnt| learnt.worst_residual_deg);
-    said.widest_band_deg = foretold.as_ref().map(|learnt| learnt.widest_band_deg);
-    let read = ReadAgain {
-        given: second.given,
-        said,
-        learnt: foretold,
-        anew: None,
+
+    fn read(&self, prepared: &Prepared, steps: &[Done]) -> std::result::Result<Again, AdjustError> {
+        read_again(
+            &prepared.adjustment(),
+            steps,
+            &self.reading,
+            self.form.vertical(),
+            self.form.compass_deg,
+            self.form.unit,
+        )
+    }
+}
+
+/// Whether the reading that did not fit fits the correctors as they are said to stand now.
+pub(super) async fn is_explained_by(
+    app: &App,
+    standing: &Standing,
+    setting: &Setting,
+) -> Result<bool> {
+    let Some(disproof) = standing.disproof() else {
+        return Ok(false);
     };
-    Ok((read, anew))
+    let mut before = standing.clone();
+    before.step_back();
+    let mut prepared = before.prepared()?;
+    prepared.moved_to = Some(setting.clone());
+    let second = Second::new(disproof.given.clone(), &prepared)?;
+    let again = calculate(app, move || second.read(&prepared, &[])).await?;
+    Ok(matches!(
+        again.verdict,
+        Verdict::AsPlanned { .. } | Verdict::Replan { .. }
+    ))
+}
+
+impl Second {
+    /// What it told, and what to plan from where it calls for a plan from itself: also
+    /// where it fits, and there is no plan that was followed.
+    fn judge(
+        self,
+        prepared: &Prepared,
+        steps: &[Done],
+        looked_at: usize,
+        planned: bool,
+    ) -> std::result::Result<(ReadAgain, Option<Basis>), AdjustError> {
+        let second = self;
+        let again = second.read(prepared, steps)?;
+        let mut said = AgainSaid {
+            verdict: AgainVerdict::AsPlanned,
+            words: as_planned(steps, again.parts.len()),
+            parts: again.parts,
+            step: None,
+            setting: None,
+            worst_residual_deg: None,
+            widest_band_deg: None,
+            refusals: Vec::new(),
+            could_be: Vec::new(),
+        };
+        let (mut foretold, mut anew) = (None, None);
+        match again.verdict {
+            Verdict::AsPlanned { learnt } if planned => foretold = Some(*learnt),
+            Verdict::AsPlanned { learnt } => {
+                said.verdict = AgainVerdict::Replan;
+                "the correctors do what they should where they are said to stand: plan anew from this \
+             reading"
+                .clone_into(&mut said.words);
+                let standing = prepared.adjustment().standing().clone();
+                let mut basis = prepared.basis.clone();
+                basis.model.model = learnt.model_after.clone();
+                basis.binnacle = prepared.binnacle.with_setting(standing)?;
+                anew = Some(basis);
+                foretold = Some(*learnt);
+            }
+            Verdict::Replan {
+                learnt,
+                refusals,
+                binnacle,
+                ..
+            } => {
+                said.verdict = AgainVerdict::Replan;
+                "the correctors seem to stand as planned, but more is left than the limits allow: read \
+             once more, away from steel and cranes; if it is so again, plan anew from this reading"
+                .clone_into(&mut said.words);
+                said.refusals = refusals.iter().map(Refusal::from).collect();
+                let mut basis = prepared.basis.clone();
+                basis.model.model = learnt.model_after.clone();
+                basis.binnacle = *binnacle;
+                anew = Some(basis);
+                foretold = Some(*learnt);
+            }
+            Verdict::Slip {
+                step,
+                slip,
+                setting,
+                ..
+            } => {
+                said.verdict = AgainVerdict::Slip;
+                said.words = suspected(steps, step, slip);
+                said.step = u32::try_from(looked_at).ok().map(|before| before + step);
+                said.setting = Some(setting);
+            }
+            Verdict::Unexplained { mistakes } => {
+                said.verdict = AgainVerdict::Unexplained;
+                said.words = unexplained(looked_at);
+                said.could_be = mistakes.iter().map(ToString::to_string).collect();
+                if let Some(card) = again.card.filter(Card::is_refused) {
+                    said.words = card.found();
+                    said.could_be = card.suspects();
+                }
+            }
+        }
+        said.worst_residual_deg = foretold.as_ref().map(|learnt| learnt.worst_residual_deg);
+        said.widest_band_deg = foretold.as_ref().map(|learnt| learnt.widest_band_deg);
+        let read = ReadAgain {
+            given: second.given,
+            said,
+            learnt: foretold,
+            anew: None,
+        };
+        Ok((read, anew))
+    }
+}
+
+fn unexplained(looked_at: usize) -> String {
+    let steps = match looked_at {
+        0 => "one of its steps",
+        _ => "a step that nobody has looked at since",
+    };
+    format!(
+        "neither the plan nor a slip in {steps} explains what was read: look at every step and at \
+         the magnetometer, and read again"
+    )
 }
 
 /// The second reading as one to plan from, held against what is known now.
@@ -303,6 +397,17 @@ fn from_here(basis: Basis, given: ReadingForm) -> Result<Box<Read>> {
         checked,
         refusal,
     }))
+}
+
+/// What is confirmed, and what is not.
+fn as_planned(steps: &[Done], parts: usize) -> String {
+    let heels = |done: &Done| done.step.corrector == Corrector::Heeling;
+    let mut words = "the correctors do what was planned".to_owned();
+    if parts < WHOLE && steps.iter().any(heels) {
+        words += "; the vertical part was not read both times, and nothing confirms the heeling \
+                  magnets";
+    }
+    words
 }
 
 fn suspected(steps: &[Done], number: u32, slip: Slip) -> String {

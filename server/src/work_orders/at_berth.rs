@@ -1,5 +1,6 @@
 //! What is done at the berth: the reading, the plan, its steps.
 
+use super::again::is_explained_by;
 use super::asked::BerthReadingSchema;
 use super::basis::Basis;
 use super::entry::Content;
@@ -273,7 +274,8 @@ async fn set_correctors(
     }
     let what = "correctors are set between the reading and the completion";
     whole.must_be(&[State::Measured, State::Adjusting], what)?;
-    let moved = moved(&whole, stand, app.clock.now().into())?;
+    let mut moved = moved(&whole, stand, app.clock.now().into())?;
+    moved.explains_reading = is_explained_by(&app, &whole.standing(), &moved.after).await?;
     if let Some(mut change) = request.begin(&whole).await? {
         let content = Content::CorrectorSettings(Box::new(moved));
         change.append(content).await?;
@@ -295,6 +297,7 @@ fn moved(whole: &Whole, stand: Stand, now: crate::time::Time) -> Result<Moved> {
             .map(|deg| degrees("compass_deg", deg, 0.0, 360.0))
             .transpose()?,
         note: optional_text("note", stand.note.as_deref())?,
+        explains_reading: false,
         at: now,
     })
 }

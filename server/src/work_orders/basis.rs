@@ -239,6 +239,7 @@ async fn waters(
     let mut waters: Vec<Water> = read.await??;
     waters.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     waters.truncate(MOST_WATERS);
+    tell_apart(&mut waters);
     if waters.is_empty() {
         waters.push(Water {
             name: "the berth's waters".to_owned(),
@@ -271,6 +272,18 @@ fn water(samples: &[SampleDiagnostic]) -> Option<Water> {
         z_nt: mean(|found| found.z_nt)?,
         weight: whole,
     })
+}
+
+/// Waters of one name have the field that tells them apart in it.
+fn tell_apart(waters: &mut [Water]) {
+    let names: Vec<String> = waters.iter().map(|water| water.name.clone()).collect();
+    for water in waters {
+        if names.iter().filter(|name| **name == water.name).count() > 1 {
+            let (h_ut, z_ut) = (water.h_nt / 1e3, water.z_nt / 1e3);
+            let field = format!(" (H {h_ut:.0}, Z {z_ut:.0} µT)").replace('-', "−");
+            water.name.push_str(&field);
+        }
+    }
 }
 
 fn place(lat: f64, lon: f64) -> String {

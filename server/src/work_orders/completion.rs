@@ -5,7 +5,6 @@
 //! stands now, the logbook's entry at the moment of the adjustment and the model that
 //! is foretold from then on all come about, or none of them.
 
-use super::again::AgainVerdict;
 use super::change::Change;
 use super::entry::{Content, sha256_hex};
 use super::record::{self, Aboard};
@@ -133,18 +132,7 @@ impl Word {
                 detail: "lies in the future, or before the last reading at the berth".to_owned(),
             });
         }
-        let moved = whole.log.iter().rev().find(|entry| {
-            matches!(
-                entry.content,
-                Content::Step(_) | Content::CorrectorSettings(_)
-            )
-        });
-        if moved.is_some_and(|moved| moved.at.0.seconds_since(at.0) > SENT_LATER_S) {
-            return Err(Error::Invalid {
-                field: "at",
-                detail: "lies long before the last step".to_owned(),
-            });
-        }
+        must_follow_the_steps(whole, at)?;
         let word = Word {
             at: Some(at),
             adjuster_name: text("adjuster_name", &self.adjuster_name)?,
@@ -165,15 +153,30 @@ impl Word {
 /// What is done without a connection is sent so much later at most, seconds.
 const SENT_LATER_S: f64 = 12.0 * 3600.0;
 
+/// Refuses a moment long before correctors were moved for the last time.
+pub(super) fn must_follow_the_steps(whole: &Whole, at: Time) -> Result<()> {
+    let moved = whole.log.iter().rev().find(|entry| {
+        matches!(
+            entry.content,
+            Content::Step(_) | Content::CorrectorSettings(_)
+        )
+    });
+    if moved.is_some_and(|moved| moved.at.0.seconds_since(at.0) > SENT_LATER_S) {
+        return Err(Error::Invalid {
+            field: "at",
+            detail: "lies long before the last step".to_owned(),
+        });
+    }
+    Ok(())
+}
+
 /// The plan's setting, if it stands so.
 pub(super) fn must_stand_as_planned(standing: &Standing) -> Result<&Setting> {
     let wrong = |detail: String| Err(Error::WrongState(detail));
     let Some(plan) = &standing.plan else {
         return wrong("there is no plan for how the correctors stand: choose one".to_owned());
     };
-    if let Some(again) = &standing.again
-        && again.said.verdict != AgainVerdict::AsPlanned
-    {
+    if let Some(again) = standing.disproof() {
         return wrong(format!(
             "the second reading does not confirm it: {}",
             again.said.words

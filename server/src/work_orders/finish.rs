@@ -161,7 +161,7 @@ async fn complete_work_order(
     let learnt = foretold(&app, &standing).await?;
     let aboard = aboard(&app, &whole).await?;
     if let Some(mut change) = request.begin(&whole).await? {
-        completion::complete(&mut change, &aboard, learnt, word, at).await?;
+        Box::pin(completion::complete(&mut change, &aboard, learnt, word, at)).await?;
         change.commit().await?;
     }
     shown(&app, writer.tenant, id).await

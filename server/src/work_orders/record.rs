@@ -11,7 +11,7 @@ use super::store::Whole;
 use crate::compasses::Compass;
 use crate::error::Result;
 use crate::time::Time;
-use binnacle_magnetics::adjust::Learnt;
+use binnacle_magnetics::adjust::{HeelingPlan, Learnt};
 use binnacle_magnetics::binnacle::Binnacle;
 use serde_json::json;
 
@@ -34,14 +34,13 @@ pub(super) fn text(
     after: &Binnacle,
 ) -> Result<String> {
     let summary = &whole.summary;
-    let first = standing.first.as_ref();
-    let read = first.map(|(read, _)| read).or(standing.read.as_ref());
+    let read = standing.first.as_deref().or(standing.read.as_ref());
     let basis = read.and_then(|read| read.basis.as_ref());
     let plan = standing.plan.as_ref();
-    let before = first.map(|(_, before)| before);
-    let before = before.or(plan.map(|plan| &plan.plan.before));
+    let before = standing.before.as_ref();
     let again: Vec<_> = whole.log.iter().filter_map(second_reading).collect();
     let hidden = standing.hidden_steps();
+    let found: Vec<_> = whole.log.iter().filter_map(settings).collect();
     let steps: Vec<_> = whole.log.iter().filter_map(step).collect();
     let photos: Vec<_> = whole.log.iter().filter_map(photo).collect();
     canonical(&json!({
@@ -86,13 +85,18 @@ pub(super) fn text(
         "binnacle_after": after,
         "plan": plan.map(|plan| json!({
             "moves": plan.plan.moves, "worst_residual_deg": plan.plan.worst_residual_deg,
-            "widest_band_deg": plan.plan.widest_band_deg, "heeling": plan.plan.heeling,
+            "widest_band_deg": plan.plan.widest_band_deg,
+            "heeling": HeelingPlan {
+                before_deg_per_deg: before.and_then(|before| before.heeling_deg_per_deg),
+                ..plan.plan.heeling
+            },
             "optimality": plan.optimality, "offered": plan.offered, "notes": plan.notes,
         })),
         "steps_as_read": steps,
+        "settings_as_said": found,
         "second_readings": again,
         "not_shown": (!hidden.is_empty()).then(|| json!({ "steps": hidden, "words": NOT_SHOWN })),
-        "predicted_before": before,
+        "predicted_before": before.map(|before| &before.deviations),
         "predicted_after": learnt.after,
         "model_after": learnt.model_after,
         "photos": photos,
@@ -119,6 +123,15 @@ fn step(entry: &super::entry::Entry) -> Option<serde_json::Value> {
     Some(json!({
         "at": at(entry.at), "said": done.said, "words": done.step.words,
         "moved": done.setting.is_some(),
+    }))
+}
+
+fn settings(entry: &super::entry::Entry) -> Option<serde_json::Value> {
+    let Content::CorrectorSettings(moved) = &entry.content else {
+        return None;
+    };
+    Some(json!({
+        "at": at(entry.at), "before": moved.before, "after": moved.after, "note": moved.note,
     }))
 }
 

@@ -3,7 +3,7 @@
 //! What always holds: it is a function of the log alone, so that the state in the
 //! database can be derived again.
 
-use super::again::{AgainVerdict, ReadAgain};
+use super::again::{ReadAgain, WHOLE};
 use super::completion::{Completed, SignedBy};
 use super::entry::Content;
 use super::moved::CallChange;
@@ -15,7 +15,9 @@ use super::reading::Read;
 use super::steps::{Moved, StepSaid, Verdict};
 use super::verification::Verified;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{Done, Learnt, Limits, PredictedTable, Step, Verification};
+use binnacle_magnetics::adjust::{
+    Corrector, Done, Learnt, Limits, PredictedTable, Step, Verification,
+};
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_magnetics::binnacle::{Binnacle, Setting};
 
@@ -52,10 +54,14 @@ pub(super) struct Standing {
     /// At how many of them someone has looked since, to say how the correctors stand.
     pub looked_at: usize,
     /// What the magnetometer said after them, the correctors standing as they stand.
-    pub again: Option<ReadAgain>,
-    /// The first reading of an order that was planned anew from a second one, and what was
-    /// foretold of the deviations before.
-    pub first: Option<(Read, Vec<PredictedTable>)>,
+    pub again: Option<Box<ReadAgain>>,
+    /// The first reading of an order that was planned anew from a second one.
+    pub first: Option<Box<Read>>,
+    /// How the compass was before, by the last plan from the first reading.
+    pub before: Option<Box<Before>>,
+    /// How it stood before a second reading became the one to plan from: until something
+    /// else is done it may be read once more.
+    undone: Option<Box<Standing>>,
     /// What the compass read last at the berth, degrees.
     pub compass_deg: Option<f64>,
     /// How it was completed.
@@ -66,6 +72,15 @@ pub(super) struct Standing {
     pub photos: Vec<PhotoTaken>,
     /// Signatures by firms' keys, in order.
     pub signatures: Vec<SignedBy>,
+}
+
+/// How a compass was before its correctors were moved.
+#[derive(Clone, Debug)]
+pub(super) struct Before {
+    /// Deviations at the berth and in the waters.
+    pub deviations: Vec<PredictedTable>,
+    /// Heeling error on north, degrees for each degree of heel.
+    pub heeling_deg_per_deg: Option<f64>,
 }
 
 impl Standing {
@@ -88,6 +103,8 @@ impl Standing {
             looked_at: 0,
             again: None,
             first: None,
+            before: None,
+            undone: None,
             compass_deg: None,
             completed: None,
             verified: None,
@@ -140,12 +157,13 @@ impl Standing {
             | Content::Message(_) => {}
             Content::BerthReading(read) => {
                 if self.take_reading(read) {
-                    self.first = None;
+                    (self.first, self.before, self.undone) = (None, None, None);
                 }
             }
             Content::SecondReading(read) => self.take_again(read),
             Content::Plan(planned) => self.follow(planned.as_ref().clone()),
             Content::Step(done) => {
+                self.undone = None;
                 self.keep_only_a_disproof();
                 // What nothing explains is read again, from where it was.
                 if done.said.verdict != Verdict::Unexplained {
@@ -217,12 +235,15 @@ impl Standing {
         let stands = self.setting() == Some(&moved.after);
         // What it read before they were moved says nothing of how it reads now.
         let still = self.compass_deg.filter(|_| stands);
+        if !stands {
+            // What was learnt of them held for how they were taken to stand.
+            let again = self.again.take().filter(|_| !moved.explains_reading);
+            self.step_back();
+            self.again = again.filter(|again| again.is_disproof());
+        }
         self.compass_deg = moved.compass_deg.or(still);
         // Someone has looked at every one of them.
         self.looked_at = self.steps.len();
-        if !stands {
-            self.again = None;
-        }
         self.moved_to = Some(moved.after.clone());
         match &self.plan {
             Some(plan) if plan.plan.setting == moved.after => {
@@ -237,13 +258,38 @@ impl Standing {
     }
 
     fn take_again(&mut self, read: &ReadAgain) {
-        if let (Some(anew), Some(first), Some(plan)) = (&read.anew, &self.read, &self.plan) {
-            let before = (first.clone(), plan.plan.before.clone());
-            if self.take_reading(anew) {
-                self.first.get_or_insert(before);
-            }
+        self.step_back();
+        let before = self.clone();
+        if let (Some(anew), Some(first)) = (&read.anew, before.read.clone())
+            && self.take_reading(anew)
+        {
+            // Nothing was moved since it was read last.
+            self.compass_deg = anew.given.compass_deg.or(before.compass_deg);
+            self.first.get_or_insert_with(|| Box::new(first));
+            self.undone = Some(Box::new(before));
         }
-        self.again = Some(read.clone());
+        self.again = Some(Box::new(read.clone()));
+    }
+
+    /// As it stood before the last second reading became the one to plan from, where
+    /// nothing was done about it since.
+    pub(super) fn step_back(&mut self) {
+        let Some(before) = self.undone.take() else {
+            return;
+        };
+        let before = *before;
+        self.state = before.state;
+        self.read = before.read;
+        self.binnacle = before.binnacle;
+        self.moved_to = before.moved_to;
+        self.plan = before.plan;
+        self.steps_done = before.steps_done;
+        self.last_step = before.last_step;
+        self.steps = before.steps;
+        self.looked_at = before.looked_at;
+        self.again = before.again;
+        self.first = before.first;
+        self.compass_deg = before.compass_deg;
     }
 
     fn follow(&mut self, planned: Planned) {
@@ -252,6 +298,13 @@ impl Standing {
             self.again = None;
         }
         self.keep_only_a_disproof();
+        self.undone = None;
+        if self.first.is_none() {
+            self.before = Some(Box::new(Before {
+                deviations: planned.plan.before.clone(),
+                heeling_deg_per_deg: planned.plan.heeling.before_deg_per_deg,
+            }));
+        }
         self.plan = Some(planned);
         self.steps_done = 0;
         self.state = State::Adjusting;
@@ -266,8 +319,7 @@ impl Standing {
     /// What confirmed the correctors as they stood says nothing of how they stand now; what
     /// did not is not undone by moving more of them.
     fn keep_only_a_disproof(&mut self) {
-        let again = self.again.take();
-        self.again = again.filter(|again| again.said.verdict != AgainVerdict::AsPlanned);
+        self.again = self.again.take().filter(|again| again.is_disproof());
     }
 
     /// The step to do now.
@@ -296,16 +348,23 @@ impl Standing {
     /// What the magnetometer said after the steps, where it confirmed them.
     pub(super) fn learnt(&self) -> Option<&Learnt> {
         let again = self.again.as_ref()?;
-        let confirmed = again.said.verdict == AgainVerdict::AsPlanned;
-        again.learnt.as_ref().filter(|_| confirmed)
+        again.learnt.as_ref().filter(|_| !again.is_disproof())
+    }
+
+    /// What the magnetometer said after the steps, where it did not confirm them.
+    pub(super) fn disproof(&self) -> Option<&ReadAgain> {
+        self.again.as_deref().filter(|again| again.is_disproof())
     }
 
     /// Steps that neither the compass on this heading nor the magnetometer has shown.
     pub(super) fn hidden_steps(&self) -> Vec<&str> {
-        if self.learnt().is_some() {
-            return Vec::new();
-        }
-        let hidden = self.steps.iter().filter(|done| !done.step.seen);
+        let confirmed = self.learnt().and(self.again.as_ref());
+        let shows = |corrector: Corrector| {
+            let is_whole = |again: &ReadAgain| again.said.parts.len() == WHOLE;
+            confirmed.is_some_and(|again| corrector != Corrector::Heeling || is_whole(again))
+        };
+        let hidden = self.steps.iter();
+        let hidden = hidden.filter(|done| !done.step.seen && !shows(done.step.corrector));
         hidden.map(|done| done.step.words.as_str()).collect()
     }
 

@@ -105,6 +105,9 @@ pub struct Moved {
     pub compass_deg: Option<f64>,
     /// Why.
     pub note: Option<String>,
+    /// Whether a second reading that did not fit before fits them as they stand now.
+    #[serde(default)]
+    pub explains_reading: bool,
     /// When.
     pub at: Time,
 }

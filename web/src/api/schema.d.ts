@@ -21134,7 +21134,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Not before all steps are done */
+            /** @description Not before all steps are done, or nothing was moved */
             409: {
                 headers: {
                     [name: string]: unknown;

@@ -211,6 +211,8 @@ export const berth = {
           ? 'One step could hardly be seen on this heading. Without this reading, a slip in it is found only at sea.'
           : `${n} steps could hardly be seen on this heading. Without this reading, a slip in them is found only at sea.`,
       seen: 'The compass showed every step. This reading is one more proof.',
+      unplanned:
+        'The field as it is now tells how strong the moved correctors really are: the next plan can start from it.',
       compassHelp: 'before the bowl came out',
       downHelp: 'downwards positive; only if it was read before too',
       heading: 'True heading, if the ship has moved',
@@ -224,8 +226,7 @@ export const berth = {
         unexplained: 'The field is not as planned',
       } as Record<string, string>,
       todo: {
-        as_planned:
-          'The correctors do what was planned. What is foretold has been sharpened by it.',
+        as_planned: 'What is foretold has been sharpened by it.',
         replan: 'Choose a plan: it starts from this reading.',
         slip: 'Look at that step before you turn anything. Where it stands wrong, put it right and read again, or say how it really stands. The order is not completed before the field agrees.',
         unexplained:

@@ -2,6 +2,10 @@
 
 use super::condition::Condition;
 use super::{Adjustment, BerthCheck, Optimality, Plan, mistakes};
+use crate::estimate::CAUTION_H_NT;
+
+/// A class A compass's friction, degrees where the horizontal field is 1 µT (ISO 25862).
+const FRICTION_DEG_UT: f64 = 3.0;
 
 /// All of it, the gravest first.
 pub(super) fn notes(
@@ -26,6 +30,15 @@ pub(super) fn notes(
              the hull or a season may lie between it and this berth"
                 .to_owned(),
         );
+    }
+    let h_nt = adjustment.earth.h_nt;
+    if h_nt < CAUTION_H_NT {
+        notes.push(format!(
+            "the horizontal field here is only {:.1} microtesla: the card may hang {:.1} degrees \
+             off by friction alone, and small errors of the reading turn it far",
+            h_nt / 1e3,
+            FRICTION_DEG_UT / (h_nt / 1e3)
+        ));
     }
     let card = adjustment.card().filter(|card| !card.agrees());
     notes.extend(card.map(|card| card.in_words()));

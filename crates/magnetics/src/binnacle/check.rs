@@ -65,10 +65,7 @@ pub(super) fn number(field: &str, value: f64, least: f64, greatest: f64) -> Chec
 
 pub(super) fn count(field: &str, length: usize) -> Checked {
     match length {
-        0 => Err(BinnacleError::new(
-            field,
-            "is empty: nothing to choose from",
-        )),
+        0 => Err(BinnacleError::new(field, "is empty: name at least one")),
         _ if length > MOST => {
             let what = format!("{length} of them; at most {MOST} are taken");
             Err(BinnacleError::new(field, what))

@@ -276,7 +276,8 @@ impl Hands {
         let (reading, down_nt) = again(&mut scene.rng, &truth, place, FLUXGATE, &scene.berthed);
         let adjustment = work.adjustment(scene, &work.standing);
         let vertical = Some(VerticalReading { down_nt });
-        let found = read_again(&adjustment, &work.done, &reading, vertical, Unit::Nanotesla);
+        let unit = Unit::Nanotesla;
+        let found = read_again(&adjustment, &work.done, &reading, vertical, None, unit);
         let found = found.unwrap().verdict;
         let slipped = usize::from(work.is_slipped());
         let (word, next) = match found {

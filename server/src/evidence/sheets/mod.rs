@@ -27,6 +27,7 @@ pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
     tables::correctors(&mut paper, &record)?;
     plan(&mut paper, &record);
     tables::steps(&mut paper, &record);
+    tables::settings_said(&mut paper, &record)?;
     tables::second_readings(&mut paper, &record);
     tables::predicted(&mut paper, &record);
     tables::parameters(&mut paper, &record);

@@ -19,12 +19,7 @@ pub(super) fn correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()
     let setting = |name: &str| serde_json::from_value::<Setting>(record[name].clone());
     let (before, after) = (setting("setting_before")?, setting("setting_after")?);
     let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
-    let shape = |setting: &Setting| -> Option<Shape> {
-        let pair = setting.quadrantal.as_ref()?;
-        let sizes = &binnacle.design.quadrantal.as_ref()?.sizes;
-        Some(sizes.iter().find(|size| size.name == pair.size)?.shape)
-    };
-    let shape = shape(&after).or_else(|| shape(&before));
+    let shape = shape_of(&binnacle, [&after, &before]);
     let design = &binnacle.design;
     paper.title("Correctors");
     paper.fact(
@@ -38,6 +33,49 @@ pub(super) fn correctors(paper: &mut Paper, record: &Value) -> anyhow::Result<()
         } else {
             paper.fact(label, &format!("{after} (before: {before})"));
         }
+    }
+    Ok(())
+}
+
+/// Of the quadrantal correctors that stand in one of these settings.
+fn shape_of(binnacle: &Binnacle, settings: [&Setting; 2]) -> Option<Shape> {
+    let of = |setting: &Setting| -> Option<Shape> {
+        let pair = setting.quadrantal.as_ref()?;
+        let sizes = &binnacle.design.quadrantal.as_ref()?.sizes;
+        Some(sizes.iter().find(|size| size.name == pair.size)?.shape)
+    };
+    settings.into_iter().find_map(of)
+}
+
+/// What somebody said of how the correctors stand, beside the steps.
+pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result<()> {
+    let binnacle: Binnacle = serde_json::from_value(record["binnacle_after"].clone())?;
+    let said = record["settings_as_said"].as_array().into_iter().flatten();
+    for (index, said) in said.enumerate() {
+        paper.room_for(3);
+        if index == 0 {
+            paper.title("Correctors, as they were said to stand");
+        }
+        let before: Setting = serde_json::from_value(said["before"].clone())?;
+        let after: Setting = serde_json::from_value(said["after"].clone())?;
+        let shape = shape_of(&binnacle, [&after, &before]);
+        let lines = in_words(&before, shape).into_iter();
+        let moved: Vec<String> = lines
+            .zip(in_words(&after, shape))
+            .filter(|(before, after)| before != after)
+            .map(|((label, before), (_, after))| format!("{label}: {after} (before: {before})"))
+            .collect();
+        let stands = if moved.is_empty() {
+            "as they were taken to".to_owned()
+        } else {
+            moved.join("; ")
+        };
+        let note = match word(&said["note"]) {
+            none if none.is_empty() => String::new(),
+            note => format!(" “{note}”"),
+        };
+        let says = format!("{}: {stands}{note}", minute(&said["at"]));
+        paper.lines(LEFT, Style::plain(SIZE), &says);
     }
     Ok(())
 }
@@ -96,13 +134,36 @@ pub(super) fn second_readings(paper: &mut Paper, record: &Value) {
                 figures.replace('-', "−")
             })
             .collect();
-        let says = format!(
-            "{}: {}",
-            minute(&reading["given"]["at"]),
-            word(&said["words"])
-        );
+        let given = &reading["given"];
+        let mut says = format!("{}: {}", minute(&given["at"]), word(&said["words"]));
+        let could_be = said["could_be"].as_array().into_iter().flatten();
+        let could_be: Vec<String> = could_be.map(word).collect();
+        if !could_be.is_empty() {
+            says += "; it could be that ";
+            says += &could_be.join(", or that ");
+        }
         paper.lines(LEFT, Style::plain(SIZE), &says);
-        paper.lines(LEFT + 12.0, Style::plain(SIZE).grey(60), &parts.join("; "));
+        let mut figures = parts;
+        for (name, what) in [
+            ("heading_true_deg", "heading true"),
+            ("compass_deg", "compass"),
+        ] {
+            if let Some(degrees) = given[name].as_f64() {
+                figures.push(format!("{what} {}", heading_to_a_tenth(degrees)));
+            }
+        }
+        paper.lines(
+            LEFT + 12.0,
+            Style::plain(SIZE).grey(60),
+            &figures.join("; "),
+        );
+    }
+    let last = record["second_readings"]
+        .as_array()
+        .and_then(|all| all.last());
+    if last.is_some_and(|last| last["said"]["verdict"] == "as_planned") {
+        let rests = "What is foretold below rests on the last of these readings.";
+        paper.lines(LEFT, Style::plain(SIZE), rests);
     }
     let hidden = &record["not_shown"];
     if !hidden.is_object() {

@@ -10,7 +10,15 @@ on_both!(
     the_magnetometer_read_again_confirms_an_adjustment,
     a_second_reading_that_does_not_fit_holds_back_the_completion,
     correctors_found_to_stand_otherwise_explain_a_second_reading,
+    what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading,
+    steps_that_do_not_add_up_are_completed_by_a_second_reading_only,
+    a_word_that_explains_nothing_leaves_a_second_reading_open,
+    a_compass_that_stands_against_the_field_is_not_confirmed,
 );
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
 
 async fn the_magnetometer_read_again_confirms_an_adjustment(shore: Shore) {
     let job = Job::begin(&shore).await;
@@ -104,5 +112,125 @@ async fn correctors_found_to_stand_otherwise_explain_a_second_reading(shore: Sho
     assert_eq!(order["state"], "measured");
     let again = job.post("/second-reading", &nothing_done).await;
     assert_eq!(again.problem(), "wrong-state");
+    shore.finish().await;
+}
+
+async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(shore: Shore) {
+    let mut job = Job::begin(&shore).await;
+    job.post("/berth-reading", &reading()).await.good();
+    let offer = job.person.get(&job.path("/plan")).await.good();
+    let after = offer["plans"][0]["after"].as_array().unwrap();
+    let reach_deg = after.iter().map(|table| number(&table["reach_deg"]));
+    let reach_deg = reach_deg.fold(0.0, f64::max);
+    job.order_again(json!({ "residual_deg": reach_deg + 0.2 }))
+        .await;
+    let order = job.adjust().await;
+    let setting = &order["plan"]["plan"]["setting"];
+    let before = order["plan"]["plan"]["before"].clone();
+    let mut said = Value::Null;
+    for (forward, starboard) in [(0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7)] {
+        let mut off = read_again(setting);
+        off["forward"] = json!(number(&off["forward"]) + forward);
+        off["starboard"] = json!(number(&off["starboard"]) + starboard);
+        let order = job.post("/second-reading", &off).await.good();
+        said = order["second_reading"].clone();
+        if said["verdict"] == "replan" {
+            break;
+        }
+        assert_eq!(said["verdict"], "as_planned", "{said}");
+    }
+    assert_eq!(said["verdict"], "replan", "{said}");
+    assert_eq!(said["refusals"][0]["refusal"], "residual_too_large");
+    let held = job.post("/complete", &word()).await;
+    assert_eq!(held.problem(), "wrong-state");
+    let mut order = job.post("/plan", &json!({})).await.good();
+    assert!(order["next_step"].is_object(), "{order}");
+    while let Some(step) = order["next_step"].as_object() {
+        let path = format!("/steps/{}", step["number"]);
+        let after = json!({ "after_deg": step["expected_compass_deg"] });
+        order = job.post(&path, &after).await.good();
+    }
+    job.post("/complete", &word()).await.good();
+    // The record tells of the adjustment from its first reading on.
+    let record = job.person.get(&job.path("/record.json")).await.good();
+    assert_eq!(record["predicted_before"], before);
+    assert_eq!(record["reading"]["forward"], reading()["forward"]);
+    shore.finish().await;
+}
+
+async fn steps_that_do_not_add_up_are_completed_by_a_second_reading_only(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    job.post("/berth-reading", &reading()).await.good();
+    let mut order = job.post("/plan", &json!({})).await.good();
+    while let Some(step) = order["next_step"].as_object() {
+        // Each within its own tolerance, and all the same way.
+        let off_deg = 0.95 * number(&step["tolerance_deg"]);
+        let after_deg = number(&step["expected_compass_deg"]) + off_deg;
+        let after = json!({ "after_deg": after_deg.rem_euclid(360.0) });
+        let path = format!("/steps/{}", step["number"]);
+        order = job.post(&path, &after).await.good();
+        assert_eq!(order["last_step"]["verdict"], "confirmed", "{order}");
+    }
+    let held = job.post("/complete", &word()).await;
+    assert_eq!(held.problem(), "wrong-state");
+    assert!(held.text.contains("second reading"), "{held:?}");
+    let setting = &order["plan"]["plan"]["setting"];
+    let order = job.post("/second-reading", &read_again(setting)).await;
+    assert_eq!(order.good()["second_reading"]["verdict"], "as_planned");
+    job.post("/complete", &word()).await.good();
+    shore.finish().await;
+}
+
+async fn a_word_that_explains_nothing_leaves_a_second_reading_open(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let order = job.adjust().await;
+    let setting = &order["plan"]["plan"]["setting"];
+    let mut off = read_again(setting);
+    off["forward"] = json!(number(&off["forward"]) + 33.0);
+    let order = job.post("/second-reading", &off).await.good();
+    assert_eq!(order["second_reading"]["verdict"], "unexplained");
+    // One magnet elsewhere makes nothing of so much.
+    let mut other = setting.clone();
+    let trays = if other["athwartship"] == json!([]) {
+        "fore_and_aft"
+    } else {
+        "athwartship"
+    };
+    let hole = other[trays][0]["hole"].as_u64().unwrap();
+    other[trays][0]["hole"] = json!(if hole > 1 { hole - 1 } else { hole + 1 });
+    let stand = json!({ "setting": other });
+    let order = job.post("/corrector-settings", &stand).await.good();
+    assert_eq!(order["second_reading"]["verdict"], "unexplained");
+    let stand = json!({ "setting": setting });
+    job.post("/corrector-settings", &stand).await.good();
+    job.post("/plan", &json!({})).await.good();
+    let held = job.post("/complete", &word()).await;
+    assert_eq!(held.problem(), "wrong-state");
+    job.post("/second-reading", &read_again(setting))
+        .await
+        .good();
+    job.post("/complete", &word()).await.good();
+    let record = job.person.get(&job.path("/record.json")).await.good();
+    assert_eq!(record["settings_as_said"][0]["after"], other);
+    shore.finish().await;
+}
+
+async fn a_compass_that_stands_against_the_field_is_not_confirmed(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let order = job.adjust().await;
+    let compass_deg = number(&order["compass_deg"]);
+    let mut again = read_again(&order["plan"]["plan"]["setting"]);
+    again["compass_deg"] = json!((compass_deg + 145.0).rem_euclid(360.0));
+    let said = job.post("/second-reading", &again).await.good()["second_reading"].clone();
+    assert_eq!(said["verdict"], "unexplained");
+    let words = said["words"].as_str().unwrap();
+    assert!(words.starts_with("the compass read"), "{words}");
+    assert_eq!(
+        job.post("/complete", &word()).await.problem(),
+        "wrong-state"
+    );
+    again["compass_deg"] = json!(compass_deg);
+    let said = job.post("/second-reading", &again).await.good()["second_reading"].clone();
+    assert_eq!(said["verdict"], "as_planned", "{said}");
     shore.finish().await;
 }

@@ -184,7 +184,7 @@ async fn correctors_that_are_not_on_board_are_said_to_be_missing(shore: Shore) {
     empty["aboard"]["magnets"] = json!([]);
     let answer = put(&job.person, &path, &empty).await;
     assert_eq!(answer.problem(), "invalid");
-    assert!(answer.text.contains("nothing to choose from"), "{answer:?}");
+    assert!(answer.text.contains("name at least one"), "{answer:?}");
     // One magnet is too few for what she needs.
     let mut few = binnacle();
     few["aboard"] = json!({ "magnets": [{ "magnet": "200 mm", "count": 1 }] });

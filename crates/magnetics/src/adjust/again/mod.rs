@@ -15,6 +15,7 @@ mod news;
 pub use form::AgainForm;
 
 use super::beyond::beyond_limits;
+use super::card::Card;
 use super::condition::{Condition, Known};
 use super::heeling::VerticalReading;
 use super::instructions::Step;
@@ -51,6 +52,9 @@ pub struct Done {
 pub struct Again {
     /// Forward, to starboard and, where it was read both times, down.
     pub parts: Vec<Part>,
+    /// The compass held against the field, where it was read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub card: Option<Card>,
     /// What to make of it.
     #[serde(flatten)]
     pub verdict: Verdict,
@@ -137,7 +141,7 @@ pub struct Learnt {
 
 /// Judges a second reading by the same magnetometer, the correctors standing as
 /// `adjustment.now` says after these steps. `named` is the unit that its figures were said
-/// to be in.
+/// to be in, `compass_deg` what the compass read before the bowl was taken out.
 ///
 /// # Errors
 /// When the adjustment itself cannot be.
@@ -146,6 +150,7 @@ pub fn read_again(
     done: &[Done],
     reading: &BerthReading,
     vertical: Option<VerticalReading>,
+    compass_deg: Option<f64>,
     named: Unit,
 ) -> Result<Again, AdjustError> {
     super::check(adjustment)?;
@@ -156,17 +161,27 @@ pub fn read_again(
     let known = condition.known_with(adjustment.standing())?;
     let news = News::new(adjustment, &condition, &known, reading, vertical);
     let weighed = weigh(adjustment, &condition, &known, &news, done);
-    let verdict = Judge {
+    let judge = Judge {
         adjustment,
         condition: &condition,
         known: &known,
         reading,
         vertical,
         named,
-    }
-    .verdict(&news, &weighed)?;
+    };
+    let card = compass_deg
+        .map(|read_deg| judge.card(read_deg))
+        .transpose()?;
+    let verdict = if card.is_some_and(|card| card.is_refused()) {
+        Verdict::Unexplained {
+            mistakes: Vec::new(),
+        }
+    } else {
+        judge.verdict(&news, &weighed)?
+    };
     Ok(Again {
         parts: parts(&news),
+        card,
         verdict,
     })
 }
@@ -208,6 +223,20 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
+    fn card(&self, read_deg: f64) -> Result<Card, AdjustError> {
+        let standing = self.known.setting.clone();
+        let binnacle = self.condition.binnacle.with_setting(standing)?;
+        let constant_deg = self.adjustment.model.constant_deg;
+        let earth = self.adjustment.earth;
+        Ok(Card::new(
+            read_deg,
+            self.reading,
+            earth,
+            &binnacle,
+            constant_deg,
+        ))
+    }
+
     fn verdict(&self, news: &News, weighed: &[Weighed]) -> Result<Verdict, AdjustError> {
         if self.adjustment.model.covariance.is_none() {
             // Nothing is known of what differences there may be.
@@ -305,22 +334,51 @@ impl Judge<'_> {
     fn mistakes(&self) -> Vec<Mistake> {
         let explains = |mistake: &Mistake| {
             let undone = mistake.undone_reading(self.reading, self.vertical, self.named);
-            undone.is_some_and(|(reading, vertical)| {
-                let news = News::new(
-                    self.adjustment,
-                    self.condition,
-                    self.known,
-                    &reading,
-                    vertical,
-                );
-                let solved = news
-                    .spread
-                    .cholesky()
-                    .map(|spread| spread.solve(&news.off()));
-                solved.is_some_and(|solved| news.off().dot(&solved) <= greatest(&news))
-            })
+            undone.is_some_and(|(reading, vertical)| self.fits(&reading, vertical))
         };
-        Mistake::ALL.into_iter().filter(explains).collect()
+        let whole = Mistake::ALL.into_iter().filter(explains);
+        whole.chain(self.mistakes_with_down()).collect()
+    }
+
+    /// Those that only a vertical part tells.
+    fn mistakes_with_down(&self) -> Vec<Mistake> {
+        let (Some(_), Some(vertical)) = (self.adjustment.vertical, self.vertical) else {
+            return Vec::new();
+        };
+        let ([x, y], down_nt) = (self.reading.field_nt(), vertical.down_nt);
+        let fits = |field_nt: [f64; 2], down_nt: f64| {
+            let (errors, alignment) = (self.reading.errors(), self.reading.alignment());
+            let undone = BerthReading::new(self.reading.magnetic(), field_nt, errors, alignment);
+            undone.is_ok_and(|undone| self.fits(&undone, Some(VerticalReading { down_nt })))
+        };
+        let mut units = Unit::ALL.iter().filter(|unit| **unit != self.named);
+        let found = [
+            (Mistake::DownReversed, fits([x, y], -down_nt)),
+            (
+                Mistake::DownInAnotherUnit,
+                units.any(|unit| fits([x, y], unit.nt() / self.named.nt() * down_nt)),
+            ),
+            (Mistake::ForwardDownSwapped, fits([down_nt, y], x)),
+            (Mistake::StarboardDownSwapped, fits([x, down_nt], y)),
+        ];
+        let explaining = found.into_iter().filter(|(_, explains)| *explains);
+        explaining.map(|(mistake, _)| mistake).collect()
+    }
+
+    /// Whether such a reading is as planned.
+    fn fits(&self, reading: &BerthReading, vertical: Option<VerticalReading>) -> bool {
+        let news = News::new(
+            self.adjustment,
+            self.condition,
+            self.known,
+            reading,
+            vertical,
+        );
+        let solved = news
+            .spread
+            .cholesky()
+            .map(|spread| spread.solve(&news.off()));
+        solved.is_some_and(|solved| news.off().dot(&solved) <= greatest(&news))
     }
 }
 

@@ -72,7 +72,11 @@ impl Adjusted {
         )
     }
 
-    fn judge(&self, [x, y, z]: [f64; 3], named: Unit) -> Again {
+    fn judge(&self, field_nt: [f64; 3], named: Unit) -> Again {
+        self.judge_with(field_nt, None, named)
+    }
+
+    fn judge_with(&self, [x, y, z]: [f64; 3], compass_deg: Option<f64>, named: Unit) -> Again {
         let first = &self.case.reading;
         let reading =
             BerthReading::new(first.magnetic(), [x, y], first.errors(), first.alignment()).unwrap();
@@ -82,7 +86,8 @@ impl Adjusted {
         });
         adjustment.now = Some(&self.plan.setting);
         let vertical = Some(VerticalReading { down_nt: z });
-        read_again(&adjustment, &self.done(), &reading, vertical, named).unwrap()
+        let done = self.done();
+        read_again(&adjustment, &done, &reading, vertical, compass_deg, named).unwrap()
     }
 }
 
@@ -295,6 +300,48 @@ fn what_the_compass_leaves_open_of_the_steps_is_in_the_band() {
         assert!(weak > right + 0.05, "{right} {weak}");
         assert!(right.abs() < 0.03, "{right}");
     }
+}
+
+#[test]
+fn a_vertical_part_the_wrong_way_round_or_in_another_unit_is_named() {
+    let adjusted = Adjusted::new(45.0);
+    let setting = &adjusted.plan.setting;
+    let [x, y, z] = field(&ship(), &adjusted.case.binnacle, setting, 45.0);
+    for (down_nt, mistake) in [
+        (-z, Mistake::DownReversed),
+        (z / 1_000.0, Mistake::DownInAnotherUnit),
+    ] {
+        let Verdict::Unexplained { mistakes } =
+            adjusted.judge([x, y, down_nt], Unit::Nanotesla).verdict
+        else {
+            panic!("{down_nt}")
+        };
+        assert_eq!(mistakes, [mistake]);
+    }
+    let swapped = adjusted.judge([z, y, x], Unit::Nanotesla).verdict;
+    let Verdict::Unexplained { mistakes } = swapped else {
+        panic!("{swapped:?}")
+    };
+    assert!(mistakes.contains(&Mistake::ForwardDownSwapped));
+}
+
+#[test]
+fn a_compass_that_does_not_point_along_the_field_read_again_is_not_explained() {
+    let adjusted = Adjusted::new(45.0);
+    let setting = &adjusted.plan.setting;
+    let read = field(&ship(), &adjusted.case.binnacle, setting, 45.0);
+    let card = |compass_deg| adjusted.judge_with(read, compass_deg, Unit::Nanotesla);
+    let implied_deg = card(Some(0.0)).card.unwrap().implied_deg;
+    for off_deg in [-1.0, 0.0, 1.0] {
+        let again = card(Some(implied_deg + off_deg));
+        assert!(matches!(again.verdict, Verdict::AsPlanned { .. }));
+    }
+    for off_deg in [-8.0, 8.0, 180.0] {
+        let again = card(Some(implied_deg + off_deg));
+        assert!(matches!(again.verdict, Verdict::Unexplained { .. }));
+        assert!((again.card.unwrap().off_deg.abs() - off_deg.abs()).abs() < 1.0);
+    }
+    assert_eq!(card(None).card, None);
 }
 
 /// The second reading of docs/plan.md is one at the berth beside it.
