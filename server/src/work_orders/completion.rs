@@ -208,7 +208,8 @@ pub(super) async fn complete(
         return Err(Error::WrongState("there is no plan".to_owned()));
     };
     let after = binnacle.with_setting(setting)?;
-    let record = record::text(aboard, &change.whole, &standing, &learnt, &word, &after)?;
+    let account = &change.author.name;
+    let record = record::text(aboard, &change.whole, &learnt, &word, account, &after)?;
     let (vessel, compass) = (
         change.whole.summary.vessel_id,
         change.whole.summary.compass_id,

@@ -6,7 +6,6 @@
 use super::completion::Word;
 use super::entry::{Content, canonical};
 use super::order::NOT_A_CERTIFICATE;
-use super::standing::Standing;
 use super::store::Whole;
 use crate::compasses::Compass;
 use crate::error::Result;
@@ -28,12 +27,12 @@ pub(super) struct Aboard {
 pub(super) fn text(
     aboard: &Aboard,
     whole: &Whole,
-    standing: &Standing,
     learnt: &Learnt,
     word: &Word,
+    account: &str,
     after: &Binnacle,
 ) -> Result<String> {
-    let summary = &whole.summary;
+    let (summary, standing) = (&whole.summary, whole.standing());
     let read = standing.first.as_deref().or(standing.read.as_ref());
     let basis = read.and_then(|read| read.basis.as_ref());
     let plan = standing.plan.as_ref();
@@ -61,7 +60,7 @@ pub(super) fn text(
         "adjusted_at": word.at,
         "adjuster": {
             "name": word.adjuster_name, "licence": word.adjuster_licence, "firm": word.firm,
-            "signature": word.signature,
+            "signature": word.signature, "account": account,
         },
         "data": basis.map(|basis| json!({
             "sha256": basis.model.input_hash, "estimator": basis.model.estimator,

@@ -140,6 +140,8 @@ struct Usual {
     tilt_sd_deg: f64,
 }
 
+/// No telephone reads so many times better than is usual.
+const PHONE_TIMES: f64 = 3.0;
 /// Steel of an ordinary quay, nT.
 const USUAL_STEEL_NT: f64 = 100.0;
 /// Where there is steel near, nT.
@@ -192,15 +194,26 @@ impl ReadingForm {
     /// Names the field.
     pub fn must_be_numbers(&self) -> Result<(), NumberError> {
         let or_nil = |value: Option<f64>| value.unwrap_or(0.0);
+        let usual = self.magnetometer.usual();
+        // Whatever is claimed for it.
+        let best = |usual: f64| match self.magnetometer {
+            Magnetometer::Phone => usual / PHONE_TIMES,
+            _ => 0.0,
+        };
+        let claimed = |claim: Option<f64>, usual: f64| (claim.unwrap_or(usual), best(usual));
+        let (field_sd_nt, best_nt) = claimed(self.field_sd_nt, usual.field_sd_nt);
+        let (scale_sd, best_scale) = claimed(self.scale_sd, usual.scale_sd);
+        let (lies_sd_deg, best_lies_deg) = claimed(self.alignment_sd_deg, usual.alignment_sd_deg);
+        let (tilt_sd_deg, best_tilt_deg) = claimed(self.tilt_sd_deg, usual.tilt_sd_deg);
         for (field, value, least, greatest) in [
             ("lat", self.lat, -90.0, 90.0),
             ("lon", self.lon, -180.0, 180.0),
             ("heading_true_deg", self.heading_true_deg, 0.0, 360.0),
             ("heading_sd_deg", or_nil(self.heading_sd_deg), 0.0, 5.0),
-            ("field_sd_nt", self.field_sd_nt.unwrap_or(1.0), 1.0, 5_000.0),
-            ("scale_sd", or_nil(self.scale_sd), 0.0, 0.5),
-            ("alignment_sd_deg", or_nil(self.alignment_sd_deg), 0.0, 5.0),
-            ("tilt_sd_deg", or_nil(self.tilt_sd_deg), 0.0, 4.0),
+            ("field_sd_nt", field_sd_nt, best_nt.max(1.0), 5_000.0),
+            ("scale_sd", scale_sd, best_scale, 0.5),
+            ("alignment_sd_deg", lies_sd_deg, best_lies_deg, 5.0),
+            ("tilt_sd_deg", tilt_sd_deg, best_tilt_deg, 4.0),
             ("steel_sd_nt", or_nil(self.steel_sd_nt), 0.0, 5_000.0),
             ("compass_deg", or_nil(self.compass_deg), 0.0, 360.0),
             ("heel_deg", self.heel_deg, -5.0, 5.0),

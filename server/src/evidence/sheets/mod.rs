@@ -317,6 +317,7 @@ fn signed(paper: &mut Paper, record: &Value) {
         "Signature",
         &format!("typed: {}", word(&adjuster["signature"])),
     );
+    paper.fact("Given by", &word(&adjuster["account"]));
     paper.fact(
         "Log",
         &format!(

@@ -181,7 +181,7 @@ pub(super) fn predicted(paper: &mut Paper, record: &Value) {
     let of = |name: &str| record[name].as_array().into_iter().flatten();
     let before = of("predicted_before")
         .take(1)
-        .map(|table| ("before, at the berth", table));
+        .map(|table| ("before, berth", table));
     let after = of("predicted_after").map(|table| match table["place"].as_str() {
         Some("berth") => ("at the berth", table),
         place => (place.unwrap_or_default(), table),
@@ -248,8 +248,8 @@ pub(super) fn parameters(paper: &mut Paper, record: &Value) {
             let variance = number(&model["covariance"][place][place]);
             let decimals = if unit.is_empty() { 4 } else { 2 };
             let (value, sd) = (times * number(value), times * variance.max(0.0).sqrt());
-            let both = format!("{value:.decimals$} ± {sd:.decimals$} {unit}");
-            both.replace('-', "−").trim_end().to_owned()
+            let space = if unit == "µT" { " " } else { "" };
+            format!("{value:.decimals$} ± {sd:.decimals$}{space}{unit}").replace('-', "−")
         };
         let cells: Vec<_> = models
             .iter()

@@ -47,6 +47,7 @@ async fn the_magnetometer_read_again_confirms_an_adjustment(shore: Shore) {
         "as_planned"
     );
     assert_eq!(record["not_shown"], Value::Null);
+    assert_eq!(record["adjuster"]["account"], "ada@example.com");
     let bx_nt = |model: &Value| model["parameters_over_lambda"]["bx_nt"].as_f64().unwrap();
     let [kept, given] = [&record["model_after"], &done["completion"]["model"]].map(bx_nt);
     assert!((kept - given).abs() < 1e-6, "{kept} {given}");

@@ -290,3 +290,19 @@ fn what_the_correctors_cannot_reach_no_heading_at_sea_and_no_swing_cures() {
         assert_eq!(refused.cures, [Cure::OtherCorrectors]);
     }
 }
+
+#[test]
+fn a_telephone_is_not_believed_to_be_a_fluxgate() {
+    let form = |magnetometer: &str| -> crate::adjust::ReadingForm {
+        serde_json::from_value(serde_json::json!({
+            "at": "2026-11-21T06:30:00Z", "lat": 43.3, "lon": -3.0, "heading_true_deg": 40.0,
+            "heading_from": "ashore", "forward": 15.0, "starboard": 17.0, "unit": "microtesla",
+            "magnetometer": magnetometer, "field_sd_nt": 20.0,
+        }))
+        .unwrap()
+    };
+    assert_eq!(form("fluxgate").must_be_numbers(), Ok(()));
+    let error = form("phone").must_be_numbers().unwrap_err();
+    assert_eq!(error.field, "field_sd_nt");
+    assert!(error.what.contains("500"), "{error}");
+}
