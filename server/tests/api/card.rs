@@ -4,6 +4,7 @@ use crate::binnacles::{binnacle, put};
 use crate::on_both;
 use crate::support::{Answer, Person, Ship, Shore, days_at_sea, days_in, passage, struck, truth};
 use binnacle_magnetics::time::Timestamp;
+use binnacle_server::alerts;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::Batch;
 use reqwest::Method;
@@ -331,11 +332,14 @@ async fn there_is_no_card_of_a_compass_that_is_suspected(shore: Shore) {
     let (status, problem, detail) = refusal(&ada, &nao, "").await;
     assert_eq!((status, problem.as_str()), (409, "compass-suspected"));
     assert!(detail.contains("parted by 28°"), "{detail}");
-    // When compass and gyro agree again there is one.
+    // When compass and gyro have agreed for some hours there is one again.
     (aboard.revision, aboard.state) = (2, ShipAlertState::Agree);
     nao.put_bytes(3, reporting(&nao, 3, aboard)).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
+    let (status, _, detail) = refusal(&ada, &nao, "").await;
+    assert_eq!(status, 409);
+    assert!(detail.contains("they agree"), "{detail}");
+    shore.advance(7.0 * 3600.0);
+    alerts::by_the_clock(&shore.app).await.unwrap();
     ada.get(&nao.path("/card.json")).await.good();
     shore.finish().await;
 }
