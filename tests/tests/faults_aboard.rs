@@ -98,7 +98,10 @@ async fn read_only_disk() -> Result<()> {
     ensure!(before.waiting > 1, "{before:?}");
     // What a system does with a disk that fails.
     let state = coast.ship.data_dir();
-    mount(&["-o", "remount,ro"], &state)?;
+    eventually("nobody writes to the disk", PATIENCE, async || {
+        Ok(mount(&["-o", "remount,ro"], &state).map_err(|why| why.to_string()))
+    })
+    .await?;
     coast.ship.start()?;
     let log = coast.ship.fails().await?;
     ensure!(

@@ -61,6 +61,7 @@ export const vessel = {
       await residuals.waitFor();
       assert.equal(await residuals.locator('svg').count(), 0, 'drawn only when it is near');
       await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+      await residuals.locator('svg').first().waitFor();
       assert.ok((await dots(residuals)) > 100, 'on paper it is drawn all the same');
       const rose = page.getByTestId('coverage-rose');
       assert.match(await rose.getAttribute('aria-label'), /^Samples by compass heading/);
