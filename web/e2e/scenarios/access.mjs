@@ -84,6 +84,7 @@ async function each({ page, settings, shoot }, look) {
     // Charts are drawn when they are near, or for paper.
     await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
     await drawn?.(page).waitFor();
+    await page.evaluate(() => dispatchEvent(new Event('afterprint')));
     await page.waitForTimeout(400);
     found.push(...(await findings(page)).map((line) => `${name}: ${line}`));
     await fitsItsWidth(page);
