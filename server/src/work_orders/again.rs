@@ -6,12 +6,12 @@
 //! until the field was read as foretold, a plan was made from this very reading, or someone
 //! has found the correctors to stand otherwise.
 
-use super::basis::{Basis, Prepared};
 use super::entry::Content;
 use super::order::{Order, State};
 use super::plan::{calculate, must_still_hold};
-use super::reading::{Read, check, must_be_numbers};
+use super::reading::{Read, must_be_numbers};
 use super::refusal::Refusal;
+use super::second::{Second, WHOLE, to_plan_from};
 use super::standing::Standing;
 use super::{completion, request, shown};
 use crate::access::PartyWriter;
@@ -21,11 +21,7 @@ use crate::http::{Id, Json, Valid};
 use crate::idempotency::Key;
 use crate::ids::OrderId;
 use axum::extract::State as Shared;
-use binnacle_magnetics::adjust::{
-    AdjustError, Again, AgainForm, Card, Corrector, Done, Learnt, Part, ReadingForm, Slip, Verdict,
-    read_again,
-};
-use binnacle_magnetics::berth::BerthReading;
+use binnacle_magnetics::adjust::{AgainForm, Learnt, Part, ReadingForm};
 use binnacle_magnetics::binnacle::Setting;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -94,7 +90,8 @@ pub struct AgainSaid {
 pub enum AgainVerdict {
     /// The correctors do what was planned.
     AsPlanned,
-    /// They do, but what is left is beyond the limits: plan anew from this reading.
+    /// They seem to, but what is left is beyond the limits, or no plan led here: read once
+    /// more, or plan anew from this reading.
     Replan,
     /// A step is suspected: look at it, and say how the correctors stand.
     Slip,
@@ -185,7 +182,7 @@ async fn read_field_again(
     let planned = standing.plan.is_some();
     let judge = move || second.judge(&prepared, &steps, looked_at, planned);
     let (mut judged, basis) = calculate(&app, judge).await?;
-    judged.anew = basis.map(|basis| from_here(basis, form)).transpose()?;
+    judged.anew = basis.map(|basis| to_plan_from(basis, form)).transpose()?;
     if let Some(mut change) = request.begin(&whole).await? {
         change
             .append(Content::SecondReading(Box::new(judged)))
@@ -222,204 +219,4 @@ fn must_answer_a_disproof(standing: &Standing, form: &ReadingForm) -> Result<()>
                  again too"
             .to_owned(),
     })
-}
-
-/// Parts of a reading that has the vertical one.
-pub(super) const WHOLE: usize = 3;
-
-/// A second reading as it was given, as one of its own, and as the science takes it.
-struct Second {
-    given: AgainForm,
-    form: ReadingForm,
-    reading: BerthReading,
-}
-
-impl Second {
-    fn new(given: AgainForm, prepared: &Prepared) -> Result<Second> {
-        let form = given.as_reading(&prepared.given);
-        let form = form.map_err(|error| Error::Invalid {
-            field: error.field,
-            detail: error.what,
-        })?;
-        let reading = form.reading(prepared.basis.variation()?);
-        let reading = reading.map_err(|error| Error::Invalid {
-            field: "forward, starboard",
-            detail: error.to_string(),
-        })?;
-        Ok(Second {
-            given,
-            form,
-            reading,
-        })
-    }
-
-    fn read(&self, prepared: &Prepared, steps: &[Done]) -> std::result::Result<Again, AdjustError> {
-        read_again(
-            &prepared.adjustment(),
-            steps,
-            &self.reading,
-            self.form.vertical(),
-            self.form.compass_deg,
-            self.form.unit,
-        )
-    }
-}
-
-/// Whether the reading that did not fit fits the correctors as they are said to stand now.
-pub(super) async fn is_explained_by(
-    app: &App,
-    standing: &Standing,
-    setting: &Setting,
-) -> Result<bool> {
-    let Some(disproof) = standing.disproof() else {
-        return Ok(false);
-    };
-    let mut before = standing.clone();
-    before.step_back();
-    let mut prepared = before.prepared()?;
-    prepared.moved_to = Some(setting.clone());
-    let second = Second::new(disproof.given.clone(), &prepared)?;
-    let again = calculate(app, move || second.read(&prepared, &[])).await?;
-    Ok(matches!(
-        again.verdict,
-        Verdict::AsPlanned { .. } | Verdict::Replan { .. }
-    ))
-}
-
-impl Second {
-    /// What it told, and what to plan from where it calls for a plan from itself: also
-    /// where it fits, and there is no plan that was followed.
-    fn judge(
-        self,
-        prepared: &Prepared,
-        steps: &[Done],
-        looked_at: usize,
-        planned: bool,
-    ) -> std::result::Result<(ReadAgain, Option<Basis>), AdjustError> {
-        let second = self;
-        let again = second.read(prepared, steps)?;
-        let mut said = AgainSaid {
-            verdict: AgainVerdict::AsPlanned,
-            words: as_planned(steps, again.parts.len()),
-            parts: again.parts,
-            step: None,
-            setting: None,
-            worst_residual_deg: None,
-            widest_band_deg: None,
-            refusals: Vec::new(),
-            could_be: Vec::new(),
-        };
-        let (mut foretold, mut anew) = (None, None);
-        match again.verdict {
-            Verdict::AsPlanned { learnt } if planned => foretold = Some(*learnt),
-            Verdict::AsPlanned { learnt } => {
-                said.verdict = AgainVerdict::Replan;
-                "the correctors do what they should where they are said to stand: plan anew from this \
-             reading"
-                .clone_into(&mut said.words);
-                let standing = prepared.adjustment().standing().clone();
-                let mut basis = prepared.basis.clone();
-                basis.model.model = learnt.model_after.clone();
-                basis.binnacle = prepared.binnacle.with_setting(standing)?;
-                anew = Some(basis);
-                foretold = Some(*learnt);
-            }
-            Verdict::Replan {
-                learnt,
-                refusals,
-                binnacle,
-                ..
-            } => {
-                said.verdict = AgainVerdict::Replan;
-                "the correctors seem to stand as planned, but more is left than the limits allow: read \
-             once more, away from steel and cranes; if it is so again, plan anew from this reading"
-                .clone_into(&mut said.words);
-                said.refusals = refusals.iter().map(Refusal::from).collect();
-                let mut basis = prepared.basis.clone();
-                basis.model.model = learnt.model_after.clone();
-                basis.binnacle = *binnacle;
-                anew = Some(basis);
-                foretold = Some(*learnt);
-            }
-            Verdict::Slip {
-                step,
-                slip,
-                setting,
-                ..
-            } => {
-                said.verdict = AgainVerdict::Slip;
-                said.words = suspected(steps, step, slip);
-                said.step = u32::try_from(looked_at).ok().map(|before| before + step);
-                said.setting = Some(setting);
-            }
-            Verdict::Unexplained { mistakes } => {
-                said.verdict = AgainVerdict::Unexplained;
-                said.words = unexplained(looked_at);
-                said.could_be = mistakes.iter().map(ToString::to_string).collect();
-                if let Some(card) = again.card.filter(Card::is_refused) {
-                    said.words = card.found();
-                    said.could_be = card.suspects();
-                }
-            }
-        }
-        said.worst_residual_deg = foretold.as_ref().map(|learnt| learnt.worst_residual_deg);
-        said.widest_band_deg = foretold.as_ref().map(|learnt| learnt.widest_band_deg);
-        let read = ReadAgain {
-            given: second.given,
-            said,
-            learnt: foretold,
-            anew: None,
-        };
-        Ok((read, anew))
-    }
-}
-
-fn unexplained(looked_at: usize) -> String {
-    let steps = match looked_at {
-        0 => "one of its steps",
-        _ => "a step that nobody has looked at since",
-    };
-    format!(
-        "neither the plan nor a slip in {steps} explains what was read: look at every step and at \
-         the magnetometer, and read again"
-    )
-}
-
-/// The second reading as one to plan from, held against what is known now.
-fn from_here(basis: Basis, given: ReadingForm) -> Result<Box<Read>> {
-    let (checked, refusal) = match check(&given, &basis)? {
-        Ok(checked) => (Some(checked), None),
-        Err(refusal) => (None, Some(refusal)),
-    };
-    Ok(Box::new(Read {
-        given,
-        basis: Some(basis),
-        checked,
-        refusal,
-    }))
-}
-
-/// What is confirmed, and what is not.
-fn as_planned(steps: &[Done], parts: usize) -> String {
-    let heels = |done: &Done| done.step.corrector == Corrector::Heeling;
-    let mut words = "the correctors do what was planned".to_owned();
-    if parts < WHOLE && steps.iter().any(heels) {
-        words += "; the vertical part was not read both times, and nothing confirms the heeling \
-                  magnets";
-    }
-    words
-}
-
-fn suspected(steps: &[Done], number: u32, slip: Slip) -> String {
-    let step = steps.get((number as usize).saturating_sub(1));
-    let words = step.map_or("", |done| done.step.words.as_str());
-    let how = match slip {
-        Slip::WrongEnd => "the magnets went in with the wrong end".to_owned(),
-        Slip::OtherHole { hole } => format!("the magnets stand at {hole}"),
-        Slip::NotDone => "it was not done".to_owned(),
-    };
-    format!(
-        "look at the step \"{words}\": by the field, {how}. Say how the correctors stand; where \
-         they stand as planned, or are put right, read again"
-    )
 }

@@ -1,6 +1,5 @@
 //! What is done at the berth: the reading, the plan, its steps.
 
-use super::again::is_explained_by;
 use super::asked::BerthReadingSchema;
 use super::basis::Basis;
 use super::entry::Content;
@@ -8,6 +7,7 @@ use super::order::{Order, State};
 use super::plan::{Choice, Planned, calculate, must_still_hold, offer};
 use super::reading::{Read, check, must_be_numbers};
 use super::schema::OfferSchema;
+use super::second::is_explained_by;
 use super::steps::{Moved, Stand, StepRead, judge};
 use super::store::{self, Whole};
 use super::whereabouts;

@@ -296,3 +296,29 @@ fn place(lat: f64, lon: f64) -> String {
         side(lon, 'E', 'W')
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn waters_of_one_name_are_told_apart_by_their_field() {
+        let water = |name: &str, z_nt: f64| Water {
+            name: name.to_owned(),
+            h_nt: 29_400.0,
+            z_nt,
+            weight: 1.0,
+        };
+        let (here, there) = ("about 32°N 32°E", "about 4°S 12°W");
+        let mut waters = [
+            water(here, 31_000.0),
+            water(there, 0.0),
+            water(here, -8_000.0),
+        ];
+        tell_apart(&mut waters);
+        let names = waters.map(|water| water.name);
+        assert_eq!(names[0], format!("{here} (H 29, Z 31 µT)"));
+        assert_eq!(names[1], there);
+        assert_eq!(names[2], format!("{here} (H 29, Z −8 µT)"));
+    }
+}

@@ -40,6 +40,7 @@ mod record;
 mod refusal;
 mod retime;
 mod schema;
+mod second;
 mod standing;
 mod steps;
 mod store;

@@ -3,7 +3,7 @@
 //! What always holds: it is a function of the log alone, so that the state in the
 //! database can be derived again.
 
-use super::again::{ReadAgain, WHOLE};
+use super::again::ReadAgain;
 use super::completion::{Completed, SignedBy};
 use super::entry::Content;
 use super::moved::CallChange;
@@ -12,6 +12,7 @@ use super::order::State;
 use super::photos::PhotoTaken;
 use super::plan::Planned;
 use super::reading::Read;
+use super::second::WHOLE;
 use super::steps::{Moved, StepSaid, Verdict};
 use super::verification::Verified;
 use crate::time::Time;
@@ -51,6 +52,9 @@ pub(super) struct Standing {
     pub last_step: Option<StepSaid>,
     /// All steps that were done since the last reading, with what the compass showed.
     pub steps: Vec<Done>,
+    /// Heeling magnets moved before a second reading without its vertical part that became
+    /// the one to plan from: nothing has shown these steps.
+    unshown: Vec<Done>,
     /// At how many of them someone has looked since, to say how the correctors stand.
     pub looked_at: usize,
     /// What the magnetometer said after them, the correctors standing as they stand.
@@ -100,6 +104,7 @@ impl Standing {
             steps_done: 0,
             last_step: None,
             steps: Vec::new(),
+            unshown: Vec::new(),
             looked_at: 0,
             again: None,
             first: None,
@@ -158,6 +163,7 @@ impl Standing {
             Content::BerthReading(read) => {
                 if self.take_reading(read) {
                     (self.first, self.before, self.undone) = (None, None, None);
+                    self.unshown.clear();
                 }
             }
             Content::SecondReading(read) => self.take_again(read),
@@ -263,6 +269,13 @@ impl Standing {
         if let (Some(anew), Some(first)) = (&read.anew, before.read.clone())
             && self.take_reading(anew)
         {
+            if read.said.parts.len() < WHOLE {
+                let heels = |done: &&Done| done.step.corrector == Corrector::Heeling;
+                self.unshown
+                    .extend(before.steps.iter().filter(heels).cloned());
+            } else {
+                self.unshown.clear();
+            }
             // Nothing was moved since it was read last.
             self.compass_deg = anew.given.compass_deg.or(before.compass_deg);
             self.first.get_or_insert_with(|| Box::new(first));
@@ -286,6 +299,7 @@ impl Standing {
         self.steps_done = before.steps_done;
         self.last_step = before.last_step;
         self.steps = before.steps;
+        self.unshown = before.unshown;
         self.looked_at = before.looked_at;
         self.again = before.again;
         self.first = before.first;
@@ -363,7 +377,7 @@ impl Standing {
             let is_whole = |again: &ReadAgain| again.said.parts.len() == WHOLE;
             confirmed.is_some_and(|again| corrector != Corrector::Heeling || is_whole(again))
         };
-        let hidden = self.steps.iter();
+        let hidden = self.unshown.iter().chain(&self.steps);
         let hidden = hidden.filter(|done| !done.step.seen && !shows(done.step.corrector));
         hidden.map(|done| done.step.words.as_str()).collect()
     }

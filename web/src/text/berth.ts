@@ -221,13 +221,14 @@ export const berth = {
       lookedNote: 'looked at after the second reading: they stand as planned',
       verdict: {
         as_planned: 'The field is as planned',
-        replan: 'As planned, but more is left than allowed',
+        replan: 'A new plan is wanted',
         slip: 'A step seems to have gone wrong',
         unexplained: 'The field is not as planned',
       } as Record<string, string>,
       todo: {
         as_planned: 'What is foretold has been sharpened by it.',
-        replan: 'Choose a plan: it starts from this reading.',
+        replan:
+          'Read once more to be sure, away from steel and cranes. If it is so again, choose a plan: it starts from this reading.',
         slip: 'Look at that step before you turn anything. Where it stands wrong, put it right and read again, or say how it really stands. The order is not completed before the field agrees.',
         unexplained:
           'Look at every step, at the magnetometer’s place and axes, and for iron nearby; then read again. The order is not completed before the field agrees.',

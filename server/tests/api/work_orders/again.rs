@@ -1,7 +1,7 @@
 //! The magnetometer read once more, after the steps.
 
-use super::{AT, Job, read_again, reading, word};
-use crate::binnacles::binnacle;
+use super::{AT, Job, at_berth, read_again, read_again_after, reading, word};
+use crate::binnacles::{binnacle, put};
 use crate::on_both;
 use crate::support::Shore;
 use serde_json::{Value, json};
@@ -14,6 +14,9 @@ on_both!(
     steps_that_do_not_add_up_are_completed_by_a_second_reading_only,
     a_word_that_explains_nothing_leaves_a_second_reading_open,
     a_compass_that_stands_against_the_field_is_not_confirmed,
+    what_the_vertical_part_disproved_is_not_confirmed_without_it,
+    heeling_magnets_are_confirmed_by_the_vertical_part_alone,
+    a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from,
 );
 
 fn number(value: &Value) -> f64 {
@@ -128,9 +131,9 @@ async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
     let order = job.adjust().await;
     let setting = &order["plan"]["plan"]["setting"];
     let before = order["plan"]["plan"]["before"].clone();
-    let mut said = Value::Null;
+    let (mut said, mut off) = (Value::Null, Value::Null);
     for (forward, starboard) in [(0.7, 0.7), (0.7, -0.7), (-0.7, 0.7), (-0.7, -0.7)] {
-        let mut off = read_again(setting);
+        off = read_again(setting);
         off["forward"] = json!(number(&off["forward"]) + forward);
         off["starboard"] = json!(number(&off["starboard"]) + starboard);
         let order = job.post("/second-reading", &off).await.good();
@@ -144,13 +147,14 @@ async fn what_is_left_beyond_the_limits_is_planned_anew_from_the_second_reading(
     assert_eq!(said["refusals"][0]["refusal"], "residual_too_large");
     let held = job.post("/complete", &word()).await;
     assert_eq!(held.problem(), "wrong-state");
-    let mut order = job.post("/plan", &json!({})).await.good();
-    assert!(order["next_step"].is_object(), "{order}");
-    while let Some(step) = order["next_step"].as_object() {
-        let path = format!("/steps/{}", step["number"]);
-        let after = json!({ "after_deg": step["expected_compass_deg"] });
-        order = job.post(&path, &after).await.good();
-    }
+    // Read once more it may be as planned: what was read before is as if it had not been.
+    let order = job.post("/second-reading", &read_again(setting)).await;
+    let order = order.good();
+    assert_eq!(order["second_reading"]["verdict"], "as_planned");
+    assert_eq!(order["state"], "adjusting");
+    job.post("/second-reading", &off).await.good();
+    let order = job.follow_a_plan().await;
+    assert!(order["steps_done"].as_u64() > Some(0), "{order}");
     job.post("/complete", &word()).await.good();
     // The record tells of the adjustment from its first reading on.
     let record = job.person.get(&job.path("/record.json")).await.good();
@@ -233,5 +237,94 @@ async fn a_compass_that_stands_against_the_field_is_not_confirmed(shore: Shore) 
     again["compass_deg"] = json!(compass_deg);
     let said = job.post("/second-reading", &again).await.good()["second_reading"].clone();
     assert_eq!(said["verdict"], "as_planned", "{said}");
+    shore.finish().await;
+}
+
+/// A ship that wants heeling magnets, adjusted by a reading with its vertical part.
+async fn heeling(shore: &Shore) -> (Job, Value, Value) {
+    let job = Job::begin(shore).await;
+    let path = format!("/compasses/{}/binnacle", job.compass);
+    let mut more = binnacle();
+    let magnets = more["aboard"]["magnets"].as_array_mut().unwrap();
+    magnets.push(json!({ "magnet": "heeling 150 mm", "count": 2 }));
+    put(&job.person, &job.ship.path(&path), &more).await.good();
+    let mut first = reading();
+    first["down"] = json!(at_berth().1.z_nt / 1000.0 + 8.0);
+    job.post("/berth-reading", &first).await.good();
+    let order = job.follow_a_plan().await;
+    let setting = order["plan"]["plan"]["setting"].clone();
+    assert!(setting["heeling"].is_object(), "{setting}");
+    (job, first, setting)
+}
+
+fn without_down(reading: &Value) -> Value {
+    let mut reading = reading.clone();
+    reading.as_object_mut().unwrap().remove("down");
+    reading
+}
+
+async fn what_the_vertical_part_disproved_is_not_confirmed_without_it(shore: Shore) {
+    let (job, first, setting) = heeling(&shore).await;
+    let mut truly = setting.clone();
+    truly["heeling"] = Value::Null;
+    let not_done = read_again_after(&first, &truly);
+    let order = job.post("/second-reading", &not_done).await.good();
+    assert_eq!(order["second_reading"]["verdict"], "slip", "{order}");
+    let blind = job.post("/second-reading", &without_down(&not_done)).await;
+    assert_eq!(blind.problem(), "invalid");
+    assert!(blind.text.contains("down"), "{blind:?}");
+    let held = job.post("/complete", &word()).await;
+    assert_eq!(held.problem(), "wrong-state");
+    let done = read_again_after(&first, &setting);
+    let order = job.post("/second-reading", &done).await.good();
+    assert_eq!(order["second_reading"]["verdict"], "as_planned", "{order}");
+    job.post("/complete", &word()).await.good();
+    let record = job.person.get(&job.path("/record.json")).await.good();
+    assert_eq!(record["not_shown"], Value::Null);
+    shore.finish().await;
+}
+
+async fn heeling_magnets_are_confirmed_by_the_vertical_part_alone(shore: Shore) {
+    let (job, first, setting) = heeling(&shore).await;
+    let blind = without_down(&read_again_after(&first, &setting));
+    let said = job.post("/second-reading", &blind).await.good()["second_reading"].clone();
+    assert_eq!(said["verdict"], "as_planned", "{said}");
+    assert!(
+        said["words"].as_str().unwrap().contains("heeling"),
+        "{said}"
+    );
+    job.post("/complete", &word()).await.good();
+    let record = job.person.get(&job.path("/record.json")).await.good();
+    let hidden = record["not_shown"]["steps"].as_array().unwrap();
+    assert_eq!(hidden.len(), 1, "{hidden:?}");
+    assert!(
+        hidden[0].as_str().unwrap().contains("heeling"),
+        "{hidden:?}"
+    );
+    shore.finish().await;
+}
+
+async fn a_reading_of_correctors_that_no_plan_led_to_is_one_to_plan_from(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let order = job.adjust().await;
+    let mut other = order["plan"]["plan"]["setting"].clone();
+    let axis = if other["athwartship"] == json!([]) {
+        "fore_and_aft"
+    } else {
+        "athwartship"
+    };
+    let hole = other[axis][0]["hole"].as_u64().unwrap();
+    other[axis][0]["hole"] = json!(if hole > 1 { hole - 1 } else { hole + 1 });
+    let stand = json!({ "setting": other });
+    job.post("/corrector-settings", &stand).await.good();
+    let order = job
+        .post("/second-reading", &read_again(&other))
+        .await
+        .good();
+    let said = &order["second_reading"];
+    assert_eq!(said["verdict"], "replan", "{said}");
+    assert_eq!(order["state"], "measured");
+    let offer = job.person.get(&job.path("/plan")).await.good();
+    assert!(!offer["plans"].as_array().unwrap().is_empty());
     shore.finish().await;
 }

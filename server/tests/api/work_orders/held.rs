@@ -70,12 +70,12 @@ async fn an_adjustment_is_not_dated_before_its_steps(shore: Shore) {
     job.post("/berth-reading", &reading()).await.good();
     shore.advance(86_400.0);
     job.person = Person::sign_in(&shore, job.person.operator, &job.person.email).await;
-    let mut order = job.post("/plan", &json!({})).await.good();
-    while let Some(step) = order["next_step"].as_object() {
-        let path = format!("/steps/{}", step["number"]);
-        let after = json!({ "after_deg": step["expected_compass_deg"] });
-        order = job.post(&path, &after).await.good();
-    }
+    let order = job.follow_a_plan().await;
+    // The berth was read a day before the steps, and so was this.
+    let again = read_again(&order["plan"]["plan"]["setting"]);
+    let refused = job.post("/second-reading", &again).await;
+    assert_eq!(refused.problem(), "invalid");
+    assert!(refused.text.contains("before the last step"), "{refused:?}");
     let mut early = word();
     early["at"] = json!("2026-11-21T07:00:00Z");
     let refused = job.post("/complete", &early).await;

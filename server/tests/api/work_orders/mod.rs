@@ -92,9 +92,14 @@ impl Job {
         self.person.get(&self.path("")).await.good()
     }
 
-    /// Reads the berth, chooses the plan, and does its steps as foretold.
+    /// Reads the berth, chooses a plan, and does its steps as foretold.
     async fn adjust(&self) -> Value {
         self.post("/berth-reading", &reading()).await.good();
+        self.follow_a_plan().await
+    }
+
+    /// Chooses a plan, and does its steps as foretold.
+    async fn follow_a_plan(&self) -> Value {
         let mut order = self.post("/plan", &json!({})).await.good();
         while let Some(step) = order["next_step"].as_object() {
             let path = format!("/steps/{}", step["number"]);
@@ -157,21 +162,29 @@ fn word() -> Value {
 /// What the same magnetometer reads there with correctors that stand so, where nothing
 /// was in use before.
 fn read_again(setting: &Value) -> Value {
+    read_again_after(&reading(), setting)
+}
+
+/// The same after another first reading.
+fn read_again_after(first: &Value, setting: &Value) -> Value {
     let setting: Setting = serde_json::from_value(setting.clone()).unwrap();
     let aboard: Binnacle = serde_json::from_value(binnacle()).unwrap();
     let of_correctors = effect(&aboard, &setting);
     let (magnetic_deg, earth) = at_berth();
     let earth = earth.in_ship_axes(magnetic_deg.to_radians());
-    let first = reading();
     let part = |name: &str, axis: usize| {
         let induced: f64 = (0..3).map(|c| of_correctors.chi[axis][c] * earth[c]).sum();
         let added_ut = (of_correctors.b_nt[axis] + induced) / 1000.0;
         first[name].as_f64().unwrap() + added_ut
     };
-    json!({
+    let mut again = json!({
         "at": AT, "unit": "microtesla",
         "forward": part("forward", 0), "starboard": part("starboard", 1),
-    })
+    });
+    if first["down"].is_number() {
+        again["down"] = json!(part("down", 2));
+    }
+    again
 }
 
 /// Magnetic heading and the earth's field.

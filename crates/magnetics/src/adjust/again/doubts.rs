@@ -71,8 +71,7 @@ pub(super) fn weigh_by_compass(
     news: &News,
     done: &[Done],
 ) -> Vec<Weighed> {
-    let covariance = known.model.covariance.unwrap_or_default();
-    let covariance = SMatrix::from_fn(|r, c| covariance[r][c]);
+    let covariance = covariance(known);
     let doubts = doubts(adjustment, condition, known, news, done).into_iter();
     let doubts = doubts.filter(|doubt| doubt.what != What::Elsewhere);
     shared(doubts.map(|doubt| doubt.unread(&covariance)).collect())
@@ -86,14 +85,19 @@ pub(super) fn weigh(
     news: &News,
     done: &[Done],
 ) -> Vec<Weighed> {
-    let covariance = known.model.covariance.unwrap_or_default();
-    let covariance = SMatrix::from_fn(|r, c| covariance[r][c]);
+    let covariance = covariance(known);
     let doubts = doubts(adjustment, condition, known, news, done);
     let found: Vec<(f64, Weighed)> = doubts
         .into_iter()
         .filter_map(|doubt| doubt.weighed(news, &covariance))
         .collect();
     shared(found)
+}
+
+/// Of what is foretold.
+fn covariance(known: &Known<'_>) -> SMatrix<f64, EIGHT, EIGHT> {
+    let covariance = known.model.covariance.unwrap_or_default();
+    SMatrix::from_fn(|r, c| covariance[r][c])
 }
 
 /// Shares of belief by its logarithms.

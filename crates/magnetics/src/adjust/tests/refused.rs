@@ -306,3 +306,37 @@ fn a_telephone_is_not_believed_to_be_a_fluxgate() {
     assert_eq!(error.field, "field_sd_nt");
     assert!(error.what.contains("500"), "{error}");
 }
+
+#[test]
+fn a_weak_horizontal_field_is_said() {
+    let told = |h_nt: f64| {
+        let mut ship = bare();
+        ship.b_nt = [0.0; 3];
+        let mut form: BinnacleForm = class_a().into();
+        form.setting = Setting::default();
+        let mut case = Case::new(ship, Binnacle::try_from(form).unwrap(), 60.0);
+        let earth = EarthField {
+            h_nt,
+            z_nt: 55_000.0,
+        };
+        let [x, y, _] = case
+            .bare
+            .field_aboard(earth.in_ship_axes(60.0_f64.to_radians()));
+        let (errors, heading) = (case.reading.errors(), case.reading.magnetic());
+        case.reading = BerthReading::new(heading, [x, y], errors, Alignment::Keel).unwrap();
+        let mut adjustment = case.adjustment();
+        adjustment.earth = earth;
+        adjustment.limits.residual_deg = 15.0;
+        adjustment.limits.band_deg = 15.0;
+        let outcome = plan(&adjustment).unwrap();
+        assert!(!outcome.plans.is_empty(), "{:?}", outcome.refusals);
+        let mut notes = outcome.notes.into_iter();
+        notes.find(|note| note.contains("horizontal field here is only"))
+    };
+    assert_eq!(told(6_100.0), None);
+    let note = told(5_000.0).unwrap();
+    assert!(
+        note.contains("5.0 microtesla") && note.contains("0.6 degrees"),
+        "{note}"
+    );
+}
