@@ -12,6 +12,7 @@
 mod voyages;
 
 mod causes;
+mod large;
 mod quiet;
 mod returns;
 mod steps;
@@ -53,11 +54,17 @@ fn main() {
     if wanted("brief") {
         causes::brief(ships);
     }
+    if wanted("large") {
+        large::large(ships);
+    }
     if wanted("return") {
         returns::returns(ships);
     }
     if wanted("permanent") {
         returns::permanent(ships);
+    }
+    if wanted("calm") {
+        returns::calm(ships);
     }
     if wanted("lightning") {
         returns::lightning(ships);

@@ -129,11 +129,13 @@ enum Of {
 }
 
 /// What was known some time after the ship sailed from a port.
-struct Then {
+pub(crate) struct Then {
     of: Of,
     /// On how many headings of 36 the band held the truth.
-    held: usize,
-    analysis: Analysis,
+    pub(crate) held: usize,
+    /// The mean of the band's standard error over the headings, degrees.
+    pub(crate) se_deg: f64,
+    pub(crate) analysis: Analysis,
 }
 
 impl Then {
@@ -157,7 +159,7 @@ impl Then {
     }
 }
 
-fn after(
+pub(crate) fn after(
     seed: u64,
     plan: &Plan,
     (log, logbook): (&Log, &[LogbookEntry]),
@@ -175,16 +177,17 @@ fn after(
     let days = last.seconds_since(begun) / DAY_S + 0.001;
     let truth = sail_log(seed, &Plan { days, ..*plan }).truth;
     let epoch = analysis.current_epoch()?;
-    let held = epoch.model.as_ref().map_or(0, |model| {
-        let place = analysis.last_place.unwrap();
-        let held = (0..36).filter(|k| {
-            let compass = f64::from(*k) * 10.0;
-            let truth = true_deviation(&truth, compass, place.h_nt, place.z_nt);
-            let (predicted, se) = predicted(model, compass, place.h_nt, place.z_nt);
-            wrap_180(predicted - truth).abs() <= 1.96 * se
-        });
-        held.count()
-    });
+    let (mut held, mut se_deg) = (0, 0.0);
+    for k in 0..36 {
+        let (Some(model), Some(place)) = (epoch.model.as_ref(), analysis.last_place) else {
+            break;
+        };
+        let compass = f64::from(k) * 10.0;
+        let truth = true_deviation(&truth, compass, place.h_nt, place.z_nt);
+        let (predicted, se) = predicted(model, compass, place.h_nt, place.z_nt);
+        se_deg += se / 36.0;
+        held += usize::from(wrap_180(predicted - truth).abs() <= 1.96 * se);
+    }
     let of = if epoch.resumes.is_some() {
         Of::Resumed
     } else if epoch.begun_by_change.is_none() {
@@ -194,7 +197,12 @@ fn after(
     } else {
         Of::Another
     };
-    Some(Then { of, held, analysis })
+    Some(Then {
+        of,
+        held,
+        se_deg,
+        analysis,
+    })
 }
 
 /// Whether the last change is rather over than not.
@@ -253,6 +261,35 @@ pub(crate) fn permanent(ships: u64) {
         share(&found, |f| f.2),
         100.0 * found.iter().map(|f| f.3).sum::<usize>() as f64 / (36 * found.len()) as f64,
     );
+}
+
+/// How wide the band is after a port call at which nothing happened, and how often it holds
+/// the truth: hours after sailing.
+pub(crate) fn calm(ships: u64) {
+    for hours in [3.0, 12.0, 24.0] {
+        let found = each(seeds(430_000, ships), |seed| {
+            let mut plan = Plan::of(Event::Nothing, variety(seed));
+            plan.days = 90.0;
+            let log = sail_log(seed, &plan);
+            let begun = log.samples.first()?.time;
+            let mut legs = log.samples.windows(2);
+            let port = legs.find(|leg| {
+                leg[0].time.seconds_since(begun) > 60.0 * DAY_S
+                    && leg[1].time.seconds_since(leg[0].time) > 12.0 * HOUR_S
+            })?;
+            after(seed, &plan, (&log, &[]), port[0].time, hours / 24.0)
+        });
+        let found: Vec<_> = found.into_iter().flatten().collect();
+        let held = found.iter().map(|then| then.held).sum::<usize>();
+        let se = found.iter().map(|then| then.se_deg).sum::<f64>();
+        println!(
+            "{hours} hours after a call at which nothing happened, {} ships: standard error {:.3} \
+             degrees, the band holds the truth on {:.1} % of all headings",
+            found.len(),
+            se / found.len() as f64,
+            100.0 * held as f64 / (36 * found.len()) as f64,
+        );
+    }
 }
 
 /// How good the band is after lightning, which partly fades.

@@ -4,6 +4,7 @@
 //! needles magnetise in the spheres. So the field alone says what the compass must have
 //! read, whatever the model and the heading given are.
 
+use super::reading_of_card::heading_sd_deg;
 use crate::angle::{MagneticHeading, wrap_180, wrap_360};
 use crate::berth::{Alignment, BerthReading};
 use crate::binnacle::Binnacle;
@@ -13,8 +14,6 @@ use serde::{Deserialize, Serialize};
 
 /// Two-sided 99 % of a normal distribution, in standard deviations.
 const NORMAL_99: f64 = 2.575_829;
-/// Of a class A compass, with its friction and how well its card is read, degrees.
-const CARD_SD_DEG: f64 = 0.5;
 /// Up to here a card is never called wrong, degrees.
 const LEAST_REFUSED_DEG: f64 = 4.0;
 /// Nor up to so many times what right readings differ by once in a hundred.
@@ -58,7 +57,7 @@ impl Card {
         let of_field_deg = (errors.field_sd_nt.hypot(leaked_nt) / x.hypot(y)).to_degrees();
         let sd_deg = of_field_deg
             .hypot(errors.alignment_sd_deg)
-            .hypot(CARD_SD_DEG);
+            .hypot(heading_sd_deg(earth.h_nt));
         Card {
             read_deg,
             implied_deg,

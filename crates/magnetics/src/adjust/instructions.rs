@@ -8,6 +8,8 @@
 
 use super::condition::Condition;
 use super::moves::matched;
+use super::places::stands;
+use super::reading_of_card::turn_sd_deg;
 use super::tolerance::errors_between;
 use super::{Adjustment, heeling};
 use crate::angle::{wrap_180, wrap_360};
@@ -17,8 +19,6 @@ use crate::corrector::{Effect, effect};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// How well two readings of a card tell its turn, degrees.
-pub(super) const READING_SD_DEG: f64 = 0.3;
 /// Two-sided 99 % of a normal distribution: of a hundred right steps one is looked at
 /// again.
 pub(super) const NORMAL_99: f64 = 2.575_829;
@@ -100,6 +100,18 @@ pub struct Step {
     pub setting_after: Setting,
 }
 
+impl Step {
+    /// Whether what it moved is where it was to be by one setting, and not by another.
+    pub fn is_gainsaid(&self, taken: &Setting, said: &Setting) -> bool {
+        let is_done = |setting: &Setting| match (&self.to, &self.from) {
+            (Some(to), _) => stands(setting, self.corrector, to),
+            (None, Some(from)) => !stands(setting, self.corrector, from),
+            (None, None) => true,
+        };
+        is_done(taken) && !is_done(said)
+    }
+}
+
 pub(super) fn steps(
     adjustment: &Adjustment<'_>,
     condition: &Condition<'_>,
@@ -162,9 +174,10 @@ pub(super) fn change_deg(
     (change, variance.sqrt().hypot(of_lambda))
 }
 
-/// How far off a turn may be that is known to so much, degrees.
-pub(super) fn tolerance_deg(sd_deg: f64) -> f64 {
-    let tolerance_deg = NORMAL_99 * sd_deg.hypot(READING_SD_DEG);
+/// How far off a turn may be that is known to so much, degrees, in a horizontal field
+/// of so many nT.
+pub(super) fn tolerance_deg(sd_deg: f64, h_nt: f64) -> f64 {
+    let tolerance_deg = NORMAL_99 * sd_deg.hypot(turn_sd_deg(h_nt));
     tolerance_deg.max(LEAST_TOLERANCE_DEG)
 }
 
@@ -179,7 +192,7 @@ fn step(
 ) -> Step {
     let (corrector, from, to) = moved;
     let (change_deg, sd_deg) = change_deg(adjustment, condition, &before, &after);
-    let tolerance_deg = tolerance_deg(sd_deg);
+    let tolerance_deg = tolerance_deg(sd_deg, adjustment.earth.h_nt);
     let action = action(from.as_ref(), to.as_ref());
     Step {
         number,

@@ -1,11 +1,9 @@
 //! What an adjuster should know of the plans that are given.
 
 use super::condition::Condition;
+use super::reading_of_card::friction_deg;
 use super::{Adjustment, BerthCheck, Optimality, Plan, mistakes};
 use crate::estimate::CAUTION_H_NT;
-
-/// A class A compass's friction, degrees where the horizontal field is 1 µT (ISO 25862).
-const FRICTION_DEG_UT: f64 = 3.0;
 
 /// All of it, the gravest first.
 pub(super) fn notes(
@@ -37,7 +35,7 @@ pub(super) fn notes(
             "the horizontal field here is only {:.1} microtesla: the card may hang {:.1} degrees \
              off by friction alone, and small errors of the reading turn it far",
             h_nt / 1e3,
-            FRICTION_DEG_UT / (h_nt / 1e3)
+            friction_deg(h_nt)
         ));
     }
     let card = adjustment.card().filter(|card| !card.agrees());

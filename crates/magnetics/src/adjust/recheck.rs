@@ -2,7 +2,9 @@
 //! plan from there where it was otherwise.
 
 use super::condition::Condition;
-use super::instructions::{NORMAL_99, Place, READING_SD_DEG, Step, change_deg, tolerance_deg};
+use super::instructions::{NORMAL_99, Place, Step, change_deg, tolerance_deg};
+use super::places::{elsewhere, moved, replaced};
+use super::reading_of_card::turn_sd_deg;
 use super::strength::strength;
 use super::{AdjustError, Adjustment, Outcome, plan};
 use crate::angle::wrap_180;
@@ -12,6 +14,8 @@ use serde::{Deserialize, Serialize};
 
 /// A card that turned by less may not have turned at all, degrees.
 const UNMOVED_DEG: f64 = 0.5;
+/// Holes are miscounted by no more.
+const MISCOUNTED: i32 = 3;
 /// What tells an effect no better, 95 %, is said to prove little.
 const PROVES_LITTLE: f64 = 0.3;
 
@@ -46,6 +50,8 @@ pub enum Recheck {
         share: f64,
         /// Standard error of that.
         share_sd: f64,
+        /// The hole near by in which one as strong as was taken would show the same.
+        other_hole: Option<u16>,
         /// The binnacle as it is now believed to be.
         binnacle: Box<Binnacle>,
         /// How the correctors stand.
@@ -88,10 +94,10 @@ pub struct InAll {
 }
 
 impl Proven {
-    fn new(turned_deg: f64, expected_deg: f64) -> Proven {
+    fn new(turned_deg: f64, expected_deg: f64, h_nt: f64) -> Proven {
         Proven {
             share: turned_deg / expected_deg,
-            to: NORMAL_95 * READING_SD_DEG / expected_deg.abs(),
+            to: NORMAL_95 * turn_sd_deg(h_nt) / expected_deg.abs(),
         }
     }
 
@@ -101,11 +107,11 @@ impl Proven {
         let to = 100.0 * self.to;
         if self.to > PROVES_LITTLE {
             return format!(
-                "{share:.0} per cent of what was expected, told to {to:.0} per cent only: this \
-                 heading proves little of it"
+                "{share:.0} per cent of what was expected; on this heading the card tells that \
+                 only to within {to:.0} per cent, which proves little"
             );
         }
-        format!("{share:.0} per cent of what was expected, told to {to:.0} per cent")
+        format!("{share:.0} per cent of what was expected, to within {to:.0} per cent")
     }
 }
 
@@ -144,7 +150,7 @@ pub fn turned_in_all(
         turned_deg,
         expected_deg,
         off_deg: wrap_180(turned_deg - expected_deg),
-        tolerance_deg: tolerance_deg(sd_deg),
+        tolerance_deg: tolerance_deg(sd_deg, adjustment.earth.h_nt),
     })
 }
 
@@ -172,7 +178,7 @@ pub fn recheck(
     let off_deg = wrap_180(turned_deg - step.change_deg);
     if off_deg.abs() <= step.tolerance_deg {
         return Ok(if step.seen {
-            let proven = Proven::new(turned_deg, step.change_deg);
+            let proven = Proven::new(turned_deg, step.change_deg, adjustment.earth.h_nt);
             Recheck::Confirmed { off_deg, proven }
         } else {
             Recheck::NotSeen {
@@ -207,10 +213,75 @@ pub fn recheck(
     Ok(Recheck::OtherStrength {
         share: found.share,
         share_sd: found.share_sd,
+        other_hole: other_hole(adjustment, &condition, step, turned_deg),
         binnacle: Box::new(found.binnacle),
         setting,
         outcome,
     })
+}
+
+/// What a step came to whose corrector, it turns out, stands as `setting` says: the step as
+/// it was done, and the binnacle, its corrector as strong as the compass shows where that
+/// was read since. `adjustment` is that of before the step.
+///
+/// # Errors
+/// When the adjustment itself cannot be.
+pub fn recheck_elsewhere(
+    adjustment: &Adjustment<'_>,
+    step: &Step,
+    before_deg: f64,
+    setting: &Setting,
+    compass_deg: Option<f64>,
+) -> Result<(Step, Binnacle), AdjustError> {
+    let condition = Condition::new(adjustment)?;
+    let (change_deg, sd_deg) = change_deg(adjustment, &condition, &step.setting_before, setting);
+    let tolerance_deg = (NORMAL_99 * sd_deg).max(step.tolerance_deg);
+    let to = step.to.as_ref();
+    let done = Step {
+        to: match to {
+            Some(to) if step.is_gainsaid(&step.setting_after, setting) => {
+                elsewhere(setting, step.corrector, to, &step.setting_after)
+            }
+            to => to.cloned(),
+        },
+        change_deg,
+        tolerance_deg,
+        seen: change_deg.abs() > tolerance_deg,
+        setting_after: setting.clone(),
+        ..step.clone()
+    };
+    let turned_deg = compass_deg.map(|compass_deg| wrap_180(compass_deg - before_deg));
+    let otherwise =
+        turned_deg.filter(|turned_deg| wrap_180(turned_deg - change_deg).abs() > tolerance_deg);
+    let found = match otherwise {
+        Some(turned_deg) => strength(adjustment, &done, turned_deg)?,
+        None => None,
+    };
+    let binnacle = found.map_or_else(|| adjustment.binnacle.clone(), |found| found.binnacle);
+    Ok((done, binnacle))
+}
+
+/// The hole near the step's own in which its magnets, as strong as was taken, would turn the
+/// compass by what was read.
+fn other_hole(
+    adjustment: &Adjustment<'_>,
+    condition: &Condition<'_>,
+    step: &Step,
+    turned_deg: f64,
+) -> Option<u16> {
+    let to = step.to.as_ref()?;
+    let off = |by: i32| {
+        let (place, hole) = moved(to, by)?;
+        let setting = replaced(&step.setting_after, step.corrector, Some(to), Some(&place));
+        condition.binnacle.with_setting(setting.clone()).ok()?;
+        let (change, sd) = change_deg(adjustment, condition, &step.setting_before, &setting);
+        let off_deg = wrap_180(turned_deg - change).abs();
+        let tolerance_deg = (NORMAL_99 * sd).max(step.tolerance_deg);
+        (off_deg <= tolerance_deg).then_some((off_deg, hole))
+    };
+    let others = (-MISCOUNTED..=MISCOUNTED).filter(|by| *by != 0);
+    let nearest = others.filter_map(off).min_by(|a, b| a.0.total_cmp(&b.0));
+    nearest.map(|(_, hole)| hole)
 }
 
 /// The setting with the step's magnets turned end for end, if that is what was read.

@@ -7,6 +7,7 @@
 
 use super::condition::Condition;
 use super::instructions::{Place, Step, change_deg};
+use super::reading_of_card::turn_sd_deg;
 use super::{AdjustError, Adjustment};
 use crate::binnacle::{
     BarSetting, Binnacle, BinnacleForm, Calibrated, PairSetting, Side, Soft, Tray,
@@ -27,6 +28,9 @@ const STRONGER_NOMINAL: f64 = 1.0;
 const OTHER_IRON: f64 = 0.2;
 /// So many standard deviations of its kind a corrector may differ.
 const FEW_SD: f64 = 5.0;
+/// How well a turn is known that is weighed for a strength, degrees: twice read, and turned
+/// by neighbours that are not quite as taken.
+const LEAST_READ_SD_DEG: f64 = 0.5;
 /// An effect that is found to this is found, degrees.
 const FOUND_DEG: f64 = 0.02;
 
@@ -51,7 +55,8 @@ pub(super) fn strength(
     if !step.seen {
         return Ok(None);
     }
-    let share_sd = (0.5 / step.change_deg.abs()).min(0.5);
+    let read_sd_deg = LEAST_READ_SD_DEG.max(turn_sd_deg(adjustment.earth.h_nt));
+    let share_sd = (read_sd_deg / step.change_deg.abs()).min(0.5);
     let change = |share: f64| -> Result<Option<(f64, Binnacle)>, AdjustError> {
         let binnacle = place.and_then(|place| times(adjustment.binnacle, place, share, share_sd));
         let Some(binnacle) = binnacle else {

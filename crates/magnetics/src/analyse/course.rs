@@ -183,6 +183,9 @@ impl Course {
         if let Some(begun) = found.unnoticed.as_ref().filter(|_| until.is_none()) {
             self.allow_for_change(begun, readings, reference);
         }
+        if let Some(variance_nt2) = found.open_nt2.filter(|_| until.is_none()) {
+            self.allow_for_step(variance_nt2);
+        }
         self.changes.append(&mut found.changes);
     }
 
@@ -248,6 +251,16 @@ impl Course {
             .and_then(|(changed, now)| either(now, &changed, begun.probability));
         if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
             last.model = open;
+        }
+    }
+
+    /// Widens the last epoch's model where the ship may have been struck hard just now.
+    fn allow_for_step(&mut self, variance_nt2: f64) {
+        let last = self.epochs.last_mut().and_then(|last| last.model.as_mut());
+        if let Some(covariance) = last.and_then(|model| model.covariance.as_mut()) {
+            for j in [0, 2] {
+                covariance[j][j] += variance_nt2;
+            }
         }
     }
 

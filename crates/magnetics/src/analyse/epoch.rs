@@ -15,8 +15,16 @@ use crate::ship::PARAMETERS;
 use crate::time::Timestamp;
 use std::ops::Range;
 
+/// As many times as large as what has been seen a step may be in what has not been.
+const BEYOND_SEEN: f64 = 1.2;
+/// Rounds in which a prior is widened to what its model says: the first may be far too
+/// narrow.
+const WIDENINGS: usize = 2;
 /// By how much a compass's zero may have moved, standard deviation in degrees.
 const ZERO_MOVED_DEG: f64 = 5.0;
+/// And what of a step may go with it unseen, standard deviation of bx and by in nT: the
+/// headings sailed by when it is told are few.
+const BESIDE_ZERO_NT: f64 = 300.0;
 
 /// The epochs that the logbook tells of, in order of time and without gaps.
 pub(super) fn epochs(logbook: &[LogbookEntry]) -> Vec<Epoch> {
@@ -71,9 +79,13 @@ pub(super) fn prior(
             let model = before.model.as_ref()?;
             let mut upset = Prior::after_upset(model, stood_in_it)?;
             if epoch.begun_by_change == Some(Cause::Alignment) {
-                // The ship is the magnet that she was.
+                // The ship is the magnet that she was, but for the small step that would
+                // pass for part of it.
                 let constant = upset.covariance[PARAMETERS][PARAMETERS];
                 upset.covariance = model.covariance?;
+                for j in [0, 2] {
+                    upset.covariance[j][j] += BESIDE_ZERO_NT.powi(2);
+                }
                 upset.covariance[PARAMETERS][PARAMETERS] = constant + ZERO_MOVED_DEG.powi(2);
             }
             Some(upset)
@@ -178,16 +190,45 @@ impl Stretch<'_> {
     /// The fit, and the places of what it was given.
     fn fit(&self, readings: &[Reading]) -> (Vec<usize>, Result<RobustFit, FitError>) {
         let (taken, observations) = self.taken(readings);
-        let options = RobustOptions {
+        let mut options = RobustOptions {
             prior: self.prior.clone(),
             reference_constant_sd_deg: self.reference.check.constant_sd_deg,
         };
-        let fitted = if self.is_known {
-            fit_known_ship(&observations, &options)
-        } else {
-            fit_robust(&observations, &options)
-        };
+        if !self.is_known {
+            return (taken, fit_robust(&observations, &options));
+        }
+        let mut fitted = fit_known_ship(&observations, &options);
+        // A ship that was struck so hard as the headings so far show may have been struck as
+        // hard in what they do not show.
+        for _ in 0..WIDENINGS {
+            let Some(wider) = fitted.as_ref().ok().and_then(|f| self.wider(&f.model)) else {
+                break;
+            };
+            options.prior = wider;
+            fitted = fit_known_ship(&observations, &options);
+        }
         (taken, fitted)
+    }
+
+    /// A prior that allows for a step of bx and by as large as the model has, each; none
+    /// where the stretch's own does.
+    fn wider(&self, model: &Model) -> Option<Prior> {
+        let moved = |j: usize| {
+            let now = model.parameters_over_lambda.to_array();
+            now[j] - self.prior.mean[j]
+        };
+        let size = BEYOND_SEEN * moved(0).hypot(moved(2));
+        let mut prior = self.prior.clone();
+        let is_new = [0, 2]
+            .map(|j| {
+                let variance = &mut prior.covariance[j][j];
+                let wider = (size * size).max(*variance);
+                let is_new = wider > *variance;
+                *variance = wider;
+                is_new
+            })
+            .contains(&true);
+        is_new.then_some(prior)
     }
 
     /// The model alone.

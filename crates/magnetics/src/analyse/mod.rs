@@ -37,7 +37,7 @@ use stuck::mark_stuck;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-17";
+pub const ESTIMATOR: &str = "state-space-19";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

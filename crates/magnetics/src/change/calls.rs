@@ -27,6 +27,10 @@ const DISCHARGED: f64 = 0.6;
 /// discharged: it is believed at once. And so likely where it says that it stayed.
 const SAID_DISCHARGED: f64 = 0.95;
 const SAID_ON_BOARD: f64 = 0.05;
+/// And so likely where it says so of an hour when she was under way, or where what may have
+/// been the cargo was dated after she had sailed with it: the rows are to tell.
+const SAID_UNDER_WAY: f64 = 0.5;
+const SAID_NOTICED_AT_SEA: f64 = 0.3;
 
 /// What the logbook tells of cargo at a port call.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +39,8 @@ pub(super) enum Said {
     /// Cargo that had been loaded not before a time was discharged, and none stayed.
     Discharged {
         loaded: Timestamp,
+        /// Whether she lay somewhere then, as far as the rows tell.
+        at_port: bool,
     },
     /// Some stayed on board.
     OnBoard,
@@ -88,7 +94,8 @@ pub(super) struct Candidate {
     pub(super) at: usize,
     /// By how much it is likelier than none by the rows alone.
     pub(super) nats: f64,
-    /// How likely it is, and how likely any return is.
+    /// How likely the ship is again what she was before that step, at whatever call, and how
+    /// likely any return is.
     pub(super) probability: f64,
     pub(super) any: f64,
     pub(super) filter: Filter,
@@ -114,15 +121,15 @@ impl Calls {
     /// bases are those of steps before `until`, a place in the list of events.
     pub(super) fn call(&mut self, at: usize, now: &Filter, until: usize, said: Said) {
         let unladen = match said {
-            Said::Discharged { loaded } => self.before_loading(loaded),
+            Said::Discharged { loaded, at_port } => self.before_loading(loaded, at_port),
             _ => None,
         };
         let before = self.bases.iter_mut().filter(|base| base.event < until);
         let returns: Vec<Return> = before
             .map(|base| {
-                let chance = match said {
-                    _ if unladen == Some(base.event) => SAID_DISCHARGED,
-                    Said::OnBoard => SAID_ON_BOARD * base.chance(),
+                let chance = match (said, unladen) {
+                    (_, Some((event, chance))) if event == base.event => chance,
+                    (Said::OnBoard, _) => SAID_ON_BOARD * base.chance(),
                     _ => base.chance(),
                 };
                 base.calls += 1;
@@ -143,14 +150,23 @@ impl Calls {
         self.calls.push(Call { at, returns });
     }
 
-    /// The ship as she was before the first step since her cargo came on board, if that and
-    /// all since were cargo's: the step's place in the list of events. What struck her at
-    /// sea does not leave with the cargo.
-    fn before_loading(&self, loaded: Timestamp) -> Option<usize> {
+    /// The ship as she was before the first step since her cargo came on board: the step's
+    /// place in the list of events, and how likely she is that again. What struck her at sea
+    /// does not leave with the cargo, but cargo that moves the compass by little may be
+    /// noticed at sea only.
+    fn before_loading(&self, loaded: Timestamp, at_port: bool) -> Option<(usize, f64)> {
         let since = |base: &&Base| base.latest.is_some_and(|latest| latest >= loaded);
-        let mut since = self.bases.iter().filter(since).peekable();
-        let first = since.peek()?.event;
-        since.all(|base| base.at_port).then_some(first)
+        let mut since = self.bases.iter().filter(since);
+        let first = since.next()?;
+        if !since.all(|base| base.at_port) {
+            return None;
+        }
+        let chance = match (first.at_port, at_port) {
+            (true, true) => SAID_DISCHARGED,
+            (true, false) => SAID_UNDER_WAY,
+            (false, _) => SAID_NOTICED_AT_SEA,
+        };
+        Some((first.event, chance))
     }
 
     /// Takes in a row, linearised at what each return has of the ship.
@@ -186,28 +202,73 @@ impl Calls {
         }
     }
 
-    /// The likeliest return; `rival` is by how much the likeliest passing
-    /// disturbance leads.
-    pub(super) fn likeliest(&self, null: &Filter, rival: f64) -> Option<Candidate> {
+    /// The likeliest return. `rival` is by how much the likeliest passing disturbance leads;
+    /// while one goes on that was told, `is_astray`, the rows speak for no return, but not
+    /// against one either, for both may be.
+    pub(super) fn likeliest(
+        &self,
+        null: &Filter,
+        rival: f64,
+        is_astray: bool,
+    ) -> Option<Candidate> {
         let odds = |back: &Return| {
             let nats = back.filter.log_likelihood - null.log_likelihood;
-            (nats, back.prior_odds * (TEMPER * (nats - rival)).exp())
+            let beside = if is_astray {
+                nats.min(0.0)
+            } else {
+                f64::NEG_INFINITY
+            };
+            let told = (nats - rival).max(beside);
+            (nats, back.prior_odds * (TEMPER * told).exp())
         };
         let each = || {
             let calls = self.calls.iter();
             calls.flat_map(|call| call.returns.iter().map(move |back| (call.at, back)))
         };
+        let of_event = |event: usize| -> f64 {
+            let same = each().filter(|(_, back)| back.event == event);
+            same.map(|(_, back)| odds(back).1).sum()
+        };
         let sum: f64 = each().map(|(_, back)| odds(back).1).sum();
-        let (at, back) = each().max_by(|a, b| odds(a.1).1.total_cmp(&odds(b.1).1))?;
-        let (nats, odds) = odds(back);
+        // Which call it was matters less than whether she is the ship she was.
+        let event = self
+            .bases
+            .iter()
+            .map(|base| base.event)
+            .max_by(|a, b| of_event(*a).total_cmp(&of_event(*b)))?;
+        let (at, back) = each()
+            .filter(|(_, back)| back.event == event)
+            .max_by(|a, b| odds(a.1).1.total_cmp(&odds(b.1).1))?;
         Some(Candidate {
-            event: back.event,
+            event,
             at,
-            nats,
-            probability: odds / (1.0 + sum),
+            nats: odds(back).0,
+            probability: of_event(event) / (1.0 + sum),
             any: sum / (1.0 + sum),
             filter: back.filter.clone(),
         })
+    }
+
+    /// A reference's error changed, or is again what it was: `now` does that to each return,
+    /// and each is likelier by what the filter gained by it.
+    pub(super) fn change_reference(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
+        let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
+        for back in returns {
+            back.filter = now(&back.filter);
+            back.filter.log_likelihood += gained;
+        }
+    }
+
+    /// The filter, `null`, is likelier by `gained` now that it knows of a disturbance that
+    /// passed. So would a return be, but by no more than that it leads no longer: what it led
+    /// by may be what the disturbance explains.
+    pub(super) fn credit(&mut self, null: &Filter, gained: f64) {
+        let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
+        for back in returns {
+            let led = back.filter.log_likelihood - null.log_likelihood;
+            let leads = led.min(0.0).max(led - gained);
+            back.filter.log_likelihood = null.log_likelihood + gained + leads;
+        }
     }
 
     /// The step of `event` was none of the ship's, or none that is over at once.
@@ -220,5 +281,70 @@ impl Calls {
     pub(super) fn returned(&mut self, event: usize) {
         self.bases.retain(|base| base.event < event);
         self.calls.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::{NoiseLevels, Prior};
+
+    fn ship() -> Filter {
+        let noise = Noise::new(&NoiseLevels::TYPICAL);
+        Filter::new(&Prior::population(0.5), &noise)
+    }
+
+    /// A ship that was laden at a call, and has lain at two since; by how much her being
+    /// herself again leads from each.
+    fn after_two_calls(leads: [f64; 2]) -> Calls {
+        let mut calls = Calls::default();
+        calls.step(Base {
+            event: 0,
+            filter: ship(),
+            at_port: true,
+            latest: None,
+            calls: 0,
+        });
+        for at in [10, 20] {
+            calls.call(at, &ship(), usize::MAX, Said::Nothing);
+        }
+        for (call, nats) in calls.calls.iter_mut().zip(leads) {
+            call.returns[0].filter.log_likelihood = nats;
+        }
+        calls
+    }
+
+    #[test]
+    fn that_she_is_herself_again_is_as_likely_as_all_calls_of_it_together() {
+        let both = after_two_calls([3.0, 3.0]);
+        let both = both.likeliest(&ship(), 0.0, false).unwrap();
+        let one = after_two_calls([3.0, -30.0]);
+        let one = one.likeliest(&ship(), 0.0, false).unwrap();
+        assert!(both.probability > one.probability + 0.05, "{both:?}");
+        assert!((both.probability - both.any).abs() < 1e-12);
+        assert_eq!(both.at, 10, "the first call is the likelier beforehand");
+    }
+
+    #[test]
+    fn a_disturbance_that_was_told_speaks_neither_for_a_return_nor_against_it() {
+        let calls = after_two_calls([5.0, -30.0]);
+        let probability = |is_astray: bool| {
+            let likeliest = calls.likeliest(&ship(), 60.0, is_astray);
+            likeliest.unwrap().probability
+        };
+        assert!(probability(false) < 1e-6);
+        let beforehand = probability(true);
+        assert!((beforehand - 0.504).abs() < 0.001, "{beforehand}");
+    }
+
+    #[test]
+    fn what_passed_leaves_a_return_as_likely_as_it_was_but_lends_it_no_lead() {
+        let null = ship();
+        for (led, gained, leads) in [(5.0, 20.0, 0.0), (-3.0, 20.0, -3.0), (5.0, 2.0, 3.0)] {
+            let mut calls = after_two_calls([led, led]);
+            calls.credit(&null, gained);
+            let now = calls.calls[0].returns[0].filter.log_likelihood - gained;
+            assert!((now - leads).abs() < 1e-9, "{led}, {gained}: {now}");
+        }
     }
 }

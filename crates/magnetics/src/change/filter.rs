@@ -150,6 +150,12 @@ impl Filter {
         off(&m.deviation).max(m.difference.as_ref().map_or(0.0, off))
     }
 
+    /// How far bx and by are from those of another, population units.
+    pub(super) fn far_from(&self, other: &Filter) -> f64 {
+        let [x, y] = DRIFTING.map(|s| self.mean[s] - other.mean[s]);
+        x.hypot(y)
+    }
+
     /// The same of the deviation alone, as an error of the variation where H is 24 µT.
     pub(super) fn variation_astray_deg(&self, m: &Measurement) -> f64 {
         let Scalar { value, load, .. } = &m.deviation;

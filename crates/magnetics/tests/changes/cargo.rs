@@ -62,6 +62,38 @@ fn a_discharge_that_was_reported_has_the_base_model_back_with_the_first_sample()
 }
 
 #[test]
+fn a_discharge_written_down_for_an_hour_under_way_is_of_the_port_that_follows() {
+    for seed in [40, 41, 44] {
+        let mut plan = calm(Event::Cargo);
+        plan.days = 90.0;
+        let log = sail_log(seed, &plan);
+        let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
+        let arrived = cargo.to.unwrap();
+        let early = arrived.plus_seconds(-4.0 * HOUR_S);
+        let logbook = [LogbookEntry {
+            to: Some(early),
+            ..reported(cargo)
+        }];
+        let settings = AnalysisSettings::default();
+        let under_way = log.samples.partition_point(|s| s.time <= early);
+        assert!(log.samples[under_way].time < arrived, "seed {seed}");
+        let analysis = analyse(&log.samples[..=under_way], &logbook, &settings);
+        assert_eq!(analysis.current_epoch().unwrap().resumes, None);
+        let sailed = log.samples.partition_point(|s| s.time <= arrived);
+        let analysis = analyse(&log.samples[..=sailed + 100], &logbook, &settings);
+        is_sound(&analysis);
+        let epoch = analysis.current_epoch().unwrap();
+        assert_eq!(
+            epoch.resumes,
+            Some(0),
+            "seed {seed}: {:?}",
+            analysis.changes
+        );
+        assert_eq!(of_the_ship(&analysis).len(), 1, "seed {seed}");
+    }
+}
+
+#[test]
 fn cargo_that_stays_on_board_by_the_logbook_is_not_over_at_a_call() {
     let mut plan = calm(Event::Cargo);
     plan.days = 90.0;

@@ -8,6 +8,7 @@
 use super::super::Adjustment;
 use super::super::condition::{Condition, Known};
 use super::super::instructions::{Corrector, NORMAL_99, Place, change_deg};
+use super::super::places::{moved, replaced, reversed, stands};
 use super::news::{Cause, EIGHT, Eight, News, Nt};
 use super::{Done, Slip};
 use crate::angle::wrap_180;
@@ -292,105 +293,6 @@ fn of_step(
         })
     };
     others.into_iter().filter_map(doubt).collect()
-}
-
-fn reversed(place: &Place) -> Option<Place> {
-    match place {
-        Place::Magnets(tray) => {
-            let mut tray = tray.clone();
-            tray.red = tray.red.reversed();
-            Some(Place::Magnets(tray))
-        }
-        Place::Bucket(set) => {
-            let mut set = set.clone();
-            set.red = set.red.reversed();
-            Some(Place::Bucket(set))
-        }
-        Place::Pair(_) | Place::Bar(_) => None,
-    }
-}
-
-/// So many holes higher, with the hole's number.
-fn moved(place: &Place, by: i32) -> Option<(Place, u16)> {
-    let other = |hole: u16| u16::try_from(i32::from(hole) + by).ok();
-    match place {
-        Place::Magnets(tray) => {
-            let mut tray = tray.clone();
-            tray.hole = other(tray.hole)?;
-            let hole = tray.hole;
-            Some((Place::Magnets(tray), hole))
-        }
-        Place::Bucket(set) => {
-            let mut set = set.clone();
-            set.position = other(set.position)?;
-            let position = set.position;
-            Some((Place::Bucket(set), position))
-        }
-        Place::Pair(_) | Place::Bar(_) => None,
-    }
-}
-
-fn axis_of(corrector: Corrector) -> Option<Axis> {
-    match corrector {
-        Corrector::ForeAndAft => Some(Axis::ForeAndAft),
-        Corrector::Athwartship => Some(Axis::Athwartship),
-        _ => None,
-    }
-}
-
-fn stands(setting: &Setting, corrector: Corrector, place: &Place) -> bool {
-    match place {
-        Place::Magnets(tray) => {
-            axis_of(corrector).is_some_and(|axis| setting.trays(axis).contains(tray))
-        }
-        Place::Pair(pair) => setting.quadrantal.as_ref() == Some(pair),
-        Place::Bar(bar) => setting.flinders.as_ref() == Some(bar),
-        Place::Bucket(set) => setting.heeling.as_ref() == Some(set),
-    }
-}
-
-/// The setting with one place otherwise.
-fn replaced(
-    setting: &Setting,
-    corrector: Corrector,
-    old: Option<&Place>,
-    new: Option<&Place>,
-) -> Setting {
-    let mut other = setting.clone();
-    match corrector {
-        Corrector::ForeAndAft | Corrector::Athwartship => {
-            let Some(axis) = axis_of(corrector) else {
-                return other;
-            };
-            let trays = other.trays_mut(axis);
-            if let Some(Place::Magnets(old)) = old {
-                trays.retain(|tray| tray != old);
-            }
-            if let Some(Place::Magnets(new)) = new {
-                trays.push(new.clone());
-            }
-            trays.sort_by_key(|tray| tray.hole);
-        }
-        Corrector::Flinders => {
-            other.flinders = match new {
-                Some(Place::Bar(bar)) => Some(bar.clone()),
-                _ => None,
-            };
-        }
-        Corrector::Quadrantal => {
-            other.quadrantal = match new {
-                Some(Place::Pair(pair)) => Some(pair.clone()),
-                _ => None,
-            };
-        }
-        Corrector::Heeling => {
-            other.heeling = match new {
-                Some(Place::Bucket(set)) => Some(set.clone()),
-                _ => None,
-            };
-        }
-    }
-    other
 }
 
 /// Kinds of magnets that stand otherwise than when she was measured.

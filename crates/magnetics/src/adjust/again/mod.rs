@@ -167,14 +167,13 @@ pub fn read_again(
         known: &known,
         reading,
         vertical,
+        compass_deg,
         named,
     };
-    let card = compass_deg
-        .map(|read_deg| judge.card(read_deg))
-        .transpose()?;
+    let card = judge.card(reading)?;
     let verdict = if card.is_some_and(|card| card.is_refused()) {
         Verdict::Unexplained {
-            mistakes: Vec::new(),
+            mistakes: judge.mistakes(),
         }
     } else {
         judge.verdict(&news, &weighed)?
@@ -219,29 +218,28 @@ struct Judge<'a> {
     known: &'a Known<'a>,
     reading: &'a BerthReading,
     vertical: Option<VerticalReading>,
+    compass_deg: Option<f64>,
     named: Unit,
 }
 
 impl Judge<'_> {
-    fn card(&self, read_deg: f64) -> Result<Card, AdjustError> {
+    /// The compass, where it was read, held against such a reading.
+    fn card(&self, reading: &BerthReading) -> Result<Option<Card>, AdjustError> {
+        let Some(read_deg) = self.compass_deg else {
+            return Ok(None);
+        };
         let standing = self.known.setting.clone();
         let binnacle = self.condition.binnacle.with_setting(standing)?;
         let constant_deg = self.adjustment.model.constant_deg;
         let earth = self.adjustment.earth;
-        Ok(Card::new(
-            read_deg,
-            self.reading,
-            earth,
-            &binnacle,
-            constant_deg,
-        ))
+        let card = Card::new(read_deg, reading, earth, &binnacle, constant_deg);
+        Ok(Some(card))
     }
 
     fn verdict(&self, news: &News, weighed: &[Weighed]) -> Result<Verdict, AdjustError> {
         if self.adjustment.model.covariance.is_none() {
-            // Nothing is known of what differences there may be.
             return Ok(Verdict::Unexplained {
-                mistakes: Vec::new(),
+                mistakes: self.mistakes(),
             });
         }
         let fits = weighed
@@ -330,8 +328,13 @@ impl Judge<'_> {
         })
     }
 
-    /// What done otherwise with the magnetometer would make it as planned.
+    /// What done otherwise with the magnetometer would make it as planned, and the compass
+    /// agree with it.
     fn mistakes(&self) -> Vec<Mistake> {
+        if self.adjustment.model.covariance.is_none() {
+            // Nothing is known of what differences there may be.
+            return Vec::new();
+        }
         let explains = |mistake: &Mistake| {
             let undone = mistake.undone_reading(self.reading, self.vertical, self.named);
             undone.is_some_and(|(reading, vertical)| self.fits(&reading, vertical))
@@ -365,8 +368,12 @@ impl Judge<'_> {
         explaining.map(|(mistake, _)| mistake).collect()
     }
 
-    /// Whether such a reading is as planned.
+    /// Whether such a reading is as planned, and turns the compass to what it read.
     fn fits(&self, reading: &BerthReading, vertical: Option<VerticalReading>) -> bool {
+        let card = self.card(reading).ok().flatten();
+        if card.is_some_and(|card| card.is_refused()) {
+            return false;
+        }
         let news = News::new(
             self.adjustment,
             self.condition,

@@ -235,6 +235,26 @@ fn swapped_axes_and_another_unit_are_named() {
     assert_eq!(mistakes, [Mistake::Microtesla]);
 }
 
+/// The compass tells them apart from a field that is right and a card that sticks.
+#[test]
+fn swapped_axes_are_named_where_the_compass_was_read_too() {
+    let adjusted = Adjusted::new(70.0);
+    let setting = &adjusted.plan.setting;
+    let [x, y, z] = field(&ship(), &adjusted.case.binnacle, setting, 70.0);
+    let compass_deg = crate::angle::wrap_360((-y).atan2(x).to_degrees());
+    let judged = |field_nt: [f64; 3], compass_deg: f64| {
+        let again = adjusted.judge_with(field_nt, Some(compass_deg), Unit::Nanotesla);
+        let Verdict::Unexplained { mistakes } = again.verdict else {
+            panic!("{:?}", again.verdict)
+        };
+        assert!(again.card.unwrap().is_refused());
+        mistakes
+    };
+    assert_eq!(judged([y, x, z], compass_deg), [Mistake::SwappedAxes]);
+    let stuck_deg = crate::angle::wrap_360(compass_deg + 60.0);
+    assert!(judged([x, y, z], stuck_deg).is_empty());
+}
+
 /// The errors that were put together anew are those that the plan's model carries.
 #[test]
 fn causes_and_model_add_up_to_the_covariance_of_the_plan() {

@@ -232,7 +232,7 @@ fn a_small_turn_is_confirmed_with_how_little_it_proves() {
     assert!((proven.to - 0.39).abs() < 0.01, "{proven:?}");
     let words = proven.in_words();
     assert!(
-        words.contains("59 per cent") && words.contains("39 per cent only"),
+        words.contains("59 per cent") && words.contains("only to within 39 per cent"),
         "{words}"
     );
     (step.change_deg, step.tolerance_deg) = (15.0, 2.0);

@@ -183,3 +183,71 @@ fn weak_magnets_are_found_in_holes_that_were_measured() {
         }
     }
 }
+
+/// The step with its tray so many holes off, and by how much that turns the compass.
+fn miscounted(adjustment: &Adjustment<'_>, step: &Step, by: i32) -> (u16, Setting, f64) {
+    let mut setting = step.setting_after.clone();
+    let Some(Place::Magnets(to)) = &step.to else {
+        panic!("{step:?}")
+    };
+    let hole = u16::try_from(i32::from(to.hole) + by).unwrap();
+    let mut trays = setting.trays_mut(Axis::Athwartship).iter_mut();
+    trays.find(|tray| *tray == to).unwrap().hole = hole;
+    let condition = Condition::new(adjustment).unwrap();
+    let before = &step.setting_before;
+    let (change_deg, _) = instructions::change_deg(adjustment, &condition, before, &setting);
+    (hole, setting, change_deg)
+}
+
+#[test]
+fn magnets_that_seem_of_another_strength_may_stand_in_another_hole() {
+    let case = wanting();
+    let adjustment = case.adjustment();
+    let mut step = step_of(&adjustment, Corrector::Athwartship);
+    step.tolerance_deg = 0.2;
+    for by in [-2, 2, 3] {
+        let (hole, _, change_deg) = miscounted(&adjustment, &step, by);
+        let found = read(&adjustment, &step, change_deg / step.change_deg);
+        let Recheck::OtherStrength { other_hole, .. } = found else {
+            panic!("{by}: {found:?}")
+        };
+        assert_eq!(other_hole, Some(hole), "{by}");
+    }
+    // No hole so near makes that of it.
+    let found = read(&adjustment, &step, 0.35);
+    let Recheck::OtherStrength { other_hole, .. } = found else {
+        panic!("{found:?}")
+    };
+    assert_eq!(other_hole, None);
+}
+
+#[test]
+fn a_strength_is_learnt_anew_from_where_the_magnets_stand() {
+    let case = wanting();
+    let adjustment = case.adjustment();
+    let step = step_of(&adjustment, Corrector::Athwartship);
+    let (hole, setting, change_deg) = miscounted(&adjustment, &step, 3);
+    let anew = |turned_deg: Option<f64>| {
+        let compass_deg = turned_deg.map(|turned| crate::angle::wrap_360(50.0 + turned));
+        recheck_elsewhere(&adjustment, &step, 50.0, &setting, compass_deg).unwrap()
+    };
+    // What the compass shows is what magnets as strong as was taken do there; and of what it
+    // was not read for nothing is learnt.
+    for turned_deg in [Some(change_deg), None] {
+        let (done, binnacle) = anew(turned_deg);
+        assert_eq!(binnacle, case.binnacle);
+        assert!(matches!(&done.to, Some(Place::Magnets(tray)) if tray.hole == hole));
+        assert!(done.is_gainsaid(&setting, &step.setting_after));
+    }
+    // Magnets of 0.6 of their moment in that hole.
+    let weaker = case.binnacle.with_moment("200 mm", 0.6, 0.02).unwrap();
+    let weak = Adjustment {
+        binnacle: &weaker,
+        ..adjustment.clone()
+    };
+    let (_, _, turned_deg) = miscounted(&weak, &step, 3);
+    let (_, binnacle) = anew(Some(turned_deg));
+    let kind = binnacle.design.magnet("200 mm").unwrap();
+    let am2 = binnacle.moment(kind).am2;
+    assert!((am2 - 0.6).abs() < 0.01, "{am2}");
+}

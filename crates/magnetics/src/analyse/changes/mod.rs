@@ -32,6 +32,8 @@ pub(super) struct Found {
     pub(super) perhaps: Option<Ended>,
     /// A change that may have begun at a port call, and has not been told.
     pub(super) unnoticed: Option<Begun>,
+    /// What a step that is not certain may have done to bx and by, variance in nT².
+    pub(super) open_nt2: Option<f64>,
 }
 
 impl Found {
@@ -99,6 +101,7 @@ pub(super) fn find(
         boundaries: Vec::new(),
         perhaps: None,
         unnoticed: None,
+        open_nt2: None,
     };
     let usable = |reading: &Reading| {
         matches!(
@@ -177,6 +180,7 @@ pub(super) fn find(
         }
         found.changes.push(change);
     }
+    found.open_nt2 = told.open_nt2;
     found.unnoticed = told
         .unnoticed
         .and_then(|unnoticed| teller.begun(&unnoticed));

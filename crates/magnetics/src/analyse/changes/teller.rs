@@ -181,7 +181,7 @@ impl Teller<'_> {
         }
     }
 
-    /// That a change may be over, if that is neither certain nor out of question.
+    /// That a change may be over, if that is not out of question.
     pub(super) fn tell_end(
         &self,
         perhaps: &Perhaps,
@@ -189,7 +189,7 @@ impl Teller<'_> {
         evidence: &mut Vec<String>,
     ) -> Option<Ended> {
         let probability = perhaps.probability;
-        if !(SELDOM..1.0 - SELDOM).contains(&probability) {
+        if probability < SELDOM {
             return None;
         }
         evidence.push(format!(

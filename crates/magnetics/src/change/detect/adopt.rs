@@ -1,14 +1,14 @@
 //! What is believed takes over from the filter, and becomes an event.
 
 use super::date::Dated;
-use super::event::snapshot;
+use super::event::{snapshot, take_out};
 use super::learn::Lesson;
 use super::unsettled::Unsettled;
 use super::{EVERY, Event, Leads, Search, What};
 use crate::change::bank::{Kind, Lead};
 use crate::change::calls::{Base, Candidate};
 use crate::change::filter::Filter;
-use crate::change::upset::upset;
+use crate::change::upset::{Earlier, misled, upset};
 
 /// A change that is gone again within this, away from port, is none of the ship's.
 const BRIEF_S: f64 = 24.0 * 3600.0;
@@ -65,8 +65,15 @@ impl Search<'_> {
                 self.unsettled = Unsettled::after(dated.first, &before, &dated.filter);
             }
             self.retrace(k, &dated, &before);
-        } else if what == What::Reference && self.misled.is_none() {
-            self.misled = Some((self.events.len() - 1, before));
+        } else {
+            if what == What::Reference && self.misled.is_none() {
+                self.misled = Some((self.events.len() - 1, before));
+            }
+            let gained = dated.filter.log_likelihood - self.null.log_likelihood;
+            let mut calls = std::mem::take(&mut self.calls);
+            let next = |back: &Filter| self.measure(k, &back.unknowns());
+            calls.change_reference(gained, |back| misled(back, &next(back), lead.kind));
+            self.calls = calls;
         }
         self.take_over(k, dated.filter, dated.first);
         self.rivals = rivals;
@@ -134,7 +141,12 @@ impl Search<'_> {
         let Some(lead) = leads[Kind::Return as usize] else {
             return;
         };
-        let dated = self.date(lead.spawn, Kind::Return, k);
+        let mut dated = self.date(lead.spawn, Kind::Return, k);
+        if let Some(call) = self.discharge_near(dated.first, k) {
+            // It may as well have been at the call.
+            let (earliest, latest) = dated.between;
+            dated.between = (earliest.min(call), latest.max(call));
+        }
         self.come_back(k, lead, dated, leads);
     }
 
@@ -184,9 +196,13 @@ impl Search<'_> {
         let dated = self.date(lead.spawn, Kind::Return, k);
         let before = self.bank.spawns[lead.spawn].origin().clone();
         self.supersede_burst(dated.first);
-        let Some((event, _)) = self.misled.take() else {
+        let Some((event, mended)) = self.misled.take() else {
             return;
         };
+        let gained = dated.filter.log_likelihood - self.null.log_likelihood;
+        let mended = Earlier::Reference(&mended);
+        self.calls
+            .change_reference(gained, |back| mended.again(back));
         self.push(
             k,
             What::Return(event),
@@ -203,12 +219,19 @@ impl Search<'_> {
         self.supersede_burst(back.at);
         self.misaligned = None;
         // What was taken for a step to something else was this.
-        let mut places = 0..;
-        self.events.retain(|event| {
-            let is_later = places.next().is_some_and(|place| place > back.event);
-            let is_past = matches!(event.what, What::Burst | What::Reference);
-            !is_later || is_past || event.between.1 < back.at
-        });
+        let is_reference = |event: &Event| match event.what {
+            What::Return(of) => self.events[of].what == What::Reference,
+            what => what == What::Reference,
+        };
+        let is_gone = |(place, event): (usize, &Event)| {
+            let is_past = event.what == What::Burst || is_reference(event);
+            place > back.event && !is_past && event.between.1 >= back.at
+        };
+        let gone = self.events.iter().enumerate().map(is_gone).collect();
+        let moved = take_out(&mut self.events, gone);
+        if let Some((place, _)) = &mut self.misled {
+            *place = moved(*place);
+        }
         let before = self.null.clone();
         self.push(
             k,

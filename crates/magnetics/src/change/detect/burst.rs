@@ -44,6 +44,8 @@ impl Search<'_> {
         }
         if let Some((_, filter)) = knew {
             self.credit_rivals(Kind::Over);
+            let gained = filter.log_likelihood - self.null.log_likelihood;
+            self.calls.credit(&self.null, gained);
             self.null = filter;
             self.bank.clear();
             self.spawned = k;

@@ -86,6 +86,23 @@ impl Event {
     }
 }
 
+/// Takes those out that are `gone`; the places of the others, which are told of returns
+/// here, move with them. Where the event of a place is then.
+pub(super) fn take_out(
+    events: &mut Vec<Event>,
+    gone: Vec<bool>,
+) -> impl Fn(usize) -> usize + use<> {
+    let mut each = gone.iter();
+    events.retain(|_| each.next() != Some(&true));
+    let moved = move |place: usize| place - gone[..place].iter().filter(|gone| **gone).count();
+    for event in events {
+        if let What::Return(of) = &mut event.what {
+            *of = moved(*of);
+        }
+    }
+    moved
+}
+
 /// What the rows tell.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Told {
@@ -94,6 +111,9 @@ pub(crate) struct Told {
     pub(crate) perhaps: Option<Perhaps>,
     /// A step that may have been, and is not among them either.
     pub(crate) unnoticed: Option<Unnoticed>,
+    /// What bx and by may each be off by beyond what the model knows, while a large step is
+    /// neither certain nor out of question, variance in nT².
+    pub(crate) open_nt2: Option<f64>,
 }
 
 /// Something that is as yet neither likely enough to be believed nor unlikely
@@ -124,5 +144,40 @@ pub(super) fn snapshot(filter: &Filter) -> Snapshot {
         parameters: Parameters::from_array(parameters),
         constant_deg: filter.mean[CONSTANT_STATE],
         covariance,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::change::filter::Noise;
+
+    fn event(what: What) -> Event {
+        let known = Filter::new(&Prior::population(0.5), &Noise::new(&NoiseLevels::TYPICAL));
+        Event {
+            what,
+            first: 0,
+            between: (0, 0),
+            told: 0,
+            leads: [0.0; 4],
+            before: snapshot(&known),
+            after: snapshot(&known),
+            last: None,
+            confirmed: true,
+            withdrawn: None,
+            was_step: false,
+            over_step: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_fault_that_goes_on_is_found_where_it_is_when_earlier_events_are_taken_out() {
+        let told = [What::Step, What::Step, What::Reference, What::Return(2)];
+        let mut events: Vec<Event> = told.into_iter().map(event).collect();
+        let moved = take_out(&mut events, vec![false, true, false, false]);
+        assert_eq!(events.len(), 3);
+        assert_eq!(events[moved(2)].what, What::Reference);
+        assert_eq!(events[2].what, What::Return(moved(2)));
+        assert_eq!(moved(0), 0);
     }
 }

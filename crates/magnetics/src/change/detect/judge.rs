@@ -111,6 +111,9 @@ impl Search<'_> {
             {
                 return self.adopt_call(k, back, leads);
             }
+            if kind == Kind::Step && self.is_discharge(k, &leads) {
+                return self.adopt_return(k, leads);
+            }
             return self.adopt(k, kind, leads);
         }
         self.judge_passing(k, leads);
@@ -212,8 +215,33 @@ impl Search<'_> {
     fn candidate_below(&self, leads: &Leads, below: f64) -> Option<Candidate> {
         let nats = |kind: Kind| leads[kind as usize].map_or(0.0, |lead| lead.nats);
         let rival = (nats(Kind::Burst) - BURST_BELOW_RETURN).max(0.0);
-        let likeliest = self.calls.likeliest(&self.null, rival)?;
-        (likeliest.nats > nats(Kind::Step) - below).then_some(likeliest)
+        let is_astray = self.burst.is_some() && nats(Kind::Burst) > nats(Kind::Step);
+        let likeliest = self.calls.likeliest(&self.null, rival, is_astray)?;
+        (is_astray || likeliest.nats > nats(Kind::Step) - below).then_some(likeliest)
+    }
+
+    /// Whether a step that is certain is rather the end of what began in port: that explains
+    /// the rows better, though it leaves nothing free, and at about that time she lay in port.
+    /// A few readings astray just before may speak against a return at the call itself.
+    fn is_discharge(&self, k: usize, leads: &Leads) -> bool {
+        let [step, _, _, back] = *leads;
+        step.zip(back).is_some_and(|(step, back)| {
+            let at = self.bank.spawns[back.spawn].at;
+            back.nats > step.nats && self.discharge_near(at, k).is_some()
+        })
+    }
+
+    /// The port call at about row `at`, until row `k`, at which what began in port may have
+    /// ended.
+    pub(super) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
+        let laden = self.calls.bases.last().filter(|base| base.at_port)?;
+        if self.misaligned.is_some() || self.misled.is_some() {
+            return None;
+        }
+        let loaded = self.events[laden.event].first;
+        let rows = at.saturating_sub(AFTER_CALL)..=(at + BEFORE_CALL).min(k);
+        let calls = rows.filter(|row| *row > loaded && self.is_call(*row));
+        calls.min_by_key(|row| row.abs_diff(at))
     }
 
     /// Whether a step that is certain may as well be a return at this call.

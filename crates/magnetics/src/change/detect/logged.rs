@@ -44,6 +44,7 @@ impl Search<'_> {
         let from = ended.map(|loaded| loaded.from).min();
         from.map_or(Said::Nothing, |from| Said::Discharged {
             loaded: from.plus_seconds(-ABOUT_S),
+            at_port: self.is_call(k),
         })
     }
 

@@ -13,6 +13,7 @@ mod faint;
 mod judge;
 mod learn;
 mod logged;
+mod open;
 mod port;
 mod rival;
 mod unnoticed;
@@ -299,12 +300,14 @@ impl<'a> Search<'a> {
         });
         let returned = perhaps.map_or(0.0, |perhaps| perhaps.probability);
         let unnoticed = self.unnoticed(&leads, returned);
+        let open_nt2 = self.open_nt2(&leads);
         self.suspect();
         self.settle_faint(self.observations.len().saturating_sub(1), true);
         Told {
             events: self.events,
             perhaps,
             unnoticed,
+            open_nt2,
         }
     }
 

@@ -6,7 +6,7 @@
 //! one change.
 
 use super::date::Dated;
-use super::event::{Event, snapshot};
+use super::event::{Event, snapshot, take_out};
 use super::unsettled::Unsettled;
 use super::{Leads, Search, What};
 use crate::change::bank::Kind;
@@ -29,6 +29,10 @@ const DRIFT_IN_PORT_NATS: f64 = 16.0;
 const BEFORE_PORT_ROWS: usize = 72;
 /// And no less likely by this than another step would be: two in a row are seldom.
 const BELOW_STEP: f64 = 3.0;
+/// A zero that moved takes a step's place once two sectors of this many, with another between
+/// them, have been sailed for so many rows each.
+const SECTORS: usize = 12;
+const SECTOR_ROWS: usize = 3;
 /// One that trails by this is given up, nats, and any after so many rows.
 const HOPELESS_NATS: f64 = 20.0;
 const OLDEST: usize = 8640;
@@ -171,6 +175,9 @@ impl Search<'_> {
         if nats < enough || nats < step - BELOW_STEP || nats < burst || nats < back {
             return false;
         }
+        if self.rivals[place].what == What::Alignment && !self.tells_from_step(place, k) {
+            return false;
+        }
         let rival = self.rivals.swap_remove(place);
         self.rivals.clear();
         self.calls.forget(of);
@@ -190,6 +197,17 @@ impl Search<'_> {
         true
     }
 
+    /// Whether she has sailed on headings since that tell a zero that moved from a step: on
+    /// one, and on two that lie close, a step does the same.
+    fn tells_from_step(&self, place: usize, k: usize) -> bool {
+        let mut rows = [0; SECTORS];
+        for o in &self.observations[self.rivals[place].first..=k] {
+            rows[(o.compass.degrees() / 360.0 * SECTORS as f64) as usize % SECTORS] += 1;
+        }
+        let sailed = |sector: usize| rows[sector % SECTORS] >= SECTOR_ROWS;
+        (0..SECTORS).any(|one| sailed(one) && (2..=SECTORS - 2).any(|far| sailed(one + far)))
+    }
+
     /// What had been taken for further steps was the same.
     fn forget_later_steps(&mut self, of: usize) {
         let is_gone = |place: usize, event: &Event| match event.what {
@@ -203,15 +221,11 @@ impl Search<'_> {
             .enumerate()
             .map(|(p, e)| is_gone(p, e))
             .collect();
-        let moved = |place: usize| place - gone[..place].iter().filter(|gone| **gone).count();
-        for event in &mut self.events {
-            if let What::Return(step) = &mut event.what {
-                *step = moved(*step);
-            }
+        let moved = take_out(&mut self.events, gone);
+        self.burst = self.burst.map(&moved);
+        if let Some((place, _)) = &mut self.misled {
+            *place = moved(*place);
         }
-        self.burst = self.burst.map(moved);
-        let mut gone = gone.iter();
-        self.events.retain(|_| gone.next() == Some(&false));
     }
 
     fn began_in_port(&self, event: usize) -> bool {
