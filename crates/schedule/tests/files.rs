@@ -12,7 +12,7 @@ fn now() -> Instant {
 
 fn csv_calls(text: &str) -> Vec<PortCall> {
     let read = csv::read(text.as_bytes(), None, now()).unwrap();
-    read.into_iter().map(|located| located.call).collect()
+    read.calls.into_iter().map(|located| located.call).collect()
 }
 
 fn csv_complaint(text: &str) -> String {
@@ -48,8 +48,8 @@ fn each_fault_of_a_csv_is_named_with_line_and_column() {
             "line 2: etd: 2026-11-20T18:00:00Z is not after eta",
         ),
         (
-            "c,v,NLRTM,2026-11-01T06:00:00Z,2026-11-20T18:00:00Z,",
-            "line 2: etd: 2026-11-20T18:00:00Z is in the past",
+            "c,v,NLRTM,9999-12-01T06:00:00Z,9999-12-02T18:00:00Z,",
+            "line 2: eta: 9999-12-01T06:00:00Z is more than 730 days ahead",
         ),
         (
             "c,v,XXXXX,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,",
@@ -220,6 +220,48 @@ fn a_port_is_found_by_code_or_by_a_name_that_only_one_has() {
     );
 }
 
+/// CLARA and GRAND are codes of ports in Chile and Greece.
+#[test]
+fn a_ships_name_and_a_part_of_a_ports_name_are_no_port() {
+    let port_of = |more: &str| {
+        let text = calendar("DTSTART:20270701T060000Z", END, more);
+        ics::read(&text, "v", now())
+            .map(|calendar| calendar.calls[0].call.port.to_string())
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!(
+        port_of("SUMMARY:CLARA MAERSK at Bilbao\r\nLOCATION:Bilbao").unwrap(),
+        "ESBIO"
+    );
+    assert_eq!(
+        port_of("SUMMARY:GRAND PIONEER calls\r\nLOCATION:Antwerp (BEANR)").unwrap(),
+        "BEANR"
+    );
+    assert_eq!(
+        port_of("LOCATION:Georgetown\\, Grand Cayman (KYGEC)").unwrap(),
+        "KYGEC"
+    );
+    assert_eq!(port_of("LOCATION:ES BIO Bilbao").unwrap(), "ESBIO");
+    // Two ports are called so: the summary may say which, and no third one.
+    assert_eq!(
+        port_of("SUMMARY:Nao\\, NLRTM\r\nLOCATION:Rotterdam").unwrap(),
+        "NLRTM"
+    );
+    for refused in [
+        "SUMMARY:CLARA MAERSK at Rotterdam\r\nLOCATION:Rotterdam",
+        "SUMMARY:GRAND PIONEER calls",
+        "SUMMARY:CLARA",
+        "SUMMARY:Arrival at GRAND HARBOUR",
+        "LOCATION:GEORGETOWN\\, GRAND CAYMAN",
+        "LOCATION:CLARA MAERSK",
+        "LOCATION:NLRTM\\, BEANR",
+        "LOCATION:Bilbao (NLRTM)",
+        "X-UNLOCODE:XXXXX\r\nLOCATION:NLRTM",
+    ] {
+        assert!(port_of(refused).is_err(), "{refused}");
+    }
+}
+
 #[test]
 fn what_a_calendar_does_not_say_is_refused_with_its_line() {
     let said = |start: &str, end: &str, more: &str| {
@@ -253,6 +295,21 @@ fn a_cancelled_event_is_no_call() {
     let read = ics::read(&text, "v", now()).unwrap();
     assert_eq!((read.calls.len(), read.over), (0, 0));
     assert_eq!(read.cancelled, ["c1@agent"]);
+}
+
+/// What exports a ship's calls goes on with the one that she has left.
+#[test]
+fn a_row_that_is_over_is_passed_by() {
+    let over = "c,v,NLRTM,2026-11-01T06:00:00Z,2026-11-20T18:00:00Z,\n";
+    let ahead = "d,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
+    let text = format!("{HEADER}{over}{ahead}");
+    let read = csv::read(text.as_bytes(), None, now()).unwrap();
+    let calls: Vec<(usize, &str)> = read
+        .calls
+        .iter()
+        .map(|located| (located.line, located.call.id.as_str()))
+        .collect();
+    assert_eq!((calls, read.over), (vec![(3, "d")], 1));
 }
 
 #[test]

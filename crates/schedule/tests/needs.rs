@@ -123,6 +123,27 @@ fn deviation_over_five_degrees_brings_a_marshall_islands_ship_forward() {
     assert_eq!(of("NO", 5.1).on, day("2028-06-01"));
 }
 
+/// Of a day that is past a prediction tells since when.
+#[test]
+fn the_two_weeks_run_from_the_day_on_which_the_limit_was_passed() {
+    let over = due_of(
+        json!({"flag": "MH"}),
+        json!({"adjusted_on": "2026-06-01",
+               "predicted": [{"on": "2026-10-01", "worst_deviation_deg": 4.0},
+                             {"on": "2026-10-20", "worst_deviation_deg": 5.5},
+                             {"on": "2026-12-01", "worst_deviation_deg": 6.2}]}),
+    );
+    assert_eq!(
+        (over.on, over.urgency),
+        (day("2026-11-03"), Urgency::Overdue)
+    );
+    let reason = &over.causes[0].reason;
+    assert!(
+        reason.contains("5.5° of deviation or more since 2026-10-20"),
+        "{reason}"
+    );
+}
+
 #[test]
 fn an_event_counts_until_the_next_adjustment() {
     let of = |adjusted: &str| {

@@ -4,7 +4,7 @@
 //! `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`, `berth_heading_deg`. A file for one
 //! ship needs no `vessel`, and a call without `id` is named after its port and ETA. Fields
 //! are separated by commas, or by semicolons, as spreadsheets of much of Europe write them,
-//! with a comma in figures then.
+//! with a comma in figures then. Calls that are over are no calls, and told.
 //!
 //! What always holds: memory is bounded by a line and by the calls that were read,
 //! however large the file; what is wrong is said with its line and column; what is
@@ -55,16 +55,21 @@ const COLUMNS: [&str; 9] = [
     "berth_heading_deg",
 ];
 
+/// What a file says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rows {
+    /// The calls that are not over.
+    pub calls: Vec<Located>,
+    /// Calls that are over: what exports them goes on to, and they are passed by.
+    pub over: usize,
+}
+
 /// Reads a file's calls; `vessel` is the ship of rows that name none.
 ///
 /// # Errors
 /// [`FileError`] with the first thing that is wrong: nothing is kept of a bad file.
-pub fn read(
-    mut file: impl BufRead,
-    vessel: Option<&str>,
-    now: Instant,
-) -> Result<Vec<Located>, FileError> {
-    let (mut header, mut calls, mut line) = (None, Vec::new(), 0);
+pub fn read(mut file: impl BufRead, vessel: Option<&str>, now: Instant) -> Result<Rows, FileError> {
+    let (mut header, mut rows, mut line) = (None, Rows::default(), 0);
     let mut separator = ',';
     let mut ids = BTreeMap::new();
     while let Some(text) = next_line(&mut file, line + 1)? {
@@ -80,21 +85,28 @@ pub fn read(
             header = Some(columns(cells, line)?);
             continue;
         };
-        if calls.len() == MOST_CALLS {
+        if rows.calls.len() == MOST_CALLS {
             return Err(FileError::new(
                 line,
                 "row",
                 format!("more than {MOST_CALLS} calls"),
             ));
         }
-        let call = row(header, &cells, separator, vessel, now, line)?;
+        let call = row(header, &cells, separator, vessel, line)?;
+        if call.eta < call.etd && call.etd <= now {
+            rows.over += 1;
+            continue;
+        }
+        call.checked(now)
+            .and_then(|()| call.must_be_near(now))
+            .map_err(|error| FileError::new(line, error.field, error.detail))?;
         must_be_new(&mut ids, &call, line)?;
-        calls.push(Located { line, call });
+        rows.calls.push(Located { line, call });
     }
     if header.is_none() {
         return Err(FileError::new(1, "row", "the file is empty"));
     }
-    Ok(calls)
+    Ok(rows)
 }
 
 /// Whether this is the first call of its ship that has its id.
@@ -245,7 +257,6 @@ fn row(
     cells: &[String],
     separator: char,
     vessel: Option<&str>,
-    now: Instant,
     line: usize,
 ) -> Result<PortCall, FileError> {
     if cells.len() != header.len() {
@@ -286,7 +297,7 @@ fn row(
     }
     let (eta, etd) = (instant("eta")?, instant("etd")?);
     let vessel = cell("vessel").or(vessel);
-    let call = PortCall {
+    Ok(PortCall {
         id: cell("id").map_or_else(|| format!("{port} {eta}"), str::to_owned),
         name: None,
         vessel: vessel
@@ -299,8 +310,5 @@ fn row(
         etd,
         etd_uncertainty_h: number("etd_uncertainty_h")?.unwrap_or(0.0),
         berth_heading_deg: number("berth_heading_deg")?,
-    };
-    call.checked(now)
-        .map_err(|error| FileError::new(line, error.field, error.detail))?;
-    Ok(call)
+    })
 }

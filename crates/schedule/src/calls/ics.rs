@@ -1,8 +1,7 @@
 //! Port calls from iCalendar (RFC 5545), as agents and fleet programs export them.
 //!
-//! A `VEVENT` is a call: `UID` its name, `DTSTART` the ETA, `DTEND` the ETD, and its port
-//! the first UN/LOCODE in `X-UNLOCODE`, `LOCATION` or `SUMMARY`, or the one port whose
-//! name is `LOCATION`'s up to a comma. Such programs export what is over and what is
+//! A `VEVENT` is a call: `UID` its name, `DTSTART` the ETA, `DTEND` the ETD; its port is
+//! that of `X-UNLOCODE`, of `LOCATION`, or without either of `SUMMARY`. Such programs export what is over and what is
 //! cancelled as well: neither is a call, and both are told.
 //!
 //! What always holds: a time is taken only where the file says in which zone it is:
@@ -10,11 +9,11 @@
 //! repeating events are refused with their line.
 
 mod line;
+mod place;
 mod zone;
 
 use super::csv::{FileError, MOST_CALLS, must_be_new};
 use super::{Located, PortCall};
-use crate::ports::{self, PortCode};
 use crate::time::Instant;
 use chrono::{NaiveDateTime, TimeZone, Utc};
 use line::{Line, lines};
@@ -127,7 +126,7 @@ fn read_event(
         id: needed("UID")?.value.clone(),
         name: None,
         vessel: vessel.to_owned(),
-        port: port(begins, &find)?,
+        port: place::port(begins, &find)?,
         berth: None,
         eta: arrives,
         eta_uncertainty_h: 0.0,
@@ -135,77 +134,12 @@ fn read_event(
         etd_uncertainty_h: 0.0,
         berth_heading_deg: None,
     };
-    call.checked(now).map_err(|error| {
+    let checked = call.checked(now).and_then(|()| call.must_be_near(now));
+    checked.map_err(|error| {
         let line = if error.field == "eta" { eta } else { etd };
         FileError::new(line.number, &line.name, error.detail)
     })?;
     Ok(Event::Call(call))
-}
-
-fn port<'a>(
-    begins: usize,
-    find: &impl Fn(&str) -> Option<&'a Line>,
-) -> Result<PortCode, FileError> {
-    for name in ["X-UNLOCODE", "LOCATION", "SUMMARY"] {
-        let Some(line) = find(name) else { continue };
-        if let Some(code) = code_in(&line.value) {
-            return Ok(code);
-        }
-    }
-    let Some(location) = find("LOCATION") else {
-        return Err(FileError::new(
-            begins,
-            "LOCATION",
-            "is missing in the event",
-        ));
-    };
-    let name = location
-        .value
-        .split(',')
-        .next()
-        .unwrap_or_default()
-        .trim()
-        .to_lowercase();
-    let mut named = ports::all()
-        .iter()
-        .filter(|port| port.name.to_lowercase() == name || port.plain_name.to_lowercase() == name);
-    match (named.next(), named.next()) {
-        (Some(port), None) => Ok(port.code),
-        (Some(one), Some(other)) => {
-            let what = format!(
-                "{:?} may be {} or {}; write the UN/LOCODE",
-                name, one.code, other.code
-            );
-            Err(FileError::new(location.number, "LOCATION", what))
-        }
-        _ => {
-            let what = format!(
-                "{:?} is no port that is known; write the UN/LOCODE",
-                location.value
-            );
-            Err(FileError::new(location.number, "LOCATION", what))
-        }
-    }
-}
-
-/// The first word in capitals that is a port's code, with or without its space.
-fn code_in(text: &str) -> Option<PortCode> {
-    let words: Vec<&str> = text
-        .split(|letter: char| !letter.is_ascii_alphanumeric())
-        .filter(|word| !word.is_empty() && !word.bytes().any(|byte| byte.is_ascii_lowercase()))
-        .collect();
-    let pairs = words
-        .windows(2)
-        .filter(|pair| pair[0].len() == 2 && pair[1].len() == 3);
-    let joined = pairs.map(|pair| format!("{}{}", pair[0], pair[1]));
-    let single = words
-        .iter()
-        .filter(|word| word.len() == 5)
-        .map(|word| (*word).to_owned());
-    single
-        .chain(joined)
-        .filter_map(|code| PortCode::parse(&code).ok())
-        .find(|code| ports::find(*code).is_some())
 }
 
 fn instant(line: &Line, zones: &BTreeMap<String, Zone>) -> Result<Instant, FileError> {

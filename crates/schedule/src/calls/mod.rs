@@ -16,6 +16,8 @@ use serde::{Deserialize, Serialize};
 
 /// A ship that stays longer is laid up, and her call is not one.
 pub const LONGEST_STAY_DAYS: f64 = 120.0;
+/// No call is so many days ahead.
+const MOST_DAYS_AHEAD: f64 = 730.0;
 
 /// A ship's call at a port.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -107,6 +109,20 @@ impl PortCall {
             ),
             _ => Ok(()),
         }
+    }
+
+    /// Refuses a call that nobody plans for yet: the year is misread.
+    ///
+    /// # Errors
+    /// [`CallError`], of its ETA.
+    pub fn must_be_near(&self, now: Instant) -> Result<(), CallError> {
+        if self.eta.hours_since(now) <= MOST_DAYS_AHEAD * 24.0 {
+            return Ok(());
+        }
+        Err(CallError {
+            field: "eta",
+            detail: format!("{} is more than {MOST_DAYS_AHEAD} days ahead", self.eta),
+        })
     }
 
     /// Its name for people.

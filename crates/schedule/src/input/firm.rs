@@ -49,7 +49,7 @@ pub struct Firm {
     /// For each compass after the first on the same job.
     #[serde(default)]
     pub extra_compass_eur: Eur,
-    /// Hours from being asked to the beginning of the day of the job.
+    /// Hours from being asked to the beginning of the job.
     #[serde(default)]
     pub lead_time_h: f64,
 }

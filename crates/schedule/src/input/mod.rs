@@ -185,6 +185,9 @@ pub struct Declined {
     /// On this day; on any, where none is said.
     #[serde(default)]
     pub day: Option<NaiveDate>,
+    /// At this call; at any, where none is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub call: Option<String>,
 }
 
 /// An input that hangs together.

@@ -22,7 +22,7 @@ pub struct ByUrgency {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Weights {
-    /// A need that is not met within the horizon, beside all the waiting that it could cost;
+    /// A need that is not met, beside all the waiting to the end of the horizon;
     /// and one that is met late, where nobody has said how late it may be.
     pub unmet_eur: ByUrgency,
     /// A job at which the ship turns out not to be there, beside waiting for the next.

@@ -57,7 +57,9 @@ pub(super) fn find(
                     )
                 })
                 .min_by_key(|found| found.1),
-            Requirement::Deviation { adjust_above_deg } => over(compass, *adjust_above_deg, terms),
+            Requirement::Deviation { adjust_above_deg } => {
+                over(compass, *adjust_above_deg, terms, today)
+            }
         };
         causes.extend(found.map(|(kind, due, words)| Cause {
             kind,
@@ -97,19 +99,21 @@ fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
         .filter(move |event| event.on > adjusted)
 }
 
-/// The first day on which the prediction is over a limit.
-fn over(compass: &Compass, limit: Limit, terms: &Terms) -> Option<Found> {
+/// The first day on which the prediction is over a limit, or since which the deviation has
+/// been.
+fn over(compass: &Compass, limit: Limit, terms: &Terms, today: NaiveDate) -> Option<Found> {
     let over = compass
         .predicted
         .iter()
         .filter(|predicted| predicted.worst_deviation_deg > limit.degrees())
         .min_by_key(|predicted| predicted.on)?;
-    let words = format!(
-        "{:.1}° of deviation predicted for {}, where more than {}° must be adjusted",
-        over.worst_deviation_deg,
-        over.on,
-        limit.degrees()
-    );
+    let (deviation_deg, limit_deg) = (over.worst_deviation_deg, limit.degrees());
+    let how_much = if over.on < today {
+        format!("{deviation_deg:.1}° of deviation or more since {}", over.on)
+    } else {
+        format!("{deviation_deg:.1}° of deviation predicted for {}", over.on)
+    };
+    let words = format!("{how_much}, where more than {limit_deg}° must be adjusted");
     Some((
         CauseKind::OverLimit,
         plus(over.on, terms.over_limit_days),

@@ -51,7 +51,8 @@ pub struct Compass {
     /// What befell ship and compass; what came before the last adjustment is over.
     #[serde(default)]
     pub events: Vec<Event>,
-    /// The worst deviation on any heading, as the model predicts it, day by day.
+    /// The worst deviation on any heading, as the model predicts it, day by day; of a day
+    /// that is past, what it has been at least since.
     #[serde(default)]
     pub predicted: Vec<Predicted>,
     /// A change of the ship's magnetism that was found.

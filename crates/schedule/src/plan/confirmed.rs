@@ -68,7 +68,7 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
         only_late: false,
     };
     let Some(&call) = job.calls.iter().find(|call| call.id == former.call) else {
-        return loose(format!("call {} is cancelled", former.call));
+        return loose(format!("call {} is cancelled or over", former.call));
     };
     let index = input.firms.iter().position(|firm| firm.id == former.firm);
     let at = index.expect("the firms of a checked input's former plan are there");

@@ -128,10 +128,11 @@ impl<'a> Options<'a> {
             }
             // Undone it waits longer than any of its ways: what that costs never makes it
             // better left undone, only a fee with its travel can.
-            let waits = options.all[first..].iter();
-            let waits = waits.map(|way| way.quote.cost() - way.quote.fee);
+            let ways = options.all[first..].iter();
+            let ways = ways.map(|way| way.quote.cost() - way.quote.fee);
+            let waits = ways.fold(quote::waits_at_most(input, job), i64::max);
             let unmet = input.weights.unmet_eur.of(job.urgency()).cents();
-            options.problem.unmet.push(unmet + waits.max().unwrap_or(0));
+            options.problem.unmet.push(unmet + waits);
         }
         options
     }

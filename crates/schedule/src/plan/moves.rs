@@ -103,7 +103,7 @@ fn cause(
     }
     let job = &jobs[at];
     let Some(call) = job.calls.iter().find(|call| call.id == former.call) else {
-        return format!("call {} is cancelled", former.call);
+        return format!("call {} is cancelled or over", former.call);
     };
     let old = options
         .all

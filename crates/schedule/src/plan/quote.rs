@@ -116,7 +116,7 @@ pub(super) fn quote(
     let in_cap = |most: u32| late_days <= i64::from(most);
     let allowed = overdue || confirmed || weights.late_days.is_none_or(in_cap);
     unless(allowed, Obstacle::AfterDue);
-    unless(!declined(input, job, firm, day), Obstacle::Declined);
+    unless(!declined(input, job, call, firm, day), Obstacle::Declined);
     if !against.is_empty() {
         return Err(against);
     }
@@ -149,22 +149,51 @@ pub(super) fn quote(
     })
 }
 
+/// What it costs at most that a job waits, but for a fee: to the end of the horizon, late then
+/// and at the price of a ship that is missed. What is not done costs that much whatever stood
+/// against it, so that no plan gets cheaper by what becomes impossible.
+pub(super) fn waits_at_most(input: &Input, job: &Job<'_>) -> i64 {
+    let (weights, urgency) = (&input.weights, job.urgency());
+    let today = input.now.date(0);
+    let ends = today + Days::new(input.horizon_days.into());
+    let days = |from: NaiveDate, to: NaiveDate| (to - from).num_days().clamp(0, MOST_DAYS);
+    let early = match urgency {
+        Urgency::Routine | Urgency::Soon => days(today, job.due()),
+        Urgency::Urgent | Urgency::Overdue => 0,
+    };
+    let at_all = !job.is_overdue(today) && weights.late_days.is_none();
+    let late = days(job.due().max(today), ends) * weights.late_eur_day.cents()
+        + i64::from(at_all) * weights.unmet_eur.of(urgency).cents();
+    let waiting = days(today, ends) * weights.waiting_eur_day.of(urgency).cents();
+    let changed = job
+        .former
+        .map_or(0, |former| departing(input, former.state));
+    // None is early and late at once.
+    let waits = (early * weights.early_eur_day.cents()).max(waiting + late);
+    waits + weights.missed_eur.of(urgency).cents() + changed
+}
+
 /// What it costs to depart from the former plan.
 fn changed(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> i64 {
     match job.former {
-        Some(former) if !job.was(&call.id, &firm.id, day) => match former.state {
-            JobState::Proposed => input.weights.changed_eur.cents(),
-            // A confirmed job that moves has its cause, and none of these is it.
-            JobState::Offered | JobState::Confirmed => input.weights.withdrawn_eur.cents(),
-        },
+        Some(former) if !job.was(&call.id, &firm.id, day) => departing(input, former.state),
         _ => 0,
     }
 }
 
-fn declined(input: &Input, job: &Job<'_>, firm: &Firm, day: NaiveDate) -> bool {
+fn departing(input: &Input, from: JobState) -> i64 {
+    match from {
+        JobState::Proposed => input.weights.changed_eur.cents(),
+        // A confirmed job that moves has its cause, and none of these is it.
+        JobState::Offered | JobState::Confirmed => input.weights.withdrawn_eur.cents(),
+    }
+}
+
+fn declined(input: &Input, job: &Job<'_>, call: &PortCall, firm: &Firm, day: NaiveDate) -> bool {
     input.declined.iter().any(|declined| {
         declined.firm == firm.id
             && declined.day.is_none_or(|only| only == day)
+            && declined.call.as_ref().is_none_or(|only| *only == call.id)
             && job.needs.iter().any(|need| need.id == declined.need)
     })
 }

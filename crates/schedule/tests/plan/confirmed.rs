@@ -51,7 +51,7 @@ fn a_call_that_is_cancelled_is_a_cause() {
     input["port_calls"].as_array_mut().unwrap().remove(0);
     let found = schedule(input);
     assert_eq!(found.jobs[0].call, "d");
-    assert_eq!(found.changes[0].why, "call c is cancelled");
+    assert_eq!(found.changes[0].why, "call c is cancelled or over");
 }
 
 #[test]

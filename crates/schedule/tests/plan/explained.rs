@@ -164,8 +164,8 @@ fn a_team_that_works_elsewhere_is_not_planned_with() {
 #[test]
 fn a_firm_that_costs_more_than_it_is_worth_is_said_to() {
     let found = unscheduled(|input| {
-        input["weights"] =
-            json!({"unmet_eur": {"routine": 100, "soon": 100, "urgent": 100, "overdue": 100}});
+        let little = json!({"routine": 100, "soon": 100, "urgent": 100, "overdue": 100});
+        input["weights"] = json!({"unmet_eur": little, "missed_eur": little, "late_eur_day": 0});
     });
     assert_eq!(
         found.because[0],

@@ -242,3 +242,50 @@ fn the_same_input_gives_the_same_schedule() {
     });
     assert_eq!(schedule(input.clone()), schedule(input));
 }
+
+/// Who has to choose a firm is told that a plan got cheaper only where it did.
+#[test]
+fn what_becomes_impossible_makes_no_plan_cheaper() {
+    // Only late, and both by one team that has a single day for them.
+    let input = json!({
+        "vessels": [vessel("v"), vessel("w")],
+        "needs": [need("n", "v", "2026-12-01"), need("m", "w", "2026-12-20")],
+        "port_calls": [call("c", "v", "2027-02-01", "2027-02-02"), call("d", "w", "2026-12-01", "2026-12-02"),
+                       call("e", "v", "2026-12-01", "2026-12-02")],
+        "firms": [firm("f", 1500)],
+    });
+    let before = schedule(input.clone());
+    assert_eq!(before.jobs.len(), 2);
+    let cheaper_by = |change: &dyn Fn(&mut Value)| {
+        let mut input = input.clone();
+        change(&mut input);
+        let after = schedule(input);
+        assert_eq!(after.jobs.len(), 1);
+        before.cost_eur - after.cost_eur
+    };
+    let no_more = cheaper_by(&|input| {
+        input["declined"] = json!([{"need": "n", "firm": "f", "day": "2027-02-01"}]);
+    });
+    assert!(no_more <= 0.0, "{no_more}");
+    let lost = cheaper_by(&|input| {
+        input["port_calls"].as_array_mut().unwrap().remove(0);
+    });
+    assert!(lost <= 0.0, "{lost}");
+}
+
+#[test]
+fn a_no_to_one_call_is_none_to_another() {
+    let mut input = json!({
+        "vessels": [vessel("v")],
+        "needs": [need("n", "v", "2026-12-20")],
+        "port_calls": [call("c", "v", "2026-12-01", "2026-12-02"), call("d", "v", "2026-12-08", "2026-12-09")],
+        "firms": [firm("f", 1500)],
+        "declined": [{"need": "n", "firm": "f", "call": "d"}],
+    });
+    assert_eq!(
+        jobs(&schedule(input.clone())),
+        [job("v", "f", "2026-12-01")]
+    );
+    input["declined"][0]["call"] = json!("c");
+    assert_eq!(jobs(&schedule(input)), [job("v", "f", "2026-12-08")]);
+}

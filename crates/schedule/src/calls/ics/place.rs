@@ -1,0 +1,186 @@
+//! At which port a calendar's event is.
+//!
+//! What always holds: `X-UNLOCODE` goes before `LOCATION`, and where either says something
+//! `SUMMARY` names no other port: ships are called as codes are, and so are parts of ports'
+//! names. A word is taken for a code only where it stands alone between commas or brackets of
+//! `LOCATION`, beside the port's own name, or in `SUMMARY` behind "at". What may be two ports
+//! is refused.
+
+use super::line::Line;
+use crate::calls::csv::FileError;
+use crate::ports::{self, Port, PortCode};
+
+/// What stands between the parts of a place.
+const BETWEEN: [char; 12] = [',', ';', '(', ')', '[', ']', '/', '|', ':', '\n', '–', '—'];
+
+/// The port of an event, as its properties have it.
+pub(super) fn port<'a>(
+    begins: usize,
+    find: &impl Fn(&str) -> Option<&'a Line>,
+) -> Result<PortCode, FileError> {
+    let said = |name: &str| find(name).filter(|line| !line.value.trim().is_empty());
+    let summary = said("SUMMARY").map_or("", |line| line.value.as_str());
+    if let Some(line) = said("X-UNLOCODE") {
+        let code = PortCode::parse(&line.value).ok();
+        return code
+            .filter(|code| ports::find(*code).is_some())
+            .ok_or_else(|| {
+                let what = format!("{:?} is no sea port of the UN/LOCODE table", line.value);
+                FileError::new(line.number, "X-UNLOCODE", what)
+            });
+    }
+    match said("LOCATION") {
+        Some(line) => of_location(&line.value, summary)
+            .map_err(|what| FileError::new(line.number, "LOCATION", what)),
+        None => of_summary(summary).map_err(|what| FileError::new(begins, "LOCATION", what)),
+    }
+}
+
+fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
+    let mut named = named(text.split(',').next().unwrap_or_default());
+    if named.is_empty() {
+        named = self::named(text.split(BETWEEN).next().unwrap_or_default());
+    }
+    let alone = parts(text).filter_map(alone);
+    let codes = distinct(alone.chain(beside_their_names(text)));
+    match (&codes[..], &named[..]) {
+        ([code], []) => Ok(*code),
+        ([code], named) if named.iter().any(|port| is_called(*code, port)) => Ok(*code),
+        ([code], [port, ..]) => Err(format!(
+            "{text:?} has the code {code} and the name of {} ({}); write one of them",
+            port.name, port.code
+        )),
+        ([one, other, ..], _) => Err(may_be(text, *one, *other)),
+        ([], [port]) => Ok(port.code),
+        ([], []) => Err(format!(
+            "{text:?} is no port that is known; write the UN/LOCODE"
+        )),
+        // Which of those that are called so, the summary may say.
+        ([], [one, other, ..]) => {
+            let meant = words_as_codes(summary).filter(|code| {
+                let mut called = named.iter();
+                called.any(|port| port.code == *code)
+            });
+            match distinct(meant)[..] {
+                [code] => Ok(code),
+                _ => Err(may_be(&one.name.to_lowercase(), one.code, other.code)),
+            }
+        }
+    }
+}
+
+fn of_summary(text: &str) -> Result<PortCode, String> {
+    let behind_at = parts(text).filter_map(|part| {
+        let (_, there) = part.rsplit_once(" at ")?;
+        let capitals = there.split_whitespace().take_while(|word| is_capital(word));
+        alone(&capitals.collect::<Vec<_>>().join(" "))
+    });
+    let codes = distinct(behind_at.chain(beside_their_names(text)));
+    match codes[..] {
+        [code] => Ok(code),
+        [] => Err(
+            "is missing in the event, and SUMMARY has no UN/LOCODE behind \"at\" or beside its \
+             port's name"
+                .to_owned(),
+        ),
+        [one, other, ..] => Err(may_be(text, one, other)),
+    }
+}
+
+fn may_be(what: &str, one: PortCode, other: PortCode) -> String {
+    format!("{what:?} may be {one} or {other}; write the UN/LOCODE")
+}
+
+fn distinct(codes: impl Iterator<Item = PortCode>) -> Vec<PortCode> {
+    let mut codes: Vec<PortCode> = codes.collect();
+    codes.sort_unstable();
+    codes.dedup();
+    codes
+}
+
+/// What stands between commas, brackets and dashes.
+fn parts(text: &str) -> impl Iterator<Item = &str> {
+    text.split(BETWEEN)
+        .flat_map(|part| part.split(" - "))
+        .map(str::trim)
+}
+
+fn is_capital(word: &str) -> bool {
+    !word.is_empty() && !word.chars().any(char::is_lowercase)
+}
+
+/// The code that a text is and nothing else, with or without its space.
+fn alone(text: &str) -> Option<PortCode> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let fits = match words[..] {
+        [word] => word.len() == 5,
+        [country, place] => country.len() == 2 && place.len() == 3,
+        _ => false,
+    };
+    if !fits || !is_capital(text) {
+        return None;
+    }
+    let code = PortCode::parse(&words.concat()).ok()?;
+    ports::find(code).map(|_| code)
+}
+
+/// All words in capitals, and pairs of them, that are a port's code.
+fn words_as_codes(text: &str) -> impl Iterator<Item = PortCode> {
+    let words: Vec<&str> = text
+        .split(|letter: char| !letter.is_ascii_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .collect();
+    let pairs = words.windows(2).map(|pair| pair.join(" "));
+    let single = words.iter().map(|word| (*word).to_owned());
+    let codes: Vec<PortCode> = single
+        .chain(pairs)
+        .filter_map(|word| alone(&word))
+        .collect();
+    codes.into_iter()
+}
+
+/// The codes in a text that has their ports' names as well.
+fn beside_their_names(text: &str) -> impl Iterator<Item = PortCode> {
+    let whole = format!(" {} ", plain(text));
+    words_as_codes(text).filter(move |code| {
+        let port = ports::find(*code);
+        let mut names = port.iter().flat_map(|port| names(port));
+        names.any(|name| whole.contains(&format!(" {name} ")))
+    })
+}
+
+/// Ports of exactly this name.
+fn named(name: &str) -> Vec<&'static Port> {
+    let name = name.trim().to_lowercase();
+    let is_so =
+        |port: &&Port| port.name.to_lowercase() == name || port.plain_name.to_lowercase() == name;
+    ports::all().iter().filter(is_so).collect()
+}
+
+/// Whether the port of a code may be called as another is: Georgetown is also Georgetown,
+/// Grand Cayman.
+fn is_called(code: PortCode, other: &Port) -> bool {
+    let Some(port) = ports::find(code) else {
+        return false;
+    };
+    names(port).any(|name| names(other).any(|named| named == name))
+}
+
+/// A port's names in plain words: whole, and up to a comma or a bracket.
+fn names(port: &Port) -> impl Iterator<Item = String> {
+    let both = [&port.name, &port.plain_name].map(|name| {
+        let first = name.split([',', '(']).next().unwrap_or_default();
+        [plain(name), plain(first)]
+    });
+    both.into_iter().flatten().filter(|name| !name.is_empty())
+}
+
+/// Words in small letters, with one blank between them.
+fn plain(text: &str) -> String {
+    let words = text.split(|letter: char| !letter.is_alphanumeric());
+    let words: Vec<String> = words
+        .filter(|word| !word.is_empty())
+        .map(str::to_lowercase)
+        .collect();
+    words.join(" ")
+}
