@@ -133,12 +133,12 @@ fn earth_at(from: Ingredients<'_>) -> Result<(EarthField, Variation), String> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use binnacle_magnetics::model::{Model, Parameters};
     use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
-    fn model(bx_nt: f64, constant_variance: Option<f64>) -> ModelDownlink {
+    pub(crate) fn model(bx_nt: f64, constant_variance: Option<f64>) -> ModelDownlink {
         let covariance = constant_variance.map(|variance| {
             let mut covariance = [[0.0; 8]; 8];
             covariance[7][7] = variance;

@@ -28,6 +28,7 @@ mod uplink;
 mod corrected;
 mod output;
 mod sentences;
+mod work;
 
 mod guests;
 mod offline;

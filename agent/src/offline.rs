@@ -4,6 +4,7 @@ use crate::alert::Aboard;
 use crate::spool::Spool;
 use crate::status::{ModelStatus, Status};
 use crate::uplink::{LinkState, LinkStatus};
+use crate::{clock, work};
 
 /// What the spool alone can tell.
 pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
@@ -14,14 +15,18 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
     } else {
         LinkState::NotEnrolled
     };
-    let withdrawn = spool.card_withdrawn().await?;
+    let model = spool.model().await?;
+    let withdrawn = match (spool.card_withdrawn().await?, &model) {
+        (None, Some(model)) => work::that_ends(model, &spool.reports().await?, clock::now()),
+        (withdrawn, _) => withdrawn,
+    };
     Ok(Status {
         agent_version: env!("CARGO_PKG_VERSION").to_owned(),
         vessel_name: identity
             .as_ref()
             .map(|identity| identity.vessel_name.clone()),
         compass_name: identity.map(|identity| identity.compass_name),
-        model: spool.model().await?.map(|model| ModelStatus {
+        model: model.map(|model| ModelStatus {
             version: model.version,
             data_until: model.data_until,
             age_days: None,

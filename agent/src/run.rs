@@ -22,13 +22,15 @@ use crate::ring::{Ring, Second};
 use crate::sampler::Tally;
 use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
-use crate::spool::{Pending, Seal, Spool};
+use crate::spool::{Pending, Seal, Spool, StoredReport};
 use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{self, Plan, Told};
+use crate::work;
 use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::ShipAlert;
+use binnacle_wire::messages::CardWithdrawn;
 use rand::RngExt;
 use std::sync::Arc;
 use std::time::Duration;
@@ -65,6 +67,8 @@ struct Agent {
     ring: Ring,
     plan: Plan,
     told: Told,
+    /// What officers reported.
+    reports: Vec<StoredReport>,
     observations: mpsc::Receiver<Vec<Observation>>,
     inputs: Vec<(String, Arc<InputStats>)>,
     outputs: Outputs,
@@ -119,6 +123,7 @@ impl Agent {
                 ship.remember_clocks(before);
             }
         }
+        let reports = spool.reports().await?;
         let unstored = Unstored {
             pending: spool.pending().await?,
             ..Unstored::default()
@@ -163,6 +168,7 @@ impl Agent {
             ring: Ring::open(&config.data_dir, config.ring_mb.bytes()),
             plan: config.uplink.plan(),
             told,
+            reports,
             observations,
             inputs,
             outputs,
@@ -274,13 +280,18 @@ impl Agent {
             }
             Err(error) => tracing::error!(%error, "the spool cannot be read"),
         }
+        match self.spool.reports().await {
+            Ok(reports) => self.reports = reports,
+            Err(error) => tracing::error!(%error, "the spool cannot be read"),
+        }
         let status = self.take_stock().await;
         self.status.send_replace(Arc::new(status));
     }
 
     /// Looks at what has settled since; the samples of an alert end with it.
     fn look_out(&mut self) {
-        let (model, withdrawn) = (self.told.model.borrow(), self.told.withdrawn.borrow());
+        let withdrawn = self.withdrawn();
+        let model = self.told.model.borrow();
         let card = Card {
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
@@ -328,9 +339,19 @@ impl Agent {
         }
     }
 
+    /// Why the model holds no more, by the shore's word or the officers'.
+    fn withdrawn(&self) -> Option<CardWithdrawn> {
+        let by_shore = self.told.withdrawn.borrow().clone();
+        by_shore.or_else(|| {
+            let model = self.told.model.borrow();
+            let now = self.ship.time().unwrap_or_else(clock::now);
+            work::that_ends(model.as_ref()?, &self.reports, now)
+        })
+    }
+
     fn correct(&self) -> (Corrected, Vec<corrected::CardRow>) {
+        let withdrawn = self.withdrawn();
         let model = self.told.model.borrow();
-        let withdrawn = self.told.withdrawn.borrow();
         let now = Instant::now();
         let readings = &self.ship.readings;
         let from = Ingredients {
@@ -359,6 +380,7 @@ impl Agent {
     }
 
     fn model_status(&self) -> Option<ModelStatus> {
+        let withdrawn = self.withdrawn();
         let model = self.told.model.borrow();
         let model = model.as_ref()?;
         let now = self.ship.time().unwrap_or_else(clock::now);
@@ -366,7 +388,7 @@ impl Agent {
             version: model.version,
             data_until: model.data_until,
             age_days: Some(now.seconds_since(model.data_until).max(0.0) / 86_400.0),
-            withdrawn: self.told.withdrawn.borrow().clone(),
+            withdrawn,
             replaces: model.replaces.clone(),
         })
     }

@@ -68,6 +68,17 @@ impl Spool {
         }))
     }
 
+    /// Whether no other batch waits.
+    pub(crate) async fn is_last(&self, seq: u64) -> sqlx::Result<bool> {
+        let others: i64 = sqlx::query_scalar(
+            "SELECT COUNT(*) FROM batches WHERE standing = 'waiting' AND seq <> $1",
+        )
+        .bind(seq.cast_signed())
+        .fetch_one(&self.pool)
+        .await?;
+        Ok(others == 0)
+    }
+
     /// Notes that these very bytes are about to be sent: they are not changed any more.
     /// `false` when the batch is another by now.
     pub(crate) async fn note_try(&self, batch: &SealedBatch) -> sqlx::Result<bool> {

@@ -28,9 +28,7 @@ mod room;
 mod seal;
 
 pub(crate) use batches::{SealedBatch, Standing};
-#[cfg(test)]
-pub(crate) use reports::ReportStanding;
-pub(crate) use reports::{NotKept, StoredReport};
+pub(crate) use reports::{NotKept, ReportStanding, StoredReport};
 pub(crate) use room::{MOST_PENDING, is_want_of_room};
 pub(crate) use seal::{Pending, Seal};
 

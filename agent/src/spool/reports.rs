@@ -16,6 +16,8 @@ use uuid::Uuid;
 const REMEMBERED: i64 = 100;
 /// More reports than anybody writes on a voyage: whoever sends more means harm.
 const MOST_WAITING: i64 = 1000;
+/// What became of a report that the shore withdrew.
+const WITHDRAWN_ASHORE: &str = "withdrawn ashore";
 
 /// A report and how far it has come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +30,13 @@ pub(crate) struct StoredReport {
     pub(crate) standing: ReportStanding,
     /// Why it was refused, or what became of it ashore.
     pub(crate) problem: Option<String>,
+}
+
+impl StoredReport {
+    /// Whether it counts no more, on board or ashore.
+    pub(crate) fn is_taken_back(&self) -> bool {
+        self.sent.withdrawn || self.problem.as_deref() == Some(WITHDRAWN_ASHORE)
+    }
 }
 
 /// How far a report has come.
@@ -134,7 +143,7 @@ impl Spool {
         answer: &LogbookAnswer,
     ) -> sqlx::Result<()> {
         let withdrawn = answer.withdrawn && !sent.sent.withdrawn;
-        let problem = withdrawn.then_some("withdrawn ashore");
+        let problem = withdrawn.then_some(WITHDRAWN_ASHORE);
         self.set_standing(sent, ReportStanding::Ashore, problem)
             .await
     }

@@ -166,7 +166,11 @@ impl Uplink {
         }
         let cost = self.spend(octets).await?;
         let result = match &batch {
-            Some(batch) => self.shore.put_batch(&identity, batch, have).await,
+            Some(batch) => {
+                let is_last = batch.samples > 0 && self.spool.is_last(batch.seq).await?;
+                let sent = self.shore.put_batch(&identity, batch, have, is_last);
+                sent.await
+            }
             None => self.shore.downlink(&identity, have).await,
         };
         self.settle(cost, result.as_ref().err()).await?;

@@ -31,6 +31,9 @@ use uuid::Uuid;
 
 /// A TLS handshake over a satellite takes five seconds and may lose packets.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
+/// How long the shore may wait with its answer for what the samples show, in the words of
+/// the request.
+const WAIT_FOR_ANALYSIS: &str = "&wait=20";
 /// Between two bytes. A whole exchange has [`Line::exchange`].
 const READ_TIMEOUT: Duration = Duration::from_secs(90);
 /// TLS sessions to resume; there is one shore.
@@ -209,11 +212,17 @@ impl Shore {
         identity: &Identity,
         batch: &SealedBatch,
         have: Have,
+        is_last: bool,
     ) -> Result<Downlink, Trouble> {
         let path = format!("batches/{}", batch.seq);
+        let mut url = stream_url(identity, &path, have);
+        if is_last {
+            // What it shows comes with this answer, and not half a day later with the next.
+            url.push_str(WAIT_FOR_ANALYSIS);
+        }
         let request = self
             .http
-            .put(stream_url(identity, &path, have))
+            .put(url)
             .bearer_auth(&identity.token)
             // No content type: they are octets (RFC 9110, 8.3).
             .body(batch.bytes.clone());
