@@ -22,6 +22,7 @@ pub mod time;
 
 pub mod access;
 pub mod audit;
+pub mod ed25519;
 pub mod firms;
 pub mod idempotency;
 pub mod oidc;

@@ -236,6 +236,13 @@ pub(super) struct Clearing {
     pub reason: String,
 }
 
+impl Alert {
+    /// Whether it is closed because what it told of is over, or somebody said so.
+    pub fn is_over(&self) -> bool {
+        self.cleared_by.is_some() || self.clearing_reason.as_deref() == Some(super::look::OVER)
+    }
+}
+
 impl Severity {
     /// This one and all that are worse, the last one repeated: as many as a query
     /// has places for.

@@ -57,13 +57,39 @@ pub(super) fn changed(findings: &Findings, limits: &AlertLimits) -> Vec<AlertWan
     wanted
 }
 
-/// Whether the change that an alert was about was none after all.
-pub(super) fn is_withdrawn(cause: Cause, since: Time, findings: &Findings) -> bool {
-    findings.changes.iter().any(|found| {
-        found.change.withdrawn
-            && cause_of(found.change.cause) == cause
-            && dated(found, findings).includes(since)
-    })
+/// What became of the change that an alert was about, where it did not simply end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Became {
+    /// There was none after all.
+    Withdrawn,
+    /// It stays, and the model has learnt it.
+    Learnt,
+    /// Something else is held to have caused it.
+    Renamed,
+}
+
+pub(super) fn became(cause: Cause, since: Time, findings: &Findings) -> Option<Became> {
+    let at_that_time = findings
+        .changes
+        .iter()
+        .filter(|found| dated(found, findings).includes(since));
+    let (own, others): (Vec<_>, Vec<_>) =
+        at_that_time.partition(|found| cause_of(found.change.cause) == cause);
+    let stays = |found: &&&FoundChange| {
+        let change = &found.change;
+        change.confirmed && !change.withdrawn && change.ended.is_none()
+    };
+    if own.iter().any(|found| found.change.withdrawn) {
+        return Some(Became::Withdrawn);
+    }
+    if own
+        .iter()
+        .filter(stays)
+        .any(|found| found.change.cause.is_the_ships())
+    {
+        return Some(Became::Learnt);
+    }
+    (own.is_empty() && others.iter().any(|found| stays(&found))).then_some(Became::Renamed)
 }
 
 fn cause_of(cause: change::Cause) -> Cause {
@@ -183,10 +209,9 @@ fn severity(found: &FoundChange, stage: Stage, limits: &AlertLimits) -> Severity
         Severity::Notice
     };
     match stage {
-        Stage::Doubtful => Severity::Notice,
-        // The compass can be relied on again, by the new model; what passes spoils no
-        // model.
-        Stage::Learnt | Stage::NotTheShips => by_size.min(Severity::Warning),
+        // What is in doubt may be nothing. The compass can be relied on again, by the new
+        // model; what passes spoils no model.
+        Stage::Doubtful | Stage::Learnt | Stage::NotTheShips => by_size.min(Severity::Warning),
         Stage::NoModel | Stage::Interim => by_size,
     }
 }
@@ -269,8 +294,8 @@ fn advice(cause: change::Cause, stage: Stage) -> &'static str {
              report that in the logbook. No corrector needs to be moved."
         }
         (_, Stage::Doubtful) => {
-            "Take an azimuth now and once a watch, and report in the logbook what may have \
-             happened. The card holds until the next samples tell."
+            "Steer by the gyro until the next samples tell whether the card still holds. Take an \
+             azimuth now and once a watch, and report in the logbook what may have happened."
         }
         (_, Stage::NotTheShips) => {
             "Steer by the gyro until it is over. Nothing needs to be adjusted: the samples taken \

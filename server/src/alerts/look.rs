@@ -7,7 +7,7 @@
 //! the first.
 
 use super::alert::{Alert, AlertWanted, Cause, Severity, State};
-use super::changed::is_withdrawn;
+use super::changed::{Became, became};
 use super::findings::Findings;
 use super::limits::AlertLimits;
 use super::store::{self, Known};
@@ -32,6 +32,9 @@ pub(super) const OVER: &str = "it is over";
 const NOT_KNOWN: &str = "there is no model any more that could tell whether it still is so: it is \
                          not known to be over";
 const WITHDRAWN: &str = "it is withdrawn: the samples since do not bear out that anything changed";
+const LEARNT: &str = "the model has learnt it: the deviation stays as it is now, and no card from \
+                      before it holds";
+const RENAMED: &str = "something else is held to be its cause now, and has an alert of its own";
 const FOLLOWED: &str = "another of its cause followed";
 
 /// A change of an alert: what became of it, or only other words.
@@ -80,8 +83,13 @@ pub async fn after_analysis(
 /// What clears an alert that an analysis calls for no more. Without a model nothing is
 /// known of what the compass shows.
 fn why_cleared(alert: &Known, findings: &Findings) -> &'static str {
+    match became(alert.cause, alert.since, findings) {
+        Some(Became::Withdrawn) => return WITHDRAWN,
+        Some(Became::Learnt) => return LEARNT,
+        Some(Became::Renamed) if alert.cause.is_dated_anew() => return RENAMED,
+        Some(Became::Renamed) | None => {}
+    }
     match alert.cause {
-        cause if is_withdrawn(cause, alert.since, findings) => WITHDRAWN,
         Cause::DeviationOverLimit if findings.worst.is_none() => NOT_KNOWN,
         Cause::WideBand if findings.widest_band95_deg.is_none() => NOT_KNOWN,
         _ => OVER,

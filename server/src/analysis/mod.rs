@@ -25,4 +25,4 @@ pub use queue::{Job, claim, count as count_jobs, enqueue, enqueue_outdated, rene
 pub use refusal::RefusalSchema;
 pub use store::{Chunk, Covered, chunk, chunks, chunks_between, coverage, refusal};
 pub use track::Track;
-pub use worker::{Worked, run, step};
+pub use worker::{Worked, done, run, step};

@@ -64,6 +64,21 @@ pub async fn enqueue_outdated(db: &Db, now: Time) -> Result<usize> {
     Ok(outdated.len())
 }
 
+/// Whether a vessel waits to be analysed now, or is being.
+pub(super) async fn is_under_way(db: &Db, vessel: VesselId, now: Time) -> Result<bool> {
+    let found = rows!(
+        db,
+        (i64,),
+        "SELECT attempts FROM jobs
+         WHERE vessel_id = $1 AND kind = 'analyse'
+           AND (state = 'running' OR (state = 'queued' AND not_before <= $2))
+         ORDER BY id",
+        vessel,
+        now
+    )?;
+    Ok(!found.is_empty())
+}
+
 macro_rules! claim_sql {
     ($lock:literal) => {
         concat!(

@@ -17,6 +17,8 @@ use tracing::{error, info, warn};
 
 /// How often to look for jobs that nobody was told of.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
+/// How often to look whether a vessel has been analysed.
+const LOOK_AGAIN: Duration = Duration::from_millis(100);
 /// How often to renew the lease of the job at hand: thrice before it ends.
 const RENEW_EVERY: Duration = Duration::from_secs(20);
 /// How often to forget old events.
@@ -55,6 +57,23 @@ pub async fn run(app: App) {
             () = tokio::time::sleep(LOOK_EVERY) => {}
         }
     }
+}
+
+/// Waits until a vessel's samples are analysed, but not for longer than that.
+///
+/// # Errors
+/// When the queue cannot be reached.
+pub async fn done(app: &App, vessel: VesselId, at_most: Duration) -> Result<()> {
+    let begun = Instant::now();
+    app.work.notify_one();
+    while begun.elapsed() < at_most
+        && !app.stopping.is_cancelled()
+        && queue::is_under_way(&app.db, vessel, app.clock.now().into()).await?
+    {
+        // Another process may do the work.
+        tokio::time::sleep(LOOK_AGAIN).await;
+    }
+    Ok(())
 }
 
 /// Does one job, if one is due.

@@ -140,7 +140,7 @@ async fn card_svg(
     Params(query): Params<Query>,
 ) -> Result<Response> {
     let card = find(&app, reader, id, &query).await?;
-    let svg = sheet::svg(&layout::sheet(&card), &layout::about(&card).title);
+    let svg = sheet::svg(&[layout::sheet(&card)], &layout::about(&card).title);
     Ok(file("image/svg+xml", &name(&card, "svg"), svg))
 }
 

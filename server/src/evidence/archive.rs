@@ -97,7 +97,8 @@ pub fn archive(evidence: Evidence) -> anyhow::Result<Vec<u8>> {
     write(&files)
 }
 
-fn write(files: &[File]) -> anyhow::Result<Vec<u8>> {
+/// The octets of these files in this order: the same each time.
+pub(super) fn write(files: &[File]) -> anyhow::Result<Vec<u8>> {
     // Photographs are packed already; the rest is small. No file has a time of its own.
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)

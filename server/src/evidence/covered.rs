@@ -16,8 +16,13 @@ pub(super) fn head(files: &BTreeMap<String, Vec<u8>>) -> Option<Head> {
 }
 
 /// Holds what is made from the record against what the record makes, and says what the
-/// record covers of an archive whose log has so many entries.
-pub(super) fn covered(files: &BTreeMap<String, Vec<u8>>, entries: i64, found: &mut Found) {
+/// record covers of an archive whose log has so many entries and signatures.
+pub(super) fn covered(
+    files: &BTreeMap<String, Vec<u8>>,
+    entries: i64,
+    signatures: usize,
+    found: &mut Found,
+) {
     made_from_the_record(files, found);
     let Some(head) = head(files) else {
         found.problems.push("record.json names no log".to_owned());
@@ -34,7 +39,12 @@ pub(super) fn covered(files: &BTreeMap<String, Vec<u8>>, entries: i64, found: &m
     covers.push("record.pdf".to_owned());
     covers.extend(within.into_iter().cloned());
     found.facts.push(format!(
-        "the adjuster's word, and a firm's signature, cover {} and the log's entries 1 to {}",
+        "{} {} and the log's entries 1 to {}",
+        if signatures > 0 {
+            "the adjuster's word, and the signature by a key, cover"
+        } else {
+            "the adjuster's word covers"
+        },
         covers.join(", "),
         head.entries
     ));

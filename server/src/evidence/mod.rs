@@ -11,7 +11,7 @@ mod sheets;
 mod verify;
 
 pub use archive::{Evidence, File, Line, archive};
-pub use sheets::{predicted_csv, record_pdf};
+pub use sheets::{predicted_csv, record_pdf, record_svg};
 pub use verify::{Found, verify};
 
 /// What says how to check it, in every archive.

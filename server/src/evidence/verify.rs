@@ -1,6 +1,6 @@
 //! Checking an archive with nothing but what is in it.
 
-use super::archive::{Head, Manifest};
+use super::archive::{File, Head, Manifest, write};
 use super::covered::{self, covered};
 use crate::work_orders::completion::{Completed, SignedBy};
 use crate::work_orders::entry::sha256_hex;
@@ -23,6 +23,9 @@ const OF_THE_FORM: [&str; 6] = [
     "record.json",
     "record.pdf",
 ];
+
+/// Before what anyone could have written who made the archive.
+const UNSIGNED: &str = "the log says, and no signature covers it:";
 
 /// What was found.
 #[derive(Clone, Debug, Default)]
@@ -49,6 +52,7 @@ pub fn verify(bytes: &[u8]) -> Found {
             return found;
         }
     };
+    nothing_else(bytes, &files, &mut found);
     let manifest: Option<Manifest> = match files
         .get("manifest.json")
         .map(|b| serde_json::from_slice(b))
@@ -85,11 +89,37 @@ fn unpack(bytes: &[u8], found: &mut Found) -> Result<BTreeMap<String, Vec<u8>>, 
         if let Err(error) = read {
             found.wrong(format!("{name}: {error}"));
         }
-        if files.insert(name.clone(), content).is_some() {
-            found.wrong(format!("{name} stands there twice"));
-        }
+        files.insert(name, content);
+    }
+    if archive.has_duplicate_names() {
+        found.wrong(
+            "files of one name are in it more than once: what an unpacker shows may not be what \
+             is checked here",
+        );
     }
     Ok(files)
+}
+
+/// Finds whatever is in the archive beside its files: before, between or behind them, or in
+/// what is said of them twice. These files alone make these octets alone.
+fn nothing_else(bytes: &[u8], files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
+    if !found.problems.is_empty() {
+        return;
+    }
+    let mut files: Vec<File> = files
+        .iter()
+        .map(|(name, bytes)| File {
+            name: name.clone(),
+            bytes: bytes.clone(),
+        })
+        .collect();
+    files.sort_by_key(|file| file.name == "manifest.json");
+    if !write(&files).is_ok_and(|made| made == bytes) {
+        found.wrong(
+            "the archive is not as it was given out: something stands beside its files, or they \
+             were packed anew, and an unpacker may show what is not checked here",
+        );
+    }
 }
 
 fn hashes(manifest: &Manifest, files: &BTreeMap<String, Vec<u8>>, found: &mut Found) {
@@ -155,7 +185,8 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
             }
             Some("verification") => {
                 let words = entry["content"]["words"].as_str().unwrap_or_default();
-                found.facts.push(format!("at sea: {words}"));
+                // The record was made before the ship sailed.
+                found.facts.push(format!("{UNSIGNED} at sea, {words}"));
             }
             _ => {}
         }
@@ -177,7 +208,7 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
     }
     if !withheld.is_empty() {
         found.facts.push(format!(
-            "entries {} are withheld, as between the operator and other firms: the operator has them",
+            "entries {} are withheld: what they say cannot be looked into here",
             withheld.join(", ")
         ));
     }
@@ -192,13 +223,14 @@ fn log(manifest: Option<&Manifest>, files: &BTreeMap<String, Vec<u8>>, found: &m
         found.wrong("the log does not end where the manifest says");
     }
     found.facts.push(format!(
-        "the log has {entries} entries, the last with SHA-256 {}",
+        "the log has {entries} entries, the last with SHA-256 {}: whether more came after it, the \
+         shore server says",
         head.last_sha256
     ));
     // Of a record that is not the one that was signed nothing follows.
     let text = files.get("record.json").map(|text| sha256_hex(text));
     if completed.is_some_and(|completed| Some(completed.record_sha256) == text) {
-        covered(files, entries, found);
+        covered(files, entries, signed, found);
     }
     if signed == 0 {
         found
@@ -222,10 +254,19 @@ fn record(completed: Option<&Completed>, files: &BTreeMap<String, Vec<u8>>, foun
         Some(text) if sha256_hex(text) != completed.record_sha256 => {
             found.wrong("record.json is not the one that the adjuster signed");
         }
-        Some(_) => found.facts.push(format!(
-            "{}, licence {}, completed it; record SHA-256 {}",
-            completed.adjuster_name, completed.adjuster_licence, completed.record_sha256
-        )),
+        Some(text) => {
+            let record: Value = serde_json::from_slice(text).unwrap_or_default();
+            let adjuster = &record["adjuster"];
+            if adjuster["name"] != completed.adjuster_name
+                || adjuster["licence"] != completed.adjuster_licence
+            {
+                found.wrong("the log's completion names another adjuster than record.json");
+            }
+            found.facts.push(format!(
+                "{}, licence {}, completed it; record SHA-256 {}",
+                completed.adjuster_name, completed.adjuster_licence, completed.record_sha256
+            ));
+        }
     }
 }
 
@@ -265,11 +306,13 @@ fn signature(entry: &Value, completed: Option<&Completed>, at: &str, found: &mut
     let public_key = &by.signed.public_key;
     found.facts.push(match &by.key {
         Some(key) => format!(
-            "signed by the key {public_key}, which {} had registered as {:?}",
+            "signed by the key {public_key}; {UNSIGNED} {} had registered it as {:?}. Whose it is, \
+             ask the firm",
             key.firm_name, key.name
         ),
         None => format!(
-            "signed by the key {public_key}, which no firm had registered: whose it is, ask the firm"
+            "signed by the key {public_key}; {UNSIGNED} no firm had registered it. Whose it is, ask \
+             the firm"
         ),
     });
     1

@@ -6,6 +6,7 @@
 use crate::access::{Caller, PartyWriter};
 use crate::app::App;
 use crate::db::{Db, Tx, execute, row, rows};
+use crate::ed25519;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Valid, text};
 use crate::idempotency::{self, Key as RequestKey};
@@ -13,10 +14,9 @@ use crate::ids::{FirmId, KeyId};
 use crate::session;
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::work_orders::completion::{KnownKey, from_hex};
+use crate::work_orders::completion::KnownKey;
 use axum::extract::State;
 use axum::http::StatusCode;
-use ring::signature::{ED25519, UnparsedPublicKey};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -75,18 +75,10 @@ struct NewFirmKey {
 
 impl NewFirmKey {
     fn checked(self, firm: FirmId) -> Result<NewFirmKey> {
-        let wrong = |field, detail: &str| Error::Invalid {
-            field,
-            detail: detail.to_owned(),
-        };
-        let key = from_hex(&self.public_key).filter(|key| key.len() == 32);
-        let key = key.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
-        let proof = from_hex(&self.proof).filter(|proof| proof.len() == 64);
-        let proof = proof.ok_or_else(|| wrong("proof", "is not 128 hexadecimal digits"))?;
+        let key = ed25519::key(&self.public_key)?;
         let said = format!("binnacle firm key {firm}");
-        UnparsedPublicKey::new(&ED25519, key)
-            .verify(said.as_bytes(), &proof)
-            .map_err(|_| wrong("proof", &format!("is not this key's over {said:?}")))?;
+        let proof = ("proof", self.proof.as_str());
+        ed25519::must_be_signed(&key, proof, said.as_bytes(), &format!("{said:?}"))?;
         Ok(NewFirmKey {
             name: text("name", &self.name)?,
             public_key: self.public_key.to_ascii_lowercase(),

@@ -3,8 +3,9 @@
 //!
 //! What always holds: whoever books a firm holds its lock until the transaction ends, so that
 //! of two who want its last team one has it. A team is in one port a day. An operator learns
-//! of others' orders only that no team is left; the firm sees its own. A firm whose teams
-//! nobody has said can be asked anything.
+//! of others' orders only that no team is left; the firm sees its own. An operator asks no firm
+//! for a time at which it does not work by the operator's own terms. A firm whose terms nobody
+//! has said can be asked anything.
 
 use super::{Terms, store};
 use crate::db::{Db, Tx, execute, rows};
@@ -151,7 +152,7 @@ pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>>
     )?)
 }
 
-/// Refuses a visit for which a firm has no team left.
+/// Refuses a visit for which a firm has no team left, or by its terms does not work.
 ///
 /// # Errors
 /// [`Error::WrongState`], in words for whom it is told.
@@ -184,6 +185,19 @@ pub async fn must_have_room(
         to,
         visit.vessel
     )?;
+    let mine = said
+        .iter()
+        .find(|(operator, _)| *operator == visit.operator);
+    // When it works is the operator's word of the firm, which may know better itself.
+    if told == Told::Operator
+        && let Some((_, terms)) = mine
+        && let Some(why) = terms.closed_at(visit.at, port_meant(visit.port))
+    {
+        return Err(Error::WrongState(format!(
+            "by the terms that you have said, {firm_name} {why}: choose another time, or \
+             change the terms"
+        )));
+    }
     let that_day = day(visit.port, visit.at);
     let there = (place(visit.port), visit.vessel);
     let others: Vec<&Booking> = around.iter().filter(|one| one.day() == that_day).collect();
@@ -195,9 +209,6 @@ pub async fn must_have_room(
         most(|terms| terms.teams),
         most(|terms| terms.jobs_a_team_day),
     );
-    let mine = said
-        .iter()
-        .find(|(operator, _)| *operator == visit.operator);
     let mine = mine.map(|(_, terms)| (terms.teams, terms.jobs_a_team_day));
     let needed = |whose: &dyn Fn(&Booking) -> bool, jobs: u32| {
         let ships = others.iter().filter(|one| counts(one) && whose(one));

@@ -11,12 +11,14 @@ use crate::db::{Db, Tx};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, text};
 use crate::ids::{FirmId, OperatorId};
+use crate::time::Time;
 use crate::{schedule, session};
 use axum::extract::State;
 use axum::http::StatusCode;
 use binnacle_schedule::input::{self, ServedPort};
+use binnacle_schedule::ports::Port;
 use binnacle_schedule::rules::Flag;
-use binnacle_schedule::time::Eur;
+use binnacle_schedule::time::{Eur, Instant};
 use chrono::{NaiveDate, Weekday};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -77,7 +79,7 @@ pub struct Terms {
     #[serde(default = "eighteen")]
     #[schema(minimum = 0, maximum = 24)]
     pub last_hour: f64,
-    /// Hours from being asked to the beginning of the day of the job.
+    /// Hours from being asked to the beginning of the job.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 8760)]
     pub lead_time_h: f64,
@@ -166,13 +168,12 @@ pub async fn of_operator(
     found.into_iter().map(read).collect()
 }
 
-/// The fee for one compass, euros, by the terms on which a firm works for an operator; none
-/// where nobody has said them.
-pub async fn fee_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<f64>> {
+/// The terms on which a firm works for an operator; none where nobody has said them.
+pub async fn terms_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Result<Option<Terms>> {
     let said = store::terms_of(tx, firm).await?;
     let said = said.into_iter().find(|(whose, _)| *whose == operator);
-    let terms = said.map(|(_, text)| serde_json::from_str::<Terms>(&text));
-    Ok(terms.transpose()?.map(|terms| f64::from(terms.fee_eur)))
+    let terms = said.map(|(_, text)| serde_json::from_str(&text));
+    Ok(terms.transpose()?)
 }
 
 /// Say on what terms a firm works for you
@@ -263,6 +264,19 @@ impl Terms {
                 detail: error.detail,
             }),
         }
+    }
+
+    /// Why the firm does not work then, at a port; in UTC where that is not known.
+    pub(super) fn closed_at(&self, at: Time, port: Option<&Port>) -> Option<String> {
+        let (at, zone_h) = (Instant(at.0), port.map_or(0, Port::zone_h));
+        let day = at.date(zone_h);
+        if !self.firm("", None).works(day) {
+            return Some(format!("does not work on {day}, a {}", day.format("%A")));
+        }
+        let [opens, closes] =
+            [self.first_hour, self.last_hour].map(|hour| Instant::at(day, hour, zone_h));
+        (port.is_some() && !(opens <= at && at < closes))
+            .then(|| format!("works from {opens} to {closes} on {day}"))
     }
 
     /// Why the schedule leaves the firm out.

@@ -23,6 +23,7 @@ pub async fn announce(
                 let message = Message {
                     id: news.id,
                     kind: news.kind,
+                    order: None,
                     body: serde_json::to_string(&Letter::of(news))?,
                 };
                 outbox::queue(tx, recipient.0, &message, now).await?;

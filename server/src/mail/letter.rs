@@ -104,7 +104,8 @@ impl Letter {
 pub fn words_of(news: &AlertNews) -> (String, String) {
     let alert = &news.alert;
     let state = match news.kind {
-        Kind::AlertCleared => "over",
+        Kind::AlertCleared if alert.is_over() => "over",
+        Kind::AlertCleared => "closed",
         _ => name(alert.severity),
     };
     let subject = format!("{}: {state}, {}", alert.vessel_name, alert.cause.words());
@@ -125,7 +126,12 @@ fn text(alert: &Alert, kind: Kind) -> String {
         format!("Since:    {}", alert.since.to_the_minute()),
     ];
     if let (Kind::AlertCleared, Some(cleared_at)) = (kind, alert.cleared_at) {
-        lines.push(format!("Over:     {}", cleared_at.to_the_minute()));
+        let word = if alert.is_over() {
+            "Over:  "
+        } else {
+            "Closed:"
+        };
+        lines.push(format!("{word}   {}", cleared_at.to_the_minute()));
         let by = alert.cleared_by.as_deref().unwrap_or("Binnacle");
         let reason = alert.clearing_reason.as_deref().unwrap_or("it is over");
         let why = format!("Cleared by {by}: {reason}");

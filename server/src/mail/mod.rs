@@ -165,6 +165,7 @@ async fn test_recipient(
     let message = Message {
         id: DeliveryId::new(),
         kind: Kind::Test,
+        order: None,
         body: serde_json::to_string(&Letter::test())?,
     };
     let queued = outbox::queue_one(&app.db, id.0, &message, app.clock.now().into()).await?;

@@ -220,6 +220,7 @@ pub async fn foretold(
         "SELECT m.* FROM models m
          JOIN work_orders o ON o.vessel_id = m.vessel_id AND o.id = m.foretold_by
          WHERE m.vessel_id = $1 AND m.compass_id = $2 AND o.state <> 'failed'
+           AND (o.state <> 'closed' OR o.verified_at IS NOT NULL)
            AND m.version = (SELECT MAX(n.version) FROM models n
                             WHERE n.vessel_id = m.vessel_id AND n.compass_id = m.compass_id)
          ORDER BY m.version",

@@ -2,6 +2,7 @@
 
 use super::need::Ahead;
 use super::particulars::{Particulars, place_of};
+use super::since::Since;
 use crate::alerts::Findings;
 use crate::deviation::{table, worst_of};
 use crate::ids::{CompassId, VesselId};
@@ -40,6 +41,8 @@ pub struct Facts {
     pub compass: Compass,
     /// The greatest deviation at the places and on the days ahead.
     pub ahead: Vec<Ahead>,
+    /// Since when it has been as great as it is where the ship is, if that is news.
+    pub(super) since: Option<Since>,
 }
 
 /// A logbook entry of work on a compass or on the ship.
@@ -67,7 +70,11 @@ pub(super) struct Stored<'a> {
     pub(super) findings: Option<&'a Findings>,
     pub(super) band_limit_deg: f64,
     pub(super) calls: &'a [Waypoint],
+    pub(super) since: &'a Since,
 }
+
+/// Where the ship is.
+const HERE: &str = "here";
 
 impl Facts {
     /// What is not known of the vessel.
@@ -83,13 +90,22 @@ impl Facts {
     }
 }
 
-/// The compass as rules see it, and the deviation ahead of it.
+/// The compass as rules see it, the deviation ahead of it, and since when it has been as
+/// great as it is.
 pub(super) fn compass(
     stored: &Stored<'_>,
     particulars: &Particulars,
     now: Time,
-) -> (Compass, Vec<Ahead>) {
+) -> (Compass, Vec<Ahead>, Since) {
     let ahead = ahead(stored, particulars, now);
+    let here = ahead.iter().find(|ahead| ahead.place == HERE);
+    let seen = here.map(|here| stored.since.seen(here.on, here.worst_deviation_deg));
+    let has_been = seen.iter().flat_map(Since::levels);
+    let predicted = has_been.chain(
+        ahead
+            .iter()
+            .map(|ahead| (ahead.on, ahead.worst_deviation_deg)),
+    );
     let adjusted = stored
         .work
         .iter()
@@ -98,10 +114,12 @@ pub(super) fn compass(
         .chain(stored.completed)
         .filter(|at| *at <= now)
         .max();
-    let events = stored.work.iter().filter_map(|work| {
+    // What is planned has not happened.
+    let begun = stored.work.iter().filter(|work| work.from <= now);
+    let events = begun.filter_map(|work| {
         Some(Event {
             kind: event(work.kind)?,
-            on: day(work.to.unwrap_or(work.from).min(now)),
+            on: day(work.to.unwrap_or(work.from)),
         })
     });
     let failed = stored
@@ -113,11 +131,10 @@ pub(super) fn compass(
     let compass = Compass {
         adjusted_on: adjusted.map(day),
         events: events.collect(),
-        predicted: ahead
-            .iter()
-            .map(|ahead| Predicted {
-                on: ahead.on,
-                worst_deviation_deg: ahead.worst_deviation_deg,
+        predicted: predicted
+            .map(|(on, worst_deviation_deg)| Predicted {
+                on,
+                worst_deviation_deg,
             })
             .collect(),
         change: stored
@@ -125,7 +142,8 @@ pub(super) fn compass(
             .and_then(|findings| change(findings, adjusted)),
         failed_verification: failed,
     };
-    (compass, ahead)
+    let since = seen.unwrap_or_else(|| stored.since.clone());
+    (compass, ahead, since)
 }
 
 /// What of a logbook a rule asks about.
@@ -186,7 +204,7 @@ fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead
             worst_deviation_deg: worst.deviation_deg.abs(),
         }));
     };
-    add(day(now), "here", here);
+    add(day(now), HERE, here);
     for call in stored.calls {
         let Some(port) = ports::find(call.port) else {
             continue;

@@ -2,6 +2,7 @@
 
 use super::facts::{Facts, Stored, Waypoint, Work, compass};
 use super::particulars::Particulars;
+use super::since::{self, Since};
 use crate::alerts::{AlertLimits, Findings};
 use crate::app::App;
 use crate::compasses::{self, Compass};
@@ -30,6 +31,7 @@ struct Loaded {
     findings: BTreeMap<Of, Findings>,
     limits: BTreeMap<VesselId, AlertLimits>,
     calls: BTreeMap<VesselId, Vec<Waypoint>>,
+    since: BTreeMap<Of, Since>,
 }
 
 /// What is known of a fleet's compasses, or of one vessel's in it.
@@ -81,6 +83,7 @@ impl Loaded {
             findings: findings(db, operator).await?,
             limits: limits(db, operator).await?,
             calls,
+            since: since::noted(db, operator).await?,
         })
     }
 
@@ -95,7 +98,7 @@ impl Loaded {
             .iter()
             .map(|model| ((model.vessel_id, model.compass_id), model))
             .collect();
-        let (default, none) = (Particulars::default(), Vec::new());
+        let (default, none, never) = (Particulars::default(), Vec::new(), Since::default());
         let facts = self.compasses.iter().filter_map(|one| {
             let vessel = one.vessel_id;
             let of = (vessel, one.id);
@@ -117,8 +120,10 @@ impl Loaded {
                     .unwrap_or_default()
                     .band95_deg,
                 calls: self.calls.get(&vessel).map_or(&[], Vec::as_slice),
+                since: self.since.get(&of).unwrap_or(&never),
             };
-            let (compass, ahead) = compass(&stored, particulars, now);
+            let (compass, ahead, since) = compass(&stored, particulars, now);
+            let since = Some(since).filter(|since| since != stored.since);
             Some(Facts {
                 vessel_id: vessel,
                 vessel_name: name.clone(),
@@ -128,6 +133,7 @@ impl Loaded {
                 licence: particulars.licence.clone(),
                 compass,
                 ahead,
+                since,
             })
         });
         facts.collect()
@@ -210,7 +216,7 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Time>> 
     Ok(found.into_iter().map(by).collect())
 }
 
-/// Orders that stand failed: until when headings at sea were looked at, and by how much
+/// Orders that stand failed, or did when they were closed: until when headings at sea were looked at, and by how much
 /// the worst of them was off.
 async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, (Time, f64)>> {
     let found = rows!(
@@ -220,7 +226,8 @@ async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, (Time, f64
          FROM work_orders o
          JOIN vessels v ON v.id = o.vessel_id
          JOIN work_order_entries e ON e.vessel_id = o.vessel_id AND e.order_id = o.id
-         WHERE v.operator_id = $1 AND o.state = 'failed' AND o.completed_at IS NOT NULL
+         WHERE v.operator_id = $1 AND o.completed_at IS NOT NULL
+           AND (o.state = 'failed' OR (o.state = 'closed' AND o.verified_at IS NULL))
          ORDER BY o.vessel_id, o.completed_at, e.seq",
         operator
     )?;

@@ -1,7 +1,7 @@
 //! Which compasses are to be adjusted by when, and why.
 //!
 //! What always holds: a need is found anew each time it is asked for, from what is stored
-//! then, and nothing of it is stored; the rules and what follows from them are
+//! then, and nothing of it is stored but since when a deviation has been as great as it is; the rules and what follows from them are
 //! `binnacle_schedule`'s.
 
 mod facts;
@@ -9,6 +9,7 @@ mod load;
 mod need;
 mod particulars;
 mod schema;
+mod since;
 
 pub use facts::Facts;
 pub use load::of_fleet;
@@ -99,6 +100,18 @@ async fn listed(
 pub fn need(facts: &Facts, terms: &Terms, today: NaiveDate) -> Option<Need> {
     let due = due(&facts.ship, &facts.compass, shipped(), terms, today)?;
     Some(Need::new(facts, due))
+}
+
+/// Notes since when deviations have been as great as they are, where that is news.
+pub async fn note_since(app: &App, facts: &[Facts]) -> Result<()> {
+    for facts in facts {
+        if let Some(news) = &facts.since {
+            let mut tx = app.db.begin().await?;
+            since::note(&mut tx, (facts.vessel_id, facts.compass_id), news).await?;
+            tx.commit().await?;
+        }
+    }
+    Ok(())
 }
 
 fn day_number(day: NaiveDate) -> i64 {

@@ -11,7 +11,7 @@ use crate::app::App;
 use crate::error::Result;
 use crate::events;
 use crate::ids::{CompassId, OperatorId};
-use crate::needs::{Need, need, of_fleet};
+use crate::needs::{Need, need, note_since, of_fleet};
 use crate::time::Time;
 use crate::{operators, schedule};
 use binnacle_schedule::needs::{CauseKind, Urgency};
@@ -41,6 +41,7 @@ async fn look_at(app: &App, operator: OperatorId) -> Result<usize> {
         .collect();
     // What was noted is read first: what another process notes meanwhile is not forgotten.
     let facts = of_fleet(app, operator, None).await?;
+    note_since(app, &facts).await?;
     let terms = schedule::terms(&app.db, operator).await?;
     let needs = facts.iter().filter_map(|facts| need(facts, &terms, today));
     let mut told = 0;

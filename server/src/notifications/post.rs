@@ -76,6 +76,7 @@ async fn queue(tx: &mut Tx, user: UserId, mut taken: Vec<Notification>, now: Tim
         let message = Message {
             id: DeliveryId::new(),
             kind: outbox::Kind::Notification,
+            order: None,
             body: letter?,
         };
         outbox::queue(tx, user.0, &message, now).await?;

@@ -1,6 +1,6 @@
 //! Messages, and deliveries as they are shown.
 
-use crate::ids::DeliveryId;
+use crate::ids::{DeliveryId, OrderId};
 use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
@@ -128,6 +128,8 @@ pub struct Message {
     pub id: DeliveryId,
     /// What it tells of.
     pub kind: Kind,
+    /// The work order that it is of, if it is of one.
+    pub order: Option<OrderId>,
     /// JSON.
     pub body: String,
 }

@@ -4,8 +4,9 @@
 //!
 //! - A message is queued in the transaction that makes it true, and sent at least
 //!   once; its id tells a receiver that it had it before.
-//! - Each receiver gets its messages in order: the next is not sent before this one
-//!   was delivered, refused for good, or given up after a day of tries.
+//! - Each receiver gets the messages of a work order in order, and those that are of
+//!   none: the next is not sent before this one was delivered, refused for good, or
+//!   given up after a day of tries. What holds up one order holds up no other.
 //! - What waits survives a restart, and any server process may send it.
 
 mod delivery;

@@ -1,8 +1,8 @@
 //! The queues in the database, one for each receiver.
 //!
 //! What always holds: a receiver's deliveries are numbered in the order in which
-//! their transactions commit, and only the first that waits is due. One worker at a
-//! time has it, the one that holds its lease. Webhooks are always taken before mail
+//! their transactions commit, and of each work order's, and of those of none, only the
+//! first that waits is due. One worker at a time has it, the one that holds its lease. Webhooks are always taken before mail
 //! recipients, and each in the order of their ids, so that no two transactions wait
 //! for each other.
 
@@ -56,14 +56,15 @@ pub async fn queue(tx: &mut Tx, receiver: Uuid, message: &Message, now: Time) ->
     execute!(
         &mut *tx,
         "INSERT INTO deliveries (receiver_id, number, id, kind, body, state, created_at,
-                                 tries_since, attempts, next_attempt_at)
-         VALUES ($1, $2, $3, $4, $5, 'pending', $6, $6, 0, $6)",
+                                 tries_since, attempts, next_attempt_at, order_id)
+         VALUES ($1, $2, $3, $4, $5, 'pending', $6, $6, 0, $6, $7)",
         receiver,
         number,
         message.id,
         message.kind,
         message.body.as_str(),
-        now
+        now,
+        message.order
     )?;
     execute!(
         &mut *tx,
@@ -87,6 +88,7 @@ macro_rules! claim_sql {
                    AND NOT EXISTS (
                        SELECT 1 FROM deliveries e
                        WHERE e.receiver_id = d.receiver_id AND e.state = 'pending'
+                         AND e.order_id IS NOT DISTINCT FROM d.order_id
                          AND e.number < d.number)
                  ORDER BY d.next_attempt_at, d.receiver_id
                  LIMIT 1",
@@ -109,6 +111,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
            AND NOT EXISTS (
                SELECT 1 FROM deliveries e
                WHERE e.receiver_id = d.receiver_id AND e.state = 'pending'
+                 AND e.order_id IS NOT DISTINCT FROM d.order_id
                  AND e.number < d.number)
          ORDER BY d.next_attempt_at
          LIMIT 1",

@@ -274,6 +274,7 @@ impl NewCall {
             etd_uncertainty_h: self.etd_uncertainty_h,
             berth_heading_deg: self.berth_heading_deg,
         };
+        content.of("", "").must_be_near(Instant(now.0))?;
         content.checked(now)
     }
 }
@@ -293,6 +294,9 @@ impl Amendment {
             berth_heading_deg: self.berth_heading_deg.over(was.berth_heading_deg),
         };
         let times_stay = (content.eta, content.etd) == (was.eta, was.etd);
+        if !times_stay {
+            content.of("", "").must_be_near(Instant(now.0))?;
+        }
         content.checked(if times_stay { was.eta } else { now })
     }
 }

@@ -55,7 +55,7 @@ struct Uploaded {
     unchanged: usize,
     /// Calls that count no more.
     withdrawn: usize,
-    /// Calls of a calendar that are over, and were passed by.
+    /// Calls that are over, and were passed by.
     over: usize,
 }
 
@@ -64,7 +64,8 @@ struct Uploaded {
 /// The first line names the columns: `vessel` (id, IMO number or name), `port`, `eta`,
 /// `etd`, and if wanted `id`, `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`,
 /// `berth_heading_deg`. A call is known by its `id`; one without is called after its port
-/// and ETA. The file is taken whole or not at all: 8 MiB and 50,000 calls at most.
+/// and ETA. Calls that are over are passed by. The file is taken whole or not at all: 8 MiB and
+/// 50,000 calls at most.
 #[utoipa::path(post, path = "/port-calls.csv", tag = "adjusting", params(How),
     request_body(content = String, content_type = "text/csv",
         example = "vessel,id,port,eta,etd\n9074729,c1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z\n"),
@@ -80,10 +81,10 @@ async fn upload_fleet_csv(
 ) -> Result<Json<Uploaded>> {
     let bytes = whole(body).await?;
     let now: Time = app.clock.now().into();
-    let calls = csv::read(&bytes[..], None, Instant(now.0))?;
+    let rows = csv::read(&bytes[..], None, Instant(now.0))?;
     let fleet = vessels::names(&app.db, writer.operator).await?;
-    let found = by_vessel(calls, &fleet, now)?;
-    take(&app, writer, found, Source::Csv, &how, 0).await
+    let found = by_vessel(rows.calls, &fleet, now)?;
+    take(&app, writer, found, Source::Csv, &how, rows.over).await
 }
 
 /// Send a file of a vessel's port calls
@@ -108,17 +109,17 @@ async fn upload_csv(
     let row = vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let bytes = whole(body).await?;
     let now: Time = app.clock.now().into();
-    let calls = csv::read(&bytes[..], Some(&vessel.to_string()), Instant(now.0))?;
-    let mut found = by_vessel(calls, &[(vessel, row.name, row.imo_number)], now)?;
+    let rows = csv::read(&bytes[..], Some(&vessel.to_string()), Instant(now.0))?;
+    let mut found = by_vessel(rows.calls, &[(vessel, row.name, row.imo_number)], now)?;
     found.entry(vessel).or_default();
-    take(&app, writer, found, Source::Csv, &how, 0).await
+    take(&app, writer, found, Source::Csv, &how, rows.over).await
 }
 
 /// Send a calendar of a vessel's port calls
 ///
 /// iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND`
-/// its ETA and ETD, and its port the first UN/LOCODE in `X-UNLOCODE`, `LOCATION` or
-/// `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
+/// its ETA and ETD, and its port the UN/LOCODE of `X-UNLOCODE`, that or the name in
+/// `LOCATION`, or without either the UN/LOCODE behind "at" in `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
 #[utoipa::path(post, path = "/vessels/{id}/port-calls.ics", tag = "adjusting",
     params(("id" = VesselId, Path), How),
     request_body(content = String, content_type = "text/calendar",

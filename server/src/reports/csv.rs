@@ -56,6 +56,7 @@ pub(super) fn table(report: &Report, table: Table) -> Result<String> {
                 "order_id",
                 "vessel_id",
                 "compass_id",
+                "spared_swing",
             ];
             let saved = (report.saved.swing_eur, report.saved.swing_h);
             written(&columns, report.jobs.iter().map(|one| job(one, saved)))

@@ -17,6 +17,9 @@ use chrono::{Days, NaiveDate, NaiveTime};
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;
 
+/// What is done on a ship in one port within so long of each other is done at one visit.
+const A_VISIT_S: f64 = 86_400.0;
+
 /// The report of a fleet, with the jobs from one day to another; also those of before that
 /// the server heard of after `late_since`.
 pub(super) async fn gather(
@@ -137,32 +140,57 @@ fn deviations(facts: &[Facts], models: &[StoredModel]) -> Vec<WorstDeviation> {
 async fn jobs(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Job>> {
     let done = work_orders::done(db, operator, span).await?;
     let terms = firms::of_operator(db, operator).await?;
-    let usual = |job: &Done| {
-        let (_, _, terms) = terms
-            .iter()
-            .find(|(firm, _, _)| job.firm_id == Some(*firm))?;
-        Some((f64::from(terms.as_ref()?.fee_eur), FeeFrom::Terms))
+    let visits = visits(&done);
+    let usual = |nth: usize| {
+        let firm = done[nth].firm_id?;
+        let (_, _, terms) = terms.iter().find(|(of, _, _)| *of == firm)?;
+        let terms = terms.as_ref()?;
+        let same =
+            |before: usize| visits[before] == visits[nth] && done[before].firm_id == Some(firm);
+        let is_further = (0..nth).any(same);
+        Some(if is_further {
+            f64::from(terms.extra_compass_eur)
+        } else {
+            f64::from(terms.fee_eur)
+        })
     };
-    let job = |done: Done| {
-        let fee = done
-            .agreed_eur
-            .map(|eur| (eur, FeeFrom::Agreed))
-            .or_else(|| usual(&done));
-        Job {
-            order_id: done.order_id,
-            vessel_id: done.vessel_id,
-            vessel_name: done.vessel_name,
-            compass_id: done.compass_id,
-            compass_name: done.compass_name,
-            port: done.port,
-            completed_at: done.completed_at,
-            firm: done.firm,
-            state: done.state,
-            fee_eur: fee.map(|(eur, _)| eur),
-            fee_from: fee.map(|(_, from)| from),
-        }
+    let fee = |nth: usize| {
+        let agreed = done[nth].agreed_eur.map(|eur| (eur, FeeFrom::Agreed));
+        agreed.or_else(|| usual(nth).map(|eur| (eur, FeeFrom::Terms)))
     };
-    Ok(done.into_iter().map(job).collect())
+    let fees: Vec<Option<(f64, FeeFrom)>> = (0..done.len()).map(fee).collect();
+    let job = |((done, visit), fee): ((Done, usize), Option<(f64, FeeFrom)>)| Job {
+        order_id: done.order_id,
+        vessel_id: done.vessel_id,
+        vessel_name: done.vessel_name,
+        compass_id: done.compass_id,
+        compass_name: done.compass_name,
+        port: done.port,
+        completed_at: done.completed_at,
+        firm: done.firm,
+        state: done.state,
+        spared_swing: !done.disproved,
+        fee_eur: fee.map(|(eur, _)| eur),
+        fee_from: fee.map(|(_, from)| from),
+        visit,
+    };
+    Ok(done.into_iter().zip(visits).zip(fees).map(job).collect())
+}
+
+/// Which visit each job belongs to, in the jobs' order: a ship's in one port, each within
+/// a day of the one before.
+fn visits(done: &[Done]) -> Vec<usize> {
+    let mut last: BTreeMap<VesselId, usize> = BTreeMap::new();
+    let mut visits: Vec<usize> = Vec::with_capacity(done.len());
+    for (nth, job) in done.iter().enumerate() {
+        let before = last.insert(job.vessel_id, nth).filter(|before| {
+            let before = &done[*before];
+            let since_s = job.completed_at.0.seconds_since(before.completed_at.0);
+            before.port == job.port && since_s < A_VISIT_S
+        });
+        visits.push(before.map_or(nth, |before| visits[before]));
+    }
+    visits
 }
 
 fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
@@ -175,19 +203,20 @@ fn midnight(field: &'static str, day: NaiveDate) -> Result<Time> {
 }
 
 fn saved(jobs: &[Job], settings: &Settings) -> Saving {
-    let spared: Vec<&Job> = jobs
-        .iter()
-        .filter(|job| job.state != State::Failed)
-        .collect();
-    let fees_eur: f64 = spared.iter().filter_map(|job| job.fee_eur).sum();
-    let swings = spared.len() as f64;
+    let spared = || jobs.iter().filter(|job| job.spared_swing);
+    let swings: BTreeSet<usize> = spared().map(|job| job.visit).collect();
+    let swings = swings.len();
+    // A sum of none would be less than nothing by its sign.
+    let fees = jobs.iter().filter_map(|job| job.fee_eur);
+    let fees_eur = fees.fold(0.0, |sum: f64, fee| sum + fee);
     Saving {
-        jobs: spared.len(),
+        jobs: spared().count(),
+        swings,
         swing_eur: settings.swing_eur,
         swing_h: settings.swing_h,
         fees_eur,
-        without_fee: spared.iter().filter(|job| job.fee_eur.is_none()).count(),
-        saved_eur: swings * settings.swing_eur - fees_eur,
-        saved_h: swings * settings.swing_h,
+        without_fee: jobs.iter().filter(|job| job.fee_eur.is_none()).count(),
+        saved_eur: swings as f64 * settings.swing_eur - fees_eur,
+        saved_h: swings as f64 * settings.swing_h,
     }
 }

@@ -230,23 +230,28 @@ fn saved(paper: &mut Paper, report: &Report) {
     paper.title("Saved against swinging");
     let failed = report.jobs.len() - saved.jobs;
     let mut sentences = vec![format!(
-        "{} adjustments at the berth spared as many swings, of {} euros and {} hours each: {} \
-         euros less {} euros of fees leaves {} euros, and {} hours of ships' time.",
+        "Adjustments at the berth: {}. Swings that they spared, one for all compasses of a ship \
+         at a visit: {}, of {} euros and {} hours each: {} euros, less {} euros of all fees \
+         leaves {} euros, and {} hours of ships' time.",
         saved.jobs,
+        saved.swings,
         euros(saved.swing_eur),
         hours(saved.swing_h),
-        euros(saved.jobs as f64 * saved.swing_eur),
+        euros(saved.swings as f64 * saved.swing_eur),
         euros(saved.fees_eur),
         euros(saved.saved_eur),
         hours(saved.saved_h)
     )];
     if failed > 0 {
         sentences.push(format!(
-            "{failed} that the sea does not confirm are not counted."
+            "Not counted, but for their fees, as the sea does not confirm them: {failed}."
         ));
     }
     if saved.without_fee > 0 {
-        sentences.push(format!("The fees of {} are not known.", saved.without_fee));
+        sentences.push(format!(
+            "Jobs whose fees are not known: {}.",
+            saved.without_fee
+        ));
     }
     paper.lines(LEFT, Style::plain(SIZE), &sentences.join(" "));
 }
@@ -310,7 +315,7 @@ mod tests {
         let mut paper = Paper::new();
         row(&mut paper, &DUE, &cells);
         row(&mut paper, &DUE, &cells);
-        let printed = crate::sheet::svg(&paper.finish(&[])[0], "");
+        let printed = crate::sheet::svg(&paper.finish(&[]), "");
         for word in reason.split_whitespace() {
             assert!(printed.contains(word), "{word}: {printed}");
         }

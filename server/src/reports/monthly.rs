@@ -98,6 +98,7 @@ async fn make(app: &App, operator: OperatorId, month: NaiveDate, ended: Time) ->
         let message = Message {
             id: DeliveryId::new(),
             kind: Kind::Report,
+            order: None,
             body: body.clone(),
         };
         outbox::queue(&mut tx, recipient.0, &message, made_at).await?;

@@ -137,12 +137,17 @@ pub(super) struct Job {
     pub(super) firm: Option<String>,
     /// What has become of it.
     pub(super) state: State,
+    /// Whether it spared the ship a swing: not if headings at sea speak against it.
+    pub(super) spared_swing: bool,
     /// What the firm took, euros; none where that is not known.
     #[schema(required)]
     pub(super) fee_eur: Option<f64>,
     /// Where the fee is known from.
     #[schema(required)]
     pub(super) fee_from: Option<FeeFrom>,
+    /// Tells one visit from others.
+    #[serde(skip)]
+    pub(super) visit: usize,
 }
 
 /// Where a fee is known from.
@@ -152,7 +157,8 @@ pub(super) struct Job {
 pub(super) enum FeeFrom {
     /// The firm proposed it and the operator agreed.
     Agreed,
-    /// It is the firm's usual fee, by its terms of today, without travel.
+    /// It is the firm's usual fee, by its terms of today, without travel; for a compass
+    /// after the first of a visit, what each further one costs.
     Terms,
 }
 
@@ -163,13 +169,17 @@ pub(super) struct Saving {
     /// Jobs that spared the ship a swing: those completed, but for any that the sea does
     /// not confirm.
     pub(super) jobs: usize,
+    /// The swings that they spared: one for all compasses of a ship that were adjusted at
+    /// one visit.
+    pub(super) swings: usize,
     /// What a swing costs, euros, by the operator's settings.
     pub(super) swing_eur: f64,
     /// How long it takes, hours, by the operator's settings.
     pub(super) swing_h: f64,
-    /// What the fees of these jobs come to, as far as they are known, euros.
+    /// What the fees of all jobs come to, as far as they are known, euros: those that the
+    /// sea does not confirm were paid for too.
     pub(super) fees_eur: f64,
-    /// How many of these jobs have no fee that is known.
+    /// How many of all jobs have no fee that is known.
     pub(super) without_fee: usize,
     /// The swings' cost less the fees, euros; less than nothing if the fees are more.
     pub(super) saved_eur: f64,

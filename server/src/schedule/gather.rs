@@ -88,6 +88,8 @@ pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> 
         .filter_map(|facts| needs::need(facts, &settings.terms, today))
         .collect();
 
+    let nos = orders::declined(&app.db, operator).await?;
+    let nos: Vec<Declined> = nos.iter().filter_map(|no| declined(no, &ahead)).collect();
     let earlier = Earlier::of_fleet(&app.db, operator, now).await?;
     let mut calls = Vec::new();
     for row in ahead {
@@ -106,14 +108,8 @@ pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> 
         let place = (agreed.call_id, agreed.firm_id, agreed.day);
         all.add(&[*compass], place.0, place.1, place.2, agreed.state);
     }
-    let nos = orders::declined(&app.db, operator).await?;
-    let declined = nos.iter().filter(|no| all.knows(no.compass_id, no.firm_id));
-    let declined = declined.map(|no| Declined {
-        need: no.compass_id.to_string(),
-        firm: no.firm_id.to_string(),
-        day: None,
-    });
-    let declined: Vec<Declined> = declined.collect();
+    let nos = nos.into_iter().filter(|no| all.knows(&no.need, &no.firm));
+    let declined: Vec<Declined> = nos.collect();
     for pin in &pins {
         let stands = all.add(
             &[pin.compass_id],
@@ -203,6 +199,22 @@ fn as_input(need: &Need) -> input::Need {
     }
 }
 
+/// A firm's no to an order: to its call, as long as that is ahead. Where none is known it is to
+/// whatever the order is for while it stands.
+fn declined(no: &Order, ahead: &[Row]) -> Option<Declined> {
+    let call = no.call(ahead);
+    let is_ahead = call.is_some_and(|call| ahead.iter().any(|row| row.id == call));
+    if !is_ahead && (call.is_some() || no.is_cancelled()) {
+        return None;
+    }
+    Some(Declined {
+        need: no.compass_id.to_string(),
+        firm: no.firm_id?.to_string(),
+        day: None,
+        call: call.map(|call| call.to_string()),
+    })
+}
+
 /// The firms to plan with, and those that cannot be planned with.
 async fn firms_of(
     app: &App,
@@ -279,8 +291,9 @@ impl Former {
     }
 
     /// Whether a compass has a need, and a firm is planned with.
-    fn knows(&self, compass: CompassId, firm: FirmId) -> bool {
-        self.needs.contains(&compass) && self.firms.contains(&firm.to_string())
+    fn knows(&self, compass: &str, firm: &str) -> bool {
+        let mut needs = self.needs.iter();
+        needs.any(|need| need.to_string() == compass) && self.firms.contains(firm)
     }
 
     /// Adds a job for those of its compasses that have a need and no job yet; whether

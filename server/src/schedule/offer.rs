@@ -71,7 +71,7 @@ struct OfferedOrder {
 /// Offer a planned job to its firm
 ///
 /// Writes a work order for each compass of the job. From then on the plan keeps the job
-/// where it is unless there is cause.
+/// where it is unless there is cause. An order that every firm declined is cancelled for it.
 #[utoipa::path(post, path = "/schedule/offer", tag = "adjusting", request_body = NewScheduleOffer,
     responses((status = 201, body = Offered), (status = 401, body = Problem),
               (status = 403, body = Problem),
@@ -98,6 +98,11 @@ async fn offer_job(
         work_orders::lock_compass(&mut tx, job.vessel_id, compass.compass_id).await?;
     }
     let (mut orders, mut told) = (Vec::new(), Vec::new());
+    for order in &job.instead_of {
+        let (goes_on, news) =
+            work_orders::give_way(&app, tx, writer, job.vessel_id, *order).await?;
+        (tx, told) = (goes_on, told.into_iter().chain(news).collect());
+    }
     for (nth, compass) in job.compasses.iter().enumerate() {
         let fees = |(firm, terms): (&FirmId, &Terms)| (*firm, fee(job, *firm, terms, nth));
         let offer = NewOffer {
@@ -158,12 +163,6 @@ fn job_of<'a>(plan: Option<&'a Plan>, new: &NewScheduleOffer) -> Result<&'a Job>
     let job = plan.job_of(new.compass_id).ok_or(Error::NotFound("job"))?;
     if job.state != JobState::Proposed {
         return wrong("the job is offered already".to_owned());
-    }
-    if let Some(order) = job.instead_of.first() {
-        return wrong(format!(
-            "work order {order} is under way and says something else: cancel it, or agree on \
-             another time"
-        ));
     }
     Ok(job)
 }

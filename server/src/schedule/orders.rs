@@ -32,13 +32,6 @@ pub(super) struct Order {
     pub(super) call_id: Option<CallId>,
 }
 
-/// A firm's no to an order that is under way.
-#[derive(Clone, Debug, sqlx::FromRow)]
-pub(super) struct No {
-    pub(super) compass_id: CompassId,
-    pub(super) firm_id: FirmId,
-}
-
 /// A fleet's orders that are under way; each once.
 pub(super) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     let mut found = rows!(
@@ -60,18 +53,27 @@ pub(super) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order
     Ok(found)
 }
 
-/// Who has said no, or nothing in time, to orders that are under way.
-pub(super) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<No>> {
+/// Orders, each with a firm that has said no to it, or nothing in time; also of those that
+/// were cancelled since, for what they were is offered again. Who was asked anew says anew.
+pub(super) async fn declined(db: &Db, operator: OperatorId) -> Result<Vec<Order>> {
     Ok(rows!(
         db,
-        No,
-        "SELECT o.compass_id, f.firm_id
+        Order,
+        "SELECT o.vessel_id, o.id, o.compass_id, o.state, o.port, o.planned_at, f.firm_id, l.call_id
          FROM work_order_offers f
          JOIN work_orders o ON o.vessel_id = f.vessel_id AND o.id = f.order_id
          JOIN vessels v ON v.id = o.vessel_id
+         LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
          WHERE v.operator_id = $1 AND f.state IN ('declined', 'lapsed')
-           AND o.state IN ('offered', 'proposed', 'declined')
-         ORDER BY o.compass_id, f.firm_id",
+           AND o.state IN ('offered', 'proposed', 'declined', 'accepted', 'cancelled')
+           AND NOT EXISTS (
+               SELECT 1 FROM work_order_offers again
+               JOIN work_orders later
+                 ON later.vessel_id = again.vessel_id AND later.id = again.order_id
+               WHERE again.firm_id = f.firm_id AND again.state <> 'waiting'
+                 AND later.vessel_id = o.vessel_id AND later.compass_id = o.compass_id
+                 AND later.id > o.id)
+         ORDER BY o.vessel_id, o.id, f.firm_id",
         operator
     )?)
 }
@@ -141,6 +143,11 @@ impl Order {
         let mut then =
             there.filter(|call| call.eta <= self.planned_at && self.planned_at <= call.etd);
         self.call_id.or_else(|| then.next().map(|call| call.id))
+    }
+
+    /// Whether it was cancelled.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.state == State::Cancelled
     }
 
     /// The day that it is to be done on, in the ship's time of a port.

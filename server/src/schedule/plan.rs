@@ -118,7 +118,8 @@ pub struct Job {
     /// The orders by which it is offered or agreed, one for each compass.
     pub orders: Vec<OrderId>,
     /// Orders under way that say something else: they are to be cancelled, or moved by
-    /// agreement, before this can be offered.
+    /// agreement, before this can be offered. Those that every firm declined are cancelled
+    /// when it is.
     pub instead_of: Vec<OrderId>,
     /// The last day on which it would be in time.
     pub due_on: NaiveDate,

@@ -1,4 +1,4 @@
-//! A sheet as SVG.
+//! Sheets as SVG, one below the other.
 //!
 //! What always holds: text is as wide as on the printed sheet, whatever font the
 //! reader has: each line says how long it is.
@@ -7,16 +7,31 @@ use super::font::{Face, width};
 use super::{Mark, Point, Sheet, Style};
 use std::fmt::Write;
 
-/// The sheet as a document of its own; `title` is for those who do not see it.
-pub fn svg(sheet: &Sheet, title: &str) -> String {
+/// The sheets as a document of its own; `title` is for those who do not see it.
+pub fn svg(sheets: &[Sheet], title: &str) -> String {
+    let width = sheets.iter().map(|sheet| sheet.width).fold(0.0, f32::max);
+    let height = sheets.iter().fold(0.0, |sum, sheet| sum + sheet.height);
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}pt\" height=\"{1}pt\" \
          viewBox=\"0 0 {0} {1}\" font-family=\"'Noto Sans', Arial, Helvetica, sans-serif\">\n\
          <title>{2}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-        sheet.width,
-        sheet.height,
+        width,
+        height,
         escape(title)
     );
+    let mut above = 0.0;
+    for sheet in sheets {
+        // Writing to a string cannot fail.
+        let _ = writeln!(svg, "<g transform=\"translate(0 {above})\">");
+        put_marks(&mut svg, sheet);
+        svg.push_str("</g>\n");
+        above += sheet.height;
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+fn put_marks(svg: &mut String, sheet: &Sheet) {
     for mark in &sheet.marks {
         // Writing to a string cannot fail.
         let _ = match mark {
@@ -39,8 +54,6 @@ pub fn svg(sheet: &Sheet, title: &str) -> String {
             }
         };
     }
-    svg.push_str("</svg>\n");
-    svg
 }
 
 fn line_of_text(at: Point, style: Style, text: &str) -> String {
@@ -88,7 +101,7 @@ mod tests {
         let mut sheet = Sheet::a4();
         let name = "<script>\"Nao\" & Co</script>";
         sheet.text((10.0, 10.0), Style::plain(8.0), name);
-        let svg = svg(&sheet, name);
+        let svg = svg(&[sheet], name);
         assert!(!svg.contains("<script"), "{svg}");
         let shown = "&lt;script&gt;&quot;Nao&quot; &amp; Co&lt;/script&gt;</t";
         assert_eq!(svg.matches(shown).count(), 2, "{svg}");
@@ -100,6 +113,6 @@ mod tests {
         sheet.text((100.0, 10.0), Style::plain(10.0).end(), "00");
         let long = width("00", Face::Regular, 10.0);
         let begins = format!("<text x=\"{:.2}\"", 100.0 - long);
-        assert!(svg(&sheet, "").contains(&begins));
+        assert!(svg(&[sheet.clone()], "").contains(&begins));
     }
 }

@@ -29,6 +29,9 @@ pub(super) struct Has {
     settings: Option<u32>,
     /// The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent.
     form: Option<u8>,
+    /// So many seconds at most, and no more than 55, the answer to a batch may wait for the
+    /// analysis of its samples, and then tells what that found: of the last batch for now.
+    pub(super) wait: Option<u16>,
 }
 
 /// An answer in the form that the agent asked for.

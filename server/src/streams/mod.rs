@@ -35,6 +35,7 @@ use binnacle_wire::messages::OpenStreamAnswer;
 pub use downlink::CardWithdrawnSchema;
 use downlink::{Answer, DownlinkSchema, Has, OpenStreamSchema};
 use metrics::counter;
+use std::time::Duration;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
@@ -42,6 +43,8 @@ use uuid::Uuid;
 /// No batch has this number or a higher one: up to here JSON's numbers are exact,
 /// and one more fits into the database.
 const SEQ_END: u64 = 1 << 53;
+/// No answer waits longer for an analysis: proxies give up after a minute.
+const LONGEST_WAIT: Duration = Duration::from_secs(55);
 
 /// The routes of this part.
 pub fn router() -> OpenApiRouter<App> {
@@ -90,7 +93,11 @@ async fn put_batch(
     let batch = read(&bytes, StreamId(stream), seq)?;
     let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
-    let delay_s = analysis_delay_s(&app, &batch);
+    let delay_s = match has.wait {
+        None => analysis_delay_s(&app, &batch),
+        // No other follows.
+        Some(_) => 0.0,
+    };
     let taken = take(&mut tx, agent, &batch, &bytes, now, delay_s).await?;
     tx.commit().await?;
     for event in taken.told {
@@ -98,6 +105,10 @@ async fn put_batch(
     }
     let result = if taken.is_new { "stored" } else { "repeated" };
     counter!("binnacle_batches_total", "result" => result).increment(1);
+    if let Some(wait_s) = has.wait.filter(|_| !batch.samples.is_empty()) {
+        let at_most = Duration::from_secs(wait_s.into()).min(LONGEST_WAIT);
+        analysis::done(&app, agent.vessel_id, at_most).await?;
+    }
     downlink::answer(&app, agent, stream, has).await
 }
 

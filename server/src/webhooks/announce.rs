@@ -24,6 +24,7 @@ pub async fn announce(
             let message = Message {
                 id: *id,
                 kind: *kind,
+                order: None,
                 body: json!({ "id": id, "kind": kind, "at": now, "alert": alert }).to_string(),
             };
             outbox::queue(tx, webhook, &message, now).await?;

@@ -164,6 +164,7 @@ async fn test_webhook(
     let message = Message {
         id: message,
         kind: Kind::Test,
+        order: None,
         body,
     };
     let queued = outbox::queue_one(&app.db, id.0, &message, now.into()).await?;

@@ -4,11 +4,11 @@ use super::asked::BerthReadingSchema;
 use super::basis::Basis;
 use super::entry::Content;
 use super::order::{Order, State};
-use super::plan::{Choice, Planned, calculate, must_still_hold, offer};
+use super::plan::{Choice, Planned, calculate, must_be_without_cargo, must_still_hold, offer};
 use super::reading::{Read, check, must_be_numbers};
 use super::schema::OfferSchema;
 use super::second::is_explained_by;
-use super::steps::{Moved, Stand, StepRead, judge};
+use super::steps::{Moved, Stand, StepRead, judge, learn_anew};
 use super::store::{self, Whole};
 use super::whereabouts;
 use super::{request, shown};
@@ -221,6 +221,7 @@ async fn read_step(
     degrees("before_deg", before_deg, 0.0, 360.0)?;
     must_lie_still(before_deg, standing.compass_deg)?;
     let prepared = standing.prepared()?;
+    must_be_without_cargo(&app, &whole.summary, &prepared).await?;
     let judged = calculate(&app, move || judge(&prepared, step, before_deg, after_deg)).await?;
     if let Some(mut change) = request.begin(&whole).await? {
         change.append(Content::Step(Box::new(judged))).await?;
@@ -275,7 +276,8 @@ async fn set_correctors(
     let what = "correctors are set between the reading and the completion";
     whole.must_be(&[State::Measured, State::Adjusting], what)?;
     let mut moved = moved(&whole, stand, app.clock.now().into())?;
-    moved.explains_reading = is_explained_by(&app, &whole.standing(), &moved.after).await?;
+    moved.learnt_anew = learn_anew(&app, &whole.standing(), &moved).await?;
+    moved.explains_reading = is_explained_by(&app, &whole.standing(), &moved).await?;
     if let Some(mut change) = request.begin(&whole).await? {
         let content = Content::CorrectorSettings(Box::new(moved));
         change.append(content).await?;
@@ -298,6 +300,7 @@ fn moved(whole: &Whole, stand: Stand, now: crate::time::Time) -> Result<Moved> {
             .transpose()?,
         note: optional_text("note", stand.note.as_deref())?,
         explains_reading: false,
+        learnt_anew: None,
         at: now,
     })
 }

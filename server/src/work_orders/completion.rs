@@ -11,6 +11,7 @@ use super::record::{self, Aboard};
 use super::standing::Standing;
 use super::store::{self, Whole};
 use crate::binnacles;
+use crate::ed25519;
 use crate::error::{Error, Result};
 use crate::events::Kind;
 use crate::http::text;
@@ -21,7 +22,6 @@ use crate::time::Time;
 use binnacle_magnetics::adjust::Learnt;
 use binnacle_magnetics::binnacle::Setting;
 use binnacle_magnetics::model::Model;
-use ring::signature::{ED25519, UnparsedPublicKey};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -328,30 +328,9 @@ impl Signed {
     /// # Errors
     /// Names what is no key or no signature, or does not fit.
     pub fn checked(&self, record_sha256: &str) -> Result<()> {
-        let wrong = |field, detail: &str| Error::Invalid {
-            field,
-            detail: detail.to_owned(),
-        };
-        let key = from_hex(&self.public_key).filter(|key| key.len() == 32);
-        let key = key.ok_or_else(|| wrong("public_key", "is not 64 hexadecimal digits"))?;
-        let signature = from_hex(&self.signature).filter(|octets| octets.len() == 64);
-        let signature =
-            signature.ok_or_else(|| wrong("signature", "is not 128 hexadecimal digits"))?;
-        let record = from_hex(record_sha256).unwrap_or_default();
-        UnparsedPublicKey::new(&ED25519, key)
-            .verify(&record, &signature)
-            .map_err(|_| wrong("signature", "is not this key's over the record's SHA-256"))
+        let key = ed25519::key(&self.public_key)?;
+        let record = ed25519::from_hex(record_sha256).unwrap_or_default();
+        let signature = ("signature", self.signature.as_str());
+        ed25519::must_be_signed(&key, signature, &record, "the record's SHA-256")
     }
-}
-
-/// Octets written as hexadecimal digits, in pairs.
-pub fn from_hex(text: &str) -> Option<Vec<u8>> {
-    let digits: Option<Vec<u32>> = text.chars().map(|c| c.to_digit(16)).collect();
-    let digits = digits.filter(|digits| digits.len() % 2 == 0)?;
-    Some(
-        digits
-            .chunks(2)
-            .map(|pair| (16 * pair[0] + pair[1]) as u8)
-            .collect(),
-    )
 }

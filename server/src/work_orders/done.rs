@@ -32,6 +32,8 @@ pub struct Done {
     pub firm_id: Option<FirmId>,
     /// How it stands.
     pub state: State,
+    /// Whether headings at sea have spoken against it, whatever it stands as now.
+    pub disproved: bool,
     /// The fee that was agreed on, as it was offered or proposed, euros.
     pub agreed_eur: Option<f64>,
 }
@@ -71,9 +73,15 @@ pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>
     let mut done = Vec::with_capacity(found.len());
     for (order,) in found {
         let whole = whole(db, Tenant::Operator(operator), order).await?;
-        let offers = whole.standing().offers;
-        let agreed_eur = offers.holder().and_then(Offer::fee);
+        let standing = whole.standing();
+        let agreed_eur = standing.offers.holder().and_then(Offer::fee);
+        let verified = standing.verified.is_some_and(|said| said.has_passed());
         let summary = whole.summary;
+        let disproved = match summary.state {
+            State::Failed => true,
+            State::Closed => !verified,
+            _ => false,
+        };
         let Some(completed_at) = summary.completed_at else {
             continue;
         };
@@ -88,6 +96,7 @@ pub async fn done(db: &Db, operator: OperatorId, span: Span) -> Result<Vec<Done>
             firm: summary.firm,
             firm_id: summary.firm_id,
             state: summary.state,
+            disproved,
             agreed_eur,
         });
     }

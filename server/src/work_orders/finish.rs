@@ -13,13 +13,13 @@ use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
-use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf};
+use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf, record_svg};
 use crate::firms::keys;
 use crate::http::{Id, Json, Params, Valid};
 use crate::idempotency::Key;
 use crate::ids::{OrderId, PhotoId};
 use crate::vessels;
-use axum::body::Bytes;
+use axum::body::{Body, Bytes};
 use axum::extract::rejection::BytesRejection;
 use axum::extract::{DefaultBodyLimit, State as Shared};
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE};
@@ -47,6 +47,9 @@ pub(super) fn router() -> OpenApiRouter<App> {
         .routes(routes!(complete_work_order))
         .routes(routes!(sign_record))
         .routes(routes!(find_record))
+        .routes(routes!(print_record))
+        .routes(routes!(draw_record))
+        .routes(routes!(tabulate_record))
         .routes(routes!(find_evidence))
 }
 
@@ -237,6 +240,76 @@ async fn find_record(
     let record = store::record(&app.db, summary.vessel_id, id).await?;
     let headers = [(CONTENT_TYPE, "application/json")];
     Ok((headers, record.ok_or_else(no_record)?).into_response())
+}
+
+/// Print the adjustment record
+///
+/// The sheets that the evidence holds, drawn from `record.json`. A prediction, not a
+/// certificate.
+#[utoipa::path(get, path = "/work-orders/{id}/record.pdf", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "application/pdf", body = Vec<u8>),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn print_record(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let bytes = made_of_record(&app, reader, id, record_pdf).await?;
+    Ok(record_file(id, "pdf", "application/pdf", bytes))
+}
+
+/// Draw the adjustment record
+///
+/// The sheets of `record.pdf` as one picture, one below the other.
+#[utoipa::path(get, path = "/work-orders/{id}/record.svg", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "image/svg+xml", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn draw_record(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let text = made_of_record(&app, reader, id, record_svg).await?;
+    Ok(record_file(id, "svg", "image/svg+xml", text))
+}
+
+/// The residuals that an adjustment record foretells, as CSV
+///
+/// A line for each place and compass heading, with the 95 % band.
+#[utoipa::path(get, path = "/work-orders/{id}/record.csv", tag = "adjusting",
+    params(("id" = OrderId, Path)),
+    responses((status = 200, content_type = "text/csv", body = String),
+              (status = 401, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "There is no record yet", body = Problem)))]
+async fn tabulate_record(
+    Shared(app): Shared<App>,
+    reader: PartyReader,
+    Id(id): Id<OrderId>,
+) -> Result<Response> {
+    let text = made_of_record(&app, reader, id, predicted_csv).await?;
+    Ok(record_file(id, "csv", "text/csv; charset=utf-8", text))
+}
+
+async fn made_of_record<T: Send + 'static>(
+    app: &App,
+    reader: PartyReader,
+    id: OrderId,
+    make: fn(&str) -> anyhow::Result<T>,
+) -> Result<T> {
+    let summary = store::summary(&app.db, reader.tenant, id).await?;
+    let record = store::record(&app.db, summary.vessel_id, id).await?;
+    let record = record.ok_or_else(no_record)?;
+    Ok(tokio::task::spawn_blocking(move || make(&record)).await??)
+}
+
+fn record_file(id: OrderId, extension: &str, kind: &str, body: impl Into<Body>) -> Response {
+    let name = format!("inline; filename=\"record-{id}.{extension}\"");
+    let headers = [(CONTENT_TYPE, kind), (CONTENT_DISPOSITION, name.as_str())];
+    (headers, body.into()).into_response()
 }
 
 /// Get the evidence of an adjustment

@@ -66,7 +66,7 @@ use crate::error::{Error, Problem, Result};
 use crate::events::Event;
 use crate::http::{Id, Json, Page, Params, Valid, text};
 use crate::idempotency::{self, Key};
-use crate::ids::{OperatorId, OrderId};
+use crate::ids::{OperatorId, OrderId, VesselId};
 use crate::session;
 use crate::tenants::Tenant;
 use axum::extract::State as Shared;
@@ -152,11 +152,7 @@ async fn create_work_order(
     let mut tx = app.db.begin().await?;
     let made = key.once(&mut tx, operator, &hash, wanted.0, now).await?;
     if made == wanted.0 {
-        let author = Author {
-            id: Some(writer.user.0),
-            name: session::name_of(&mut tx, writer.user).await?,
-            firm_id: None,
-        };
+        let author = author(&mut tx, writer).await?;
         let change = open(&app, tx, operator, wanted, new, author).await?;
         change.commit().await?;
     }
@@ -221,14 +217,50 @@ pub async fn write(
     id: OrderId,
     new: NewOrder,
 ) -> Result<(Tx, Vec<Event>)> {
-    let author = Author {
-        id: Some(writer.user.0),
-        name: session::name_of(&mut tx, writer.user).await?,
-        firm_id: None,
-    };
+    let author = author(&mut tx, writer).await?;
     let new = new.checked(app.clock.now().into())?;
     let change = open(app, tx, writer.operator, id, new, author).await?;
     change.settle().await
+}
+
+/// Cancels an order that every firm declined, for another in its place, in a transaction that
+/// goes on; one that is under way no more is in nobody's way.
+///
+/// # Errors
+/// [`Error::WrongState`] when firms are asked for it still, or one has it.
+pub async fn give_way(
+    app: &App,
+    mut tx: Tx,
+    writer: Writer,
+    vessel: VesselId,
+    id: OrderId,
+) -> Result<(Tx, Vec<Event>)> {
+    let author = author(&mut tx, writer).await?;
+    let whole = store::lock(&mut tx, vessel, id).await?;
+    let state = whole.summary.state;
+    if !state.is_under_way() {
+        return Ok((tx, Vec::new()));
+    }
+    if state != State::Declined {
+        return Err(Error::WrongState(format!(
+            "work order {id} is under way and says something else: cancel it, or agree on \
+             another time"
+        )));
+    }
+    let now = app.clock.now().into();
+    let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
+    let text = "declined by every firm, and offered anew as the schedule has it".to_owned();
+    change.append(Content::Cancelled(Said { text })).await?;
+    change.settle().await
+}
+
+/// An operator's person, as entries name them.
+async fn author(tx: &mut Tx, writer: Writer) -> Result<Author> {
+    Ok(Author {
+        id: Some(writer.user.0),
+        name: session::name_of(tx, writer.user).await?,
+        firm_id: None,
+    })
 }
 
 /// See a work order

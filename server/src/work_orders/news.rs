@@ -84,7 +84,9 @@ pub(super) async fn tell(
             continue;
         };
         let told = messages_for(summary, offer, was, &new, now);
-        if told.is_empty() {
+        // Who was passed over was not asked.
+        let passed = (was, offer.state) == (Some(OfferState::Waiting), OfferState::Lapsed);
+        if told.is_empty() || passed {
             continue;
         }
         webhooks::announce_messages(tx, Tenant::Firm(firm), &told, now).await?;
@@ -233,6 +235,7 @@ fn written(kind: Kind, summary: &Summary, entry: &Value, now: Time) -> Message {
     Message {
         id,
         kind,
+        order: Some(summary.id),
         body: body.to_string(),
     }
 }

@@ -40,6 +40,10 @@ pub(super) fn for_operator(
             Kind::Answered,
             format!("{} proposes other terms", firm(said)),
         ),
+        Content::Lapsed(said) if was == Some(OfferState::Waiting) => (
+            Kind::AnswerLate,
+            format!("{} cannot be asked in time", firm(said)),
+        ),
         Content::Lapsed(said) if was == Some(OfferState::Proposed) => (
             Kind::AnswerLate,
             format!("no answer in time to the terms of {}", firm(said)),

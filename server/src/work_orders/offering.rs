@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::entry::Content;
-use super::offers::{Asked, Between, OfferState, Offered, OfferedTo, Terms};
+use super::offers::{Asked, Between, Offer, OfferState, Offered, OfferedTo, Offers, Terms};
 use super::order::{State, must_be_near};
 use super::place;
 use super::retime::at_its_call;
@@ -147,9 +147,11 @@ impl NewOffer {
             let Some(firm_name) = firms::name_for(tx, operator, firm_id).await? else {
                 return invalid("firms", format!("{firm_id} is no firm that you work with"));
             };
-            let fee_eur = match self.fees_eur.get(&firm_id) {
-                Some(fee) => Some(*fee),
-                None => firms::fee_for(tx, operator, firm_id).await?,
+            let fee_eur = if let Some(fee) = self.fees_eur.get(&firm_id) {
+                Some(*fee)
+            } else {
+                let terms = firms::terms_for(tx, operator, firm_id).await?;
+                terms.map(|terms| f64::from(terms.fee_eur))
             };
             let firm = Asked { firm_id, firm_name };
             firms.push(OfferedTo { firm, fee_eur });
@@ -213,7 +215,7 @@ pub(super) fn checked_terms(terms: Terms, now: Time) -> Result<Terms> {
     checked_words(terms)
 }
 
-/// Terms, their berth trimmed, for a fee that can be.
+/// Terms, their berth trimmed, for a fee that can be, in whole cents.
 fn checked_words(mut terms: Terms) -> Result<Terms> {
     if let Some(fee) = terms.fee_eur
         && !(0.0..=MOST_EUR).contains(&fee)
@@ -223,6 +225,7 @@ fn checked_words(mut terms: Terms) -> Result<Terms> {
             detail: format!("{fee} is outside 0 to {MOST_EUR}"),
         });
     }
+    terms.fee_eur = terms.fee_eur.map(|fee| (fee * 100.0).round() / 100.0);
     terms.berth = optional_text("berth", terms.berth.as_deref())?;
     Ok(terms)
 }
@@ -304,17 +307,31 @@ fn due(change: &Change<'_>, hours: u32) -> Time {
 /// Offers an order, and asks whom it is the turn of.
 ///
 /// # Errors
-/// [`Error::WrongState`] when one of the firms has no team left that day.
+/// [`Error::WrongState`] when its time is over, or one of the firms has no team left that day
+/// or does not work then.
 pub(super) async fn offer(change: &mut Change<'_>, offered: Offered) -> Result<()> {
+    let at = change.whole.summary.planned_at;
+    must_be_ahead(change, at)?;
     // Everybody locks them in one order.
     let mut firms: Vec<&Asked> = offered.firms.iter().map(|one| &one.firm).collect();
     firms.sort_by_key(|firm| firm.firm_id.0);
-    let at = change.whole.summary.planned_at;
     for firm in firms {
         must_have_room(change, firm, at, Told::Operator).await?;
     }
     change.append(Content::Offered(offered)).await?;
-    ask_next(change).await
+    // Whom the operator names first is asked at however short notice.
+    ask(change).await
+}
+
+/// Refuses a job whose time is over.
+fn must_be_ahead(change: &Change<'_>, at: Time) -> Result<()> {
+    if latest(at) > change.now {
+        return Ok(());
+    }
+    Err(Error::WrongState(format!(
+        "the job was for {}, which is over: it needs another time",
+        at.to_the_minute()
+    )))
 }
 
 /// Refuses a time at which a firm has no team left.
@@ -335,21 +352,98 @@ pub(super) async fn must_have_room(
     firms::must_have_room(&mut change.tx, name, &visit, told).await
 }
 
-/// Until when to answer: no later than the job is to begin, if that is still ahead.
-pub(super) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
-    let due = due(change, within_hours);
-    if at > change.now { due.min(at) } else { due }
+/// Until when someone on the quay may say yes to a job that should have begun.
+fn latest(at: Time) -> Time {
+    Time(at.0.plus_seconds(HOUR_S))
 }
 
-/// Asks whom it is the turn of, where nobody else is waited for.
+/// Until when to answer: no later than the job is to begin, if that is still ahead or was
+/// just now.
+pub(super) fn answer_by(change: &Change<'_>, within_hours: u32, at: Time) -> Time {
+    let due = due(change, within_hours);
+    let ends = if at > change.now { at } else { latest(at) };
+    if ends > change.now {
+        due.min(ends)
+    } else {
+        due
+    }
+}
+
+/// Until when an answer leaves those whose turn comes after so many others time for theirs:
+/// the time until the job, or until they are to be asked by their terms, is shared out among
+/// all who come before and themselves. None where nobody comes after.
+async fn share_ends(
+    change: &mut Change<'_>,
+    offers: &Offers,
+    asked: usize,
+) -> Result<Option<Time>> {
+    let at = change.whole.summary.planned_at;
+    let left_s = at.0.seconds_since(change.now.0);
+    let (mut turns, mut share_s) = (1.0, f64::INFINITY);
+    let waiting = offers.all.iter();
+    let waiting = waiting.filter(|offer| offer.state == OfferState::Waiting);
+    for offer in waiting.skip(asked) {
+        let lead_s = lead_time_s(change, offer.firm_id).await?;
+        if left_s > lead_s {
+            turns += 1.0;
+            share_s = share_s.min((left_s - lead_s) / turns);
+        }
+    }
+    let ends = |share_s: f64| Time(change.now.0.plus_seconds(share_s.floor()));
+    Ok(share_s.is_finite().then(|| ends(share_s)))
+}
+
+/// How long before a job a firm wants to be asked by its terms, seconds.
+async fn lead_time_s(change: &mut Change<'_>, firm: FirmId) -> Result<f64> {
+    let operator = change.whole.summary.operator_id;
+    let terms = firms::terms_for(&mut change.tx, operator, firm).await?;
+    Ok(terms.map_or(0.0, |terms| terms.lead_time_h * HOUR_S))
+}
+
+/// Whether there is more than so much time until the job.
+fn is_in_time(change: &Change<'_>, lead_s: f64) -> bool {
+    let at = change.whole.summary.planned_at;
+    at.0.seconds_since(change.now.0) > lead_s
+}
+
+/// Asks whom it is the turn of, where nobody else is waited for. Whom it is too late to ask is
+/// passed over.
 pub(super) async fn ask_next(change: &mut Change<'_>) -> Result<()> {
     let offers = change.whole.standing().offers;
-    let answer_by = answer_by(
-        change,
-        offers.answer_within_hours,
-        change.whole.summary.planned_at,
-    );
-    for next in offers.next() {
+    if offers.state() == State::Declined {
+        let waiting = offers.all.into_iter();
+        for offer in waiting.filter(|offer| offer.state == OfferState::Waiting) {
+            let lead_s = lead_time_s(change, offer.firm_id).await?;
+            if is_in_time(change, lead_s) {
+                continue;
+            }
+            let text = if is_in_time(change, 0.0) {
+                let hours = lead_s / HOUR_S;
+                format!("not asked: it wants to be asked {hours} h ahead")
+            } else {
+                "not asked: the time of the job is over".to_owned()
+            };
+            let passed = Between {
+                text: Some(text),
+                ..Between::with(offer.firm())
+            };
+            change.append(Content::Lapsed(passed)).await?;
+        }
+    }
+    ask(change).await
+}
+
+async fn ask(change: &mut Change<'_>) -> Result<()> {
+    let offers = change.whole.standing().offers;
+    let next: Vec<Offer> = offers.next().cloned().collect();
+    if next.is_empty() {
+        return Ok(());
+    }
+    let at = change.whole.summary.planned_at;
+    let until = answer_by(change, offers.answer_within_hours, at);
+    let share = share_ends(change, &offers, next.len()).await?;
+    let answer_by = share.map_or(until, |share| share.min(until));
+    for next in next {
         let asked = Between {
             answer_by: Some(answer_by),
             fee_eur: next.fee_eur,
@@ -392,6 +486,7 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
     match says {
         FirmSays::Yes(answer) => {
             let at = change.whole.summary.planned_at;
+            must_be_ahead(change, at)?;
             must_have_room(change, &asked, at, Told::Firm).await?;
             let taken = Between {
                 fee_eur: offer.fee_eur,
@@ -411,8 +506,11 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
             if at != change.whole.summary.planned_at {
                 place::must_be_there(change, at, "planned_at").await?;
             }
+            let until = answer_by(change, offers.answer_within_hours, at);
+            let share = share_ends(change, &offers, 0).await?;
+            let until = share.map_or(until, |share| share.min(until));
             let proposed = Between {
-                answer_by: Some(answer_by(change, offers.answer_within_hours, at)),
+                answer_by: Some(until),
                 terms: Some(proposal.terms),
                 text: proposal.text,
                 ..Between::with(asked)
@@ -460,6 +558,7 @@ pub(super) async fn operator_says(
             // What a firm says nothing of is as it was offered.
             terms.fee_eur = fee_eur;
             let at = terms.planned_at;
+            must_be_ahead(change, at)?;
             must_have_room(change, &firm, at, Told::Operator).await?;
             if at != change.whole.summary.planned_at {
                 place::must_be_there(change, at, "planned_at").await?;

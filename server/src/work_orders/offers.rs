@@ -105,7 +105,7 @@ pub(super) enum OfferState {
     Accepted,
     /// The firm said no, or the operator did to its terms.
     Declined,
-    /// There was no answer in time.
+    /// There was no answer in time, or no time left to ask.
     Lapsed,
     /// The order is another's, or is cancelled.
     Withdrawn,

@@ -7,10 +7,13 @@ use super::standing::Standing;
 use crate::app::App;
 use crate::binnacles;
 use crate::error::{Error, Result};
+use crate::logbook;
 use crate::models;
+use crate::time::Time;
 use binnacle_magnetics::adjust::{
     AdjustError, Learnt, Optimality, Outcome, Plan, by_compass, plan, turned_in_all,
 };
+use binnacle_magnetics::analyse::LogbookKind;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -78,8 +81,8 @@ impl Standing {
 /// What is read at a berth holds no longer: by then she may lie elsewhere.
 pub(super) const READING_HOLDS_S: f64 = 48.0 * 3600.0;
 
-/// Refuses a reading that is too old, or older than a change of the ship's magnetism or of
-/// what is known of her binnacle.
+/// Refuses a reading that is too old, or older than a change of the ship's magnetism, of
+/// what is known of her binnacle or of cargo.
 ///
 /// # Errors
 /// [`Error::WrongState`].
@@ -94,6 +97,7 @@ pub(super) async fn must_still_hold(
         let words = format!("the berth was read {hours:.0} hours ago: read it again");
         return Err(Error::WrongState(words));
     }
+    must_be_without_cargo(app, summary, prepared).await?;
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
     let binnacle = binnacles::current(&app.db, vessel, compass).await?;
     if binnacle.is_some_and(|now| now.revision != prepared.basis.binnacle_revision) {
@@ -113,6 +117,45 @@ pub(super) async fn must_still_hold(
         ));
     }
     Ok(())
+}
+
+/// Refuses what was read before magnetic cargo came on board, by the logbook as it is now,
+/// and what cargo that it has no longer would refuse. Cargo that it had and has is the
+/// planner's to refuse.
+///
+/// # Errors
+/// [`Error::WrongState`].
+pub(super) async fn must_be_without_cargo(
+    app: &App,
+    summary: &Summary,
+    prepared: &Prepared,
+) -> Result<()> {
+    let logbook = logbook::of_compass(&app.db, summary.vessel_id, summary.compass_id).await?;
+    let (read_at, now) = (prepared.given.at, app.clock.now());
+    let mut since = logbook.iter().filter(|entry| {
+        entry.kind == LogbookKind::MagneticCargo
+            && entry.from <= now
+            && entry.to.is_none_or(|to| to > read_at)
+    });
+    if prepared.basis.cargo_on_board {
+        if prepared.given.cargo_on_board || since.any(|entry| entry.from <= read_at) {
+            return Ok(());
+        }
+        return Err(Error::WrongState(
+            "the logbook no longer has magnetic cargo on board when the berth was read: read the \
+             berth again"
+                .to_owned(),
+        ));
+    }
+    let Some(cargo) = since.next() else {
+        return Ok(());
+    };
+    Err(Error::WrongState(format!(
+        "the logbook has magnetic cargo on board since {}, and the berth was read without it: if \
+         the entry is wrong, put it right or withdraw it there; if not, wait until the cargo is \
+         ashore, put back the correctors that were moved, say so, and read the berth again",
+        Time(cargo.from).to_the_minute()
+    )))
 }
 
 /// Refuses what is foretold beyond the order's limits, however it came to be followed.

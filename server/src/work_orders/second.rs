@@ -9,6 +9,7 @@ use super::plan::calculate;
 use super::reading::{Read, check};
 use super::refusal::Refusal;
 use super::standing::Standing;
+use super::steps::Moved;
 use crate::app::App;
 use crate::error::{Error, Result};
 use binnacle_magnetics::adjust::{
@@ -16,7 +17,7 @@ use binnacle_magnetics::adjust::{
     read_again,
 };
 use binnacle_magnetics::berth::BerthReading;
-use binnacle_magnetics::binnacle::{Binnacle, Setting};
+use binnacle_magnetics::binnacle::Binnacle;
 
 /// Parts of a reading that has the vertical one.
 pub(super) const WHOLE: usize = 3;
@@ -133,7 +134,7 @@ impl Second {
                 said.could_be = mistakes.iter().map(ToString::to_string).collect();
                 if let Some(card) = again.card.filter(Card::is_refused) {
                     said.words = card.found();
-                    said.could_be = card.suspects();
+                    said.could_be.extend(card.suspects());
                 }
             }
         }
@@ -150,18 +151,17 @@ impl Second {
 }
 
 /// Whether the reading that did not fit fits the correctors as they are said to stand now.
-pub(super) async fn is_explained_by(
-    app: &App,
-    standing: &Standing,
-    setting: &Setting,
-) -> Result<bool> {
+pub(super) async fn is_explained_by(app: &App, standing: &Standing, moved: &Moved) -> Result<bool> {
     let Some(disproof) = standing.disproof() else {
         return Ok(false);
     };
     let mut before = standing.clone();
     before.step_back();
     let mut prepared = before.prepared()?;
-    prepared.moved_to = Some(setting.clone());
+    prepared.moved_to = Some(moved.after.clone());
+    if let Some(anew) = &moved.learnt_anew {
+        prepared.binnacle = anew.binnacle.clone();
+    }
     let second = Second::new(disproof.given.clone(), &prepared)?;
     let again = calculate(app, move || second.read(&prepared, &[])).await?;
     Ok(matches!(

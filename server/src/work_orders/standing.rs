@@ -42,6 +42,8 @@ pub(super) struct Standing {
     /// The binnacle, its correctors as strong as they were found to be, standing as they
     /// stood when the magnetometer was read.
     pub binnacle: Option<Binnacle>,
+    /// What of that was learnt from steps, in order.
+    strengths: Vec<Strength>,
     /// How they stand now, where they were moved since.
     pub moved_to: Option<Setting>,
     /// The plan that is followed.
@@ -78,6 +80,17 @@ pub(super) struct Standing {
     pub signatures: Vec<SignedBy>,
 }
 
+/// A strength that was learnt from what the compass showed of a step.
+#[derive(Clone, Debug)]
+pub(super) struct Strength {
+    /// The step, its corrector where it is taken to stand.
+    pub step: Step,
+    /// What the compass read before it, degrees.
+    pub before_deg: f64,
+    /// The binnacle as it was known before it.
+    pub binnacle: Binnacle,
+}
+
 /// How a compass was before its correctors were moved.
 #[derive(Clone, Debug)]
 pub(super) struct Before {
@@ -99,6 +112,7 @@ impl Standing {
             limits: Limits::default(),
             read: None,
             binnacle: None,
+            strengths: Vec::new(),
             moved_to: None,
             plan: None,
             steps_done: 0,
@@ -177,7 +191,12 @@ impl Standing {
                 }
                 self.last_step = Some(done.said.clone());
                 if let Some(binnacle) = &done.binnacle {
-                    self.binnacle = Some(binnacle.clone());
+                    let before = self.binnacle.replace(binnacle.clone());
+                    self.strengths.extend(before.map(|binnacle| Strength {
+                        step: done.step.clone(),
+                        before_deg: done.said.before_deg,
+                        binnacle,
+                    }));
                 }
                 if let Some(setting) = &done.setting {
                     self.moved_to = Some(setting.clone());
@@ -224,6 +243,7 @@ impl Standing {
             return false;
         }
         self.binnacle = Some(basis.binnacle.clone());
+        self.strengths.clear();
         self.moved_to = None;
         self.plan = None;
         self.steps_done = 0;
@@ -247,6 +267,15 @@ impl Standing {
             self.step_back();
             self.again = again.filter(|again| again.is_disproof());
         }
+        if let Some(anew) = &moved.learnt_anew
+            && let Some(index) = self.disputed(moved)
+        {
+            self.strengths.truncate(index + 1);
+            self.strengths[index].step = anew.step.clone();
+            self.binnacle = Some(anew.binnacle.clone());
+            // What was said of it, and planned by it, holds no longer.
+            (self.last_step, self.plan) = (None, None);
+        }
         self.compass_deg = moved.compass_deg.or(still);
         // Someone has looked at every one of them.
         self.looked_at = self.steps.len();
@@ -261,6 +290,28 @@ impl Standing {
                 self.state = State::Measured;
             }
         }
+    }
+
+    /// The strength that this word disputes: its corrector stands elsewhere than it was
+    /// taken to, or the compass was read once more after its step.
+    pub(super) fn disputed_by(&self, moved: &Moved) -> Option<&Strength> {
+        let index = self.disputed(moved)?;
+        self.strengths.get(index)
+    }
+
+    fn disputed(&self, moved: &Moved) -> Option<usize> {
+        let taken = self.setting()?;
+        let mut strengths = self.strengths.iter();
+        let elsewhere =
+            strengths.position(|strength| strength.step.is_gainsaid(taken, &moved.after));
+        let is_last = |said: &StepSaid| said.verdict == Verdict::OtherStrength;
+        let is_read_again = *taken == moved.after
+            && moved.compass_deg.is_some()
+            && self.last_step.as_ref().is_some_and(is_last);
+        elsewhere.or_else(|| {
+            let last = self.strengths.len().checked_sub(1);
+            last.filter(|_| is_read_again)
+        })
     }
 
     fn take_again(&mut self, read: &ReadAgain) {
@@ -294,6 +345,7 @@ impl Standing {
         self.state = before.state;
         self.read = before.read;
         self.binnacle = before.binnacle;
+        self.strengths = before.strengths;
         self.moved_to = before.moved_to;
         self.plan = before.plan;
         self.steps_done = before.steps_done;

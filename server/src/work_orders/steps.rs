@@ -1,10 +1,15 @@
 //! Steps at the binnacle: what the compass read after each, and what follows.
 
 use super::basis::Prepared;
-use super::plan::{Planned, refusals};
+use super::plan::{Planned, calculate, refusals};
 use super::refusal::Refusal;
+use super::standing::{Standing, Strength};
+use crate::app::App;
+use crate::error::Result;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{AdjustError, Outcome, Recheck, Step, recheck, turned_in_all};
+use binnacle_magnetics::adjust::{
+    AdjustError, Outcome, Recheck, Step, recheck, recheck_elsewhere, turned_in_all,
+};
 use binnacle_magnetics::binnacle::{Binnacle, Setting};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -108,8 +113,20 @@ pub struct Moved {
     /// Whether a second reading that did not fit before fits them as they stand now.
     #[serde(default)]
     pub explains_reading: bool,
+    /// What is known instead of a strength that was learnt from how they did not stand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub learnt_anew: Option<Box<LearntAnew>>,
     /// When.
     pub at: Time,
+}
+
+/// What is known instead of a strength that was learnt before.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct LearntAnew {
+    /// The step from which it was learnt, its corrector where it stands.
+    pub step: Step,
+    /// The binnacle as it is now believed to be.
+    pub binnacle: Binnacle,
 }
 
 impl StepSaid {
@@ -129,7 +146,7 @@ pub(super) fn judge(
     step: Step,
     before_deg: f64,
     after_deg: f64,
-) -> Result<StepDone, AdjustError> {
+) -> std::result::Result<StepDone, AdjustError> {
     let said = |verdict, words: String| StepSaid {
         number: step.number,
         before_deg,
@@ -177,15 +194,13 @@ pub(super) fn judge(
         ),
         Recheck::OtherStrength {
             share,
+            other_hole,
             binnacle,
             setting,
             outcome,
             ..
         } => (
-            said(
-                Verdict::OtherStrength,
-                format!("the corrector is {share:.2} times as strong as was taken"),
-            ),
+            said(Verdict::OtherStrength, of_strength(share, other_hole)),
             Some(setting),
             Some(*binnacle),
             Some(outcome),
@@ -232,8 +247,55 @@ pub(super) fn judge(
     })
 }
 
+fn of_strength(share: f64, other_hole: Option<u16>) -> String {
+    let words = format!("the corrector is {share:.2} times as strong as was taken");
+    match other_hole {
+        Some(hole) => format!(
+            "{words}, or stands at hole {hole}: count again; if it does, say how the correctors \
+             stand, or put it right and say so with what the compass then reads"
+        ),
+        None => words,
+    }
+}
+
+/// What is known instead of a strength that this word disputes.
+pub(super) async fn learn_anew(
+    app: &App,
+    standing: &Standing,
+    moved: &Moved,
+) -> Result<Option<Box<LearntAnew>>> {
+    let Some((prepared, strength)) = disputed(standing, moved)? else {
+        return Ok(None);
+    };
+    let (after, compass_deg) = (moved.after.clone(), moved.compass_deg);
+    let learnt = calculate(app, move || {
+        let (adjustment, step) = (prepared.adjustment(), &strength.step);
+        recheck_elsewhere(&adjustment, step, strength.before_deg, &after, compass_deg)
+    });
+    let (step, binnacle) = learnt.await?;
+    Ok(Some(Box::new(LearntAnew { step, binnacle })))
+}
+
+/// The strength that this word disputes, with what was known before it was learnt.
+fn disputed(standing: &Standing, moved: &Moved) -> Result<Option<(Box<Prepared>, Box<Strength>)>> {
+    let mut standing = standing.clone();
+    if standing.setting() != Some(&moved.after) {
+        standing.step_back();
+    }
+    let Some(strength) = standing.disputed_by(moved).cloned() else {
+        return Ok(None);
+    };
+    let mut prepared = standing.prepared()?;
+    prepared.binnacle = strength.binnacle.clone();
+    Ok(Some((Box::new(prepared), Box::new(strength))))
+}
+
 /// With what the steps so far come to together, where that is not what was expected.
-fn in_all(prepared: &Prepared, said: StepSaid, setting: &Setting) -> Result<StepSaid, AdjustError> {
+fn in_all(
+    prepared: &Prepared,
+    said: StepSaid,
+    setting: &Setting,
+) -> std::result::Result<StepSaid, AdjustError> {
     let Some(first_deg) = prepared.given.compass_deg else {
         return Ok(said);
     };

@@ -132,7 +132,8 @@ pub async fn must_not_be_adjusting(
     ))
 }
 
-/// The compass's last order that was completed, if it stands in a state.
+/// The compass's last order that was completed; one that was closed after headings at sea
+/// had spoken against it counts as failed still.
 pub(super) async fn last_completed(
     tx: &mut Tx,
     vessel: VesselId,
@@ -141,7 +142,10 @@ pub(super) async fn last_completed(
     Ok(row!(
         in tx,
         (OrderId, State, Time),
-        "SELECT id, state, completed_at FROM work_orders
+        "SELECT id,
+                CASE WHEN state = 'closed' AND verified_at IS NULL THEN 'failed' ELSE state END,
+                completed_at
+         FROM work_orders
          WHERE vessel_id = $1 AND compass_id = $2 AND completed_at IS NOT NULL
          ORDER BY completed_at DESC, id DESC
          LIMIT 1",

@@ -74,6 +74,11 @@ impl Verified {
         }
     }
 
+    /// Whether headings at sea bear out what was foretold.
+    pub fn has_passed(&self) -> bool {
+        matches!(self.verification, Verification::Passed { .. })
+    }
+
     /// Whether it says something that this does not.
     fn is_news_after(&self, last: Option<&Verified>) -> bool {
         let headings = |verified: &Verified| match verified.verification {

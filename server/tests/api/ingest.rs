@@ -1,7 +1,7 @@
 //! Batches: each stored once, none lost, none bent.
 
 use crate::on_both;
-use crate::support::{Engine, Shore, frame, passage};
+use crate::support::{Answer, Engine, Shore, days_at_sea, frame, passage, truth};
 use binnacle_server::db::Db;
 use binnacle_wire::batch::StreamId;
 use serde_json::json;
@@ -18,9 +18,42 @@ on_both!(
     what_is_not_the_batch_named_is_refused_and_not_stored,
     what_was_acknowledged_outlives_the_server,
     batches_of_one_stream_at_once_are_all_stored,
+    the_answer_that_waits_tells_what_the_samples_showed,
+    a_wait_without_a_worker_ends,
 );
 
 const DAY: &str = "2026-11-20T00:00:00Z";
+
+async fn the_answer_that_waits_tells_what_the_samples_showed(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let samples = days_at_sea(&truth(), "2026-11-10T00:00:00Z", 6.0);
+    let path = format!("/streams/{}/batches/1?wait=50", nao.stream);
+    let request = nao.request(reqwest::Method::PUT, &path);
+    let sending = Answer::of(request.body(frame(nao.stream, 1, &samples)));
+    let working = async {
+        while shore.work().await.is_empty() {
+            tokio::task::yield_now().await;
+        }
+    };
+    let (answer, ()) = tokio::join!(sending, working);
+    let answer = answer.good();
+    assert_eq!(answer["contiguous_seq"], 1);
+    assert_eq!(answer["model"]["version"], 1, "{answer}");
+    shore.finish().await;
+}
+
+async fn a_wait_without_a_worker_ends(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let path = format!("/streams/{}/batches/1?wait=0", nao.stream);
+    let request = nao.request(reqwest::Method::PUT, &path);
+    let sending = Answer::of(request.body(frame(nao.stream, 1, &passage(DAY, 6))));
+    let answer = sending.await.good();
+    assert_eq!(answer["contiguous_seq"], 1);
+    assert!(answer.get("model").is_none());
+    shore.finish().await;
+}
 
 async fn a_batch_sent_twice_is_stored_once(shore: Shore) {
     let ada = shore.admin("ada").await;

@@ -88,7 +88,7 @@ async fn a_job_is_reckoned_against_a_swing(shore: Shore) {
     );
     // The paper's figures, until the operator has others.
     let usual = json!({
-        "jobs": 1, "swing_eur": 6000.0, "swing_h": 3.0, "fees_eur": 0.0, "without_fee": 1,
+        "jobs": 1, "swings": 1, "swing_eur": 6000.0, "swing_h": 3.0, "fees_eur": 0.0, "without_fee": 1,
         "saved_eur": 6000.0, "saved_h": 3.0,
     });
     assert_eq!(found["saved"], usual);
@@ -100,10 +100,17 @@ async fn a_job_is_reckoned_against_a_swing(shore: Shore) {
     let before = report(&job.person, "?from=2026-10-01&to=2026-11-20").await;
     assert_eq!(before["jobs"], json!([]));
     // What the sea does not confirm has spared no swing.
-    shore.sql("UPDATE work_orders SET state = 'failed'").await;
-    let failed = report(&job.person, "").await;
-    assert_eq!(failed["jobs"][0]["state"], "failed");
-    assert_eq!(failed["saved"]["saved_eur"], 0.0);
+    let failed = [
+        "UPDATE work_orders SET state = 'failed'",
+        "UPDATE work_orders SET state = 'closed'",
+    ];
+    for (stands, sql) in ["failed", "closed"].into_iter().zip(failed) {
+        shore.sql(sql).await;
+        let failed = report(&job.person, "").await;
+        assert_eq!(failed["jobs"][0]["state"], stands);
+        assert_eq!(failed["jobs"][0]["spared_swing"], false);
+        assert_eq!(failed["saved"]["saved_eur"], 0.0);
+    }
     shore.finish().await;
 }
 

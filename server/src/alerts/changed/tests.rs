@@ -80,13 +80,16 @@ fn a_change_is_as_bad_as_the_deviation_that_it_causes() {
 }
 
 #[test]
-fn what_is_not_certain_is_told_as_such_and_leaves_the_card() {
+fn what_is_not_certain_is_told_as_such_and_trusts_no_card() {
     let mut doubtful = found(Found::Unknown, 8.0);
     doubtful.change.confirmed = false;
     let wanted = sailed(vec![doubtful], 0.0, Some(1.0));
-    assert_eq!(wanted[0].severity, Severity::Notice);
+    assert_eq!(wanted[0].severity, Severity::Warning);
     assert!(wanted[0].summary.contains("not certain yet"), "{wanted:?}");
-    assert!(wanted[0].advice.contains("card holds until"), "{wanted:?}");
+    assert!(
+        wanted[0].advice.contains("whether the card still holds"),
+        "{wanted:?}"
+    );
 }
 
 #[test]
@@ -107,20 +110,45 @@ fn the_advice_follows_the_model_and_the_alert_ends_with_its_certainty() {
 }
 
 #[test]
-fn a_change_that_is_withdrawn_calls_for_no_alert_and_clears_its_own() {
+fn a_change_that_became_calls_for_no_alert_and_clears_its_own() {
     let mut none = found(Found::LightningOrShock, 3.0);
     let told: Time = none.change.from.into();
     let findings = |change: &FoundChange| Findings {
         changes: vec![change.clone()],
         ..Findings::default()
     };
-    let is_gone = |cause, change: &FoundChange| is_withdrawn(cause, told, &findings(change));
-    assert!(!is_gone(Cause::LightningOrShock, &none));
+    let of = |cause, change: &FoundChange| became(cause, told, &findings(change));
+    let lightning = Cause::LightningOrShock;
+    assert_eq!(of(lightning, &none), Some(Became::Learnt));
     (none.change.confirmed, none.change.withdrawn) = (false, true);
     none.change.ended = Some(at("2026-11-20T00:00:00Z"));
-    assert!(is_gone(Cause::LightningOrShock, &none));
-    assert!(!is_gone(Cause::MagneticCargo, &none));
+    assert_eq!(of(lightning, &none), Some(Became::Withdrawn));
+    assert_eq!(of(Cause::MagneticCargo, &none), None);
     assert_eq!(sailed(vec![none], 0.5, Some(1.0)), []);
+}
+
+/// What stays is not over: the deviation is another one for good.
+#[test]
+fn only_what_ended_is_over() {
+    let mut struck = found(Found::LightningOrShock, 3.0);
+    let told: Time = struck.change.from.into();
+    let of = |cause, change: &FoundChange| {
+        let changes = vec![change.clone()];
+        became(
+            cause,
+            told,
+            &Findings {
+                changes,
+                ..Findings::default()
+            },
+        )
+    };
+    assert_eq!(of(Cause::LightningOrShock, &struck), Some(Became::Learnt));
+    assert_eq!(of(Cause::Drift, &struck), Some(Became::Renamed));
+    struck.change.ended = Some(at("2026-11-20T00:00:00Z"));
+    assert_eq!(of(Cause::LightningOrShock, &struck), None);
+    let storm = found(Found::MagneticStorm, 3.0);
+    assert_eq!(of(Cause::MagneticStorm, &storm), None);
 }
 
 #[test]

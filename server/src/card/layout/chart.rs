@@ -18,7 +18,7 @@ struct Across {
 /// Draws it.
 pub(super) fn draw(sheet: &mut Sheet, card: &Card, lines: &Lines) {
     let curve: Vec<Row> = around(&card.curve);
-    let (step_deg, steps) = scale(&curve);
+    let (step_deg, steps) = scale(&curve, &card.rows);
     let across = Across {
         most_deg: step_deg * f64::from(steps),
     };
@@ -44,10 +44,12 @@ fn around(curve: &[Row]) -> Vec<Row> {
     curve.iter().copied().chain(again).collect()
 }
 
-/// Degrees from one line of the grid to the next, and how many to each side.
-fn scale(curve: &[Row]) -> (f64, u32) {
+/// Degrees from one line of the grid to the next, and how many to each side, so that all
+/// that was observed is in sight.
+fn scale(curve: &[Row], rows: &[CardRow]) -> (f64, u32) {
     let reach = |row: &Row| row.deviation_deg.abs() + row.band95_deg.unwrap_or(0.0);
-    let most_deg = curve.iter().map(reach).fold(1.0, f64::max);
+    let observed = rows.iter().filter_map(observed_deg).map(f64::abs);
+    let most_deg = curve.iter().map(reach).chain(observed).fold(1.0, f64::max);
     let steps_deg = [0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
     let step_deg = steps_deg
         .into_iter()
@@ -111,16 +113,17 @@ fn whole(degrees: f64) -> String {
     east_west(degrees).replace(".0°", "°")
 }
 
+/// The mean deviation observed near a heading.
+fn observed_deg(row: &CardRow) -> Option<f64> {
+    Some(row.deviation_deg + row.residual_deg?)
+}
+
 /// What was observed near a heading.
 fn cross(sheet: &mut Sheet, row: &CardRow, lines: &Lines, across: &Across) {
     const ARM: f32 = 2.4;
-    let Some(residual_deg) = row.residual_deg else {
+    let Some(observed_deg) = observed_deg(row) else {
         return;
     };
-    let observed_deg = row.deviation_deg + residual_deg;
-    if observed_deg.abs() > across.most_deg {
-        return;
-    }
     let (x, y) = (across.x(observed_deg), lines.y(row.compass_deg));
     sheet.rule((x - ARM, y - ARM), (x + ARM, y + ARM), 0.7);
     sheet.rule((x - ARM, y + ARM), (x + ARM, y - ARM), 0.7);
@@ -131,4 +134,33 @@ fn legend(sheet: &mut Sheet, lines: &Lines) {
     let style = Style::plain(7.0).grey(FAINT);
     let text = "line: deviation · grey: 95 % band · ×: mean observed";
     sheet.text((RIGHT, y), style.end(), text);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_disagrees_most_is_within_the_chart() {
+        let curve = [Row {
+            compass_deg: 285.0,
+            magnetic_deg: 284.9,
+            deviation_deg: -0.1,
+            band95_deg: Some(1.2),
+        }];
+        let row = |residual_deg: Option<f64>| CardRow {
+            compass_deg: 285.0,
+            magnetic_deg: 284.9,
+            deviation_deg: -0.1,
+            band95_deg: 1.2,
+            samples: 9,
+            residual_deg,
+        };
+        let most_deg = |rows: &[CardRow]| {
+            let (step_deg, steps) = scale(&curve, rows);
+            step_deg * f64::from(steps)
+        };
+        assert!((most_deg(&[row(None)]) - 1.5).abs() < 1e-9);
+        assert!((most_deg(&[row(None), row(Some(-1.8))]) - 2.0).abs() < 1e-9);
+    }
 }

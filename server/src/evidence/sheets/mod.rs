@@ -7,7 +7,7 @@ mod tables;
 
 use crate::sheet::paper::{LEFT, Paper, RIGHT};
 use crate::sheet::words::{east_west, heading_to_a_tenth, latitude, longitude};
-use crate::sheet::{About, Style, pdf};
+use crate::sheet::{About, Sheet, Style, pdf, svg};
 use crate::time::Time;
 use crate::work_orders::entry::sha256_hex;
 use anyhow::Context;
@@ -19,6 +19,20 @@ use serde_json::Value;
 /// # Errors
 /// When the text is no record of ours.
 pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
+    let (sheets, about) = drawn(text)?;
+    pdf(&sheets, &about)
+}
+
+/// The record as a picture, its sheets one below the other.
+///
+/// # Errors
+/// When the text is no record of ours.
+pub fn record_svg(text: &str) -> anyhow::Result<String> {
+    let (sheets, about) = drawn(text)?;
+    Ok(svg(&sheets, &about.title))
+}
+
+fn drawn(text: &str) -> anyhow::Result<(Vec<Sheet>, About)> {
     let record: Value = serde_json::from_str(text)?;
     let at = record["adjusted_at"].as_str().context("adjusted_at")?;
     let mut paper = Paper::new();
@@ -45,7 +59,7 @@ pub fn record_pdf(text: &str) -> anyhow::Result<Vec<u8>> {
         title: format!("Adjustment record: {}", word(&record["vessel"]["name"])),
         created: Timestamp::parse(at)?,
     };
-    pdf(&paper.finish(&foot), &about)
+    Ok((paper.finish(&foot), about))
 }
 
 /// The residuals that the record foretells, a row to a place and heading.

@@ -74,7 +74,7 @@ pub(super) fn settings_said(paper: &mut Paper, record: &Value) -> anyhow::Result
             none if none.is_empty() => String::new(),
             note => format!(" “{note}”"),
         };
-        let says = format!("{}: {stands}{note}", minute(&said["at"]));
+        let says = format!("received {}: {stands}{note}", minute(&said["at"]));
         paper.lines(LEFT, Style::plain(SIZE), &says);
     }
     Ok(())
@@ -96,7 +96,7 @@ pub(super) fn steps(paper: &mut Paper, record: &Value) {
         let words = format!("{}. {}", index + 1, word(&step["words"]));
         paper.lines(LEFT, Style::plain(SIZE), &words);
         let showed = format!(
-            "{}: compass {} to {}, turned {}, expected {} within {:.1}°: {}",
+            "received {}: compass {} to {}, turned {}, expected {} within {:.1}°: {}",
             minute(&step["at"]),
             heading_to_a_tenth(number(&said["before_deg"])),
             heading_to_a_tenth(number(&said["after_deg"])),

@@ -14,18 +14,16 @@ use world::{Key, ROLES, Side, answer, request};
 on_both!(every_role_may_do_what_the_table_says_and_nothing_to_others_data);
 
 /// Of these there is none in the test's world, so that whoever may ask finds none.
-const NOT_THERE: [&str; 11] = [
+const NOT_THERE: [&str; 9] = [
     "/notifications/{id}",
     "/alerts/{id}",
-    "/deliveries/{delivery}",
+    "/mail-recipients/{id}/deliveries/{delivery}",
     "/binnacle-types/{name}",
     "/photos/{photo}",
     "/keys/{key}",
     "/users/{id}/second-factor",
-    "/schedule/",
+    "/schedule/pins/{compass}",
     "/me/second-factor/",
-    "/firms/{id}/terms",
-    "/vessels/{id}/particulars",
 ];
 
 /// This names in its body what it is about.

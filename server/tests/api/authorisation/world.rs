@@ -167,13 +167,22 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
         .good();
     let kept = ship.path(&format!("/compasses/{compass}/binnacle"));
     put(admin, &kept, &binnacle()).await.good();
+    let webhook = json!({ "url": "https://erp.example.com/", "kinds": ["order.offered"] });
+    let webhook = admin.post("/webhooks", &webhook).await.good();
+    let known = json!({ "flag_state": "NO", "gross_tonnage": 24000 });
+    put(admin, &ship.path("/particulars"), &known).await.good();
+    let terms = json!({ "fee_eur": 1800, "ports": [{ "port": "NLRTM" }], "working_days": ["Sun"] });
+    put(admin, &format!("/firms/{firm}/terms"), &terms)
+        .await
+        .good();
     let order = json!({
         "vessel_id": vessel, "compass_id": compass, "port": "Bilbao",
         "planned_at": "2026-11-22T08:00:00Z", "offer": { "firms": [firm] },
     });
     let order = admin.post("/work-orders", &order).await.good();
-    let webhook = json!({ "url": "https://erp.example.com/", "kinds": ["alert.raised"] });
-    let webhook = admin.post("/webhooks", &webhook).await.good();
+    let told = format!("/webhooks/{}/deliveries", text(&webhook["id"]));
+    let told = admin.get(&told).await.good();
+    admin.post("/schedule/solve", &json!({})).await.good();
     let recipient = json!({ "address": format!("office-{vessel}@example.com") });
     let recipient = admin.post("/mail-recipients", &recipient).await.good();
     let feed = json!({ "name": "Fleet" });
@@ -190,6 +199,7 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
         ("call", text(&port_call["id"])),
         ("order", text(&order["id"])),
         ("webhook", text(&webhook["id"])),
+        ("delivery", text(&told["items"][0]["id"])),
         ("recipient", text(&recipient["id"])),
         ("feed", text(&feed["id"])),
         ("user", text(&user["user"]["id"])),

@@ -15,6 +15,9 @@ use serde_json::{Value, json};
 on_both!(
     a_firm_accepts_and_goes_on_board,
     the_next_firm_is_asked_when_one_declines_or_is_silent,
+    silence_leaves_the_next_firms_time_before_the_job,
+    nobody_is_asked_for_a_job_whose_time_is_over,
+    a_firm_that_wants_to_be_asked_earlier_is_passed_over,
     a_firm_proposes_other_terms_and_the_operator_agrees,
     terms_that_the_operator_does_not_want_go_to_the_next_firm,
     a_proposal_that_nobody_answers_lapses,
@@ -196,6 +199,84 @@ async fn the_next_firm_is_asked_when_one_declines_or_is_silent(shore: Shore) {
     assert_eq!(trade.offers().await, ["declined", "lapsed", "open"]);
     let taken = trade.post(juan, "/accept", &json!({})).await.good();
     assert_eq!(taken["offers"].as_array().unwrap().len(), 1, "{taken}");
+    shore.finish().await;
+}
+
+/// The job is in 25 hours; each firm could have two days.
+async fn silence_leaves_the_next_firms_time_before_the_job(shore: Shore) {
+    let trade = Trade::planned(&shore, 3).await;
+    let mut offer = trade.offer();
+    offer["answer_within_hours"] = json!(48);
+    trade.post(&trade.ada, "/offer", &offer).await.good();
+    assert_eq!(trade.seen().await["answer_by"], "2026-11-21T15:20:00Z");
+    shore.advance(8.0 * HOUR_S + 1201.0);
+    assert_eq!(lapse(&shore.app).await.unwrap(), 1);
+    assert_eq!(trade.offers().await, ["lapsed", "open", "waiting"]);
+    assert_eq!(trade.seen().await["answer_by"], "2026-11-21T23:40:00Z");
+    // What a firm proposes is answered in time for the third.
+    let juan = &trade.firms[1].1;
+    trade.post(juan, "/propose", &proposal()).await.good();
+    assert_eq!(trade.seen().await["answer_by"], "2026-11-21T23:40:00Z");
+    trade.post(&trade.ada, "/decline", &json!({})).await;
+    assert_eq!(trade.offers().await, ["lapsed", "declined", "open"]);
+    assert_eq!(trade.seen().await["answer_by"], "2026-11-22T08:00:00Z");
+    shore.finish().await;
+}
+
+async fn nobody_is_asked_for_a_job_whose_time_is_over(shore: Shore) {
+    let mut trade = Trade::planned(&shore, 2).await;
+    let cancel = json!({ "text": "another time" });
+    trade.post(&trade.ada, "/cancel", &cancel).await.good();
+    let mut new = trade.new_order();
+    new["planned_at"] = json!("2026-11-21T09:00:00Z");
+    new["offer"] = trade.offer();
+    let made = trade.ada.post("/work-orders", &new).await.good();
+    made["id"].as_str().unwrap().clone_into(&mut trade.order);
+    let [(_, rosa), (_, juan)] = &trade.firms[..] else {
+        unreachable!("there are two")
+    };
+    trade.post(rosa, "/accept", &json!({})).await.good();
+    shore.advance(2.0 * HOUR_S + 1.0);
+    let back = trade.post(rosa, "/decline", &json!({})).await;
+    assert_eq!(back.status, 204, "{back:?}");
+    assert_eq!(trade.offers().await, ["declined", "lapsed"]);
+    let order = trade.seen().await;
+    assert_eq!(order["state"], "declined");
+    assert_eq!(
+        order["offers"][1]["text"],
+        "not asked: the time of the job is over"
+    );
+    let refused = trade.post(juan, "/accept", &json!({})).await;
+    assert!(refused.status >= 400, "{refused:?}");
+    shore.advance(HOUR_S);
+    let late = trade.post(&trade.ada, "/offer", &trade.offer()).await;
+    assert_eq!(late.problem(), "wrong-state");
+    assert!(
+        late.text.contains("2026-11-21 09:00 UTC, which is over"),
+        "{late:?}"
+    );
+    shore.finish().await;
+}
+
+/// Juan wants to be asked a day ahead, and Pepa five hours.
+async fn a_firm_that_wants_to_be_asked_earlier_is_passed_over(shore: Shore) {
+    let trade = Trade::planned(&shore, 3).await;
+    for (firm, hours) in [(&trade.firms[1].0, 24), (&trade.firms[2].0, 5)] {
+        let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"], "lead_time_h": hours });
+        let path = format!("/firms/{firm}/terms");
+        let put = trade.ada.request(Method::PUT, &path).json(&terms);
+        Answer::of(put).await.good();
+    }
+    let mut offer = trade.offer();
+    offer["answer_within_hours"] = json!(48);
+    trade.post(&trade.ada, "/offer", &offer).await.good();
+    // Half of the hour until Juan is to be asked.
+    assert_eq!(trade.seen().await["answer_by"], "2026-11-21T07:30:00Z");
+    shore.advance(2.0 * HOUR_S);
+    assert_eq!(lapse(&shore.app).await.unwrap(), 1);
+    assert_eq!(trade.offers().await, ["lapsed", "lapsed", "open"]);
+    let passed = &trade.seen().await["offers"][1];
+    assert_eq!(passed["text"], "not asked: it wants to be asked 24 h ahead");
     shore.finish().await;
 }
 

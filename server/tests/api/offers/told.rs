@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 on_both!(
     a_firms_webhook_hears_of_its_orders_signed_and_in_order,
     the_operators_webhook_hears_of_every_answer,
+    a_message_that_is_not_taken_holds_up_its_own_order_only,
     a_dead_letter_of_a_firms_is_sent_again,
     a_firm_has_no_webhook_for_alerts_and_sees_only_its_own,
     a_firm_follows_its_own_orders_live,
@@ -96,6 +97,49 @@ async fn the_operators_webhook_hears_of_every_answer(shore: Shore) {
     assert_eq!(answered["entry"]["kind"], "accepted");
     assert_eq!(answered["entry"]["firm_id"], trade.firms[1].0.to_string());
     assert_eq!(answered["work_order"]["state"], "accepted");
+    shore.finish().await;
+}
+
+async fn a_message_that_is_not_taken_holds_up_its_own_order_only(shore: Shore) {
+    let mut trade = Trade::planned(&shore, 1).await;
+    let rosa = trade.firms[0].1.clone();
+    let (receiver, url) = Receiver::start().await;
+    make(&rosa, &url, &["order.offered", "order.message"]).await;
+    let ask = json!({ "firm_id": trade.firms[0].0, "text": "Which gate?" });
+    let offer_and_ask = async |trade: &Trade| {
+        let offered = trade.post(&trade.ada, "/offer", &trade.offer()).await;
+        offered.good();
+        let asked = trade.post(&trade.ada, "/messages", &ask).await;
+        assert_eq!(asked.status, 204, "{asked:?}");
+    };
+    offer_and_ask(&trade).await;
+    let first = trade.order.clone();
+    let pinta = trade.ada.create_vessel("Pinta").await;
+    pinta["id"].as_str().unwrap().clone_into(&mut trade.vessel);
+    let path = format!("/vessels/{}/compasses", trade.vessel);
+    let compasses = trade.ada.get(&path).await.good();
+    let compass = compasses["items"][0]["id"].as_str().unwrap();
+    compass.clone_into(&mut trade.compass);
+    let new = trade.new_order();
+    let made = trade.ada.post("/work-orders", &new).await.good();
+    made["id"].as_str().unwrap().clone_into(&mut trade.order);
+    offer_and_ask(&trade).await;
+
+    receiver.answer(StatusCode::INTERNAL_SERVER_ERROR);
+    let done = deliver(&shore).await;
+    assert_eq!(done, [Sent::Failed, Sent::Delivered, Sent::Delivered]);
+    let told = || {
+        let got = receiver.got().into_iter().skip(1);
+        let read = got.map(|(_, body)| serde_json::from_str::<Value>(&body).unwrap());
+        let of = |body: Value| (body["work_order"]["id"].clone(), body["kind"].clone());
+        read.map(of).collect::<Vec<_>>()
+    };
+    let both =
+        |order: &str| ["order.offered", "order.message"].map(|kind| (json!(order), json!(kind)));
+    assert_eq!(told(), both(&trade.order));
+    shore.advance(13.0);
+    assert_eq!(deliver(&shore).await, [Sent::Delivered; 2]);
+    assert_eq!(told()[2..], both(&first));
     shore.finish().await;
 }
 

@@ -142,10 +142,10 @@ async fn the_example_client_carries_an_order_to_its_end(shore: Shore) {
     assert!(theirs.problems.is_empty(), "{theirs:?}");
     let facts = theirs.facts.join("\n");
     for fact in [
-        "which rosa had registered as \"Office\"",
-        "which no firm had registered",
+        "no signature covers it: rosa had registered it as \"Office\"",
+        "no signature covers it: no firm had registered it",
         // The list of the firms that are asked.
-        "entries 2 are withheld",
+        "entries 2 are withheld: what they say cannot be looked into",
     ] {
         assert!(facts.contains(fact), "{fact}: {facts}");
     }
@@ -179,7 +179,7 @@ async fn the_example_client_carries_an_order_to_its_end(shore: Shore) {
 async fn the_example_client_bargains_writes_and_listens(shore: Shore) {
     let trade = Trade::planned(&shore, 1).await;
     let (firm, rosa) = &trade.firms[0];
-    let terms = json!({ "fee_eur": 1800 });
+    let terms = json!({ "fee_eur": 1800, "working_days": ["Sun"] });
     let path = format!("/firms/{firm}/terms");
     let put = trade.ada.request(Method::PUT, &path).json(&terms);
     Answer::of(put).await.good();
@@ -298,6 +298,11 @@ async fn a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked(sho
         new("00", &mine),
         new(&public_key, "00"),
         new(&"0".repeat(64), &mine),
+        // Of small order: this signature fits every text.
+        new(
+            &format!("01{}", "00".repeat(31)),
+            &format!("01{}", "00".repeat(63)),
+        ),
     ] {
         assert_eq!(rosa.post(&path, &bad).await.problem(), "invalid");
     }

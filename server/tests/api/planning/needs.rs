@@ -4,6 +4,7 @@ use super::{due_vessel, enter, put};
 use crate::logbook::A_WHILE_S;
 use crate::on_both;
 use crate::support::{Person, Shore, days_at_sea, truth};
+use binnacle_server::notifications::look;
 use serde_json::{Value, json};
 
 on_both!(
@@ -11,6 +12,8 @@ on_both!(
     what_is_known_of_a_vessel_gives_her_time,
     the_first_due_comes_first_on_every_page,
     work_on_the_ship_and_a_transit_bring_a_need_forward,
+    what_is_planned_has_not_happened,
+    deviation_over_its_limit_becomes_overdue,
     predicted_deviation_at_a_port_ahead_brings_a_need_forward,
     particulars_are_checked_and_ones_own,
     a_cancelled_order_is_no_adjustment,
@@ -112,6 +115,60 @@ async fn work_on_the_ship_and_a_transit_bring_a_need_forward(shore: Shore) {
     let before_transit = need(&ada, &nao).await;
     assert_eq!(before_transit["due_on"], "2026-12-05");
     assert_eq!(before_transit["causes"][0]["kind"], "transit");
+    shore.finish().await;
+}
+
+async fn what_is_planned_has_not_happened(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let docking = json!({ "kind": "dry_docking", "from": "2026-11-21T20:00:00Z",
+                          "to": "2026-11-25T00:00:00Z" });
+    ada.post(&path(&nao, "/logbook"), &docking).await.good();
+    let events = |need: &Value| {
+        let causes = need["causes"].as_array().unwrap().iter();
+        let of_events = causes.filter(|cause| cause["kind"] == "event");
+        of_events
+            .map(|cause| cause["due_on"].clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(events(&need(&ada, &nao).await), Vec::<Value>::new());
+    shore.advance(86_400.0);
+    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    assert_eq!(events(&need(&ada, &nao).await), [json!("2026-12-25")]);
+    shore.finish().await;
+}
+
+/// Two weeks from the day on which it was first seen, not from each day anew.
+async fn deviation_over_its_limit_becomes_overdue(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let mut astray = truth();
+    astray.parameters_over_lambda.bx_nt += 3_000.0;
+    let samples = days_at_sea(&astray, "2026-11-10T00:00:00Z", 6.0);
+    nao.put(1, &samples).await.good();
+    shore.advance(A_WHILE_S);
+    shore.work().await;
+    let vessel = ada.get(&nao.path("")).await.good();
+    let mut settings = ada.get(&nao.path("/settings")).await.good();
+    settings["alerts"]["band95_deg"] = json!(45.0);
+    put(&ada, &nao.path("/settings"), &settings).await.good();
+    let known = json!({ "flag_state": "AU", "deviation_record": "kept" });
+    put(&ada, &nao.path("/particulars"), &known).await.good();
+    let adjusted = json!({ "kind": "adjustment", "from": "2026-11-01T08:00:00Z" });
+    ada.post(&nao.path("/logbook"), &adjusted).await.good();
+    look(&shore.app).await.unwrap();
+    let first = need(&ada, &vessel).await;
+    assert_eq!(first["causes"][0]["kind"], "over_limit", "{first}");
+    assert_eq!(first["due_on"], "2026-12-05");
+    shore.advance(20.0 * 86_400.0);
+    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    let later = need(&ada, &vessel).await;
+    assert_eq!(
+        (&later["due_on"], &later["urgency"]),
+        (&json!("2026-12-05"), &json!("overdue"))
+    );
+    let reason = later["reason"].as_str().unwrap();
+    assert!(reason.contains("or more since 2026-11-21"), "{reason}");
     shore.finish().await;
 }
 

@@ -11,6 +11,9 @@ on_both!(
     a_planned_job_is_offered_and_agreed_and_stays_in_the_plan,
     an_eta_moved_past_the_due_date_is_told_and_planned_anew,
     a_firm_that_said_no_is_not_planned_again,
+    a_no_holds_when_its_order_is_cancelled,
+    an_order_that_is_cancelled_is_in_nobodys_way,
+    no_firm_is_asked_for_a_time_at_which_it_is_closed,
     no_firm_is_offered_more_ships_than_it_has_teams,
     an_offer_is_of_the_plan_that_was_looked_at,
     a_job_is_offered_whole_or_not_at_all,
@@ -147,6 +150,108 @@ async fn a_firm_that_said_no_is_not_planned_again(shore: Shore) {
     assert_eq!(first(&plan).2, "juan");
     let id = order.rsplit('/').next().unwrap();
     assert_eq!(plan["jobs"][0]["instead_of"], json!([id]));
+    // It is offered to the next one as it is planned, and the old order is no more.
+    let next = offer(&ada, &plan, &nao).await;
+    assert_eq!(ada.get(&order).await.good()["state"], "cancelled");
+    assert_eq!(
+        ada.get(&next).await.good()["offers"][0]["firm_name"],
+        "juan"
+    );
+    shore.finish().await;
+}
+
+/// Rosa is the cheaper one.
+async fn a_no_holds_when_its_order_is_cancelled(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (juans, _) = firm(&shore, &ada, "juan").await;
+    let mut dearer = terms();
+    dearer["fee_eur"] = json!(4000);
+    put(&ada, &format!("/firms/{juans}/terms"), &dearer)
+        .await
+        .good();
+    let (rosas, rosa) = firm(&shore, &ada, "rosa").await;
+    let plan = solve(&ada).await;
+    assert_eq!(first(&plan).2, "rosa");
+    let order = offer(&ada, &plan, &nao).await;
+    rosa.post(&format!("{order}/decline"), &json!({})).await;
+    let why = json!({ "text": "declined" });
+    ada.post(&format!("{order}/cancel"), &why).await.good();
+    let plan = solve(&ada).await;
+    assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "juan"));
+    assert_eq!(plan["jobs"][0]["instead_of"], json!([]));
+    // Unless she is asked anew.
+    let anew = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosas);
+    let anew = ada.post("/work-orders", &anew).await.good();
+    let anew = format!("/work-orders/{}", anew["id"].as_str().unwrap());
+    rosa.post(&format!("{anew}/accept"), &json!({}))
+        .await
+        .good();
+    let plan = solve(&ada).await;
+    assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "rosa"));
+    assert_eq!(plan["jobs"][0]["state"], "confirmed");
+    assert_eq!(alerts(&ada).await, [] as [Value; 0]);
+    shore.finish().await;
+}
+
+/// The plan that was looked at still has the job in the place of an order that is cancelled.
+async fn an_order_that_is_cancelled_is_in_nobodys_way(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (_, rosa) = firm(&shore, &ada, "rosa").await;
+    let plan = solve(&ada).await;
+    let order = offer(&ada, &plan, &nao).await;
+    rosa.post(&format!("{order}/decline"), &json!({})).await;
+    firm(&shore, &ada, "juan").await;
+    let plan = solve(&ada).await;
+    let why = json!({ "text": "declined" });
+    ada.post(&format!("{order}/cancel"), &why).await.good();
+    offer(&ada, &plan, &nao).await;
+    shore.finish().await;
+}
+
+/// By the terms that are said of it, on every day but Sunday from eight to eighteen hours.
+async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let mut closed = terms();
+    closed["closed"] = json!(["2026-12-14"]);
+    put(&ada, &format!("/firms/{id}/terms"), &closed)
+        .await
+        .good();
+    let plan = solve(&ada).await;
+    let order = offer(&ada, &plan, &nao).await;
+    rosa.post(&format!("{order}/accept"), &json!({}))
+        .await
+        .good();
+    let retime = async |at: &str| {
+        let terms = json!({ "terms": { "planned_at": at } });
+        ada.post(&format!("{order}/retime"), &terms).await
+    };
+    for (at, said) in [
+        (
+            "2026-12-14T09:00:00Z",
+            "rosa does not work on 2026-12-14, a Monday",
+        ),
+        (
+            "2026-12-15T03:00:00Z",
+            "rosa works from 2026-12-15T08:00:00Z to 2026-12-15T18:00:00Z",
+        ),
+    ] {
+        let refused = retime(at).await;
+        assert_eq!(refused.problem(), "wrong-state", "{at}");
+        assert!(refused.text.contains(said), "{refused:?}");
+    }
+    retime("2026-12-15T10:00:00Z").await.good();
+    let why = json!({ "text": "no more" });
+    ada.post(&format!("{order}/cancel"), &why).await.good();
+    let asked = direct(&nao, "NLRTM", "2026-12-14T09:00:00Z", &id);
+    let refused = ada.post("/work-orders", &asked).await;
+    assert!(refused.text.contains("does not work on"), "{refused:?}");
     shore.finish().await;
 }
 
@@ -323,8 +428,8 @@ async fn an_order_is_for_a_port_and_a_time_that_can_be(shore: Shore) {
         assert_eq!(ask("NLRTM", at).await.status, 422, "{at}");
     }
     // Two days to answer would be longer than there is.
-    let order = ask("NLRTM", "2026-11-21T20:00:00Z").await.good();
-    assert_eq!(order["answer_by"], "2026-11-21T20:00:00Z");
+    let order = ask("NLRTM", "2026-11-21T17:00:00Z").await.good();
+    assert_eq!(order["answer_by"], "2026-11-21T17:00:00Z");
     let path = format!("/work-orders/{}", order["id"].as_str().unwrap());
     let why = json!({ "text": "not this day" });
     ada.post(&format!("{path}/cancel"), &why).await.good();

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 on_both!(
     a_csv_is_taken_once_however_often_it_comes,
+    a_csv_is_taken_when_some_of_its_calls_are_over,
     a_csv_of_a_european_spreadsheet_is_taken,
     a_csv_with_one_wrong_line_leaves_nothing,
     a_file_that_replaces_withdraws_what_is_not_in_it_any_more,
@@ -50,6 +51,22 @@ async fn a_csv_is_taken_once_however_often_it_comes(shore: Shore) {
     let list = ada.get(&path(&nao)).await.good();
     assert_eq!(list["items"][0]["source"], "csv");
     assert_eq!(list["items"][0]["revision"], 2);
+    shore.finish().await;
+}
+
+/// An export that is sent each night still has the call that was left yesterday.
+async fn a_csv_is_taken_when_some_of_its_calls_are_over(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = ada.create_vessel("Nao").await;
+    let csv = format!("{}.csv", path(&nao));
+    let file = format!("{HEADER}{}{}", row("a", "NLRTM", 8), row("b", "BEANR", 20));
+    assert_eq!(send(&ada, &csv, &file).await.good(), did(2, 0, 0, 0, 0));
+    shore.advance(20.0 * 86_400.0);
+    let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    assert_eq!(send(&ada, &csv, &file).await.good(), did(0, 0, 1, 0, 1));
+    let all = format!("{csv}?replace=true");
+    assert_eq!(send(&ada, &all, &file).await.good(), did(0, 0, 1, 0, 1));
+    assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08", "BEANR 20"]);
     shore.finish().await;
 }
 
@@ -110,8 +127,8 @@ async fn a_csv_with_one_wrong_line_leaves_nothing(shore: Shore) {
             "file: line 3: reference: is longer than 200",
         ),
         (
-            format!("{good}b,BEANR,2026-11-10T06:00:00Z,2026-11-11T06:00:00Z,\n"),
-            "file: line 3: etd: 2026-11-11T06:00:00Z is in the past",
+            format!("{good}b,BEANR,9999-11-10T06:00:00Z,9999-11-11T06:00:00Z,\n"),
+            "file: line 3: eta: 9999-11-10T06:00:00Z is more than 730 days ahead",
         ),
     ] {
         let answer = send(&ada, &csv, format!("{HEADER}{rows}")).await;

@@ -57,7 +57,7 @@ impl Shore {
 
     /// A database as the migrations before one left it, before the server opens it.
     pub(crate) async fn aged(engine: Engine, before: i64) -> Aged {
-        let database = Database::new(engine).await;
+        let database = Database::bare(engine).await;
         let db = Db::connect(&database.url).await.unwrap();
         let all = sqlx::migrate!("../migrations");
         let old = all.iter().filter(|migration| migration.version < before);

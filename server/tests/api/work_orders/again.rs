@@ -231,6 +231,18 @@ async fn a_compass_that_stands_against_the_field_is_not_confirmed(shore: Shore) 
     let words = said["words"].as_str().unwrap();
     assert!(words.starts_with("the compass read"), "{words}");
     assert_eq!(
+        said["could_be"][0],
+        "the compass was misread, or its heading mistyped"
+    );
+    // A mistake that explains both comes before what the compass alone could have.
+    let mut swapped = again.clone();
+    swapped["compass_deg"] = json!(compass_deg);
+    swapped["forward"] = again["starboard"].clone();
+    swapped["starboard"] = again["forward"].clone();
+    let said = job.post("/second-reading", &swapped).await.good()["second_reading"].clone();
+    assert_eq!(said["verdict"], "unexplained");
+    assert_eq!(said["could_be"][0], "the magnetometer's axes are swapped");
+    assert_eq!(
         job.post("/complete", &word()).await.problem(),
         "wrong-state"
     );

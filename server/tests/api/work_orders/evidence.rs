@@ -10,6 +10,7 @@ use ring::signature::{Ed25519KeyPair, KeyPair};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{Cursor, Read, Write};
+use uuid::Uuid;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -17,6 +18,7 @@ on_both!(
     each_entry_names_the_hash_of_the_one_before,
     only_a_picture_is_a_photograph,
     evidence_that_was_tampered_with_is_found_out,
+    the_record_can_be_had_in_each_form,
 );
 
 async fn each_entry_names_the_hash_of_the_one_before(shore: Shore) {
@@ -46,6 +48,50 @@ impl Job {
         let path = self.path("/photos?caption=trays");
         Answer::of(self.person.request(Method::POST, &path).body(bytes)).await
     }
+}
+
+async fn the_record_can_be_had_in_each_form(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let forms = [
+        ("pdf", "application/pdf"),
+        ("svg", "image/svg+xml"),
+        ("csv", "text/csv; charset=utf-8"),
+    ];
+    for (form, _) in forms {
+        let early = job.person.get(&job.path(&format!("/record.{form}"))).await;
+        assert_eq!(early.problem(), "wrong-state", "{form}");
+    }
+    job.complete().await;
+    let mut archive = ZipArchive::new(Cursor::new(job.evidence().await)).unwrap();
+    let mut file = |name: &str| {
+        let mut bytes = Vec::new();
+        archive
+            .by_name(name)
+            .unwrap()
+            .read_to_end(&mut bytes)
+            .unwrap();
+        bytes
+    };
+    for (form, kind) in forms {
+        let path = job.path(&format!("/record.{form}"));
+        let answer = job.person.request(Method::GET, &path).send().await.unwrap();
+        assert_eq!(answer.headers()["content-type"], kind);
+        let bytes = answer.bytes().await.unwrap();
+        match form {
+            "pdf" => assert_eq!(bytes, file("record.pdf")),
+            "csv" => assert_eq!(bytes, file("predicted.csv")),
+            _ => {
+                let text = String::from_utf8(bytes.to_vec()).unwrap();
+                assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
+                // Of each sheet, what it is.
+                let sheets = text.matches("<g transform").count();
+                assert!(sheets > 0, "{text}");
+                let says = text.matches("A prediction, and no certificate.").count();
+                assert_eq!(says, sheets);
+            }
+        }
+    }
+    shore.finish().await;
 }
 
 async fn only_a_picture_is_a_photograph(shore: Shore) {
@@ -91,10 +137,16 @@ fn unpacked(bytes: &[u8]) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
+/// As the server packs them.
 fn packed(files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
-    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
-    for (name, content) in files {
+    let stored = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .last_modified_time(zip::DateTime::default())
+        .unix_permissions(0o644);
+    let is_last = |name: &str| name == "manifest.json";
+    let (last, first): (Vec<_>, Vec<_>) = files.iter().partition(|(name, _)| is_last(name));
+    for (name, content) in first.into_iter().chain(last) {
         writer.start_file(name.as_str(), stored).unwrap();
         writer.write_all(content).unwrap();
     }
@@ -168,6 +220,132 @@ fn forgeries_are_found_out(files: &BTreeMap<String, Vec<u8>>) {
     }
 }
 
+/// The archive with a second entry of one name: the same file under another name as long,
+/// renamed in the octets.
+fn with_two_of(files: &BTreeMap<String, Vec<u8>>, name: &str, content: &[u8]) -> Vec<u8> {
+    let stand_in = "x".repeat(name.len());
+    let mut more = files.clone();
+    more.insert(stand_in.clone(), content.to_vec());
+    let mut bytes = packed(&more);
+    let stands_at = |bytes: &[u8]| {
+        let mut places = bytes.windows(name.len());
+        places.position(|found| found == stand_in.as_bytes())
+    };
+    while let Some(at) = stands_at(&bytes) {
+        bytes[at..at + name.len()].copy_from_slice(name.as_bytes());
+    }
+    bytes
+}
+
+/// What an unpacker shows and nobody checks.
+fn what_stands_beside_the_files_is_found_out(files: &BTreeMap<String, Vec<u8>>) {
+    let whole = packed(files);
+    assert_eq!(evidence::verify(&whole).problems, Vec::<String>::new());
+    for content in [b"%PDF-1.7 CERTIFICATE".as_slice(), &files["record.pdf"]] {
+        let twice = with_two_of(files, "record.pdf", content);
+        let problems = evidence::verify(&twice).problems;
+        assert!(
+            problems.iter().any(|problem| problem.contains("one name")),
+            "{problems:?}"
+        );
+    }
+    let junk = vec![b'j'; 5_000];
+    let before = [junk.clone(), whole.clone()].concat();
+    let behind = [whole.clone(), junk].concat();
+    let mut commented = whole.clone();
+    let length = commented.len() - 2;
+    commented[length] = 4;
+    commented.extend(b"seal");
+    // Stored with the time of another day.
+    let mut dated = whole;
+    dated[12] ^= 1;
+    for (how, bytes) in [
+        ("before", before),
+        ("behind", behind),
+        ("commented", commented),
+        ("dated", dated),
+    ] {
+        let problems = evidence::verify(&bytes).problems;
+        assert_eq!(problems.len(), 1, "{how}: {problems:?}");
+    }
+}
+
+/// The files with a log that was changed, its chain and the manifest put right.
+fn with_another_log(
+    files: &BTreeMap<String, Vec<u8>>,
+    change: &dyn Fn(&mut Vec<Value>),
+) -> BTreeMap<String, Vec<u8>> {
+    let text = String::from_utf8(files["entries.ndjson"].clone()).unwrap();
+    let texts: Vec<&str> = text.lines().collect();
+    let entries = texts.iter().map(|line| serde_json::from_str(line).unwrap());
+    let entries: Vec<Value> = entries.collect();
+    let mut changed = entries.clone();
+    change(&mut changed);
+    let (mut lines, mut previous) = (Vec::new(), Value::Null);
+    for (index, mut entry) in changed.into_iter().enumerate() {
+        entry["previous_sha256"] = previous;
+        let line = match entries.get(index) {
+            Some(same) if *same == entry => texts[index].to_owned(),
+            _ => entry.to_string(),
+        };
+        previous = json!(sha256_hex(line.as_bytes()));
+        lines.push(line);
+    }
+    let mut forged = files.clone();
+    let mut manifest: Value = serde_json::from_slice(&files["manifest.json"]).unwrap();
+    manifest["log"] = json!({ "entries": lines.len(), "last_sha256": previous });
+    let manifest = manifest.to_string().into_bytes();
+    forged.insert("manifest.json".to_owned(), manifest);
+    let log = format!("{}\n", lines.join("\n"));
+    forge(&mut forged, "entries.ndjson", log.into_bytes());
+    forged
+}
+
+/// What follows from the log alone is told as what the log says.
+fn what_no_signature_covers_is_told_as_such(files: &BTreeMap<String, Vec<u8>>) {
+    let with = |change: &dyn Fn(&mut Vec<Value>)| {
+        evidence::verify(&packed(&with_another_log(files, change)))
+    };
+    let found = with(&|log| {
+        let mut entry = log.last().unwrap().clone();
+        entry["seq"] = json!(log.len() + 1);
+        entry["kind"] = json!("verification");
+        entry["content"] = json!({ "words": "30 headings agree" });
+        log.push(entry);
+    });
+    assert_eq!(found.problems, Vec::<String>::new());
+    let told = "the log says, and no signature covers it: at sea, 30 headings agree";
+    assert!(found.facts.iter().any(|fact| fact == told), "{found:?}");
+    let found = with(&|log| {
+        log.last_mut().unwrap()["content"]["key"] = json!({
+            "id": Uuid::nil(), "name": "Head office", "firm_id": Uuid::nil(),
+            "firm_name": "Lloyd's",
+        });
+    });
+    assert_eq!(found.problems, Vec::<String>::new());
+    let told = "no signature covers it: Lloyd's had registered it as \"Head office\"";
+    assert!(
+        found.facts.iter().any(|fact| fact.contains(told)),
+        "{found:?}"
+    );
+    // One signature by this key fits every text.
+    let found = with(&|log| {
+        let content = &mut log.last_mut().unwrap()["content"];
+        content["public_key"] = json!(format!("01{}", "00".repeat(31)));
+        content["signature"] = json!(format!("01{}", "00".repeat(63)));
+    });
+    assert_eq!(found.problems.len(), 1, "{found:?}");
+    assert!(found.problems[0].contains("small order"), "{found:?}");
+    // Who completed it stands in the record too.
+    let found = with(&|log| {
+        let mut entries = log.iter_mut();
+        let completion = entries.find(|entry| entry["kind"] == "completion");
+        completion.unwrap()["content"]["adjuster_name"] = json!("A. N. Other");
+    });
+    assert_eq!(found.problems.len(), 1, "{found:?}");
+    assert!(found.problems[0].contains("another adjuster"), "{found:?}");
+}
+
 async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
     let job = Job::begin(&shore).await;
     job.photo(PICTURE).await.good();
@@ -192,6 +370,13 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
         job.post("/signatures", &signed(&wrong)).await.problem(),
         "invalid"
     );
+    let weak = json!({
+        "public_key": format!("01{}", "00".repeat(31)),
+        "signature": format!("01{}", "00".repeat(63)),
+    });
+    let refused = job.post("/signatures", &weak).await;
+    assert_eq!(refused.problem(), "invalid");
+    assert!(refused.text.contains("small order"), "{refused:?}");
     job.post("/signatures", &signed(&signature)).await.good();
 
     let whole = job.evidence().await;
@@ -237,6 +422,8 @@ async fn evidence_that_was_tampered_with_is_found_out(shore: Shore) {
     }
 
     forgeries_are_found_out(&files);
+    what_stands_beside_the_files_is_found_out(&files);
+    what_no_signature_covers_is_told_as_such(&files);
     assert!(!evidence::verify(b"not an archive").problems.is_empty());
     // A photograph that comes after the record is evidence, and nobody has signed it.
     job.photo(PICTURE).await.good();

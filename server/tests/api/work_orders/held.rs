@@ -4,12 +4,14 @@
 use super::{AT, Job, read_again, reading, word};
 use crate::binnacles::{binnacle, put};
 use crate::on_both;
-use crate::support::{Person, Shore};
+use crate::support::{Answer, Person, Shore};
 use serde_json::{Value, json};
 
 on_both!(
     a_compass_that_turned_by_itself_is_not_read_for_a_step,
     a_binnacle_written_meanwhile_is_noticed,
+    cargo_that_is_logged_after_the_reading_holds_the_work_back,
+    cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading,
     an_adjustment_is_not_dated_before_its_steps,
     a_prediction_that_nothing_proved_does_not_count_as_fresh,
 );
@@ -62,6 +64,72 @@ async fn a_binnacle_written_meanwhile_is_noticed(shore: Shore) {
     let refused = put(&job.person, &path, &binnacle()).await;
     assert_eq!(refused.problem(), "wrong-state");
     assert!(refused.text.contains("is being adjusted"), "{refused:?}");
+    shore.finish().await;
+}
+
+impl Job {
+    /// Where the logbook's new entry of magnetic cargo is withdrawn.
+    async fn load_steel(&self, from: &str) -> String {
+        let steel = json!({ "kind": "magnetic_cargo", "from": from });
+        let logbook = self.ship.path("/logbook");
+        let entry = self.person.post(&logbook, &steel).await.good();
+        format!("{logbook}/{}/withdraw", entry["id"].as_str().unwrap())
+    }
+
+    async fn withdraw(&self, path: &str) {
+        let reason = json!({ "reason": "another ship" });
+        self.person.post(path, &reason).await.good();
+    }
+}
+
+async fn cargo_that_is_logged_after_the_reading_holds_the_work_back(shore: Shore) {
+    let since = "2026-11-21T06:45:00Z";
+    let job = Job::begin(&shore).await;
+    job.post("/berth-reading", &reading()).await.good();
+    let held = |answer: Answer| {
+        assert_eq!(answer.problem(), "wrong-state");
+        for words in [
+            "magnetic cargo on board since 2026-11-21 06:45 UTC",
+            "withdraw",
+        ] {
+            assert!(answer.text.contains(words), "{answer:?}");
+        }
+    };
+    let steel = job.load_steel(since).await;
+    held(job.person.get(&job.path("/plan")).await);
+    held(job.post("/plan", &json!({})).await);
+    job.withdraw(&steel).await;
+    let order = job.post("/plan", &json!({})).await.good();
+    let steel = job.load_steel(since).await;
+    let step = &order["next_step"];
+    let path = format!("/steps/{}", step["number"]);
+    let after = json!({ "after_deg": step["expected_compass_deg"] });
+    held(job.post(&path, &after).await);
+    job.withdraw(&steel).await;
+    let order = job.follow_a_plan().await;
+    let steel = job.load_steel(since).await;
+    let again = read_again(&order["plan"]["plan"]["setting"]);
+    held(job.post("/second-reading", &again).await);
+    held(job.post("/complete", &word()).await);
+    job.withdraw(&steel).await;
+    job.post("/complete", &word()).await.good();
+    shore.finish().await;
+}
+
+async fn cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    let steel = job.load_steel("2026-11-21T06:00:00Z").await;
+    job.post("/berth-reading", &reading()).await.good();
+    assert_eq!(
+        job.post("/plan", &json!({})).await.problem(),
+        "not-adjustable"
+    );
+    job.withdraw(&steel).await;
+    let held = job.post("/plan", &json!({})).await;
+    assert_eq!(held.problem(), "wrong-state");
+    assert!(held.text.contains("read the berth again"), "{held:?}");
+    job.post("/berth-reading", &reading()).await.good();
+    job.post("/plan", &json!({})).await.good();
     shore.finish().await;
 }
 

@@ -7,6 +7,7 @@ mod evidence;
 mod held;
 mod limits;
 mod refusals;
+mod strength;
 mod way;
 
 use crate::binnacles::{binnacle, put};
@@ -44,15 +45,15 @@ impl Job {
     }
 
     async fn of(shore: &Shore, person: Person) -> Job {
+        Job::aboard(shore, person, &truth()).await
+    }
+
+    /// The same aboard a ship of this magnetism.
+    async fn aboard(shore: &Shore, person: Person, truth: &Model) -> Job {
         let ship = shore.ship(&person, "Nao").await;
-        let mut samples = days_at_sea(&truth(), "2026-11-01T00:00:00Z", 10.0);
-        samples.extend(days_in(
-            (10.0, -25.0),
-            &truth(),
-            "2026-11-11T00:00:00Z",
-            5.0,
-        ));
-        samples.extend(days_at_sea(&truth(), "2026-11-16T00:00:00Z", 4.0));
+        let mut samples = days_at_sea(truth, "2026-11-01T00:00:00Z", 10.0);
+        samples.extend(days_in((10.0, -25.0), truth, "2026-11-11T00:00:00Z", 5.0));
+        samples.extend(days_at_sea(truth, "2026-11-16T00:00:00Z", 4.0));
         ship.put(1, &samples).await.good();
         shore.advance(60.0);
         shore.work().await;
@@ -75,7 +76,7 @@ impl Job {
     fn new_order(&self) -> Value {
         json!({
             "vessel_id": self.ship.id, "compass_id": self.compass, "port": "Bilbao",
-            "berth": "A5", "planned_at": "2026-11-21T06:00:00Z",
+            "berth": "A5", "planned_at": "2026-11-21T09:00:00Z",
             "adjuster_name": "M. Etxeberria",
         })
     }
@@ -198,8 +199,13 @@ fn at_berth() -> (f64, EarthField) {
 
 /// What a good magnetometer reads aboard the ship of these tests.
 pub(crate) fn reading() -> Value {
+    reading_aboard(&truth())
+}
+
+/// The same aboard a ship of this magnetism.
+fn reading_aboard(ship: &Model) -> Value {
     let (magnetic_deg, earth) = at_berth();
-    let parameters = truth().parameters_over_lambda;
+    let parameters = ship.parameters_over_lambda;
     let u = parameters.field_over_lambda(magnetic_deg.to_radians(), earth);
     let [forward, starboard] = u.map(|part| LAMBDA * part / 1000.0);
     // A compass points along the field.

@@ -2,7 +2,7 @@
 
 use super::{Job, LAMBDA, foretold, reading, word};
 use crate::on_both;
-use crate::support::Shore;
+use crate::support::{Shore, days_at_sea};
 use serde_json::{Value, json};
 
 on_both!(
@@ -125,5 +125,17 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(shore: Shore) {
     assert_eq!(cause["due_on"], "2026-12-22");
     let reason = cause["reason"].as_str().unwrap();
     assert!(reason.contains("failed: headings are"), "{reason}");
+    // To file it away changes nothing of that: the next analysis still raises the alert.
+    job.post("/close", &json!({ "text": "filed" })).await.good();
+    let after = job.person.get("/needs").await.good();
+    assert_eq!(after["items"][0]["causes"], needs["items"][0]["causes"]);
+    let more = days_at_sea(&ship, "2026-11-23T12:00:00Z", 1.0);
+    job.send(&shore, 3, &more, 1.0).await;
+    let alerts = job.open_alerts().await;
+    let causes: Vec<&Value> = alerts.iter().map(|alert| &alert["cause"]).collect();
+    assert!(
+        causes.contains(&&json!("adjustment_not_confirmed")),
+        "{causes:?}"
+    );
     shore.finish().await;
 }
