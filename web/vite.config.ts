@@ -11,14 +11,16 @@ export default defineConfig({
     target: 'es2022',
     // The content security policy allows nothing but files of our own.
     assetsInlineLimit: 0,
+    // Few files rather than small ones: see below.
+    cssCodeSplit: false,
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 400,
     rolldownOptions: {
+      // A text that nobody shows on a page is no reason to load its file.
+      treeshake: { moduleSideEffects: [{ test: /src.text./, sideEffects: false }] },
       output: {
         // Without the list of pages that share it.
         chunkFileNames: ({ name }) => `assets/${name.replace(/~.*/, '')}-[hash].js`,
-        assetFileNames: ({ names: [name = ''] }) =>
-          `assets/${name.replace(/~.*\./, '.')}`.replace(/(\.\w+)$/, '-[hash]$1'),
         // A link with 1,500 ms to and fro asks for few files rather than for small ones.
         codeSplitting: {
           groups: [

@@ -1,6 +1,13 @@
 /** What several scenarios do. */
 import assert from 'node:assert/strict';
 
+/** Working time of a firm that can be asked for whatever day and hour the tests run at. */
+export const atAnyHour = {
+  working_days: ['Mon', 'Tue', 'Wed', 'Thu', 'Fri', 'Sat', 'Sun'],
+  first_hour: 0,
+  last_hour: 24,
+};
+
 export const phone = { width: 390, height: 844 };
 /** Chromium reports every 4xx answer in the console; these are asked for. */
 export const notSignedIn = /status of 401 .*\/api\/v1\/me\b/;

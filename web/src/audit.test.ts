@@ -2,7 +2,7 @@ import { readFileSync } from 'node:fs';
 import { describe, expect, it } from 'vitest';
 import type { AuditLine } from './api/types';
 import { actor, actors, auditCsvPath, auditQuery, deed, everything, result, routes } from './audit';
-import { text } from './text';
+import * as text from './text';
 
 const line = (of: Partial<AuditLine>): AuditLine => ({
   id: 'l1',

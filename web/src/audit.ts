@@ -1,7 +1,7 @@
 /** Lines of the audit log as people read them, and what to ask for. Pure functions. */
 
 import type { AuditLine } from './api/types';
-import { text } from './text';
+import * as text from './text';
 
 const t = text.audit;
 const beginning = '/api/v1';

@@ -5,7 +5,7 @@
 
 import type { Binnacle, BinnacleDesign, CorrectorSetting } from './api/types';
 import { number } from './orders/reading';
-import { text } from './text';
+import * as text from './text';
 
 /** What stands in the fields. */
 export interface BinnacleDraft {

@@ -5,7 +5,7 @@
 
 import type { Change, ChangeCause, DeviationRow, Epoch, LogbookEntry, Timeline } from './api/types';
 import { signed, time } from './format';
-import { text } from './text';
+import * as text from './text';
 import { withoutItsDay, type At } from './whereabouts';
 
 /** A line of the timeline. */

@@ -15,7 +15,7 @@ import {
   newDraft,
   period,
 } from './logbook';
-import { text } from './text';
+import * as text from './text';
 
 const scrap: LogbookEntry = {
   id: 'e1',

@@ -5,7 +5,7 @@
 
 import type { CargoKind, LogbookEntry, LogbookKind, NewEntry } from './api/types';
 import { time } from './format';
-import { text } from './text';
+import * as text from './text';
 import { fromTo, type At } from './whereabouts';
 
 /** What stands in the fields; an empty one is no value. */

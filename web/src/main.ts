@@ -2,7 +2,7 @@ import { mount } from 'svelte';
 import App from './App.svelte';
 import './app.css';
 import { keepFiles } from './offline';
-import { text } from './text';
+import * as text from './text';
 
 const target = document.getElementById('app');
 if (!target) throw new Error(text.noMountPoint);

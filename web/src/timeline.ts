@@ -7,7 +7,7 @@ import type { LogbookEntry, PortCall, Timeline } from './api/types';
 import { isTheShips, when } from './changes';
 import { count, day, degrees, time } from './format';
 import { details, isOpen, period } from './logbook';
-import { text } from './text';
+import * as text from './text';
 import type { At } from './whereabouts';
 
 export interface Range {
@@ -94,7 +94,9 @@ function changeMarks({ changes }: Timeline, at: At): Mark[] {
         ? text.changes.deviation(degrees(Math.abs(change.deviation_change_deg)))
         : isTheShips(change)
           ? ''
-          : text.changes.notHers,
+          : change.confirmed || change.withdrawn
+            ? text.changes.notHers
+            : text.changes.perhapsNotHers,
     at: '#changes',
     grave: isTheShips(change),
   }));

@@ -350,8 +350,11 @@ export const adjusting = {
         await asked.getByText('your firm has it').waitFor();
         await chat.getByText('A gangway; the mate meets you.').waitFor();
         await other.getByRole('group', { name: 'Show' }).getByText('At the binnacle').click();
+        const sent = other.waitForResponse((answer) => answer.url().endsWith('/on-board'));
         await other.getByRole('button', { name: 'I am on board' }).click();
         await other.getByRole('heading', { name: 'Read the field' }).waitFor();
+        // The page goes on before it is sent; this one is closed soon.
+        await sent;
         await fitsItsWidth(other);
         await other.screenshot({ path: `${settings.artefacts}browser-firm-on-board-phone.png` });
       } finally {

@@ -10,7 +10,7 @@ import {
 import { readFile } from 'node:fs/promises';
 import { encode } from 'uqr';
 import { findings } from '../axe.mjs';
-import { fitsItsWidth, notSignedIn, phone, signIn, struck } from '../helpers.mjs';
+import { atAnyHour, fitsItsWidth, notSignedIn, phone, signIn, struck } from '../helpers.mjs';
 
 /** RFC 6238 with what authenticator apps use: SHA-1, 30 s, six digits. */
 function codeNow(secret) {
@@ -270,6 +270,13 @@ export const people = {
       const headers = { 'X-Binnacle-Request': '1' };
       const { items: firms } = await (await theirs.request.get('/api/v1/firms')).json();
       const firm = firms.find(({ name }) => name === 'Ibaizabal Compass');
+      const ports = [{ port: 'NLRTM', travel_eur: 100 }];
+      const terms = { fee_eur: 1800, ports, ...atAnyHour };
+      const said = await theirs.request.put(`/api/v1/firms/${firm.id}/terms`, {
+        headers,
+        data: terms,
+      });
+      assert.ok(said.ok(), await said.text());
       const before = await (
         await theirs.request.get(`/api/v1/work-orders?vessel=${vessel.id}`)
       ).json();

@@ -1,7 +1,15 @@
 /** The schedule: calls entered, the plan made, a job pinned, dragged and offered. */
 import assert from 'node:assert/strict';
 import { findings } from '../axe.mjs';
-import { fitsItsWidth, notSignedIn, phone, signIn, signInAs, struck } from '../helpers.mjs';
+import {
+  atAnyHour,
+  fitsItsWidth,
+  notSignedIn,
+  phone,
+  signIn,
+  signInAs,
+  struck,
+} from '../helpers.mjs';
 
 const hourMs = 3_600_000;
 const dayMs = 24 * hourMs;
@@ -20,8 +28,8 @@ async function good(answer) {
   return text === '' ? null : JSON.parse(text);
 }
 
-/** Terms of two firms, the cheaper of which serves Rotterdam only. */
-async function firmsHaveTerms(page) {
+/** Terms of two firms, the cheaper of which serves Rotterdam only; `more` is added to both. */
+async function firmsHaveTerms(page, more = {}) {
   const { items } = await good(page.request.get('/api/v1/firms'));
   assert.ok(items.length >= 2, 'the operator works with no two firms');
   const ports = [
@@ -32,7 +40,7 @@ async function firmsHaveTerms(page) {
     ],
   ];
   for (const [n, firm] of items.slice(0, 2).entries()) {
-    const data = { fee_eur: 1800 + 100 * n, ports: ports[n] };
+    const data = { fee_eur: 1800 + 100 * n, ports: ports[n], ...more };
     await good(page.request.put(`/api/v1/firms/${firm.id}/terms`, { ...written, data }));
   }
 }
@@ -247,7 +255,7 @@ export const schedule = {
     allowedErrors: [notSignedIn],
     async run({ page, context, settings, shoot }) {
       await signIn(page, settings);
-      await firmsHaveTerms(page);
+      await firmsHaveTerms(page, atAnyHour);
       const { call, order, name } = await offered(page);
       await page.goto(`/work-orders/${order}`);
       await page.getByRole('heading', { name: `${name}: adjustment`, level: 1 }).waitFor();

@@ -4,7 +4,7 @@
  */
 
 import createClient from 'openapi-fetch';
-import { text } from '../text';
+import * as text from '../text';
 import { noteServerTime } from './clock';
 import { Problem, readProblem } from './problem';
 import type { paths } from './schema';

@@ -3,7 +3,7 @@
  * fields as its document does (`steps[2].reading_ut`), for programs.
  */
 
-import { text } from '../text';
+import * as text from '../text';
 
 const t = text.fields;
 

@@ -1,6 +1,6 @@
 /** What went wrong with a call, as RFC 9457 problem documents say it. */
 
-import { text } from '../text';
+import * as text from '../text';
 import { invalidInWords } from './invalid';
 import type { AdjustmentRefusal, CardWithdrawn, LeftOut, Refusal } from './types';
 

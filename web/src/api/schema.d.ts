@@ -889,7 +889,8 @@ export interface paths {
          * @description The first line names the columns: `vessel` (id, IMO number or name), `port`, `eta`,
          *     `etd`, and if wanted `id`, `berth`, `eta_uncertainty_h`, `etd_uncertainty_h`,
          *     `berth_heading_deg`. A call is known by its `id`; one without is called after its port
-         *     and ETA. The file is taken whole or not at all: 8 MiB and 50,000 calls at most.
+         *     and ETA. Calls that are over are passed by. The file is taken whole or not at all: 8 MiB and
+         *     50,000 calls at most.
          */
         post: operations["upload_fleet_csv"];
         delete?: never;
@@ -1047,7 +1048,7 @@ export interface paths {
         /**
          * Offer a planned job to its firm
          * @description Writes a work order for each compass of the job. From then on the plan keeps the job
-         *     where it is unless there is cause.
+         *     where it is unless there is cause. An order that every firm declined is cancelled for it.
          */
         post: operations["offer_job"];
         delete?: never;
@@ -2083,8 +2084,8 @@ export interface paths {
         /**
          * Send a calendar of a vessel's port calls
          * @description iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND`
-         *     its ETA and ETD, and its port the first UN/LOCODE in `X-UNLOCODE`, `LOCATION` or
-         *     `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
+         *     its ETA and ETD, and its port the UN/LOCODE of `X-UNLOCODE`, that or the name in
+         *     `LOCATION`, or without either the UN/LOCODE behind "at" in `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
          */
         post: operations["upload_ics"];
         delete?: never;
@@ -2742,6 +2743,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-orders/{id}/record.csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * The residuals that an adjustment record foretells, as CSV
+         * @description A line for each place and compass heading, with the 95 % band.
+         */
+        get: operations["tabulate_record"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/work-orders/{id}/record.json": {
         parameters: {
             query?: never;
@@ -2754,6 +2775,47 @@ export interface paths {
          * @description The very octets that a firm's key signs the hash of.
          */
         get: operations["find_record"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/record.pdf": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Print the adjustment record
+         * @description The sheets that the evidence holds, drawn from `record.json`. A prediction, not a
+         *     certificate.
+         */
+        get: operations["print_record"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/work-orders/{id}/record.svg": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Draw the adjustment record
+         * @description The sheets of `record.pdf` as one picture, one below the other.
+         */
+        get: operations["draw_record"];
         put?: never;
         post?: never;
         delete?: never;
@@ -4890,7 +4952,7 @@ export interface components {
             last_hour?: number;
             /**
              * Format: double
-             * @description Hours from being asked to the beginning of the day of the job.
+             * @description Hours from being asked to the beginning of the job.
              */
             lead_time_h?: number;
             /** @description Licences that it holds. */
@@ -6702,7 +6764,8 @@ export interface components {
             from: components["schemas"]["Time"];
             /**
              * @description Orders under way that say something else: they are to be cancelled, or moved by
-             *     agreement, before this can be offered.
+             *     agreement, before this can be offered. Those that every firm declined are cancelled
+             *     when it is.
              */
             instead_of: components["schemas"]["OrderId"][];
             /**
@@ -6924,7 +6987,7 @@ export interface components {
             amended: number;
             /** @description Calls that were not known. */
             created: number;
-            /** @description Calls of a calendar that are over, and were passed by. */
+            /** @description Calls that are over, and were passed by. */
             over: number;
             /** @description Calls that say what they said. */
             unchanged: number;
@@ -7358,6 +7421,8 @@ export interface components {
             order_id: components["schemas"]["OrderId"];
             /** @description The port. */
             port: string;
+            /** @description Whether it spared the ship a swing: not if headings at sea speak against it. */
+            spared_swing: boolean;
             /** @description What has become of it. */
             state: components["schemas"]["WorkOrderState"];
             /** @description The vessel. */
@@ -7382,7 +7447,8 @@ export interface components {
         ReportSaved: {
             /**
              * Format: double
-             * @description What the fees of these jobs come to, as far as they are known, euros.
+             * @description What the fees of all jobs come to, as far as they are known, euros: those that the
+             *     sea does not confirm were paid for too.
              */
             fees_eur: number;
             /**
@@ -7410,7 +7476,12 @@ export interface components {
              * @description How long it takes, hours, by the operator's settings.
              */
             swing_h: number;
-            /** @description How many of these jobs have no fee that is known. */
+            /**
+             * @description The swings that they spared: one for all compasses of a ship that were adjusted at
+             *     one visit.
+             */
+            swings: number;
+            /** @description How many of all jobs have no fee that is known. */
             without_fee: number;
         };
         /**
@@ -13864,6 +13935,11 @@ export interface operations {
                 settings?: number;
                 /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
                 form?: number;
+                /**
+                 * @description So many seconds at most, and no more than 55, the answer to a batch may wait for the
+                 *     analysis of its samples, and then tells what that found: of the last batch for now.
+                 */
+                wait?: number;
             };
             header?: never;
             path: {
@@ -13956,6 +14032,11 @@ export interface operations {
                 settings?: number;
                 /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
                 form?: number;
+                /**
+                 * @description So many seconds at most, and no more than 55, the answer to a batch may wait for the
+                 *     analysis of its samples, and then tells what that found: of the last batch for now.
+                 */
+                wait?: number;
             };
             header?: never;
             path: {
@@ -20618,6 +20699,64 @@ export interface operations {
             };
         };
     };
+    tabulate_record: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no record yet */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     find_record: {
         parameters: {
             query?: never;
@@ -20636,6 +20775,122 @@ export interface operations {
                 };
                 content: {
                     "application/json": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no record yet */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    print_record: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/pdf": number[];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Not Found */
+            404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description There is no record yet */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    draw_record: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["schemas"]["OrderId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "image/svg+xml": string;
                 };
             };
             /** @description Unauthorized */

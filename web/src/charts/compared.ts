@@ -5,7 +5,7 @@ import type { DeviationRow } from '../api/types';
 import type { Pair } from '../changes';
 import { compassPoint, eastWest, heading, plusMinus } from '../format';
 import { closed } from '../science/curve';
-import { text } from '../text';
+import * as text from '../text';
 import { colours, comparedHeight, sideTick, spanned } from './common';
 
 const low = (row: DeviationRow) => row.deviation_deg - (row.band95_deg ?? 0);

@@ -4,7 +4,7 @@ import * as Plot from '@observablehq/plot';
 import type { DeviationRow } from '../api/types';
 import { compassPoint, eastWest, fineHeading, heading, plusMinus } from '../format';
 import { closed } from '../science/curve';
-import { text } from '../text';
+import * as text from '../text';
 import { colours, deviationHeight, sideTick, spanned } from './common';
 import { crosses, dots as dotted } from './dots';
 

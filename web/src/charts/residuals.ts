@@ -3,7 +3,7 @@
 import * as Plot from '@observablehq/plot';
 import { day } from '../format';
 import type { Interval, Residual } from '../science/residuals';
-import { text } from '../text';
+import * as text from '../text';
 import type { Mark, Range } from '../timeline';
 import { colours, residualsHeight, sideTick, spanned } from './common';
 import { crosses, dots } from './dots';

@@ -269,6 +269,6 @@ describe('the timeline', () => {
     };
     const said = shown({ ...calm, changes: [fault] });
     expect(said).toContain('Gyro or satellite compass at fault not certain yet over since 9 Nov');
-    expect(said).toContain('The ship’s own magnetism did not change.');
+    expect(said).toContain('As far as can be told yet, the ship’s own magnetism did not change.');
   });
 });

@@ -5,7 +5,7 @@
 
 import type { BerthReading, SecondReading } from '../api/types';
 import { field, instant } from '../logbook';
-import { text } from '../text';
+import * as text from '../text';
 import { headingOf, number, type ReadingDraft } from './reading';
 
 /** What stands in the fields; an empty one is no value. */

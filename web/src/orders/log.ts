@@ -2,7 +2,7 @@
 
 import type { WorkOrderEntry, WorkOrderTerms } from '../api/types';
 import { degrees, fineHeading } from '../format';
-import { text } from '../text';
+import * as text from '../text';
 import { feeInWords, termsInWords } from './terms';
 
 interface Line {

@@ -1,7 +1,7 @@
 /** What people need to know of an order's state. Pure. */
 
 import type { WorkOrderCallFit, WorkOrderState, WorkOrderSummary } from '../api/types';
-import { text } from '../text';
+import * as text from '../text';
 
 /** States in which nothing is left to be done. */
 const done = ['closed', 'cancelled'];

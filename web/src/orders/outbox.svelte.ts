@@ -10,7 +10,7 @@ import { newKey } from '../api/client';
 import { sendWrite } from '../api/orders';
 import { asProblem, Problem } from '../api/problem';
 import type { WorkOrder } from '../api/types';
-import { text } from '../text';
+import * as text from '../text';
 import { openShelf, type Shelf } from './shelf';
 import { bearsOut, builtOn, isRefusal, nextToSend, type Content, type Write } from './writes';
 
@@ -184,7 +184,7 @@ export class Outbox {
 
   /** What was built upon a write that did not hold waits for a person. */
   async #hold(failed: Write): Promise<void> {
-    const detail = text.berth.superseded;
+    const detail = text.problem.superseded;
     for (const write of builtOn(this.writes, failed)) {
       await this.#refuse(write, { status: 0, kind: 'superseded', detail, refusals: [] });
     }

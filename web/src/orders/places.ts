@@ -1,7 +1,7 @@
 /** Where a corrector stands, in the words that an adjuster looks for. Pure. */
 
 import type { BinnacleDesign, CorrectorPlace, CorrectorSetting, PlanStep } from '../api/types';
-import { text } from '../text';
+import * as text from '../text';
 
 /** A place: where, what of it, and the way the red ends point. */
 export interface Written {

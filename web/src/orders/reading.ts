@@ -6,7 +6,7 @@
 import type { BerthReading } from '../api/types';
 import { latitude, longitude, parseAngle } from '../format';
 import { field, instant } from '../logbook';
-import { text } from '../text';
+import * as text from '../text';
 
 /** What stands in the fields; an empty one is no value. */
 export interface ReadingDraft {

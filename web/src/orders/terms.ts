@@ -2,7 +2,7 @@
 
 import type { WorkOrderTerms } from '../api/types';
 import { count, time } from '../format';
-import { text } from '../text';
+import * as text from '../text';
 
 const mostEuros = 1_000_000;
 

@@ -1,7 +1,7 @@
 /** A plan as people look at it: a row for each vessel, what changed, what it costs. */
 
 import type { AdjustmentNeed, PlanChange, PlannedJob, PortCall, SchedulePlan } from '../api/types';
-import { text } from '../text';
+import * as text from '../text';
 
 /** A vessel of the schedule: when she is in port, what is planned and what is due. */
 export interface Row {

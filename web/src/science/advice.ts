@@ -2,7 +2,7 @@
 
 import type { Advice, Band, HeadingRange, SailNext } from '../api/types';
 import { degrees, heading, plusMinus } from '../format';
-import { text } from '../text';
+import * as text from '../text';
 import { magneticLatitude } from './coverage';
 
 const t = text.sailNext;

@@ -1,7 +1,7 @@
 /** Coverage as a table: bands of magnetic latitude by sectors of heading. */
 
 import type { Coverage } from '../api/types';
-import { text } from '../text';
+import * as text from '../text';
 
 export interface CoverageTable {
   headings: number[];

@@ -2,7 +2,7 @@
 
 import type { LeftOut, Refusal } from '../api/types';
 import { count, degrees, heading, microtesla } from '../format';
-import { text } from '../text';
+import * as text from '../text';
 
 export interface RefusalWords {
   missing: string;

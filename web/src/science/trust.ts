@@ -2,7 +2,7 @@
 
 import type { Caution, DeviationRow, Model, References } from '../api/types';
 import { count, day, degrees, heading, microtesla } from '../format';
-import { text } from '../text';
+import * as text from '../text';
 import { size } from './advice';
 import { normal95 } from './band';
 import { magneticLatitude } from './coverage';

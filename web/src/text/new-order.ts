@@ -1,0 +1,25 @@
+/** Ordering an adjustment by hand. */
+
+export const newOrder = {
+  title: 'Order an adjustment',
+  lead: 'For one compass, at one berth. What the adjuster does there follows on the order’s own page, on a phone too.',
+  back: 'All work orders',
+  choose: 'Choose…',
+  port: 'Port',
+  berth: 'Berth',
+  planned: 'When',
+  adjuster: 'Adjuster',
+  licence: 'Licence number',
+  firm: 'Firm',
+  submit: 'Order it',
+  busy: 'Ordering…',
+  vesselMissing: 'Choose a vessel.',
+  portMissing: 'Say in which port.',
+  plannedMissing: 'Say when, as a day and an hour in UTC.',
+  underWay: 'This compass has an order under way already.',
+  toIt: 'See it',
+  needs: 'Before it can be adjusted, this compass still needs:',
+  needsModel: 'a model: it comes with ordinary sailing',
+  needsBinnacle: 'its binnacle, with the correctors on board and how they stand',
+  toBinnacle: 'Put it in',
+};
