@@ -73,7 +73,9 @@ class Binnacle:
             except urllib.error.HTTPError as error:
                 if error.code < 500 or attempt == self.tries:
                     raise Refused(problem_of(error)) from error
-            except urllib.error.URLError:
+            except (OSError, http.client.HTTPException):
+                # Also where the connection breaks while the answer is read: what is sent again
+                # under its key is written once.
                 if attempt == self.tries:
                     raise
             time.sleep(2**attempt)
