@@ -2,9 +2,9 @@
 
 use super::change::Change;
 use super::entry::Content;
-use super::offering::ask_next;
 use super::offers::{Between, OfferState};
 use super::store;
+use super::turns::ask_next;
 use crate::app::App;
 use crate::error::Result;
 use crate::ids::{OrderId, VesselId};

@@ -44,6 +44,7 @@ mod second;
 mod standing;
 mod steps;
 mod store;
+mod turns;
 mod verification;
 mod view;
 mod whereabouts;

@@ -7,11 +7,12 @@
 use super::change::Change;
 use super::entry::Content;
 use super::moved::CallFit;
-use super::offering::{Answer, LONGEST_H, answer_by, checked_terms, must_have_room, two_days};
+use super::offering::{Answer, LONGEST_H, checked_terms, must_have_room, two_days};
 use super::offers::{Asked, Between, Offer, Terms};
 use super::order::{Order, State};
 use super::place;
 use super::store;
+use super::turns::answer_by;
 use super::{request, shown};
 use crate::access::{PartyWriter, Writer};
 use crate::app::App;
