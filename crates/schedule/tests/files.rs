@@ -186,14 +186,16 @@ fn a_calendars_times_are_taken_in_their_zone_summer_and_winter() {
     );
 }
 
+/// The port of a call of which a calendar says `more`, or what is wrong.
+fn port_of(more: &str) -> Result<String, String> {
+    let text = calendar("DTSTART:20270701T060000Z", END, more);
+    ics::read(&text, "v", now())
+        .map(|calendar| calendar.calls[0].call.port.to_string())
+        .map_err(|error| error.to_string())
+}
+
 #[test]
 fn a_port_is_found_by_code_or_by_a_name_that_only_one_has() {
-    let port_of = |more: &str| {
-        let text = calendar("DTSTART:20270701T060000Z", END, more);
-        ics::read(&text, "v", now())
-            .map(|calendar| calendar.calls[0].call.port.to_string())
-            .map_err(|error| error.to_string())
-    };
     assert_eq!(
         port_of("SUMMARY:Call at ES BIO\\, berth 3").unwrap(),
         "ESBIO"
@@ -223,12 +225,6 @@ fn a_port_is_found_by_code_or_by_a_name_that_only_one_has() {
 /// CLARA and GRAND are codes of ports in Chile and Greece.
 #[test]
 fn a_ships_name_and_a_part_of_a_ports_name_are_no_port() {
-    let port_of = |more: &str| {
-        let text = calendar("DTSTART:20270701T060000Z", END, more);
-        ics::read(&text, "v", now())
-            .map(|calendar| calendar.calls[0].call.port.to_string())
-            .map_err(|error| error.to_string())
-    };
     assert_eq!(
         port_of("SUMMARY:CLARA MAERSK at Bilbao\r\nLOCATION:Bilbao").unwrap(),
         "ESBIO"

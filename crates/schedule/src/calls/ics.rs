@@ -1,8 +1,8 @@
 //! Port calls from iCalendar (RFC 5545), as agents and fleet programs export them.
 //!
 //! A `VEVENT` is a call: `UID` its name, `DTSTART` the ETA, `DTEND` the ETD; its port is
-//! that of `X-UNLOCODE`, of `LOCATION`, or without either of `SUMMARY`. Such programs export what is over and what is
-//! cancelled as well: neither is a call, and both are told.
+//! that of `X-UNLOCODE`, of `LOCATION`, or without either of `SUMMARY`. Such programs
+//! export what is over and what is cancelled as well: neither is a call, and both are told.
 //!
 //! What always holds: a time is taken only where the file says in which zone it is:
 //! UTC, or a `VTIMEZONE` of one offset or of yearly rules; floating times, whole days and

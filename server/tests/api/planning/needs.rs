@@ -3,7 +3,8 @@
 use super::{due_vessel, enter, put};
 use crate::logbook::A_WHILE_S;
 use crate::on_both;
-use crate::support::{Person, Shore, days_at_sea, truth};
+use crate::support::{Person, Ship, Shore, days_at_sea, truth};
+use binnacle_magnetics::model::Model;
 use binnacle_server::notifications::look;
 use serde_json::{Value, json};
 
@@ -138,22 +139,29 @@ async fn what_is_planned_has_not_happened(shore: Shore) {
     shore.finish().await;
 }
 
-/// Two weeks from the day on which it was first seen, not from each day anew.
-async fn deviation_over_its_limit_becomes_overdue(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let mut astray = truth();
-    astray.parameters_over_lambda.bx_nt += 3_000.0;
-    let samples = days_at_sea(&astray, "2026-11-10T00:00:00Z", 6.0);
+/// An Australian ship with a kept record of deviation and some days at sea, and how she is
+/// shown. However wide her band may be, no alert comes of it.
+async fn australian(shore: &Shore, ada: &Person, truth: &Model) -> (Ship, Value) {
+    let nao = shore.ship(ada, "Nao").await;
+    let samples = days_at_sea(truth, "2026-11-10T00:00:00Z", 6.0);
     nao.put(1, &samples).await.good();
     shore.advance(A_WHILE_S);
     shore.work().await;
     let vessel = ada.get(&nao.path("")).await.good();
     let mut settings = ada.get(&nao.path("/settings")).await.good();
     settings["alerts"]["band95_deg"] = json!(45.0);
-    put(&ada, &nao.path("/settings"), &settings).await.good();
+    put(ada, &nao.path("/settings"), &settings).await.good();
     let known = json!({ "flag_state": "AU", "deviation_record": "kept" });
-    put(&ada, &nao.path("/particulars"), &known).await.good();
+    put(ada, &nao.path("/particulars"), &known).await.good();
+    (nao, vessel)
+}
+
+/// Two weeks from the day on which it was first seen, not from each day anew.
+async fn deviation_over_its_limit_becomes_overdue(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let mut astray = truth();
+    astray.parameters_over_lambda.bx_nt += 3_000.0;
+    let (nao, vessel) = australian(&shore, &ada, &astray).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2026-11-01T08:00:00Z" });
     ada.post(&nao.path("/logbook"), &adjusted).await.good();
     look(&shore.app).await.unwrap();
@@ -174,17 +182,7 @@ async fn deviation_over_its_limit_becomes_overdue(shore: Shore) {
 
 async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(shore: Shore) {
     let ada = shore.admin("ada").await;
-    let nao = shore.ship(&ada, "Nao").await;
-    let samples = days_at_sea(&truth(), "2026-11-10T00:00:00Z", 6.0);
-    nao.put(1, &samples).await.good();
-    shore.advance(A_WHILE_S);
-    shore.work().await;
-    let vessel = ada.get(&nao.path("")).await.good();
-    let mut settings = ada.get(&nao.path("/settings")).await.good();
-    settings["alerts"]["band95_deg"] = json!(45.0);
-    put(&ada, &nao.path("/settings"), &settings).await.good();
-    let known = json!({ "flag_state": "AU", "deviation_record": "kept" });
-    put(&ada, &nao.path("/particulars"), &known).await.good();
+    let (nao, vessel) = australian(&shore, &ada, &truth()).await;
     let adjusted = json!({ "kind": "adjustment", "from": "2025-12-01T08:00:00Z" });
     let sure = need(&ada, &vessel).await;
     let here = sure["predicted"][0]["worst_deviation_deg"]
