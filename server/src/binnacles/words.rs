@@ -45,7 +45,11 @@ pub fn in_words(setting: &Setting, shape: Option<Shape>) -> [(&'static str, Stri
 fn magnets(trays: &[Tray]) -> String {
     let words = trays.iter().map(|tray| {
         let (count, hole) = (tray.count, tray.hole);
-        format!("{count} × {} in {hole}, red {}", tray.magnet, red(tray.red))
+        format!(
+            "{count} × {} in hole {hole}, red {}",
+            tray.magnet,
+            red(tray.red)
+        )
     });
     let all: Vec<String> = words.collect();
     or_none((!all.is_empty()).then(|| all.join("; ")))

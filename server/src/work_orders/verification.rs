@@ -42,6 +42,14 @@ pub struct Verified {
     pub until: Time,
 }
 
+fn agree(headings: usize) -> String {
+    if headings == 1 {
+        "1 heading agrees".to_owned()
+    } else {
+        format!("{headings} headings agree")
+    }
+}
+
 impl Verified {
     fn new(verification: Verification, samples: usize, until: Time) -> Verified {
         let words = match &verification {
@@ -50,12 +58,15 @@ impl Verified {
                 band95_deg,
                 rms_deg,
             } => format!(
-                "{headings} headings agree with what was foretold, to {rms_deg:.1} degrees; the \
-                 band is now {band95_deg:.1} degrees"
+                "{} with what was foretold, to {rms_deg:.1} degrees; the band is now \
+                 {band95_deg:.1} degrees",
+                agree(*headings)
             ),
             Verification::MoreNeeded { headings, needed } => format!(
-                "{headings} headings agree so far; {} more are needed",
-                needed.count
+                "{} so far; {} more {} needed",
+                agree(*headings),
+                needed.count,
+                if needed.count == 1 { "is" } else { "are" }
             ),
             Verification::Alarm {
                 compass_deg,
@@ -187,5 +198,27 @@ fn wanted(order: OrderId, at: Time, verified: &Verified) -> AlertWanted {
             at.to_the_minute(),
             verified.samples
         )]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use binnacle_magnetics::adjust::Needed;
+    use binnacle_magnetics::time::Timestamp;
+
+    #[test]
+    fn one_heading_agrees_and_several_agree() {
+        let words = |headings, count| {
+            let needed = Needed {
+                count,
+                compass_deg: Vec::new(),
+            };
+            let so_far = Verification::MoreNeeded { headings, needed };
+            let until = Timestamp::parse("2026-11-21T12:00:00Z").unwrap();
+            Verified::new(so_far, headings, until.into()).words
+        };
+        assert_eq!(words(1, 4), "1 heading agrees so far; 4 more are needed");
+        assert_eq!(words(4, 1), "4 headings agree so far; 1 more is needed");
     }
 }

@@ -228,7 +228,7 @@ async fn a_card_tells_how_the_correctors_were_last_recorded(shore: Shore) {
     let svg = ada.get(&nao.path("/card.svg")).await.text;
     let stands_in = card["correctors"]["binnacle"].as_str().unwrap();
     assert!(stands_in.ends_with(", no. 2047"), "{stands_in}");
-    for words in ["1 × 200 mm in 7, red to port", ">Flinders bar<"] {
+    for words in ["1 × 200 mm in hole 7, red to port", ">Flinders bar<"] {
         assert!(svg.contains(words), "{words}");
     }
     shore.finish().await;

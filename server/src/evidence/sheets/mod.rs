@@ -272,7 +272,11 @@ fn plan(paper: &mut Paper, record: &Value) {
         );
     }
     let heeling = &plan["heeling"];
-    let heel = |value: &Value| value.as_f64().map(|value| format!("{value:.2}"));
+    let heel = |value: &Value| {
+        value
+            .as_f64()
+            .map(|value| format!("{value:.2}").replace('-', "−"))
+    };
     match (
         heel(&heeling["before_deg_per_deg"]),
         heel(&heeling["after_deg_per_deg"]),
