@@ -61,7 +61,7 @@ pub(crate) async fn set_up(shore: &Shore, person: &Person) -> (String, Vec<Strin
     (secret, codes)
 }
 
-async fn sign_in(shore: &Shore, email: &str, code: &str) -> Answer {
+pub(crate) async fn sign_in(shore: &Shore, email: &str, code: &str) -> Answer {
     let body = json!({ "email": email, "password": PASSWORD, "code": code });
     let url = format!("{}/api/v1/session", shore.url);
     Answer::of(shore.http.post(url).json(&body)).await

@@ -51,6 +51,14 @@ async fn put(ship: &Ship, seq: u64, samples: Vec<Sample>, alerts: Vec<ShipAlert>
     ship.put_bytes(seq, bytes).await.good();
 }
 
+/// The ship's agent says that her compass parts from her gyro.
+pub(crate) async fn departs(ship: &Ship) {
+    let id = Uuid::parse_str(&ship.id).unwrap().as_u128();
+    let mut open = alert(1, 1, ShipAlertState::Open);
+    open.id = Uuid::from_u128(id);
+    put(ship, 1, passage(DAY, 6), vec![open]).await;
+}
+
 /// Nothing comes for hours.
 async fn hours_pass(shore: &Shore) {
     shore.advance(7.0 * 3600.0);

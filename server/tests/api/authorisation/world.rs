@@ -2,8 +2,14 @@
 
 use crate::binnacles::{binnacle, put};
 use crate::port_calls::call;
-use crate::support::{Answer, PASSWORD, Person, Ship, Shore, attempt};
+use crate::second_factor;
+use crate::ship_alerts;
+use crate::support::{Answer, PASSWORD, Person, Ship, Shore};
+use crate::work_orders::{PICTURE, hex};
+use binnacle_server::ids::FirmId;
+use binnacle_server::session::Role;
 use reqwest::{Method, RequestBuilder};
+use ring::signature::{Ed25519KeyPair, KeyPair};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -32,10 +38,13 @@ pub(super) struct Side {
     /// In the order of [`ROLES`].
     pub(super) keys: Vec<Key>,
     ids: BTreeMap<&'static str, String>,
+    /// What each role was told: it is theirs alone.
+    told: BTreeMap<usize, String>,
     /// What nobody else may ever be told: ids and names.
     pub(super) marks: Vec<String>,
 }
 
+const EVERY_DAY: [&str; 7] = ["Mon", "Tue", "Wed", "Thu", "Fri", "Sat", "Sun"];
 /// Something that is nowhere.
 const NONE: &str = "019a0000-0000-7000-8000-000000000000";
 
@@ -49,20 +58,35 @@ impl Side {
             keys.to_vec()
         } else {
             let root = admin.platform_admin(shore).await;
+            second_factor::set_up(shore, &root).await;
             let token = token(&root, "read").await;
             vec![Key::Cookie(root.cookie), token.1]
         };
+        for person in [&viewer, &adjuster] {
+            second_factor::set_up(shore, person).await;
+        }
+        let (_, codes) = second_factor::set_up(shore, &admin).await;
         let read = token(&admin, "read").await;
         let write = token(&admin, "write").await;
         let firms = token(&adjuster, "read").await;
+        ship_alerts::departs(&ship).await;
         let mut ids = possessions(&admin, &ship, &format!("{firm}")).await;
+        ids.extend(of_an_order(&admin, &adjuster, firm, &ids).await);
+        ids.insert("colleague", colleague(shore, &admin, &ship).await);
         ids.insert("firm", firm.to_string());
         ids.insert("operator", admin.operator.to_string());
         ids.insert("token", token(&admin, "read").await.0);
-        attempt(shore, &admin.email, PASSWORD).await.good();
+        second_factor::sign_in(shore, &admin.email, &codes[0])
+            .await
+            .good();
         let sessions = admin.get("/sessions").await.good();
         let session = sessions["items"][1]["id"].as_str().unwrap();
         ids.insert("session", session.to_owned());
+        let mut told = BTreeMap::new();
+        for (role, person) in [(0, &admin), (1, &viewer), (3, &admin), (4, &adjuster)] {
+            let listed = person.get("/notifications").await.good();
+            told.insert(role, text(&listed["items"][0]["id"]));
+        }
         let keys = vec![
             Key::Cookie(admin.cookie),
             Key::Cookie(viewer.cookie),
@@ -75,13 +99,23 @@ impl Side {
         let keys: Vec<Key> = keys.into_iter().chain(root.clone()).collect();
         let mut marks: Vec<String> = ids.values().cloned().collect();
         marks.extend([format!("ship-of-{name}"), format!("{name}@example.com")]);
-        (Side { keys, ids, marks }, root)
+        let side = Side {
+            keys,
+            ids,
+            told,
+            marks,
+        };
+        (side, root)
     }
 
-    /// A path of the document with this side's ids, or with such as are nowhere.
-    pub(super) fn fill(&self, path: &str, real: bool) -> String {
+    /// A path of the document with this side's ids, as that role has them, or with such as
+    /// are nowhere.
+    pub(super) fn fill(&self, path: &str, role: usize, real: bool) -> String {
         let first = path.split('/').nth(1).unwrap();
         let of_id = match first {
+            "notifications" => "notification",
+            "alerts" => "alert",
+            _ if path == "/users/{id}/second-factor" => "colleague",
             "vessels" => "vessel",
             "work-orders" => "order",
             "webhooks" => "webhook",
@@ -98,8 +132,13 @@ impl Side {
         for name in [
             "id", "compass", "agent", "stream", "entry", "call", "firm", "key", "delivery", "photo",
         ] {
-            let key = if name == "id" { of_id } else { name };
-            let id = self.ids.get(key).filter(|_| real);
+            let key = match (name, first) {
+                ("id", _) => of_id,
+                ("delivery", "mail-recipients") => "letter",
+                _ => name,
+            };
+            let told = self.told.get(&role).filter(|_| key == "notification");
+            let id = told.or_else(|| self.ids.get(key)).filter(|_| real);
             let id = id.map_or(NONE, String::as_str);
             filled = filled.replace(&format!("{{{name}}}"), id);
         }
@@ -107,7 +146,7 @@ impl Side {
             .replace("{seq}", "1")
             .replace("{version}", "1")
             .replace("{n}", "1")
-            .replace("{name}", "none")
+            .replace("{name}", "class_a_trays")
     }
 
     /// A body for an operation, with this side's ids.
@@ -136,6 +175,7 @@ impl Side {
             "POST /firms/{id}/keys" => json!({
                 "name": "K", "public_key": "0".repeat(64), "proof": "0".repeat(128),
             }),
+            "POST /schedule/pins" => pin(&self.ids),
             "POST /work-orders/{id}/offer" => json!({ "firms": [firm] }),
             "POST /work-orders/{id}/cancel"
             | "POST /work-orders/{id}/close"
@@ -153,7 +193,6 @@ impl Side {
 
 /// Something of everything that is an operator's.
 async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'static str, String> {
-    let text = |value: &Value| value.as_str().unwrap().to_owned();
     let vessel = ship.id.clone();
     let agents = admin.get(&ship.path("/agents")).await.good();
     let compasses = admin.get(&ship.path("/compasses")).await.good();
@@ -171,7 +210,8 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
     let webhook = admin.post("/webhooks", &webhook).await.good();
     let known = json!({ "flag_state": "NO", "gross_tonnage": 24000 });
     put(admin, &ship.path("/particulars"), &known).await.good();
-    let terms = json!({ "fee_eur": 1800, "ports": [{ "port": "NLRTM" }], "working_days": ["Sun"] });
+    let terms =
+        json!({ "fee_eur": 1800, "ports": [{ "port": "NLRTM" }], "working_days": EVERY_DAY });
     put(admin, &format!("/firms/{firm}/terms"), &terms)
         .await
         .good();
@@ -185,6 +225,11 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
     admin.post("/schedule/solve", &json!({})).await.good();
     let recipient = json!({ "address": format!("office-{vessel}@example.com") });
     let recipient = admin.post("/mail-recipients", &recipient).await.good();
+    let tried = format!("/mail-recipients/{}/test", text(&recipient["id"]));
+    admin.post(&tried, &json!({})).await;
+    let letters = format!("/mail-recipients/{}/deliveries", text(&recipient["id"]));
+    let letters = admin.get(&letters).await.good();
+    let alerts = admin.get("/alerts").await.good();
     let feed = json!({ "name": "Fleet" });
     let feed = admin.post("/calendar-feeds", &feed).await.good();
     let user =
@@ -201,9 +246,67 @@ async fn possessions(admin: &Person, ship: &Ship, firm: &str) -> BTreeMap<&'stat
         ("webhook", text(&webhook["id"])),
         ("delivery", text(&told["items"][0]["id"])),
         ("recipient", text(&recipient["id"])),
+        ("letter", text(&letters["items"][0]["id"])),
+        ("alert", text(&alerts["items"][0]["id"])),
         ("feed", text(&feed["id"])),
         ("user", text(&user["user"]["id"])),
     ])
+}
+
+/// A key of the firm's, a photograph of an order, and where its job is to stay.
+async fn of_an_order(
+    admin: &Person,
+    adjuster: &Person,
+    firm: FirmId,
+    ids: &BTreeMap<&'static str, String>,
+) -> [(&'static str, String); 2] {
+    let seed: [u8; 32] = std::array::from_fn(|place| firm.0.as_bytes()[place % 16]);
+    let pair = Ed25519KeyPair::from_seed_unchecked(&seed).unwrap();
+    let proof = pair.sign(format!("binnacle firm key {firm}").as_bytes());
+    let key = json!({
+        "name": "Office", "public_key": hex(pair.public_key().as_ref()),
+        "proof": hex(proof.as_ref()),
+    });
+    let key = adjuster
+        .post(&format!("/firms/{firm}/keys"), &key)
+        .await
+        .good();
+    let order = format!("/work-orders/{}", ids["order"]);
+    let yes = json!({ "adjuster_name": "M. Etxeberria" });
+    adjuster.post(&format!("{order}/accept"), &yes).await.good();
+    let photos = format!("{order}/photos?caption=trays");
+    let photo = admin.request(Method::POST, &photos).body(PICTURE);
+    let photo = Answer::of(photo).await.good();
+    let mut all = ids.clone();
+    all.insert("firm", firm.to_string());
+    admin.post("/schedule/pins", &pin(&all)).await.good();
+    [
+        ("key", text(&key["id"])),
+        ("photo", text(&photo["photos"][0]["photo"])),
+    ]
+}
+
+fn pin(ids: &BTreeMap<&'static str, String>) -> Value {
+    json!({
+        "compass_id": ids["compass"], "call_id": ids["call"], "firm_id": ids["firm"],
+        "day": "2026-12-08",
+    })
+}
+
+/// Someone with a second factor, who can lose it: their id.
+async fn colleague(shore: &Shore, admin: &Person, ship: &Ship) -> String {
+    let email = format!("purser-{}@example.com", ship.id);
+    Person::create(shore, Some(admin.operator.into()), &email, Role::Viewer).await;
+    let purser = Person::sign_in(shore, admin.operator, &email).await;
+    second_factor::set_up(shore, &purser).await;
+    text(&purser.get("/me").await.good()["user_id"])
+}
+
+#[track_caller]
+fn text(value: &Value) -> String {
+    let text = value.as_str();
+    text.unwrap_or_else(|| panic!("no text: {value}"))
+        .to_owned()
 }
 
 /// A token of a person's: its id, and how it is used.

@@ -38,7 +38,7 @@ async fn each_entry_names_the_hash_of_the_one_before(shore: Shore) {
 }
 
 /// The frame of a JPEG of 800 by 600, and the beginning of its scan.
-pub(super) const PICTURE: &[u8] = &[
+pub(crate) const PICTURE: &[u8] = &[
     0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 0, 0, 0xFF, 0xC0, 0, 11, 8, 0x02, 0x58, 0x03, 0x20, 1, 1, 0x11,
     0, 0xFF, 0xDA, 0, 8,
 ];
@@ -153,7 +153,7 @@ fn packed(files: &BTreeMap<String, Vec<u8>>) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-fn hex(bytes: &[u8]) -> String {
+pub(crate) fn hex(bytes: &[u8]) -> String {
     let digits = |text: String, byte: &u8| text + &format!("{byte:02x}");
     bytes.iter().fold(String::new(), digits)
 }

@@ -10,6 +10,8 @@ mod refusals;
 mod strength;
 mod way;
 
+pub(crate) use evidence::{PICTURE, hex};
+
 use crate::binnacles::{binnacle, put};
 use crate::support::{Answer, Person, Ship, Shore, days_at_sea, days_in, truth};
 use binnacle_magnetics::binnacle::{Binnacle, Setting};

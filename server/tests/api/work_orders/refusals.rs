@@ -57,7 +57,7 @@ async fn a_request_sent_again_under_its_key_writes_one_entry(shore: Shore) {
 
 async fn what_a_phone_kept_for_days_is_written_once(shore: Shore) {
     let mut job = Job::begin(&shore).await;
-    let photo = super::evidence::PICTURE.to_vec();
+    let photo = super::PICTURE.to_vec();
     for days in [0.0, 3.0, 40.0] {
         shore.advance(86_400.0 * days);
         // No session lasts so long.
