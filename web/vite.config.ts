@@ -15,6 +15,8 @@ export default defineConfig({
     cssCodeSplit: false,
     modulePreload: { polyfill: false },
     chunkSizeWarningLimit: 400,
+    // The server reads in it which files a page will ask for.
+    manifest: 'files.json',
     rolldownOptions: {
       // A text that nobody shows on a page is no reason to load its file.
       treeshake: { moduleSideEffects: [{ test: /src.text./, sideEffects: false }] },

@@ -4,6 +4,8 @@
 //! page, which knows what to show there; files whose names carry a hash may be
 //! kept for ever, all others are asked for again.
 
+mod ahead;
+
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG, IF_NONE_MATCH};
 use axum::http::{HeaderMap, StatusCode, Uri};
 use axum::response::{Html, IntoResponse, Response};
@@ -30,7 +32,11 @@ pub async fn serve(uri: Uri, headers: HeaderMap) -> Response {
         return (StatusCode::NOT_FOUND, "not found").into_response();
     }
     match Files::get("index.html") {
-        Some(page) => answer("index.html", &page, &headers),
+        Some(page) => {
+            let mut answer = answer("index.html", &page, &headers);
+            ahead::add(ahead::links(path, &headers), answer.headers_mut());
+            answer
+        }
         None => Html(NOT_BUILT).into_response(),
     }
 }

@@ -44,6 +44,12 @@ describe('a call', () => {
     expect(await asked[0]?.json()).toEqual({ name: 'Arcturus' });
   });
 
+  test('that asks sends no header of its own, so that an answer fetched ahead will do', async () => {
+    const asked = serve(json({ items: [] }));
+    await listVessels();
+    expect(asked[0]?.headers.get('X-Binnacle-Request')).toBeNull();
+  });
+
   test('that is refused throws the problem in the server’s words', async () => {
     serve(problem(404, 'no-model-yet', '3 samples, 20 needed'));
     await expect(findModel('v')).rejects.toMatchObject({

@@ -29,9 +29,13 @@ export interface Place {
 /** The server's longest page. */
 export const longestPage = 10_000;
 
-export const client = createClient<paths>({
-  // The server takes changes only from pages that can set a header.
-  headers: { 'X-Binnacle-Request': '1' },
+export const client = createClient<paths>();
+client.use({
+  onRequest({ request }) {
+    // The server takes changes only from pages that can set a header. A question has none of
+    // its own, so that the browser's earlier answer to the same question will do for it.
+    if (request.method !== 'GET') request.headers.set('X-Binnacle-Request', '1');
+  },
 });
 
 let onSignedOut: () => void = () => undefined;
