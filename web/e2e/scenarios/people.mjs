@@ -143,8 +143,8 @@ export const people = {
       await firm.getByRole('button', { name: 'Save the terms' }).click();
       await firm.getByRole('alert').getByText('Line 1 of the ports').waitFor();
       await firm.getByLabel(/^Ports/).fill('NLRTM 150\nBEANR 400');
-      await firm.getByLabel('First hour').fill('8');
-      await firm.getByLabel('Last hour').fill('18');
+      await firm.getByLabel(/^Begins at/).fill('8');
+      await firm.getByLabel('Ends at').fill('18');
       await firm.getByLabel('Saturday').check();
       await firm.getByLabel('Sunday').uncheck();
       await firm.getByRole('button', { name: 'Save the terms' }).click();
