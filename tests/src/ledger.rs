@@ -27,6 +27,21 @@ pub struct Spool {
     pub windows_aboard: u64,
 }
 
+/// Writes the spool's journal into its file and leaves nothing of it, so that on a full
+/// disk the next that is stored finds no room.
+///
+/// # Errors
+/// When there is no spool, or its agent does not let go of it.
+pub async fn clear_journal(ship: &Ship) -> Result<()> {
+    let options = SqliteConnectOptions::new().filename(ship.data_dir().join("spool.db"));
+    let mut db = SqliteConnection::connect_with(&options).await?;
+    let (busy, pages, _): (i64, i64, i64) = sqlx::query_as("PRAGMA wal_checkpoint(TRUNCATE)")
+        .fetch_one(&mut db)
+        .await?;
+    ensure!(busy == 0 && pages == 0, "{busy}, {pages} pages left");
+    Ok(db.close().await?)
+}
+
 /// One acknowledged batch.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Acknowledged {

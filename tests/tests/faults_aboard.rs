@@ -9,7 +9,7 @@ use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_tests::at_sea::{PATIENCE, day};
 use binnacle_tests::gateway::Manners;
-use binnacle_tests::ledger::{Spool, ensure_same_at_both_ends, samples_ashore};
+use binnacle_tests::ledger::{Spool, clear_journal, ensure_same_at_both_ends, samples_ashore};
 use binnacle_tests::namespace::in_own_mounts;
 use binnacle_tests::program::output_of;
 use binnacle_tests::{Coast, Pace, Passage, Progress, eventually};
@@ -61,6 +61,7 @@ async fn full_disk() -> Result<()> {
     coast.says("/ring/problem", "No space left").await?;
     coast.says("/storage_problem", "null").await?;
     for days in [3.0, 5.0] {
+        clear_journal(&coast.ship).await?;
         let rest = fill(&state, "more")?;
         coast.until(days).await?;
         let said = coast.says("/storage_problem", "cannot be stored").await?;

@@ -86,6 +86,10 @@ impl fmt::Debug for Identity {
     }
 }
 
+/// So long the journal gets, pages of 4 KiB, before it is written into the file: by SQLite's
+/// own rule it would take 4 MB of a disk on which the ring has just made way by one.
+const JOURNAL_PAGES: &str = "100";
+
 const IDENTITY: &str = "identity";
 const NEXT_SEQ: &str = "next_seq";
 const CONTIGUOUS_SEQ: &str = "contiguous_seq";
@@ -350,6 +354,7 @@ async fn connect(path: &Path) -> sqlx::Result<SqlitePool> {
         .filename(path)
         .journal_mode(SqliteJournalMode::Wal)
         .synchronous(SqliteSynchronous::Full)
+        .pragma("wal_autocheckpoint", JOURNAL_PAGES)
         .busy_timeout(Duration::from_secs(20));
     one_connection().connect_with(options).await
 }

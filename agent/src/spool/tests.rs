@@ -264,6 +264,20 @@ async fn a_hold_that_cannot_be_read_is_still_a_hold() {
     assert_eq!(spool.hold().await.unwrap(), None);
 }
 
+/// The last free octets of a disk are for samples.
+#[tokio::test]
+async fn the_journal_stays_small_however_often_something_is_stored() {
+    let (directory, spool) = enrolled().await;
+    for window in 0..300 {
+        spool
+            .store(&[restless(window)], &BTreeMap::new(), Seal::Full)
+            .await
+            .unwrap();
+    }
+    let journal = std::fs::metadata(directory.path().join("spool.db-wal")).unwrap();
+    assert!(journal.len() < 600_000, "{} octets", journal.len());
+}
+
 #[tokio::test]
 async fn everything_is_there_after_opening_again() {
     let (directory, spool) = enrolled().await;
