@@ -38,7 +38,7 @@ function path(): string {
 function ring(points: number[][]): string {
   let [x, y] = [0, 0];
   const steps: string[] = [];
-  for (const [lon = 0, lat = 0] of points) {
+  for (const [lon, lat] of unwrapped(points)) {
     const [nextX, nextY] = [Math.round(lon * 10), Math.round(-mercator(lat) * 10)];
     const [dx, dy] = [nextX - x, nextY - y];
     if (steps.length > 0 && dx === 0 && dy === 0) continue;
@@ -46,6 +46,33 @@ function ring(points: number[][]): string {
     [x, y] = [nextX, nextY];
   }
   return steps.length < 4 ? '' : `${steps.join('').trim()}z`;
+}
+
+/**
+ * A ring whose every step goes the short way: over the antimeridian the longitude runs on
+ * beyond 180°, for the atlas jumps there to -180° and the line would cross the whole map.
+ * Its middle is within [-180, 180), so that the map's copies of it cover every view. A ring
+ * round a pole is closed along the map's edge.
+ */
+function unwrapped(points: number[][]): [lon: number, lat: number][] {
+  let last = points[0]?.[0] ?? 0;
+  const run = points.map(([lon = 0, lat = 0]): [number, number] => {
+    last += wrapped(lon - last);
+    return [last, lat];
+  });
+  const [start = 0, end = 0] = [run[0]?.[0], run.at(-1)?.[0]];
+  if (Math.abs(end - start) > 180) {
+    const pole = (run[0]?.[1] ?? 0) < 0 ? -90 : 90;
+    run.push([end, pole], [(start + end) / 2, pole], [start, pole]);
+  }
+  const lons = run.map(([lon]) => lon);
+  const middle = (Math.min(...lons) + Math.max(...lons)) / 2;
+  return run.map(([lon, lat]) => [lon - middle + wrapped(middle), lat]);
+}
+
+/** The same longitude in [-180, 180); as in src/map/mercator.ts. */
+function wrapped(lon: number): number {
+  return ((((lon + 180) % 360) + 360) % 360) - 180;
 }
 
 function mercator(lat: number): number {

@@ -1,7 +1,8 @@
 import { describe, expect, it } from 'vitest';
 import { land } from 'virtual:land';
 import { marks, nearest, towards, trackPath } from './marks';
-import { near, placeOf, pointOf, wrapped } from './mercator';
+import type { Place } from '../format';
+import { near, placeOf, pointOf, wrapped, type Point } from './mercator';
 import { keyed, placeAt } from './moving';
 import { fitted, panned, pointAt, revealing, screenOf, viewBox, zoomed, type View } from './view';
 
@@ -9,6 +10,37 @@ const world: View = { x: 0, y: 0, width: 360 };
 const suva = { lat: -18.1, lon: 178.4 };
 const apia = { lat: -13.8, lon: -171.8 };
 const bilbao = { lat: 43.3, lon: -3 };
+
+/** The coasts that ship, in the map's units. */
+const rings: Point[][] = land
+  .split('z')
+  .filter(Boolean)
+  .map((ring) => {
+    const [x = 0, y = 0, ...steps] = (ring.match(/-?\d+/g) ?? []).map((n) => Number(n) / 10);
+    const points = [{ x, y }];
+    for (let i = 0; i + 1 < steps.length; i += 2) {
+      const last = points.at(-1) ?? { x, y };
+      points.push({ x: last.x + (steps[i] ?? 0), y: last.y + (steps[i + 1] ?? 0) });
+    }
+    return points;
+  });
+
+/** Whether a place is drawn as land: inside an odd number of rings, of one of the map's copies. */
+function isLand(place: Place): boolean {
+  const at = pointOf(place);
+  return [-360, 0, 360].some(
+    (east) => rings.filter((ring) => holds(ring, { x: at.x + east, y: at.y })).length % 2 === 1,
+  );
+}
+
+/** Whether a line from a point to the east leaves the ring more often than it enters it. */
+function holds(ring: readonly Point[], { x, y }: Point): boolean {
+  const crossings = ring.filter((a, i) => {
+    const b = ring[i + 1] ?? ring[0] ?? a;
+    return a.y > y !== b.y > y && x < a.x + ((y - a.y) / (b.y - a.y)) * (b.x - a.x);
+  });
+  return crossings.length % 2 === 1;
+}
 
 describe('the chart', () => {
   it('finds a place again from its point', () => {
@@ -35,6 +67,45 @@ describe('the chart', () => {
     expect(land.startsWith('M')).toBe(true);
     expect(land.length).toBeGreaterThan(10_000);
     expect(land).not.toMatch(/NaN|Infinity/);
+  });
+
+  it('ships with coasts that never cross the map the long way', () => {
+    const longest = Math.max(
+      ...rings.flatMap((ring) =>
+        ring.map(({ x }, i) => Math.abs((ring[i + 1] ?? ring[0] ?? { x }).x - x)),
+      ),
+    );
+    expect(longest).toBeLessThanOrEqual(180);
+  });
+
+  it.each([
+    ['the Barents Sea', 75, 40],
+    ['the Norwegian Sea', 70, 2],
+    ['the Kara Sea', 74, 75],
+    ['the Chukchi Sea', 70, -170],
+    ['Bering Strait', 65.9, -169],
+    ['Baffin Bay', 72, -65],
+    ['the Beaufort Sea', 71.5, -140],
+    ['the South Atlantic', -16.5, -15],
+    ['the Coral Sea', -16.5, 155],
+    ['the sea off Fiji', -17.5, -179],
+    ['the Southern Ocean', -62, 179.9],
+  ])('has no land in %s', (_, lat, lon) => {
+    expect(isLand({ lat, lon })).toBe(false);
+  });
+
+  it.each([
+    ['Siberia', 65, 100],
+    ['Chukotka, west of the antimeridian', 67, 178],
+    ['Chukotka, east of it', 67, -176],
+    ['Wrangel Island', 71.2, 179.5],
+    ['Vanua Levu', -16.6, 179.4],
+    ['Greenland', 75, -40],
+    ['Spain', 40, -4],
+    ['Victoria Land', -75, 160],
+    ['the East Antarctic', -79.9, 90],
+  ])('has land in %s', (_, lat, lon) => {
+    expect(isLand({ lat, lon })).toBe(true);
   });
 });
 
