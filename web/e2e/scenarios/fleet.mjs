@@ -4,6 +4,26 @@ import { fitsItsWidth, notSignedIn, phone, signIn } from '../helpers.mjs';
 
 const names = (page) => page.getByRole('rowheader').getByRole('link').allInnerTexts();
 const map = (page) => page.getByRole('application', { name: 'Map of the fleet' });
+/** How many pixels each mark's middle lies within the map; negative where it is off it. */
+const marksWithin = (page) =>
+  page.evaluate(() => {
+    const box = document.querySelector('[role=application]').getBoundingClientRect();
+    return [...document.querySelectorAll('path.mark:not(.under)')].flatMap((path) =>
+      [...(path.getAttribute('d') ?? '').matchAll(/M(\S+) (\S+?)h0/g)].map(([, x, y]) => {
+        const at = new DOMPoint(Number(x), Number(y)).matrixTransform(path.getScreenCTM());
+        const [right, below] = [box.right - at.x, box.bottom - at.y];
+        return Math.round(Math.min(at.x - box.left, right, at.y - box.top, below));
+      }),
+    );
+  });
+/** Far from each other: Callao, Cape Town, Gothenburg, the Coral Sea, New Zealand. */
+const farApart = [
+  [-12, -77.2],
+  [-33.9, 18.4],
+  [57.7, 11.9],
+  [-16, 160],
+  [-46, 170],
+];
 const chosenRow = (page) => page.locator('tr[aria-current="true"]');
 
 export const fleet = {
@@ -32,6 +52,50 @@ export const fleet = {
       await page.getByRole('button', { name: 'Vessel', exact: true }).click();
       assert.deepEqual(await names(page), sorted.toReversed());
       assert.match(page.url(), /sort=name/);
+    },
+  },
+
+  'the whole fleet is on the map, with room around it, on every screen': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await page.route('**/api/v1/fleet', async (route) => {
+        const response = await route.fetch();
+        const body = await response.json();
+        const [vessel] = body.vessels.filter(({ position }) => position);
+        const vessels = farApart.map(([lat, lon], i) => ({
+          ...vessel,
+          id: i === 0 ? vessel.id : crypto.randomUUID(),
+          name: `Ship ${i + 1}`,
+          position: { ...vessel.position, lat, lon },
+          track: [],
+        }));
+        await route.fulfill({ response, json: { ...body, vessels } });
+      });
+      await signIn(page, settings);
+      await page.getByRole('rowheader').first().waitFor();
+      const sizes = [
+        [1440, 900],
+        [1024, 768],
+        [3840, 2160],
+        [390, 844],
+        [320, 640],
+        [900, 700],
+        [1920, 1080],
+      ];
+      for (const [width, height] of sizes) {
+        await page.setViewportSize({ width, height });
+        // The map is told how large it is after the page was laid out.
+        const least = 20;
+        const inView = async () => {
+          const within = await marksWithin(page);
+          return within.length === farApart.length && Math.min(...within) >= least;
+        };
+        for (let tries = 0; tries < 60 && !(await inView()); tries++) {
+          await page.evaluate(() => new Promise(requestAnimationFrame));
+        }
+        assert.ok(await inView(), `at ${width} × ${height}: ${await marksWithin(page)} px`);
+      }
+      await shoot('fleet-far-apart');
     },
   },
 

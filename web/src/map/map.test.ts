@@ -10,6 +10,10 @@ const world: View = { x: 0, y: 0, width: 360 };
 const suva = { lat: -18.1, lon: 178.4 };
 const apia = { lat: -13.8, lon: -171.8 };
 const bilbao = { lat: 43.3, lon: -3 };
+const callao = { lat: -12, lon: -77.2 };
+const capeTown = { lat: -33.9, lon: 18.4 };
+const gothenburg = { lat: 57.7, lon: 11.9 };
+const coral = { lat: -16, lon: 160 };
 
 /** The coasts that ship, in the map's units. */
 const rings: Point[][] = land
@@ -122,9 +126,34 @@ describe('a view', () => {
     }
   });
 
+  it.each([
+    ['flat', 0.25],
+    ['usual', 0.6],
+    ['square', 1],
+    ['tall', 1.8],
+  ])('holds ships all over the world with room around them on a %s map', (_, aspect) => {
+    const fleet = [callao, capeTown, gothenburg, coral, suva];
+    const view = fitted(fleet, aspect);
+    for (const place of fleet) {
+      const { right, down } = screenOf(view, aspect, place);
+      expect(Math.abs(right - 0.5)).toBeLessThan(0.45);
+      expect(Math.abs(down - 0.5)).toBeLessThan(0.45);
+    }
+  });
+
+  it('holds ships all around the world with room beside them', () => {
+    const fleet = Array.from({ length: 36 }, (_, i) => ({ lat: 0, lon: 10 * i - 180 }));
+    const view = fitted(fleet, 0.6);
+    for (const place of fleet) {
+      expect(Math.abs(screenOf(view, 0.6, place).right - 0.5)).toBeLessThan(0.45);
+    }
+  });
+
   it('is the whole world without ships, and never wider', () => {
     expect(fitted([], 0.5).width).toBe(360);
     expect(zoomed(world, 0.1, 0.5).width).toBe(360);
+    const tall = fitted([callao, coral, capeTown], 1.8);
+    expect(zoomed(tall, 0.1, 1.8).width).toBe(tall.width);
   });
 
   it('does not show what lies beyond the chart', () => {

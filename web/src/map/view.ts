@@ -16,18 +16,24 @@ export type Aspect = number;
 
 const widest = 360;
 const narrowest = 4;
-/** So much of the width stays free around what is shown. */
+/** What a flat map may need to hold ships far to the north and the south: the world repeats. */
+const widestFitted = 2 * widest;
+/** What is shown, times this, is the view: a tenth of it stays free on each side. */
 const margin = 1.25;
 
-/** The smallest view that holds all places, on whichever side of the globe they are. */
+/**
+ * The smallest view that holds all places, on whichever side of the globe they are, and of
+ * whatever shape the map is: a tall one then shows what lies beyond the chart, too.
+ */
 export function fitted(places: readonly Place[], aspect: Aspect, leastWidth = 24): View {
   const points = places.map(pointOf);
-  if (points.length === 0) return bounded({ x: 0, y: 0, width: widest }, aspect);
+  if (points.length === 0) return { x: 0, y: 0, width: onChart(widest, aspect) };
   const { x, width } = span(points.map((point) => point.x));
   const ys = points.map((point) => point.y);
   const [low, high] = [Math.min(...ys), Math.max(...ys)];
   const needed = Math.max(width * margin, ((high - low) * margin) / aspect, leastWidth);
-  return bounded({ x, y: (low + high) / 2, width: needed }, aspect);
+  const view = { x, y: (low + high) / 2, width: Math.min(needed, widestFitted) };
+  return bounded(view, aspect);
 }
 
 /** The shortest arc that holds all longitudes: it leaves out the widest gap. */
@@ -44,7 +50,9 @@ function span(longitudes: number[]): { x: number; width: number } {
 
 /** Nearer by a factor, with a point of the map staying where it is. */
 export function zoomed(view: View, factor: number, aspect: Aspect, at: Point = view): View {
-  const width = Math.min(widest, Math.max(narrowest, view.width / factor));
+  // A view that had to be wider to hold the fleet is not narrowed by going further away.
+  const most = Math.max(view.width, onChart(widest, aspect));
+  const width = Math.min(most, Math.max(narrowest, view.width / factor));
   const scale = width / view.width;
   const moved = { x: at.x + (view.x - at.x) * scale, y: at.y + (view.y - at.y) * scale, width };
   return bounded(moved, aspect);
@@ -66,11 +74,13 @@ export function revealing(view: View, place: Place, aspect: Aspect): View {
   return inside ? view : bounded({ ...view, x: point.x, y: point.y }, aspect);
 }
 
-/** Neither wider than the world nor beyond its upper and lower edge. */
+/** No wider than a view may be that shows nothing beyond the chart. */
+const onChart = (width: number, aspect: Aspect): number => Math.min(width, (-2 * top) / aspect);
+
+/** Not beyond the chart's upper and lower edge, or as far beyond the one as the other. */
 function bounded(view: View, aspect: Aspect): View {
-  const width = Math.min(view.width, widest, (-2 * top) / aspect);
-  const room = Math.max(0, -top - (width * aspect) / 2);
-  return { x: wrapped(view.x), y: Math.min(room, Math.max(-room, view.y)), width };
+  const room = Math.max(0, -top - (view.width * aspect) / 2);
+  return { ...view, x: wrapped(view.x), y: Math.min(room, Math.max(-room, view.y)) };
 }
 
 /** For SVG: left, top, width and height. */
