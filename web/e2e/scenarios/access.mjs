@@ -134,23 +134,56 @@ async function eachOf({ page, settings, shoot }, { who, home, paths }, look) {
   assert.deepEqual(found, []);
 }
 
-export const access = Object.fromEntries(
-  looks.flatMap(({ look, ...screen }) => [
-    [
-      `axe finds nothing on any page, ${look.replace('-', ' by ')}`,
-      {
-        ...screen,
-        allowedErrors: [notSignedIn, unusedPreload],
-        run: (tools) => each(tools, look),
-      },
-    ],
-    ...others.map((other) => [
-      `axe finds nothing on the ${other.who}’s pages, ${look.replace('-', ' by ')}`,
-      {
-        ...screen,
-        allowedErrors: [notSignedIn, unusedPreload],
-        run: (tools) => eachOf(tools, other, look),
-      },
+/** From the narrowest phone to a wall, beside each width at which a page is laid out anew. */
+const widths = [
+  320, 390, 480, 640, 641, 760, 768, 900, 1024, 1099, 1150, 1151, 1440, 1920, 2800, 3840,
+];
+
+/** Two frames after, what is measured has been drawn. */
+const drawn = (page) =>
+  page.evaluate(
+    () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))),
+  );
+
+async function noneScrolls({ page, settings }) {
+  await signIn(page, settings);
+  const vessel = await withModel(page);
+  const wide = [];
+  for (const { name, path, ready } of pages) {
+    await page.goto(typeof path === 'string' ? path : await path(vessel, page));
+    await ready(page).waitFor();
+    for (const width of widths) {
+      await page.setViewportSize({ width, height: 900 });
+      await drawn(page);
+      await fitsItsWidth(page).catch(({ message }) => wide.push(`${name} at ${width}: ${message}`));
+    }
+  }
+  assert.deepEqual(wide, []);
+}
+
+export const access = {
+  'no page scrolls sideways, from 320 to 3840 pixels': {
+    allowedErrors: [notSignedIn],
+    run: noneScrolls,
+  },
+  ...Object.fromEntries(
+    looks.flatMap(({ look, ...screen }) => [
+      [
+        `axe finds nothing on any page, ${look.replace('-', ' by ')}`,
+        {
+          ...screen,
+          allowedErrors: [notSignedIn, unusedPreload],
+          run: (tools) => each(tools, look),
+        },
+      ],
+      ...others.map((other) => [
+        `axe finds nothing on the ${other.who}’s pages, ${look.replace('-', ' by ')}`,
+        {
+          ...screen,
+          allowedErrors: [notSignedIn, unusedPreload],
+          run: (tools) => eachOf(tools, other, look),
+        },
+      ]),
     ]),
-  ]),
-);
+  ),
+};

@@ -10,8 +10,7 @@ export const told = {
     allowedErrors: [notSignedIn, invalid],
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
-      await page.getByRole('link', { name: 'Alerts' }).first().click();
-      await page.getByRole('link', { name: 'Notifications' }).click();
+      await page.getByRole('banner').getByRole('link', { name: 'Notifications' }).click();
       await page.getByRole('heading', { name: 'Notifications', level: 1 }).waitFor();
       const form = page.getByRole('region', { name: 'How you are told' });
       await form.getByLabel('The adjuster is on board').selectOption('off');
@@ -54,12 +53,19 @@ export const told = {
         (await (await page.request.get('/api/v1/notifications')).json()).unread;
       const before = await unread();
       assert.ok(before > 0, 'nothing is unread');
+      const bell = page.getByTestId('unread-badge');
+      await bell.getByText(String(before)).waitFor();
       await list
         .getByRole('button', { name: /^Mark as read/ })
         .first()
         .click();
-      await page.getByText(`${before - 1} unread`, { exact: true }).waitFor();
+      await page
+        .getByRole('status')
+        .getByText(`${before - 1} unread`, { exact: true })
+        .waitFor();
       assert.equal(await unread(), before - 1);
+      const left = before === 1 ? 0 : await bell.innerText();
+      assert.equal(parseInt(left, 10), before - 1);
       await list.getByRole('link').first().click();
       await page.waitForURL((url) => url.pathname !== '/notifications');
       await page.getByRole('heading', { level: 1 }).waitFor();
@@ -67,12 +73,25 @@ export const told = {
     },
   },
 
+  'the settings’ pages lead to each other': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.getByRole('banner').getByRole('link', { name: 'Settings' }).click();
+      const tabs = page.getByRole('navigation', { name: 'Settings' });
+      for (const title of ['Mail', 'Webhooks', 'People', 'Mail']) {
+        await tabs.getByRole('link', { name: title }).click();
+        await page.getByRole('heading', { name: title, level: 1 }).waitFor();
+        assert.equal(await tabs.locator('[aria-current=page]').innerText(), title);
+      }
+    },
+  },
+
   'the report says what is due, how bad it is, and what was saved': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {
       await signIn(page, settings);
-      await page.goto('/schedule');
-      await page.getByRole('link', { name: 'Reports' }).click();
+      await page.getByRole('banner').getByRole('link', { name: 'Reports' }).click();
       await page.getByTestId('saved').waitFor();
       const vessels = (await (await page.request.get('/api/v1/vessels')).json()).items.length;
       const deviations = page.getByTestId('report-deviation').locator('tbody tr');
