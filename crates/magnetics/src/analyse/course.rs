@@ -30,6 +30,8 @@ pub(super) struct Course {
     pub(super) changes: Vec<Change>,
     /// When the entries of cargo began that was found not to move the compass.
     pub(super) idle: Vec<Timestamp>,
+    /// Whether a change in the last of them would not have been noticed.
+    pub(super) is_unwatched: bool,
 }
 
 impl Course {
@@ -117,6 +119,7 @@ impl Course {
                     let earlier = self.follow_until(epoch, readings, logbook, settings);
                     return earlier.or(late);
                 }
+                self.is_unwatched = !own.is_empty() && !found.is_watched;
                 self.split(epoch, found, own, (&reference, logbook));
             }
             Err(refusal) => {

@@ -29,6 +29,7 @@ use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
 use cargo::notices;
+use changes::merge_faults;
 use course::Course;
 use epoch::epochs;
 use reading::{Reading, readings};
@@ -37,7 +38,12 @@ use stuck::mark_stuck;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-19";
+pub const ESTIMATOR: &str = "state-space-20";
+
+/// Said where nothing can be watched for.
+const UNWATCHED: &str = "so far too little is known of the ship to tell a change of her \
+                         magnetism from her own: one would not be noticed. Steady courses on \
+                         more headings, by gyro or satellite compass, will tell";
 
 /// What an analysis found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -185,13 +191,17 @@ pub fn analyse(
         let from = begun.or(epoch.from);
         begun = course.follow(Epoch { from, ..epoch }, &mut readings, logbook, settings);
     }
-    let notices = notices(&readings, logbook, &course);
+    let mut notices = notices(&readings, logbook, &course);
+    if course.is_unwatched {
+        notices.push(UNWATCHED.to_owned());
+    }
     let Course {
         epochs,
         mut changes,
         ..
     } = course;
     changes.sort_by_key(|change| (change.from, change.detected_at));
+    merge_faults(&mut changes, &epochs);
     let with_deviation = readings
         .iter()
         .filter(|r| r.diagnostic.deviation_deg.is_some());

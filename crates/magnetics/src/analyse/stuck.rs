@@ -18,6 +18,9 @@ const SAME_DEG: f64 = 0.15;
 /// A jammed card trembles by less than this about where it stands; so does a sound one
 /// on a steady course.
 const TREMBLES_DEG: f64 = 1.0;
+/// A card that has moved by more, or so often in a row, stands there no longer.
+const JUMPS_DEG: f64 = 2.5;
+const LEFT_READINGS: usize = 3;
 /// What is a turn of the ship by her gyro or satellite compass, and how many show
 /// that a compass that repeats itself does not follow. A reference that steps and comes
 /// back makes two.
@@ -136,14 +139,22 @@ fn trembling(readings: &[Reading], stands: Range<usize>) -> Option<Stuck> {
 fn standing(readings: &[Reading]) -> usize {
     let first = readings[0].sample().compass.degrees();
     let mut sum = 0.0;
+    // Where those began that have left it by now.
+    let mut left = None;
     for (count, reading) in readings.iter().enumerate().skip(1) {
         let off = wrap_180(reading.sample().compass.degrees() - first);
-        if (off - sum / count as f64).abs() > TREMBLES_DEG {
-            return count;
+        let from_mean = (off - sum / count as f64).abs();
+        if from_mean > TREMBLES_DEG {
+            let since = *left.get_or_insert(count);
+            if from_mean > JUMPS_DEG || count + 1 - since >= LEFT_READINGS {
+                return since;
+            }
+        } else {
+            left = None;
         }
         sum += off;
     }
-    readings.len()
+    left.unwrap_or(readings.len())
 }
 
 /// The first readings of the courses that the ship kept to, each another than the last.

@@ -3,7 +3,7 @@
 use crate::voyages::fleet::{Event, Log, sail_log};
 use crate::{HOUR_S, calm, is_sound, of_the_ship, run};
 use binnacle_magnetics::analyse::{Analysis, SampleReason};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
 use binnacle_magnetics::change::{Cause, Change};
 use binnacle_magnetics::sample::Sample;
 use rand::{RngExt, SeedableRng};
@@ -134,4 +134,70 @@ fn wild_readings_hours_apart_are_no_fault_of_the_gyro() {
     }
     let analysis = run(&log.samples);
     assert!(certain(&analysis).is_empty(), "{:?}", analysis.changes);
+}
+
+#[test]
+fn a_gyro_that_stays_wrong_is_not_right_again_with_the_end_of_a_worse_fault() {
+    for seed in [71, 72, 73] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let start = log.start;
+        for sample in &mut log.samples {
+            let at = sample.time.seconds_since(start) / 86_400.0;
+            let off = match at {
+                ..25.0 => 0.0,
+                32.0..32.2 => 13.5,
+                _ => 2.0,
+            };
+            sample.gyro = sample.gyro.map(|gyro| turned(gyro, off));
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = certain(&analysis);
+        let faults: Vec<&&Change> = told
+            .iter()
+            .filter(|c| c.cause == Cause::ReferenceFault)
+            .collect();
+        assert_eq!(faults.len(), 1, "seed {seed}: {faults:?}");
+        assert_eq!(faults[0].ended, None, "seed {seed}: {:?}", faults[0]);
+    }
+}
+
+#[test]
+fn a_jammed_card_that_trembles_much_is_told_once() {
+    for seed in [61, 62, 64] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let is_in = |s: &Sample| (25.0..39.0).contains(&day(&log, s));
+        let first = log.samples.iter().position(is_in).unwrap();
+        let last = log.samples.iter().rposition(is_in).unwrap();
+        let jammed = log.samples[first].compass.degrees();
+        for sample in &mut log.samples[first..last] {
+            let off = (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
+            sample.compass = CompassHeading::new(jammed + 0.5 * off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        let jams = told.iter().filter(|c| **c == Cause::CompassFault);
+        assert_eq!(jams.count(), 1, "seed {seed}: {told:?}");
+        // Its first hours may be taken for something that passes.
+        assert!(told.len() <= 2, "seed {seed}: {told:?}");
+        assert!(of_the_ship(&analysis).is_empty(), "seed {seed}: {told:?}");
+    }
+}
+
+#[test]
+fn that_a_ship_on_one_course_is_not_watched_is_said() {
+    let log = sail_log(65, &calm(Event::Nothing));
+    let course = log.samples[0].compass.degrees();
+    let samples = log.samples.iter().copied();
+    let one: Vec<Sample> = samples
+        .filter(|s| wrap_180(s.compass.degrees() - course).abs() < 10.0)
+        .collect();
+    let said = |samples: &[Sample]| {
+        let notices = run(samples).notices;
+        notices.iter().any(|n| n.contains("would not be noticed"))
+    };
+    assert!(said(&one), "{} samples", one.len());
+    assert!(!said(&log.samples));
 }

@@ -11,6 +11,8 @@ const TOLD_DEG: f64 = 0.1;
 /// Said of a disturbance that other ships may speak for.
 const FAINT: &str = "too faint to be certain by this ship alone";
 
+/// Said of a disturbance that is over.
+pub(super) const LASTED: &str = "it lasted ";
 /// Said of a change that was none.
 const WITHDRAWN: &str = "it was held to be certain, and is withdrawn: the samples since do not \
                          bear it out";
@@ -25,16 +27,15 @@ pub(super) fn evidence(
     let [step, reference, burst, _] = event.leads;
     let mut told = vec![match event.what {
         What::Step | What::Return(_) => format!(
-            "a change of the ship's own magnetism, of up to {worst_deg:.1} degrees of deviation, \
-             explains the samples: {} none, {} a passing disturbance and {} a fault of the reference",
+            "a change of the ship's own magnetism explains the samples: {} none, {} a passing \
+             disturbance and {} a fault of the reference",
             likelier(step),
             likelier(step - burst),
             likelier(step - reference)
         ),
         What::Alignment => format!(
             "what changed is the same on every heading, and gyro and satellite compass agree: \
-             that the compass's own zero moved, by {worst_deg:.1} degrees, is {} a change of the \
-             ship's magnetism",
+             that the compass's own zero moved is {} a change of the ship's magnetism",
             likelier(event.over_step)
         ),
         What::Drift => format!(
@@ -92,7 +93,7 @@ pub(super) fn evidence(
         }
     }
     if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
-        told.push(format!("it lasted {:.1} hours", seconds / 3600.0));
+        told.push(format!("{LASTED}{:.1} hours", seconds / 3600.0));
     }
     if !known.reported.is_empty() {
         told.push("the logbook has a report of that time".to_owned());

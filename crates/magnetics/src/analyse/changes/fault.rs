@@ -1,6 +1,7 @@
 //! Faults of a reference that the other one showed.
 
-use super::Found;
+use super::evidence::LASTED;
+use crate::analyse::Epoch;
 use crate::analyse::reading::{Reading, heading_reading};
 use crate::change::{Cause, CauseProbability, Change};
 use crate::fit::Observation;
@@ -12,6 +13,8 @@ const FAULT_ROWS: usize = 3;
 /// It is over when so many in a row are sound: in port nothing shows that it is.
 const SOUND_ROWS: usize = 9;
 const DAY_S: f64 = 86_400.0;
+/// A card that jams again so soon was not free in between: a steady course hides it.
+const JAMS_AGAIN_S: f64 = 3.0 * DAY_S;
 
 /// What a reading tells of its references.
 pub(super) struct Seen {
@@ -87,60 +90,68 @@ fn since_it_was_dense<T>(spell: &[(usize, Timestamp, T)]) -> Option<&[(usize, Ti
 }
 
 /// Puts faults of the references that follow closely on each other, or are found in two
-/// ways, together; and those of the compass.
-pub(super) fn merge_faults(found: &mut Found) {
-    merge(found, Cause::ReferenceFault);
-    merge(found, Cause::CompassFault);
+/// ways, together; and those of the compass. `changes` are in order of time.
+pub(in crate::analyse) fn merge_faults(changes: &mut Vec<Change>, epochs: &[Epoch]) {
+    merge(changes, epochs, Cause::ReferenceFault);
+    merge(changes, epochs, Cause::CompassFault);
 }
 
-fn merge(found: &mut Found, cause: Cause) {
-    let mut order: Vec<usize> = (0..found.changes.len())
-        .filter(|&i| found.changes[i].cause == cause)
-        .filter(|&i| found.boundaries.iter().all(|b| b.change != i))
-        .collect();
-    order.sort_by_key(|&i| found.changes[i].from);
+fn merge(changes: &mut Vec<Change>, epochs: &[Epoch], cause: Cause) {
+    let mut kept: Vec<Change> = Vec::with_capacity(changes.len());
     let mut into: Option<usize> = None;
-    let mut gone = Vec::new();
-    for i in order {
-        let (from, ended) = (found.changes[i].from, found.changes[i].ended);
-        let earlier = into.map(|into| &mut found.changes[into]);
-        match earlier {
-            Some(earlier)
-                if earlier
-                    .ended
-                    .is_none_or(|end| from.seconds_since(end) < DAY_S) =>
-            {
-                earlier.ended = match (earlier.ended, ended) {
-                    (Some(a), Some(b)) => Some(a.max(b)),
-                    // A reference's step has no end of its own; what it was part of may.
-                    (one, other) if cause == Cause::ReferenceFault => one.or(other),
-                    _ => None,
-                };
-                let detected_at = found.changes[i].detected_at;
-                let told = found.changes[i].evidence.clone();
-                if let Some(earlier) = into.map(|into| &mut found.changes[into]) {
-                    earlier.detected_at = earlier.detected_at.min(detected_at);
-                    for line in told {
-                        if !earlier.evidence.contains(&line) {
-                            earlier.evidence.push(line);
-                        }
-                    }
-                }
-                gone.push(i);
-            }
-            _ => into = Some(i),
+    for change in changes.drain(..) {
+        let begins_epoch = epochs.iter().any(|epoch| epoch.from == Some(change.from));
+        if change.cause != cause || begins_epoch {
+            kept.push(change);
+            continue;
+        }
+        let earlier = into.map(|into| &mut kept[into]);
+        if let Some(earlier) = earlier.filter(|earlier| is_soon_after(&change, earlier)) {
+            take_in(earlier, change);
+        } else {
+            into = Some(kept.len());
+            kept.push(change);
         }
     }
-    gone.sort_unstable();
-    for i in gone.into_iter().rev() {
-        found.changes.remove(i);
-        for boundary in &mut found.boundaries {
-            if boundary.change > i {
-                boundary.change -= 1;
-            }
-        }
-        if let Some(ended) = found.perhaps.as_mut().filter(|ended| ended.change > i) {
-            ended.change -= 1;
+    *changes = kept;
+}
+
+/// Whether a fault began before an earlier one was over for long.
+fn is_soon_after(later: &Change, earlier: &Change) -> bool {
+    let long_s = match earlier.cause {
+        Cause::CompassFault => JAMS_AGAIN_S,
+        _ => DAY_S,
+    };
+    earlier
+        .ended
+        .is_none_or(|end| later.from.seconds_since(end) < long_s)
+}
+
+fn take_in(earlier: &mut Change, later: Change) {
+    let began_together = later.from.seconds_since(earlier.from) < DAY_S;
+    earlier.ended = match (earlier.ended, later.ended) {
+        (Some(a), Some(b)) => Some(a.max(b)),
+        // A reference's step has no end of its own; what it was part of may.
+        (None, Some(end)) if earlier.cause == Cause::ReferenceFault && began_together => Some(end),
+        (Some(end), None) if earlier.cause == Cause::ReferenceFault => Some(end),
+        _ => None,
+    };
+    earlier.detected_at = earlier.detected_at.min(later.detected_at);
+    // How long each part lasted is not how long the fault did.
+    earlier.evidence.retain(|line| !line.starts_with(LASTED));
+    for line in later.evidence {
+        let is_told = earlier
+            .evidence
+            .iter()
+            .any(|told| is_of_a_kind(told, &line));
+        if !is_told && !line.starts_with(LASTED) {
+            earlier.evidence.push(line);
         }
     }
+}
+
+/// Whether two lines say the same but for figures.
+fn is_of_a_kind(a: &str, b: &str) -> bool {
+    let words = |line: &str| line.replace(|c: char| c.is_ascii_digit(), "");
+    words(a) == words(b)
 }

@@ -6,6 +6,7 @@ mod fault;
 mod size;
 mod teller;
 
+pub(super) use fault::merge_faults;
 pub(super) use size::sharpen;
 
 use super::SampleReason;
@@ -16,7 +17,7 @@ use crate::change::{Cause, Change, Given, Loaded, What, detect};
 use crate::estimate::{NoiseLevels, Prior};
 use crate::fit::Observation;
 use crate::time::Timestamp;
-use fault::{Seen, faults, merge_faults};
+use fault::{Seen, faults};
 use teller::Teller;
 
 /// Work may have been done so long before the logbook says so, or after, seconds: people
@@ -34,6 +35,8 @@ pub(super) struct Found {
     pub(super) unnoticed: Option<Begun>,
     /// What a step that is not certain may have done to bx and by, variance in nT².
     pub(super) open_nt2: Option<f64>,
+    /// Whether a change would have been noticed.
+    pub(super) is_watched: bool,
 }
 
 impl Found {
@@ -102,6 +105,7 @@ pub(super) fn find(
         perhaps: None,
         unnoticed: None,
         open_nt2: None,
+        is_watched: true,
     };
     let usable = |reading: &Reading| {
         matches!(
@@ -130,6 +134,7 @@ pub(super) fn find(
             cargo: &cargo(logbook),
         },
     );
+    found.is_watched = told.is_watched;
     let events = told.events;
     let teller = Teller {
         observations: &observations,
@@ -189,7 +194,6 @@ pub(super) fn find(
         let evidence = &mut found.changes[change].evidence;
         teller.tell_end(&perhaps, change, evidence)
     });
-    merge_faults(&mut found);
     found
 }
 

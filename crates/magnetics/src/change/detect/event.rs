@@ -114,6 +114,8 @@ pub(crate) struct Told {
     /// What bx and by may each be off by beyond what the model knows, while a large step is
     /// neither certain nor out of question, variance in nT².
     pub(crate) open_nt2: Option<f64>,
+    /// Whether a change would be among them: not of a ship of whom too little is known.
+    pub(crate) is_watched: bool,
 }
 
 /// Something that is as yet neither likely enough to be believed nor unlikely

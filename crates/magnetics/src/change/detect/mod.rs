@@ -308,6 +308,7 @@ impl<'a> Search<'a> {
             perhaps,
             unnoticed,
             open_nt2,
+            is_watched: true,
         }
     }
 
