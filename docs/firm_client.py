@@ -13,14 +13,16 @@ token of the firm's (scope `write`) come from the environment:
     python3 firm_client.py events
     python3 firm_client.py on-board ORDER
     python3 firm_client.py adjust ORDER --reading reading.json
+    python3 firm_client.py adjust ORDER
     python3 firm_client.py complete ORDER --adjuster "M. Etxeberria" --licence ES-CA-114
     python3 firm_client.py register-key --key firm.pem --name "Office, 2026"
     python3 firm_client.py sign ORDER --key firm.pem
     python3 firm_client.py evidence ORDER --out evidence.zip
     python3 firm_client.py check-webhook --secret bns_... --header "$SIGNATURE" < body
 
-`adjust` asks after each step what the compass reads; `--as-foretold` answers for you, to
-try it out.
+`adjust` asks after each step what the compass reads, and before the first where the reading
+does not say; `--as-foretold` answers for you, to try it out. Without a reading it goes on
+where it was left.
 """
 
 import argparse
@@ -129,8 +131,13 @@ def problem_of(error):
 
 
 def adjust(api, order_id, reading, read_compass):
-    """Reads the berth, takes the recommended plan, and does its steps."""
+    """Reads the berth, takes the recommended plan, and does its steps.
+
+    Without a reading it goes on where the order stands.
+    """
     path = "/work-orders/" + order_id
+    if reading is None:
+        return do_steps(api, path, api.get(path), read_compass, is_known=False)
     model = api.get(path + "/model")
     binnacle = api.get(path + "/binnacle")
     print("model version %d, binnacle revision %d" % (model["version"], binnacle["revision"]))
@@ -138,21 +145,30 @@ def adjust(api, order_id, reading, read_compass):
     offer = api.get(path + "/plan")
     print("%d plans, the recommended one first" % len(offer["plans"]))
     order = api.post(path + "/plan", {"plan": 1})
+    is_known = reading.get("compass_deg") is not None
+    return do_steps(api, path, order, read_compass, is_known)
+
+
+def do_steps(api, path, order, read_compass, is_known):
+    """`is_known`: whether the server has heard what the compass reads before the first."""
     while order["next_step"] is not None:
         step = order["next_step"]
         print("%d. %s" % (step["number"], step["words"]))
-        read = {"after_deg": read_compass(step)}
+        read = {} if is_known else {"before_deg": read_compass(step, "before")}
+        read["after_deg"] = read_compass(step, "after")
         order = api.post("%s/steps/%d" % (path, step["number"]), read)
         print("   " + order["last_step"]["words"])
+        is_known = True
     return order
 
 
-def ask_for_compass(step):
-    return float(input("   the compass reads, degrees: "))
+def ask_for_compass(step, when):
+    return float(input("   the compass reads, %s the step, degrees: " % when))
 
 
-def as_foretold(step):
-    return step["expected_compass_deg"]
+def as_foretold(step, when):
+    after_deg = step["expected_compass_deg"]
+    return after_deg if when == "after" else (after_deg - step["change_deg"]) % 360
 
 
 def openssl(*arguments):
@@ -274,7 +290,7 @@ def arguments():
         if name == "say":
             command.add_argument("--text", required=True)
         if name == "adjust":
-            command.add_argument("--reading", required=True, help="a JSON file")
+            command.add_argument("--reading", help="a JSON file; without it, go on with the steps")
             command.add_argument("--as-foretold", action="store_true")
         if name == "sign":
             command.add_argument("--key", required=True, help="an Ed25519 key, PEM")
@@ -334,9 +350,12 @@ def run(asked):
     elif asked.command == "on-board":
         show(api.post(path + "/on-board", {}))
     elif asked.command == "adjust":
-        with open(asked.reading, encoding="utf-8") as file:
-            reading = json.load(file)
-        show(adjust(api, asked.order, reading, as_foretold if asked.as_foretold else ask_for_compass))
+        reading = None
+        if asked.reading:
+            with open(asked.reading, encoding="utf-8") as file:
+                reading = json.load(file)
+        read_compass = as_foretold if asked.as_foretold else ask_for_compass
+        show(adjust(api, asked.order, reading, read_compass))
     elif asked.command == "complete":
         word = {
             "adjuster_name": asked.adjuster,

@@ -14,6 +14,9 @@ const WIDTH: usize = 72;
 pub struct Letter {
     pub(super) subject: String,
     pub(super) text: String,
+    /// What it tells of, one after the other, if that is several things.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) told: Vec<Told>,
     /// The page to look at, below the dashboard's address.
     pub(super) path: String,
     /// The alert or the order that it is about: mail programs show its letters together.
@@ -22,6 +25,25 @@ pub struct Letter {
     /// The report that goes with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) report: Option<Attached>,
+}
+
+/// One of the things of which a letter tells.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Told {
+    /// In a line.
+    pub(super) head: String,
+    pub(super) text: String,
+    /// The page to look at, below the dashboard's address.
+    pub(super) path: String,
+}
+
+impl Told {
+    fn text(&self, public_url: &str) -> String {
+        let indented = |line: &str| format!("  {line}\n").trim_end().to_owned() + "\n";
+        let lines: String = self.text.lines().map(indented).collect();
+        let head = wrapped("- ", &self.head);
+        format!("{head}\n\n{lines}\n  {public_url}{}\n\n", self.path)
+    }
 }
 
 /// A monthly report that goes with a letter.
@@ -50,6 +72,7 @@ impl Letter {
         Letter {
             subject: header(&subject),
             text,
+            told: Vec::new(),
             path: format!("/vessels/{}", alert.vessel_id),
             about: Some(alert.id.0),
             report: None,
@@ -62,6 +85,7 @@ impl Letter {
             subject: "A test of Binnacle's mail".to_owned(),
             text: "This is a test: alerts of your fleet's compasses reach this address.\n"
                 .to_owned(),
+            told: Vec::new(),
             path: "/mail".to_owned(),
             about: None,
             report: None,
@@ -91,8 +115,9 @@ impl Letter {
                 "/reports",
             ),
         };
+        let told: String = self.told.iter().map(|one| one.text(public_url)).collect();
         format!(
-            "{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
+            "{told}{}\n{public_url}{}\n\n{}\n{public_url}{page}\n",
             self.text,
             self.path,
             wrapped("", &why)

@@ -18,6 +18,7 @@ pub fn monthly_letter(words: &str, operator: OperatorId, month: &str) -> Letter 
     Letter {
         subject: format!("Compass report of {month}"),
         text: words.to_owned(),
+        told: Vec::new(),
         path: "/reports".to_owned(),
         about: None,
         report: Some(Attached {

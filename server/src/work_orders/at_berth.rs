@@ -216,7 +216,9 @@ async fn read_step(
     let before_deg = read.before_deg.or(standing.compass_deg);
     let before_deg = before_deg.ok_or_else(|| Error::Invalid {
         field: "before_deg",
-        detail: "the compass has not been read before".to_owned(),
+        detail: "give what the compass read before the step: neither the berth's reading nor a \
+                 step before has said so"
+            .to_owned(),
     })?;
     degrees("before_deg", before_deg, 0.0, 360.0)?;
     must_lie_still(before_deg, standing.compass_deg)?;

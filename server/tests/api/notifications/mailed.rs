@@ -56,6 +56,15 @@ async fn quiet_hours_keep_letters_back_and_put_them_together(shore: Shore) {
     let text = read["text"].as_str().unwrap();
     let (last, first) = (text.find("juan accepts"), text.find("rosa declines"));
     assert!(last.unwrap() < first.unwrap(), "{text}");
+    // What each has to say, with its own page, as a letter of its own has it.
+    let page = format!("https://binnacle.example/work-orders/{}", trade.order);
+    assert_eq!(text.matches(&page).count(), 2, "{text}");
+    let listed = trade.ada.get("/notifications").await.good();
+    for one in listed["items"].as_array().unwrap() {
+        for line in one["text"].as_str().unwrap().lines() {
+            assert!(text.contains(line), "{line:?} is not in {text}");
+        }
+    }
     assert!(
         text.contains("https://binnacle.example/notifications"),
         "{text}"

@@ -16,6 +16,7 @@ use uuid::Uuid;
 
 on_both!(
     the_example_client_carries_an_order_to_its_end,
+    the_example_client_asks_what_the_compass_reads_before_the_first_step,
     the_example_client_bargains_writes_and_listens,
     a_firm_reads_of_the_ship_only_while_the_order_is_open,
     a_key_is_registered_by_who_holds_it_and_vouches_until_it_is_revoked,
@@ -67,6 +68,29 @@ impl<'a> Client<'a> {
         assert_eq!(code, Some(0), "{arguments:?}: {said}");
         said
     }
+}
+
+async fn the_example_client_asks_what_the_compass_reads_before_the_first_step(shore: Shore) {
+    let (job, rosa) = offered(&shore).await;
+    let folder = tempfile::tempdir().unwrap();
+    let client = Client::of(&shore, &rosa, folder.path()).await;
+    let order = job.order.as_str();
+    client.good(&[&["accept", order], &WHO[..]].concat()).await;
+    client.good(&["on-board", order]).await;
+    let mut silent = reading();
+    silent.as_object_mut().unwrap().remove("compass_deg");
+    std::fs::write(folder.path().join("reading.json"), silent.to_string()).unwrap();
+    let adjust = ["adjust", order, "--reading", "reading.json"];
+    let (code, said) = client.run(&adjust, b"").await;
+    assert_ne!(code, Some(0), "nobody answered: {said}");
+    assert!(
+        said.contains("the compass reads, before the step"),
+        "{said}"
+    );
+    let adjusted = client.good(&["adjust", order, "--as-foretold"]).await;
+    assert!(adjusted.contains("adjusting"), "{adjusted}");
+    assert_eq!(job.seen().await["next_step"], json!(null));
+    shore.finish().await;
 }
 
 async fn openssl(folder: &Path, arguments: &[&str]) -> Vec<u8> {
