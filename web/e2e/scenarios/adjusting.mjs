@@ -4,7 +4,7 @@
  */
 import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
-import { phone, notSignedIn, signIn, struck, fitsItsWidth } from '../helpers.mjs';
+import { phone, notSignedIn, signIn, struck, chart, curve, fitsItsWidth } from '../helpers.mjs';
 
 /** The berth where she is adjusted, a day from her last sample at most, and how she lies. */
 const berth = { lat: 35.9, lon: 14.5, headingDeg: 40 };
@@ -408,6 +408,39 @@ export const adjusting = {
       await page.setViewportSize(phone);
       await fitsItsWidth(page);
       await shoot('order-done-phone', { fullPage: true });
+    },
+  },
+
+  'her curve is shown as predicted, with no sample of before the adjustment': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await calm(page);
+      await page.goto(`/vessels/${vessel.id}`);
+      const deviation = page.getByRole('region', { name: 'Deviation', exact: true });
+      const said = deviation.getByTestId('foretold');
+      await said.getByText('Predicted, not verified at sea').waitFor();
+      await said.getByText('No settled heading has come in since the adjustment.').waitFor();
+      await said.getByRole('link', { name: 'The order' }).waitFor();
+      await deviation.getByText('Samples from before the adjustment are not drawn').waitFor();
+      await curve(page).waitFor();
+      assert.equal(await chart(page).getAttribute('data-dots'), '0');
+      assert.equal(await chart(page).locator('svg .dots path[d^="M"]').count(), 0);
+      await page.getByText(/^none: foretold by work order .*, fitted to no sample$/).waitFor();
+      await page
+        .getByRole('heading', { name: /^Table of deviations, predicted, not ver/ })
+        .waitFor();
+      const trust = page.getByRole('region', { name: 'How far to trust the curve' });
+      await trust.scrollIntoViewIfNeeded();
+      await trust.getByText('Predicted, not verified at sea').waitFor();
+      assert.doesNotMatch(await trust.innerText(), /independent errors|Only one/);
+      const changes = page.getByRole('region', { name: 'What changed' });
+      await changes.scrollIntoViewIfNeeded();
+      await changes.getByText('Its curve is foretold by the adjustment').waitFor();
+      await fitsItsWidth(page);
+      await shoot('vessel-foretold', { fullPage: true });
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
     },
   },
 };

@@ -1,11 +1,12 @@
 /** How far a model can be trusted, in an officer's words. */
 
 import type { Caution, DeviationRow, Model, References } from '../api/types';
-import { count, day, degrees, heading, microtesla } from '../format';
+import { count, day, degrees, heading, microtesla, time } from '../format';
 import * as text from '../text';
 import { size } from './advice';
 import { normal95 } from './band';
 import { magneticLatitude } from './coverage';
+import type { Foretold } from './foretold';
 import { goodDeg, goodRanges, worstWaters, type Range, type Waters } from './reach';
 
 /** A figure to take in at a glance, and what it means. */
@@ -57,6 +58,13 @@ export function worth(model: Model): Statement | null {
     figure: count(effective),
     meaning: t.worth(count(model.samples_used), count(effective)),
   };
+}
+
+/** What has been measured since an adjustment that foretold the model. */
+export function sinceAdjustment({ verification }: Foretold): Statement {
+  const words = text.foretold;
+  if (!verification) return { figure: words.worthNone, meaning: words.worthNoneLong };
+  return { figure: count(verification.samples), meaning: words.worth(time(verification.until)) };
 }
 
 export function cautionWords(caution: Caution): string {

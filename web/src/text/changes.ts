@@ -69,6 +69,8 @@ export const changes = {
   sinceDay: (day: string) => `from ${day} on`,
   epochModel: (samples: string, rms: string) =>
     `Model of ${samples} samples, residuals ${rms} rms.`,
+  epochForetold:
+    'Its curve is foretold by the adjustment; no sample has been fitted or verified it yet.',
   epochNoModel: 'No model of this epoch yet.',
   reported: (what: string) => `Reported: ${what}`,
 };

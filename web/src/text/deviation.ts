@@ -24,6 +24,12 @@ export const deviation = {
       'Samples stand at the deviation measured where they were taken, which differs from the deviation here.',
     none: '',
   },
+  notDrawn: {
+    adjusted: (none: boolean) =>
+      `Samples from before the adjustment are not drawn: they say nothing of this curve.${none ? ' There is none since.' : ''}`,
+    earlier: (from: string) =>
+      `Samples from before ${from} are not drawn: her magnetism was another then.`,
+  },
   drawn: (drawn: string, all: string) => `${drawn} of ${all} samples drawn.`,
   place: 'Place and time',
   latitude: 'Latitude',

@@ -15,6 +15,7 @@ export * from './deviation';
 export * from './fields';
 export * from './firms';
 export * from './fleet';
+export * from './foretold';
 export * from './mail';
 export * from './new-order';
 export * from './notifications';

@@ -11,6 +11,7 @@ export const vessel = {
   lastUpload: 'Last upload',
   lastPosition: 'Last position',
   fieldHelp: (h: string, z: string) => `horizontal ${h}, vertical ${z}`,
+  fieldAt: (place: string) => `at ${place}`,
   variation: 'Variation',
   modelLine: (version: number, until: string) => `Model ${version}, data until ${until}`,
   noModelTitle: 'No model yet',
