@@ -1,6 +1,6 @@
 import { render } from 'svelte/server';
 import { describe, expect, test } from 'vitest';
-import { inOrder, worstRaised } from './alerts';
+import { againstCard, inOrder, ofVessel, worstRaised } from './alerts';
 import type { Alert } from './api/types';
 import AlertCard from './components/AlertCard.svelte';
 
@@ -26,6 +26,23 @@ const alert = (id: string, more: Partial<Alert> = {}): Alert => ({
   cleared_by: null,
   clearing_reason: null,
   ...more,
+});
+
+test('a vessel has her own alerts, the worst first also when somebody knows of it', () => {
+  const list = [
+    alert('notice', { severity: 'notice' }),
+    alert('another', { vessel_id: 'w', severity: 'critical' }),
+    alert('known', { severity: 'critical', state: 'acknowledged' }),
+  ];
+  expect(ofVessel(list, 'v').map(({ id }) => id)).toEqual(['known', 'notice']);
+});
+
+test('only what says that the compass itself is wrong keeps a card from being made', () => {
+  const of = (more: Partial<Alert>) => againstCard([alert('a', more)], 'c')?.id;
+  expect(of({ cause: 'reported_aboard' })).toBe('a');
+  expect(of({ cause: 'compass_fault' })).toBe('a');
+  expect(of({ cause: 'lightning_or_shock' })).toBeUndefined();
+  expect(of({ cause: 'compass_fault', compass_id: 'd' })).toBeUndefined();
 });
 
 describe('the order of alerts', () => {

@@ -18,6 +18,19 @@ export function inOrder(alerts: readonly Alert[]): Alert[] {
   );
 }
 
+/** One vessel's, the worst first whether anybody knows of them or not. */
+export const ofVessel = (alerts: readonly Alert[], vessel: string): Alert[] =>
+  inOrder(alerts)
+    .filter((alert) => alert.vessel_id === vessel)
+    .sort((a, b) => rank[a.severity] - rank[b.severity]);
+
+/** What keeps a card from being made: with these open, no model tells what the compass shows. */
+export const againstCard = (alerts: readonly Alert[], compass: string): Alert | undefined =>
+  inOrder(alerts).find(
+    ({ compass_id, cause }) =>
+      compass_id === compass && (cause === 'compass_fault' || cause === 'reported_aboard'),
+  );
+
 /** The worst of the alerts that nobody has acknowledged. */
 export function worstRaised(alerts: readonly Alert[]): Severity | null {
   const first = inOrder(alerts).find((alert) => alert.state === 'raised');

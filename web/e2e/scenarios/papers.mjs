@@ -62,6 +62,50 @@ export const papers = {
     },
   },
 
+  'a card that an open alert stands against leads to the alert, and says what cures it': {
+    allowedErrors: [notSignedIn, refused],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      const answer = await page.request.get('/api/v1/vessels');
+      const vessel = (await answer.json()).items.find((one) => one.model);
+      const id = '01a207db-e6c9-706b-9c95-e21e8fa17d76';
+      const listed = await (await page.request.get('/api/v1/alerts?open=true')).json();
+      const alert = {
+        ...listed.items[0],
+        ...{ id, vessel_id: vessel.id, vessel_name: vessel.name },
+        ...{ compass_id: vessel.compasses[0].id, cause: 'reported_aboard', severity: 'warning' },
+        ...{ summary: 'Compass and gyro parted.', advice: 'Keep comparing them each watch.' },
+      };
+      const items = [...listed.items, alert];
+      await page.route('**/api/v1/alerts?open=true*', (route) =>
+        route.fulfill({ json: { items, next: null } }),
+      );
+      await page.route('**/card.json*', (route) =>
+        route.fulfill({
+          status: 409,
+          contentType: 'application/problem+json',
+          body: JSON.stringify({
+            type: '/problems/compass-suspected',
+            status: 409,
+            detail: `an alert on this compass is open: ${alert.summary}`,
+          }),
+        }),
+      );
+      await page.goto(`/vessels/${vessel.id}`);
+      const needs = page.getByRole('region', { name: 'What she needs' });
+      await needs.locator(`a[href="/alerts#${id}"]`).waitFor();
+      const card = cardOf(page);
+      await card.scrollIntoViewIfNeeded();
+      await card.getByRole('button', { name: 'Make the card' }).click();
+      await card.getByText('Keep comparing them each watch.').waitFor();
+      await card.getByRole('link', { name: 'The alert' }).click();
+      await page.getByRole('heading', { name: 'Alerts', level: 1 }).waitFor();
+      const named = page.locator(`[id="${id}"]`);
+      await named.getByText('Compass and gyro parted.').waitFor();
+      await page.waitForFunction((wanted) => document.activeElement?.id === wanted, id);
+    },
+  },
+
   'the deviation book is printed for the days chosen, on a phone too': {
     viewport: phone,
     allowedErrors: [notSignedIn],

@@ -217,6 +217,10 @@ export const withdrawEntry = (id: string, entry: string, reason: string) =>
     }),
   );
 
+/** When each of her compasses is to be adjusted, and why. */
+export const listVesselNeeds = async (id: string) =>
+  (await answer(client.GET('/api/v1/vessels/{id}/needs', { params: { path: { id } } }))).items;
+
 export const revokeAgent = (id: string, agent: string) =>
   answer(client.DELETE('/api/v1/vessels/{id}/agents/{agent}', { params: { path: { id, agent } } }));
 

@@ -51,6 +51,8 @@ function workOrderRoute(id: string | undefined): Route {
 export const vesselPath = (id: string): string => `/vessels/${encodeURIComponent(id)}`;
 export const vesselsPath = '/';
 export const alertsPath = '/alerts';
+/** An alert among the others. */
+export const alertPath = (id: string): string => `${alertsPath}#${id}`;
 export const mailPath = '/mail';
 export const webhooksPath = '/webhooks';
 export const schedulePath = '/schedule';

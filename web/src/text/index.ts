@@ -17,6 +17,7 @@ export * from './firms';
 export * from './fleet';
 export * from './foretold';
 export * from './mail';
+export * from './needs';
 export * from './new-order';
 export * from './notifications';
 export * from './offers';

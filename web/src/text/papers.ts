@@ -24,6 +24,8 @@ export const card = {
     json: 'Data (JSON)',
   },
   refused: 'No card can be made now:',
+  cure: 'There is one again when the alert is over.',
+  toAlert: 'The alert',
   notRecorded: 'Not recorded here, for a person to write:',
   unrecorded: {
     correctors: 'how the correctors stand',

@@ -1,0 +1,55 @@
+import { render } from 'svelte/server';
+import { expect, test } from 'vitest';
+import type { AdjustmentNeed, Alert, FleetVessel, WorkOrderSummary } from '../api/types';
+import NeedsPanel from './NeedsPanel.svelte';
+import { words } from './testing';
+
+const alert = (id: string, severity: Alert['severity']) =>
+  ({ id, severity, cause: 'reported_aboard' }) as Alert;
+const need = (due_on: string, urgency: AdjustmentNeed['urgency']) =>
+  ({ due_on, urgency, reason: `because of ${due_on}` }) as AdjustmentNeed;
+const glance = {
+  next_call: {
+    ...{ port: 'PECLL', port_name: 'Callao' },
+    ...{ eta: '2026-11-27T12:00:00Z', etd: '2026-11-30T12:00:00Z' },
+    worst: { compass_deg: 255, deviation_deg: 0.93, band95_deg: 1 },
+  },
+} as FleetVessel;
+const order = (id: string, state: string) =>
+  ({
+    id,
+    state,
+    port: 'PEPAI',
+    berth: null,
+    planned_at: '2026-11-23T13:00:00Z',
+  }) as WorkOrderSummary;
+
+test('what she needs is told with the ways there: alerts, what is due, her next call, her order', () => {
+  const rendered = render(NeedsPanel, {
+    props: {
+      alerts: [alert('x', 'critical'), alert('y', 'warning'), alert('z', 'notice')],
+      needs: [need('2027-05-01', 'routine'), need('2026-12-01', 'urgent')],
+      glance,
+      orders: [order('open', 'adjusted'), order('done', 'closed')],
+    },
+  });
+  const shown = words(rendered);
+  expect(shown).toMatch(/Open alerts Critical .* Warning .* and 1 more/);
+  expect(shown).toContain('1 Dec 2026');
+  expect(shown).not.toContain('1 May 2027');
+  expect(shown).toContain('Callao 27 Nov 2026, 12:00');
+  expect(shown).toContain('up to 0.9° E there, on 255°');
+  expect(rendered.body).toContain('href="/alerts#x"');
+  expect(rendered.body).toContain('href="/work-orders/open"');
+  expect(rendered.body).not.toContain('href="/work-orders/done"');
+});
+
+test('nothing is claimed of what has not come yet', () => {
+  const none = { alerts: undefined, needs: undefined, glance: undefined, orders: undefined };
+  const shown = words(render(NeedsPanel, { props: none }));
+  expect(shown).toBe('Open alerts Next adjustment due Next port call Work order');
+  const empty = { alerts: [], needs: [], glance: { next_call: null } as FleetVessel, orders: [] };
+  expect(words(render(NeedsPanel, { props: empty }))).toBe(
+    'Open alerts none Next adjustment due nothing is due Next port call none is known Work order none is open',
+  );
+});

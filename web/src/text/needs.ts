@@ -1,0 +1,16 @@
+/** Why somebody should look at a vessel. */
+
+export const needs = {
+  title: 'What she needs',
+  alerts: 'Open alerts',
+  noAlerts: 'none',
+  moreAlerts: (n: number) => (n === 1 ? 'and 1 more' : `and ${n} more`),
+  due: 'Next adjustment due',
+  noDue: 'nothing is due',
+  toSchedule: 'Schedule',
+  call: 'Next port call',
+  noCall: 'none is known',
+  worstThere: (angle: string, on: string) => `up to ${angle} there, on ${on}`,
+  order: 'Work order',
+  noOrder: 'none is open',
+};
