@@ -30,8 +30,9 @@ export async function openVessel(page) {
     .filter({ hasText: /\(95 %\)/ })
     .first();
   await row.waitFor();
-  const name = await row.getByRole('link').innerText();
-  await row.getByRole('link').click();
+  const link = row.getByRole('rowheader').getByRole('link');
+  const name = await link.innerText();
+  await link.click();
   await page.getByRole('heading', { name, level: 1 }).waitFor();
   // It is drawn when it is about to be seen.
   await chart(page).scrollIntoViewIfNeeded();

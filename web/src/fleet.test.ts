@@ -1,17 +1,7 @@
 import { describe, expect, it } from 'vitest';
-import type { AdjustmentNeed, FleetVessel } from './api/types';
-import {
-  arranged,
-  fromSearch,
-  quality,
-  sortedBy,
-  toSearch,
-  urgency,
-  usual,
-  withDues,
-  withNews,
-  worstAhead,
-} from './fleet';
+import type { AdjustmentNeed, FleetVessel, PlannedJob, SchedulePlan } from './api/types';
+import { pressing, reasonsOf, withDues, worstAhead } from './attention';
+import { arranged, fromSearch, quality, sortedBy, toSearch, usual, withNews } from './fleet';
 import { savedViews, saveViews, withView } from './views';
 
 const now = new Date('2026-11-22T06:00:00Z');
@@ -55,8 +45,8 @@ const names = (query: Partial<typeof usual>) =>
 describe('the fleet', () => {
   it('begins with who needs someone most', () => {
     expect(names({})).toEqual(['Carl', 'Berta', 'Anna', 'Dora']);
-    expect(urgency(vessel('x', alert('warning', 'raised')))).toBeGreaterThan(
-      urgency(vessel('x', alert('warning', 'acknowledged'))),
+    expect(pressing(vessel('x', alert('warning', 'raised')))).toBeGreaterThan(
+      pressing(vessel('x', alert('warning', 'acknowledged'))),
     );
   });
 
@@ -64,6 +54,22 @@ describe('the fleet', () => {
     expect(names({ search: 'eavn' })).toEqual(['Anna']);
     expect(names({ search: '9074 ber' })).toEqual(['Berta']);
     expect(names({ search: 'anna berta' })).toEqual([]);
+  });
+
+  it('is searched without accents and capitals, on either side', () => {
+    const ships = [
+      vessel('Östersjön'),
+      vessel('Baía de Santos'),
+      vessel('Søløven'),
+      vessel('Fjord'),
+    ];
+    const found = (search: string) =>
+      arranged(ships, { ...usual, search }, now).map(({ name }) => name);
+    expect(found('ostersjon')).toEqual(['Östersjön']);
+    expect(found('ÖSTERSJÖN')).toEqual(['Östersjön']);
+    expect(found('baia')).toEqual(['Baía de Santos']);
+    expect(found('solov')).toEqual(['Søløven']);
+    expect(found('fjörd')).toEqual(['Fjord']);
   });
 
   it('is filtered', () => {
@@ -153,13 +159,84 @@ describe('what is due next', () => {
 
   it('is the first of her needs, and puts the earliest first and the unknown last', () => {
     const vessels = ['A', 'B', 'C'].map((id) => ({ id, name: id }) as FleetVessel);
-    const lines = withDues(vessels, [
-      need('B', '2027-01-01'),
-      need('A', '2027-03-01'),
-      need('B', '2026-12-01'),
-    ]);
+    const needs = [need('B', '2027-01-01'), need('A', '2027-03-01'), need('B', '2026-12-01')];
+    const lines = withDues(vessels, needs, null);
     expect(lines.map((line) => line.due?.on)).toEqual(['2027-03-01', '2026-12-01', undefined]);
     const sorted = arranged(lines, { ...usual, sort: 'due' }, new Date());
     expect(sorted.map((line) => line.name)).toEqual(['B', 'A', 'C']);
+  });
+});
+
+describe('who needs someone', () => {
+  const need = (vessel_id: string, urgency: AdjustmentNeed['urgency'], compass_id = vessel_id) =>
+    ({ vessel_id, compass_id, due_on: '2026-11-23', urgency, reason: 'r' }) as AdjustmentNeed;
+  const job = (compass_id: string, state: PlannedJob['state'], orders: string[]) =>
+    ({ compasses: [{ compass_id }], day: '2026-11-28', state, orders }) as unknown as PlannedJob;
+  const large = { compass_deg: 55, deviation_deg: 5.8, band95_deg: 0.7 };
+  const ships = [
+    vessel('Acknowledged', alert('warning', 'acknowledged')),
+    vessel('Calm'),
+    vessel('Large', { worst: large }),
+    vessel('Offered'),
+    vessel('Planned'),
+    vessel('Raised', alert('warning', 'raised')),
+    vessel('Soon'),
+    vessel('Unplanned'),
+  ];
+  const needs = [
+    need('Calm', 'routine'),
+    need('Offered', 'overdue'),
+    need('Planned', 'overdue'),
+    need('Soon', 'soon'),
+    need('Unplanned', 'overdue'),
+  ];
+  const jobs = [job('Planned', 'proposed', []), job('Offered', 'offered', ['order-1'])];
+  const lines = withDues(ships, needs, { jobs } as unknown as SchedulePlan);
+  const of = (name: string) => {
+    const found = lines.find((line) => line.name === name);
+    if (!found) throw new Error(name);
+    return found;
+  };
+
+  it('is a ship with an alert, one due that no firm was asked for, or one with a large deviation', () => {
+    const asked = { ...usual, filter: 'attention' } as const;
+    expect(arranged(lines, asked, now).map(({ name }) => name)).toEqual([
+      'Raised',
+      'Planned',
+      'Unplanned',
+      'Large',
+      'Acknowledged',
+      'Soon',
+    ]);
+    // All of them stand before who needs nobody.
+    const all = arranged(lines, usual, now).map(({ name }) => name);
+    expect(all.slice(-2)).toEqual(['Calm', 'Offered']);
+  });
+
+  it('says why', () => {
+    const due = { kind: 'due', urgency: 'overdue', on: '2026-11-23' };
+    expect(reasonsOf(of('Unplanned'))).toMatchObject([{ ...due, day: null }]);
+    expect(reasonsOf(of('Planned'))).toMatchObject([{ ...due, day: '2026-11-28' }]);
+    expect(reasonsOf(of('Large'))).toEqual([{ kind: 'deviation', port: null }]);
+    expect(reasonsOf(of('Offered'))).toEqual([]);
+    expect(of('Offered').inHand).toMatchObject({ day: '2026-11-28', order: 'order-1' });
+  });
+
+  it('counts the other alerts, and names a large deviation once', () => {
+    const over = {
+      alert: { cause: 'deviation_over_limit', severity: 'critical', state: 'raised', summary: 's' },
+      open_alerts: 3,
+      worst: large,
+    } as const;
+    expect(reasonsOf(vessel('x', over))).toMatchObject([{ kind: 'alert', more: 2 }]);
+  });
+
+  it('looks at each of her compasses', () => {
+    const [line] = withDues(
+      [vessel('Offered')],
+      [need('Offered', 'overdue'), need('Offered', 'urgent', 'steering')],
+      { jobs } as unknown as SchedulePlan,
+    );
+    expect(line && reasonsOf(line)).toMatchObject([{ kind: 'due', urgency: 'urgent', day: null }]);
   });
 });

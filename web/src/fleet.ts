@@ -3,7 +3,8 @@
  * line. Pure functions: the page holds the query, the address bar repeats it.
  */
 
-import type { AdjustmentNeed, FleetVessel, Severity, Urgency, Worst } from './api/types';
+import type { FleetVessel } from './api/types';
+import { pressing, reasonsOf, worstAhead, type FleetLine } from './attention';
 import { grade } from './science/curve';
 
 export const filters = ['all', 'attention', 'unacknowledged', 'large', 'weak', 'silent'] as const;
@@ -24,32 +25,9 @@ export const usual: Query = { search: '', filter: 'all', sort: 'needs', reversed
 
 const dayMs = 86_400_000;
 
-/** When a vessel's compass is to be adjusted next, the first of hers. */
-export interface Due {
-  on: string;
-  urgency: Urgency;
-  reason: string;
-}
-
-/** A vessel with when she is due; nothing where that is not known yet, or she is not. */
-export type FleetLine = FleetVessel & { due?: Due | undefined };
-
-/** The vessels with the first of the needs of each. */
-export function withDues(
-  vessels: readonly FleetVessel[],
-  needs: readonly AdjustmentNeed[],
-): FleetLine[] {
-  const first = new Map<string, Due>();
-  for (const { vessel_id, due_on: on, urgency, reason } of needs) {
-    const known = first.get(vessel_id);
-    if (!known || on < known.on) first.set(vessel_id, { on, urgency, reason });
-  }
-  return vessels.map((vessel) => ({ ...vessel, due: first.get(vessel.id) }));
-}
-
 /** The vessels that a query asks for, in its order; equals by name. */
 export function arranged(vessels: readonly FleetLine[], query: Query, now: Date): FleetLine[] {
-  const words = query.search.toLowerCase().split(/\s+/).filter(Boolean);
+  const words = plainly(query.search).split(/\s+/).filter(Boolean);
   const sign = query.reversed ? -1 : 1;
   return vessels
     .filter((vessel) => passes(vessel, query.filter, now) && says(vessel, words))
@@ -57,16 +35,27 @@ export function arranged(vessels: readonly FleetLine[], query: Query, now: Date)
 }
 
 function says(vessel: FleetVessel, words: string[]): boolean {
-  const hay = [vessel.name, vessel.imo_number, vessel.call_sign].join(' ').toLowerCase();
+  const hay = plainly([vessel.name, vessel.imo_number, vessel.call_sign].join(' '));
   return words.every((word) => hay.includes(word));
 }
 
-function passes(vessel: FleetVessel, filter: Filter, now: Date): boolean {
+/** Letters that no mark is taken from to have a plain one. */
+const otherLetters: Record<string, string> = { ø: 'o', ł: 'l', đ: 'd', æ: 'ae', œ: 'oe', ß: 'ss' };
+
+/** Without capitals and accents: not every keyboard has every ship's letters. */
+const plainly = (words: string): string =>
+  words
+    .normalize('NFD')
+    .replace(/\p{M}/gu, '')
+    .toLowerCase()
+    .replace(/[øłđæœß]/g, (letter) => otherLetters[letter] ?? letter);
+
+function passes(vessel: FleetLine, filter: Filter, now: Date): boolean {
   switch (filter) {
     case 'all':
       return true;
     case 'attention':
-      return vessel.alert !== null;
+      return reasonsOf(vessel).length > 0;
     case 'unacknowledged':
       return vessel.open_alerts > 0;
     case 'large':
@@ -86,7 +75,7 @@ function compare(a: FleetLine, b: FleetLine, sort: Sort): number {
     case 'name':
       return byName(a, b);
     case 'needs':
-      return urgency(b) - urgency(a) || size(b) - size(a);
+      return pressing(b) - pressing(a) || size(b) - size(a);
     case 'worst':
       return size(b) - size(a);
     case 'quality':
@@ -114,28 +103,7 @@ const size = (vessel: FleetVessel): number => {
   return ahead ? Math.abs(ahead.worst.deviation_deg) : -1;
 };
 
-/** The largest deviation that she is to meet, and the port if it is not where she was last. */
-export function worstAhead({
-  worst,
-  next_call: call,
-}: FleetVessel): { worst: Worst; port: string | null } | null {
-  const there = call?.worst ?? null;
-  const here = worst === null ? -1 : Math.abs(worst.deviation_deg);
-  if (call && there && Math.abs(there.deviation_deg) > here) {
-    return { worst: there, port: call.port_name || call.port };
-  }
-  return worst && { worst, port: null };
-}
 const rms = (vessel: FleetVessel): number => vessel.model?.rms_deg ?? 0;
-
-const severityRank: Record<Severity, number> = { notice: 1, warning: 2, critical: 3 };
-
-/** The worst of her alerts counts most, then whether anyone knows, then how many there are. */
-export function urgency({ alert, open_alerts }: FleetVessel): number {
-  if (!alert) return 0;
-  const known = alert.state === 'raised' ? 1 : 0;
-  return severityRank[alert.severity] * 1_000 + known * 500 + Math.min(open_alerts, 499);
-}
 
 export type Quality = 'firm' | 'fair' | 'weak' | 'none';
 const qualities: readonly Quality[] = ['none', 'weak', 'fair', 'firm'];

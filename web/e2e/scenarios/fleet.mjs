@@ -99,6 +99,87 @@ export const fleet = {
     },
   },
 
+  'a row leads in one click to what is to be done': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      const needs = page.locator('td[data-label="Needs"]');
+      const alert = needs.getByRole('link', { name: 'Deviation over the limit' }).first();
+      await alert.click();
+      await page.waitForURL(/\/alerts$/);
+      await page.goBack();
+      await page.getByRole('combobox', { name: /^Show/ }).selectOption('attention');
+      const due = needs.filter({ hasText: 'Overdue' }).getByRole('link', { name: 'not scheduled' });
+      await due.first().click();
+      await page.waitForURL(/\/schedule$/);
+    },
+  },
+
+  'a band stands on one line, and the search knows no accents': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await page.route('**/api/v1/fleet', async (route) => {
+        const response = await route.fetch();
+        const body = await response.json();
+        const vessels = body.vessels.map((vessel) => ({
+          ...vessel,
+          name: `Östersjön ${vessel.name}`,
+          next_call: {
+            port: 'NLRTM',
+            port_name: 'Rotterdam',
+            eta: new Date(Date.now() + 86_400_000).toISOString(),
+            etd: new Date(Date.now() + 172_800_000).toISOString(),
+            worst: vessel.worst && { ...vessel.worst, deviation_deg: -22.5 },
+          },
+        }));
+        await route.fulfill({ response, json: { ...body, vessels } });
+      });
+      await signIn(page, settings);
+      const band = page.getByRole('row').getByText(/\(95 %\)$/);
+      await band.first().waitFor();
+      for (const one of await band.all()) {
+        const lines = await one.evaluate((node) => node.getClientRects().length);
+        assert.equal(lines, 1, 'the band is broken in two');
+      }
+      // As little as this is read without a line for each word.
+      const needs = await page.locator('td[data-label="Needs"]').first().boundingBox();
+      assert.ok(needs.width >= 200, `the needs have ${needs.width} px`);
+      for (const width of [320, 768, 961, 1024, 1399, 1400, 1440, 1920]) {
+        await page.setViewportSize({ width, height: 900 });
+        const cut = await page
+          .getByRole('table', { name: 'Vessels' })
+          .evaluate(({ parentElement: list }) => list.scrollWidth - list.clientWidth);
+        assert.ok(cut <= 0, `${cut} px of the table are beyond its edge at ${width} px`);
+      }
+      const all = await names(page);
+      await page.getByLabel('Search').fill('ostersjon');
+      assert.deepEqual(await names(page), all);
+      await page.getByLabel('Search').fill('ostersjoner');
+      await page.getByText('No vessel fits').waitFor();
+    },
+  },
+
+  'a vessel that was added meanwhile comes without a reload': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      let added = false;
+      await page.route('**/api/v1/fleet', async (route) => {
+        const response = await route.fetch();
+        const body = await response.json();
+        const [vessel] = body.vessels;
+        const another = { ...vessel, id: crypto.randomUUID(), name: 'Added Meanwhile' };
+        const vessels = added ? [...body.vessels, another] : body.vessels;
+        await route.fulfill({ response, json: { ...body, vessels } });
+      });
+      await page.clock.install();
+      await signIn(page, settings);
+      await page.getByRole('rowheader').first().waitFor();
+      added = true;
+      await page.clock.fastForward('06:00');
+      await page.getByRole('link', { name: 'Added Meanwhile' }).waitFor();
+    },
+  },
+
   'the map chooses a row, by pointer and by keys': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {
@@ -106,7 +187,7 @@ export const fleet = {
       await map(page).focus();
       await page.keyboard.press('ArrowRight');
       await chosenRow(page).waitFor();
-      const byKey = await chosenRow(page).getByRole('link').innerText();
+      const byKey = await chosenRow(page).getByRole('rowheader').getByRole('link').innerText();
       await page.getByRole('status').filter({ hasText: byKey }).waitFor({ state: 'attached' });
       await page.keyboard.press('Escape');
       await chosenRow(page).waitFor({ state: 'detached' });

@@ -92,7 +92,7 @@ export const schedule = {
       const hit = await struck(page);
       await firmsHaveTerms(page);
       await due(page, hit);
-      await page.getByRole('link', { name: 'Schedule' }).click();
+      await page.getByRole('link', { name: 'Schedule', exact: true }).click();
       await page.getByRole('heading', { name: 'Schedule', level: 1 }).waitFor();
       const calls = page.getByRole('region', { name: 'Port calls' });
       await calls.getByLabel('Vessel').selectOption(hit.id);

@@ -26,7 +26,7 @@ export const session = {
       await page.keyboard.type(settings.password);
       await page.keyboard.press('Enter');
       await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
-      const link = page.getByRole('row').getByRole('link').first();
+      const link = page.getByRole('rowheader').getByRole('link').first();
       await link.waitFor();
       for (let presses = 0; presses < 30; presses++) {
         if (await link.evaluate((element) => element === document.activeElement)) break;

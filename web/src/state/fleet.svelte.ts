@@ -2,21 +2,28 @@
 
 import { findAtAGlance, findFleet } from '../api/client';
 import { gathered, live } from '../api/live.svelte';
-import { listNeeds } from '../api/schedule';
-import type { AdjustmentNeed, FleetVessel } from '../api/types';
+import { findSchedule, listNeeds } from '../api/schedule';
+import type { AdjustmentNeed, FleetVessel, SchedulePlan } from '../api/types';
 import { withNews } from '../fleet';
-import { Resource } from './resource.svelte';
+import { kept, Resource } from './resource.svelte';
 
 /** News of more vessels than this at once: then the whole fleet is one question. */
 const mostSingly = 6;
 const waitMs = 1_500;
 /** What is due changes by days. */
 const needsWaitMs = 15_000;
+/** So often everything is asked for: a vessel that was added meanwhile makes no news. */
+const allEveryMs = 5 * 60_000;
+/** Who comes back to the page after longer than this sees it asked for at once. */
+const backAfterMs = 30_000;
 
 export class FleetState {
   vessels = new Resource<FleetVessel[]>();
-  /** What is due when: asked for when the vessels are there, for they are looked at first. */
-  needs = new Resource<AdjustmentNeed[]>();
+  /**
+   * What is due when, and what is planned: asked for when the vessels are there, for they are
+   * looked at first.
+   */
+  needs = new Resource<{ needs: AdjustmentNeed[]; plan: SchedulePlan | null }>();
   #stale = new Set<string>();
   #all = false;
   #tracked = new Set<string>();
@@ -28,7 +35,13 @@ export class FleetState {
 
   /** Keeps it up to date until the function it returns is called. */
   follow(): () => void {
-    void this.load().then(this.#loadNeeds);
+    const loadAll = () => this.load().then(this.#loadNeeds);
+    const stopAll = kept(loadAll, allEveryMs);
+    const back = () => {
+      const age = Date.now() - (this.vessels.loadedAt?.getTime() ?? 0);
+      if (!document.hidden && age > backAfterMs) void loadAll();
+    };
+    document.addEventListener('visibilitychange', back);
     const needs = gathered(() => void this.#loadNeeds(), needsWaitMs);
     const refresh = gathered(() => void this.#refresh(), waitMs);
     const stop = live.listen(({ vesselId, kind }) => {
@@ -41,6 +54,8 @@ export class FleetState {
       refresh.stop();
       needs.stop();
       stop();
+      stopAll();
+      document.removeEventListener('visibilitychange', back);
     };
   }
 
@@ -53,7 +68,11 @@ export class FleetState {
     if (news) this.vessels.value = withNews(this.vessels.value ?? [], id, news);
   }
 
-  #loadNeeds = (): Promise<void> => this.needs.load(listNeeds);
+  #loadNeeds = (): Promise<void> =>
+    this.needs.load(async () => {
+      const [needs, { plan }] = await Promise.all([listNeeds(), findSchedule()]);
+      return { needs, plan };
+    });
 
   async #refresh(): Promise<void> {
     const [ids, all] = [[...this.#stale], this.#all];

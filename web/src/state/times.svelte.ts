@@ -32,6 +32,9 @@ class TimesState {
   at = (value: string | Date | null | undefined, where: Where): string =>
     atSea(value, this.#zoneAt(where), this.clocks);
 
+  /** The day alone, by the first of those clocks. */
+  day = (value: string | Date, where: Where): string => this.at(value, where).replace(/,.*/, '');
+
   #zoneAt(where: Where): number | undefined {
     if (!where) return undefined;
     if ('lon' in where) return zoneOf(where.lon);

@@ -1,0 +1,136 @@
+/**
+ * Why a vessel needs someone, the most pressing first: an alert, an adjustment that is due
+ * and that nobody has taken in hand, a deviation that is large where she is or goes next.
+ * Pure functions.
+ */
+
+import type {
+  AdjustmentNeed,
+  AlertCause,
+  FleetVessel,
+  SchedulePlan,
+  Severity,
+  Urgency,
+  Worst,
+} from './api/types';
+import { grade } from './science/curve';
+
+/** When a vessel's compass is to be adjusted next, the first of hers. */
+export interface Due {
+  on: string;
+  urgency: Urgency;
+  reason: string;
+}
+
+/** A vessel with when she is due; nothing where that is not known yet, or she is not. */
+export type FleetLine = FleetVessel & {
+  due?: Due | undefined;
+  /** The first that presses and that no firm was asked for; planned for a day, or for none. */
+  unoffered?: (Due & { day: string | null }) | undefined;
+  /** An adjustment that a firm was offered or has agreed to. */
+  inHand?: { day: string; order: string | null } | undefined;
+};
+
+/** The vessels with the needs of each, and how far the plan has come with them. */
+export function withDues(
+  vessels: readonly FleetVessel[],
+  needs: readonly AdjustmentNeed[],
+  plan: SchedulePlan | null,
+): FleetLine[] {
+  const jobs = new Map(
+    (plan?.jobs ?? []).flatMap((job) =>
+      job.compasses.map(({ compass_id }, i) => [
+        compass_id,
+        { day: job.day, asked: job.state !== 'proposed', order: job.orders[i] ?? null },
+      ]),
+    ),
+  );
+  const known = new Map<string, Pick<FleetLine, 'due' | 'unoffered' | 'inHand'>>();
+  for (const { vessel_id, compass_id, due_on: on, urgency, reason } of needs) {
+    const due = { on, urgency, reason };
+    const job = jobs.get(compass_id);
+    const hers = known.get(vessel_id) ?? {};
+    known.set(vessel_id, hers);
+    if (!hers.due || on < hers.due.on) hers.due = due;
+    if (job?.asked) {
+      if (!hers.inHand || job.day < hers.inHand.day) hers.inHand = job;
+    } else if (urgency !== 'routine' && (!hers.unoffered || on < hers.unoffered.on)) {
+      hers.unoffered = { ...due, day: job?.day ?? null };
+    }
+  }
+  return vessels.map((vessel) => ({ ...vessel, ...known.get(vessel.id) }));
+}
+
+/** The largest deviation that she is to meet, and the port if it is not where she was last. */
+export function worstAhead({
+  worst,
+  next_call: call,
+}: FleetVessel): { worst: Worst; port: string | null } | null {
+  const there = call?.worst ?? null;
+  const here = worst === null ? -1 : Math.abs(worst.deviation_deg);
+  if (call && there && Math.abs(there.deviation_deg) > here) {
+    return { worst: there, port: call.port_name || call.port };
+  }
+  return worst && { worst, port: null };
+}
+
+export type Reason =
+  | {
+      kind: 'alert';
+      severity: Severity;
+      cause: AlertCause;
+      why: string;
+      known: boolean;
+      more: number;
+    }
+  | { kind: 'due'; urgency: Urgency; on: string; day: string | null; why: string }
+  | { kind: 'deviation'; port: string | null };
+
+/** Why she needs someone, the most pressing first; nothing where she does not. */
+export function reasonsOf(vessel: FleetLine): Reason[] {
+  const { alert, open_alerts, unoffered } = vessel;
+  const reasons: Reason[] = [];
+  if (alert) {
+    const { severity, cause, summary: why } = alert;
+    const known = alert.state !== 'raised';
+    reasons.push({
+      kind: 'alert',
+      severity,
+      cause,
+      why,
+      known,
+      more: open_alerts - (known ? 0 : 1),
+    });
+  }
+  if (unoffered) reasons.push({ kind: 'due', why: unoffered.reason, ...unoffered });
+  const ahead = worstAhead(vessel);
+  // The alert says it already.
+  const said = alert?.cause === 'deviation_over_limit';
+  if (ahead && !said && grade(ahead.worst.deviation_deg) === 'large') {
+    reasons.push({ kind: 'deviation', port: ahead.port });
+  }
+  return reasons.sort((a, b) => rank(b) - rank(a));
+}
+
+const severityRank: Record<Severity, number> = { notice: 1, warning: 2, critical: 3 };
+/** An overdue compass presses as a warning that somebody knows of; beyond 5° little less. */
+const urgencyRank: Record<Urgency, number> = { overdue: 2.2, urgent: 1.2, soon: 0.8, routine: 0 };
+const largeRank = 2.1;
+
+function rank(reason: Reason): number {
+  switch (reason.kind) {
+    case 'alert':
+      return severityRank[reason.severity] + (reason.known ? 0 : 0.5);
+    case 'due':
+      return urgencyRank[reason.urgency];
+    case 'deviation':
+      return largeRank;
+  }
+}
+
+/** How much that presses: the worst reason counts most, then how many there are. */
+export function pressing(vessel: FleetLine): number {
+  const reasons = reasonsOf(vessel);
+  const first = reasons[0];
+  return first ? rank(first) * 1_000 + Math.min(reasons.length + vessel.open_alerts, 99) : 0;
+}
