@@ -49,6 +49,15 @@ function first({ jobs, needs }: Row): number {
   return Math.min(Number.MAX_SAFE_INTEGER, ...days.map((day) => Date.parse(day)));
 }
 
+/** What the plan leaves to be done late or not at all, in vessels' jobs. */
+export function unmetBy(plan: SchedulePlan): { unscheduled: number; late: number } {
+  // A job that is late may stand among the unscheduled too, with why.
+  return {
+    unscheduled: plan.unscheduled.filter((need) => !need.planned_late).length,
+    late: plan.jobs.filter((job) => job.late_days > 0).length,
+  };
+}
+
 /** How much the most pressing of some needs presses. */
 export const mostUrgent = (needs: readonly { urgency: (typeof urgencies)[number] }[]) =>
   urgencies.find((urgency) => needs.some((need) => need.urgency === urgency)) ?? 'routine';

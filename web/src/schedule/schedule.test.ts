@@ -2,7 +2,8 @@ import { describe, expect, test } from 'vitest';
 import type { AdjustmentNeed, PlannedJob, PortCall, SchedulePlan } from '../api/types';
 import { atX, shown, spanFrom, ticks, xOf } from './axis';
 import { daysWith, inMonth, keyedDay, weeksOf } from './month';
-import { callAt, daysOf, instantOf, realChanges, rowsOf } from './plan';
+import * as text from '../text';
+import { callAt, daysOf, instantOf, realChanges, rowsOf, unmetBy } from './plan';
 
 const dayMs = 86_400_000;
 
@@ -95,6 +96,25 @@ describe('the vessels of a plan', () => {
       'Calls',
       'Late',
     ]);
+  });
+});
+
+describe('what a plan does not do in time', () => {
+  const plan = (lateDays: number[], plannedLate: boolean[]) =>
+    ({
+      jobs: lateDays.map((late_days) => ({ late_days })),
+      unscheduled: plannedLate.map((planned_late) => ({ planned_late })),
+    }) as unknown as SchedulePlan;
+
+  test('is what is not in it, and the jobs that are in it late, each once', () => {
+    expect(unmetBy(plan([0, 0], []))).toEqual({ unscheduled: 0, late: 0 });
+    expect(unmetBy(plan([3, 0, 9], [false, true]))).toEqual({ unscheduled: 1, late: 2 });
+  });
+
+  test('is said in words that tell the one from the other', () => {
+    const { unmetWhich } = text.schedule.facts;
+    expect(unmetWhich(1, 7)).toBe('1 not scheduled, 7 in the plan after their due dates');
+    expect(unmetWhich(0, 0)).toBe('everything that is due is in the plan, in time');
   });
 });
 

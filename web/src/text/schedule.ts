@@ -23,6 +23,10 @@ export const schedule = {
     made: (when: string) => `made ${when}`,
     jobs: 'Jobs',
     unmet: 'Not scheduled or late',
+    unmetWhich: (unscheduled: number, late: number) =>
+      unscheduled + late === 0
+        ? 'everything that is due is in the plan, in time'
+        : `${unscheduled} not scheduled, ${late} in the plan after ${late === 1 ? 'its due date' : 'their due dates'}`,
     paid: 'Fees and travel',
     cost: 'Cost by your weights',
     proven: 'proven: no plan is better',
@@ -53,6 +57,8 @@ export const schedule = {
       confirmed: 'confirmed',
       pinned: 'pinned',
       due: 'due',
+      dueSoon: 'due soon',
+      overdue: 'overdue',
     },
   },
 
@@ -123,7 +129,7 @@ export const schedule = {
     window: (from: string, to: string) => `${from} to ${to}`,
     firm: 'Firm',
     why: 'Why',
-    due: (day: string, urgency: string) => `due by ${day} · ${urgency}`,
+    due: (day: string) => `due by ${day}`,
     missing: (percent: string) => `${percent} chance that she is not there`,
     cost: 'What it costs',
     fee: 'Fee',
