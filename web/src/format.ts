@@ -157,12 +157,18 @@ function toDate(value: string | Date | null | undefined): Date | null {
 export function ago(value: string | null | undefined, now: Date): string {
   const date = toDate(value);
   if (!date) return unknown;
-  const minutes = Math.floor((now.getTime() - date.getTime()) / 60_000);
-  if (minutes < 1) return 'just now';
-  if (minutes < 60) return `${minutes} min ago`;
+  const seconds = (now.getTime() - date.getTime()) / 1000;
+  return seconds < 60 ? 'just now' : `${lasting(seconds)} ago`;
+}
+
+/** How long something takes: `7 min`, `5 h`, `3 days`. */
+export function lasting(seconds: number): string {
+  const minutes = Math.floor(seconds / 60);
+  if (minutes < 1) return '< 1 min';
+  if (minutes < 60) return `${minutes} min`;
   const hours = Math.floor(minutes / 60);
-  if (hours < 48) return `${hours} h ago`;
-  return `${Math.floor(hours / 24)} days ago`;
+  if (hours < 48) return `${hours} h`;
+  return `${Math.floor(hours / 24)} days`;
 }
 
 /** Nanotesla, written for people: `24.1 µT`, kept on one line. */

@@ -28,6 +28,8 @@ use utoipa_axum::routes;
 use uuid::Uuid;
 
 /// Made on a Friday ashore, it can be typed on board after the weekend.
+/// What is told of how the link did is of so many seconds.
+const WEEK_S: f64 = 7.0 * 86_400.0;
 const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
 const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
 
@@ -72,8 +74,24 @@ pub struct AgentStream {
     pub batches: i64,
     /// Samples in them.
     pub samples: i64,
-    /// Ten-second windows by outcome: `accepted`, or why they were refused.
+    /// Ten-second windows by outcome: `accepted`, or why they were refused; `thinned` are
+    /// those that were accepted and left out for want of room or budget.
     pub tally: BTreeMap<String, u64>,
+    /// How the link did of late.
+    pub last_week: LinkWeek,
+}
+
+/// What came over a stream's link in the last seven days.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+pub struct LinkWeek {
+    /// Batches that came.
+    pub batches: i64,
+    /// Octets in them, without what the protocols below add.
+    pub octets: i64,
+    /// How long the latest sample of a batch was on its way, at most, seconds: what had to
+    /// wait for the link. None of no samples.
+    #[schema(required)]
+    pub longest_wait_s: Option<i64>,
 }
 
 /// A page of streams.
@@ -153,7 +171,9 @@ async fn list_agents(
     page: Page,
 ) -> Result<Json<AgentStreamList>> {
     vessels::must_be_in_fleet(&app.db, reader.operator, id).await?;
-    let found = store::list_streams(&app.db, id, page.after_id()?, page.fetch()).await?;
+    let week_ago = app.clock.now().plus_seconds(-WEEK_S);
+    let after = page.after_id()?;
+    let found = store::list_streams(&app.db, id, after, week_ago.into(), page.fetch()).await?;
     let listed = page.cut(found, |row| row.stream.to_string());
     let items: Result<Vec<AgentStream>> = listed
         .items

@@ -1,6 +1,6 @@
 //! Codes, agents and their streams in the database.
 
-use super::AgentStream;
+use super::{AgentStream, LinkWeek};
 use crate::access::Agent;
 use crate::alerts;
 use crate::audit;
@@ -202,6 +202,9 @@ pub(super) struct StreamRow {
     batches: i64,
     samples: i64,
     tally: String,
+    week_batches: i64,
+    week_octets: i64,
+    week_wait: Option<i64>,
 }
 
 impl StreamRow {
@@ -219,6 +222,11 @@ impl StreamRow {
             contiguous_seq: self.contiguous_seq,
             batches: self.batches,
             samples: self.samples,
+            last_week: LinkWeek {
+                batches: self.week_batches,
+                octets: self.week_octets,
+                longest_wait_s: self.week_wait.map(|micros| micros.max(0) / 1_000_000),
+            },
         })
     }
 }
@@ -227,21 +235,29 @@ pub(super) async fn list_streams(
     db: &Db,
     vessel: VesselId,
     after: Option<Uuid>,
+    since: Time,
     limit: i64,
 ) -> Result<Vec<StreamRow>> {
     rows!(
         db,
         StreamRow,
         "SELECT s.id AS stream, s.agent_id, a.revoked_at, s.compass_id, c.name AS compass_name, a.agent_version,
-                s.opened_at, s.last_upload_at, s.contiguous_seq, s.batches, s.samples, s.tally
+                s.opened_at, s.last_upload_at, s.contiguous_seq, s.batches, s.samples, s.tally,
+                COALESCE(w.batches, 0) AS week_batches, COALESCE(w.octets, 0) AS week_octets,
+                w.wait AS week_wait
          FROM streams s
          JOIN compasses c ON c.vessel_id = s.vessel_id AND c.id = s.compass_id
          JOIN agents a ON a.vessel_id = s.vessel_id AND a.id = s.agent_id
+         LEFT JOIN (SELECT stream, COUNT(*) AS batches, SUM(LENGTH(bytes)) AS octets,
+                           MAX(received_at - last_sample_at) AS wait
+                    FROM batches WHERE vessel_id = $1 AND received_at > $3
+                    GROUP BY stream) w ON w.stream = s.id
          WHERE s.vessel_id = $1 AND s.id > $2
          ORDER BY s.id
-         LIMIT $3",
+         LIMIT $4",
         vessel,
         after.unwrap_or_default(),
+        since,
         limit
     )
 }

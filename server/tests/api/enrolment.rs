@@ -13,6 +13,7 @@ on_both!(
     a_code_may_be_typed_carelessly,
     a_code_for_another_vessels_compass_is_refused,
     an_agent_reaches_only_its_own_streams,
+    how_the_link_did_in_the_last_week_is_told,
     a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before,
     a_revoked_agent_is_known_no_more_and_what_it_sent_stays,
     a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_revoked,
@@ -105,6 +106,27 @@ async fn an_agent_reaches_only_its_own_streams(shore: Shore) {
     let path = format!("/streams/{stream}/batches/1");
     let put = Answer::of(nao.request(Method::PUT, &path).body(batch)).await;
     assert_eq!(put.good()["contiguous_seq"], 1);
+    shore.finish().await;
+}
+
+async fn how_the_link_did_in_the_last_week_is_told(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let path = format!("/vessels/{}/agents", nao.id);
+    let told = async || ada.get(&path).await.good()["items"][0]["last_week"].clone();
+    let nothing = json!({ "batches": 0, "octets": 0, "longest_wait_s": null });
+    assert_eq!(told().await, nothing);
+    let mut octets = 0;
+    for (seq, waited_s) in [(1, 60.0), (2, 7200.0), (3, 600.0)] {
+        let taken = shore.app.clock.now().plus_seconds(-waited_s);
+        let batch = crate::support::frame(nao.stream, seq, &[sample(taken, 90.0)]);
+        octets += batch.len();
+        nao.put_bytes(seq, batch).await.good();
+    }
+    let week = json!({ "batches": 3, "octets": octets, "longest_wait_s": 7200 });
+    assert_eq!(told().await, week);
+    shore.advance(8.0 * 86_400.0);
+    assert_eq!(told().await, nothing);
     shore.finish().await;
 }
 

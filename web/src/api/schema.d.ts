@@ -3194,6 +3194,8 @@ export interface components {
              */
             contiguous_seq: number;
             last_upload_at: components["schemas"]["Time"] | null;
+            /** @description How the link did of late. */
+            last_week: components["schemas"]["LinkWeek"];
             /** @description When the stream was opened. */
             opened_at: components["schemas"]["Time"];
             revoked_at: components["schemas"]["Time"] | null;
@@ -3207,7 +3209,10 @@ export interface components {
              * @description The stream's id.
              */
             stream: string;
-            /** @description Ten-second windows by outcome: `accepted`, or why they were refused. */
+            /**
+             * @description Ten-second windows by outcome: `accepted`, or why they were refused; `thinned` are
+             *     those that were accepted and left out for want of room or budget.
+             */
             tally: {
                 [key: string]: number;
             };
@@ -5395,6 +5400,25 @@ export interface components {
              * @example 288
              */
             magnetic_cargo: number;
+        };
+        /** @description What came over a stream's link in the last seven days. */
+        LinkWeek: {
+            /**
+             * Format: int64
+             * @description Batches that came.
+             */
+            batches: number;
+            /**
+             * Format: int64
+             * @description How long the latest sample of a batch was on its way, at most, seconds: what had to
+             *     wait for the link. None of no samples.
+             */
+            longest_wait_s: number | null;
+            /**
+             * Format: int64
+             * @description Octets in them, without what the protocols below add.
+             */
+            octets: number;
         };
         /**
          * @description What is to be changed in an entry; what is left out stays, null takes a value

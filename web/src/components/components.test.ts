@@ -86,7 +86,18 @@ describe('the installations', () => {
     batches: 6,
     samples: 12_000,
     tally: { turning: 25, accepted: 70, moonlight_too_bright: 5 },
+    last_week: { batches: 28, octets: 12_400, longest_wait_s: 5 * 3600 + 60 },
   };
+
+  test('tell how their link did of late', () => {
+    const shown = words(render(AgentPanel, { props: { agents: [agent] } }));
+    expect(shown).toMatch(/Link, last 7 days 28 batches, 12.400 octets/);
+    expect(shown).toContain('Longest wait for the link 5 h');
+    const silent = { ...agent, last_week: { batches: 0, octets: 0, longest_wait_s: null } };
+    const still = words(render(AgentPanel, { props: { agents: [silent] } }));
+    expect(still).toContain('Link, last 7 days nothing came');
+    expect(still).not.toContain('Longest wait');
+  });
 
   test('are revoked by whom may, one by one, and say so', () => {
     const revoked = { ...agent, agent_id: 'r', stream: 'r', revoked_at: '2026-09-02T10:00:00Z' };

@@ -31,6 +31,10 @@ export const agents = {
   batches: 'Batches',
   samples: 'Samples',
   waiting: 'waiting for the first batch',
+  lastWeek: 'Link, last 7 days',
+  sent: (batches: string, octets: string) => `${batches} batches, ${octets} octets`,
+  silent: 'nothing came',
+  longestWait: 'Longest wait for the link',
   gap: 'A batch before the latest is missing; the agent sends it again.',
   revoked: (when: string) => `Revoked ${when}: this agent may not send until it is enrolled again.`,
   revoke: 'Revoke…',
@@ -58,6 +62,7 @@ export const agents = {
     turning: 'refused: turning',
     settling: 'refused: settling after a turn',
     swinging: 'refused: heading swinging',
+    thinned: 'accepted, then left out for want of room or budget',
   } as Record<string, string>,
   otherReason: (name: string) => `refused: ${name.replaceAll('_', ' ')}`,
 };
