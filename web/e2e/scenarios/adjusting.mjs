@@ -196,6 +196,18 @@ export const adjusting = {
       await waiting.getByText('1 thing is waiting to be sent').waitFor();
       await waiting.getByText('It is kept in this browser').waitFor();
       await step.getByText(`Step 2 of ${steps}`).waitFor();
+      // From its top, though the button that led here is far below it.
+      const onScreen = (part) =>
+        page.waitForFunction((element) => {
+          const { top, bottom } = element.getBoundingClientRect();
+          return top >= 0 && bottom <= innerHeight;
+        }, part);
+      await onScreen(await step.getByText(`Step 2 of ${steps}`).elementHandle());
+      await onScreen(await waiting.elementHandle());
+      assert.equal(
+        await page.evaluate(() => document.activeElement?.getAttribute('data-testid')),
+        'task-step',
+      );
       await page.getByLabel(/^The compass reads/).fill('12.3');
       await shoot('berth-offline-phone', { fullPage: true });
       // Neither what is typed nor what waits is lost with the page.

@@ -316,6 +316,12 @@ export const people = {
       await shoot('home-phone', { fullPage: true });
       const way = today.getByRole('link', { name: 'Go to the binnacle' });
       assert.equal(await way.getAttribute('href'), `/work-orders/${id}`);
+      for (const path of ['/alerts', `/vessels/${vessel.id}`]) {
+        await page.goto(path);
+        await page.getByRole('heading', { name: 'This page is the operator’s' }).waitFor();
+      }
+      await page.getByRole('link', { name: 'To my orders' }).click();
+      await page.getByRole('heading', { name: 'My orders', level: 1 }).waitFor();
       await office.close();
     },
   },

@@ -94,6 +94,10 @@ export const problem = {
   notFoundTitle: 'Nothing here',
   notFound: 'There is no such page, or it belongs to another fleet.',
   toVessels: 'To the fleet',
+  ofOperatorTitle: 'This page is the operator’s',
+  ofOperator:
+    'Vessels, alerts and the schedule are for the people of the fleet. What your firm is asked for and has agreed to stands with your orders.',
+  toOrders: 'To my orders',
   title: 'This could not be shown',
 };
 
