@@ -184,3 +184,112 @@ fn a_failed_verification_is_urgent_and_says_by_how_much() {
         "the verification of 2026-11-10 failed: headings are 2.4° off the card on the worst heading"
     );
 }
+
+/// A Norwegian ship, whose flag sets no limit.
+fn over_own_limit(compass: &Value) -> Due {
+    due_of(json!({"flag": "NO"}), compass.clone())
+}
+
+#[test]
+fn deviation_over_the_vessels_own_limit_is_due_where_her_flag_sets_none() {
+    let mut compass = json!({"adjusted_on": "2025-11-20", "deviation_limit_deg": 5.0,
+        "predicted": [
+            {"on": "2026-11-18", "worst_deviation_deg": 5.4},
+            {"on": "2026-11-21", "place": "her position", "worst_deviation_deg": 25.7}]});
+    let over = over_own_limit(&compass);
+    assert_eq!(
+        (over.on, over.urgency),
+        (day("2026-12-02"), Urgency::Urgent)
+    );
+    assert_eq!(
+        over.reason,
+        "25.7° of deviation at her position, 5.4° or more since 2026-11-18, over the vessel's own \
+         limit of 5°"
+    );
+    assert_eq!(over.causes[0].rule, None);
+    compass["deviation_limit_deg"] = json!(26.0);
+    assert_eq!(over_own_limit(&compass).on, day("2027-11-20"));
+}
+
+#[test]
+fn deviation_over_the_vessels_own_limit_at_a_port_ahead_names_the_port() {
+    let over = over_own_limit(
+        &json!({"adjusted_on": "2025-11-20", "deviation_limit_deg": 4.5,
+        "predicted": [
+            {"on": "2026-12-08", "place": "Tromsø", "worst_deviation_deg": 4.6}]}),
+    );
+    assert_eq!(over.on, day("2026-12-22"));
+    assert_eq!(
+        over.reason,
+        "4.6° of deviation predicted for 2026-12-08 at Tromsø, over the vessel's own limit of 4.5°"
+    );
+}
+
+#[test]
+fn a_flags_stricter_limit_speaks_and_the_vessels_own_speaks_below_it() {
+    let of = |own: f64, deviation: f64| {
+        let compass = json!({"adjusted_on": "2026-06-01", "deviation_limit_deg": own,
+            "predicted": [{"on": "2026-12-01", "worst_deviation_deg": deviation}]});
+        let causes = due_of(json!({"flag": "MH"}), compass).causes;
+        let over = causes.into_iter();
+        let over = over.filter(|cause| cause.kind == CauseKind::OverLimit);
+        over.map(|cause| cause.rule.unwrap_or("own".to_owned()))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(of(5.0, 9.0), ["marshall-islands-limit"]);
+    assert_eq!(of(8.0, 9.0), ["marshall-islands-limit"]);
+    assert_eq!(of(3.0, 4.0), ["own"]);
+    assert_eq!(of(3.0, 9.0), ["marshall-islands-limit", "own"]);
+}
+
+#[test]
+fn deviation_over_the_limit_is_named_where_no_adjustment_is_on_record() {
+    let over = over_own_limit(&json!({"deviation_limit_deg": 5.0,
+        "predicted": [
+            {"on": "2026-11-21", "place": "her position", "worst_deviation_deg": 25.7}]}));
+    assert_eq!(
+        (over.on, over.urgency),
+        (day("2026-11-21"), Urgency::Overdue)
+    );
+    assert_eq!(
+        over.reason,
+        "no adjustment is on record (ISO 25862:2019, Annex G, read second-hand); 25.7° of \
+         deviation at her position on 2026-11-21, over the vessel's own limit of 5°"
+    );
+}
+
+#[test]
+fn what_was_over_the_limit_before_the_adjustment_counts_from_the_adjustment() {
+    let over = over_own_limit(
+        &json!({"adjusted_on": "2026-11-15", "deviation_limit_deg": 5.0,
+        "predicted": [
+            {"on": "2026-10-01", "worst_deviation_deg": 6.0},
+            {"on": "2026-11-21", "worst_deviation_deg": 6.1}]}),
+    );
+    assert_eq!(over.on, day("2026-11-29"));
+    assert!(
+        over.reason.contains("or more since 2026-11-15"),
+        "{}",
+        over.reason
+    );
+}
+
+#[test]
+fn an_adjustment_that_the_sea_has_not_verified_is_said_to_be_so() {
+    let compass = json!({"adjusted_on": "2026-11-21", "awaits_verification": true});
+    let due = due_of(json!({"flag": "NO"}), compass);
+    assert_eq!((due.on, due.urgency), (day("2028-11-21"), Urgency::Routine));
+    assert_eq!(
+        due.reason,
+        "adjusted, not yet verified at sea: 24 months after the adjustment of 2026-11-21 (ISO \
+         25862:2019, Annex G, read second-hand)"
+    );
+}
+
+#[test]
+fn a_change_on_the_day_of_the_adjustment_counts() {
+    let compass = json!({"adjusted_on": "2026-11-20",
+        "change": {"on": "2026-11-20", "size_deg": 6.0}});
+    let due = due_of(json!({"flag": "NO"}), compass);
+    assert_eq!(due.causes[0].kind, CauseKind::Change);
+}

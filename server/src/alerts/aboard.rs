@@ -6,6 +6,7 @@
 //! have not parted for [`QUIET_S`], by the ship's samples or the clock. An analysis
 //! neither raises it nor says anything else of it.
 
+use super::adjusted::ADJUSTED;
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity, State};
 use super::look::{News, OVER, bring_in_line, tell};
 use super::store::{self, Known};
@@ -15,6 +16,7 @@ use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
+use crate::work_orders;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
 
@@ -63,10 +65,13 @@ pub(super) async fn in_line(
     let Some(last) = spoken.first() else {
         return Ok(Vec::new());
     };
-    let wanted = called_for(&spoken, known.first(), until);
-    let why = match last.state {
-        ShipAlertState::NotJudged => NOT_JUDGED,
-        _ => OVER,
+    let adjusted = work_orders::adjusted_at(tx, vessel, compass).await?;
+    let is_before = adjusted.is_some_and(|adjusted| Time(last.at) < adjusted);
+    let (wanted, why) = match last.state {
+        // No card from before an adjustment judges the compass after it; the gyro it does.
+        _ if is_before && last.suspect() != Suspect::Gyro => (None, ADJUSTED),
+        ShipAlertState::NotJudged => (called_for(&spoken, known.first(), until), NOT_JUDGED),
+        _ => (called_for(&spoken, known.first(), until), OVER),
     };
     bring_in_line(tx, vessel, compass, &known, wanted.as_slice(), |_| why, now).await
 }

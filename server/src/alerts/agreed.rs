@@ -12,13 +12,15 @@ use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CompassId, OperatorId, VesselId};
 use crate::time::Time;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Brings an operator's alerts of this cause in line with what a schedule found.
+/// Brings an operator's alerts of this cause in line with what a schedule found, but those
+/// that it could not tell of: they stay as they are.
 pub async fn of_schedule(
     tx: &mut Tx,
     operator: OperatorId,
     mut wanted: BTreeMap<(VesselId, CompassId), AlertWanted>,
+    not_told: &BTreeSet<(VesselId, CompassId)>,
     now: Time,
 ) -> Result<Vec<Event>> {
     let open = rows!(
@@ -31,6 +33,7 @@ pub async fn of_schedule(
         Cause::AgreedJobAtRisk
     )?;
     let mut all = open;
+    all.retain(|of| !not_told.contains(of));
     all.extend(wanted.keys().copied());
     all.sort_unstable();
     all.dedup();

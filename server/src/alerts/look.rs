@@ -6,6 +6,7 @@
 //! is about one event: another of its cause is another alert, whatever people said of
 //! the first.
 
+use super::adjusted::{ADJUSTED, forget_changes, is_about_before};
 use super::alert::{Alert, AlertWanted, Cause, Severity, State};
 use super::changed::{Became, became};
 use super::findings::Findings;
@@ -69,12 +70,19 @@ pub async fn after_analysis(
     };
     let mut findings: Findings = serde_json::from_str(&findings)?;
     changes::sharpen_in(tx, vessel, &mut findings).await?;
+    let adjusted = work_orders::adjusted_at(tx, vessel, compass).await?;
+    if let Some(adjusted) = adjusted {
+        forget_changes(&mut findings, adjusted);
+    }
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause.is_of_an_analysis());
     let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();
     let mut wanted = alerts_of(&findings, limits, &open);
     wanted.extend(work_orders::alert(tx, vessel, compass).await?);
-    let why = |alert: &Known| why_cleared(alert, &findings);
+    let why = |alert: &Known| match adjusted {
+        Some(adjusted) if is_about_before(alert, adjusted) => ADJUSTED,
+        _ => why_cleared(alert, &findings),
+    };
     let mut news = bring_in_line(tx, vessel, compass, &known, &wanted, why, now).await?;
     news.extend(aboard::in_line(tx, vessel, compass, findings.data_until, now).await?);
     tell(tx, vessel, &news, now).await

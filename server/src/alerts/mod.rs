@@ -14,6 +14,7 @@
 //! - Every change is stored together with what tells people of it.
 
 mod aboard;
+mod adjusted;
 mod agreed;
 mod alert;
 mod changed;

@@ -6,15 +6,13 @@
 
 use super::store::{Appointment, Call, Due};
 use crate::time::Time;
-use crate::work_orders::State;
+use crate::work_orders::{CallFit, State};
 use anyhow::Context;
+use binnacle_schedule::input::JOB_H;
 use binnacle_schedule::ports::{self, PortCode};
 use chrono::{DateTime, NaiveDate, TimeDelta, Utc};
 use icalendar::{Calendar, Component, Event, EventLike, EventStatus, Property};
 use serde::Deserialize;
-
-/// An adjustment at the berth takes about so long.
-const TAKES: TimeDelta = TimeDelta::hours(2);
 
 /// The calendar of these events.
 pub(super) fn write(name: &str, events: impl Iterator<Item = Event>) -> String {
@@ -163,14 +161,14 @@ fn event(order: &Appointment, public_url: Option<&str>) -> anyhow::Result<Event>
         .timestamp(utc(written.at)?)
         .last_modified(utc(written.at)?)
         .starts(starts)
-        .ends(starts + TAKES)
+        .ends(starts + takes())
         .summary(&format!(
             "Adjust {}, {} ({state})",
             order.compass_name, order.vessel_name
         ))
         .location(&place)
         .description(&description(order))
-        .status(status(order.state));
+        .status(status(order));
     if let Some(url) = public_url {
         let url = url.trim_end_matches('/');
         event.url(&format!("{url}/work-orders/{}", order.id));
@@ -186,15 +184,51 @@ fn description(order: &Appointment) -> String {
     if let Some(adjuster) = &order.adjuster_name {
         lines.push(format!("Adjuster: {adjuster}"));
     }
+    lines.extend(unfit(order).map(str::to_owned));
     lines.join("\n")
 }
 
-fn status(state: State) -> EventStatus {
-    match state {
+/// An adjustment at the berth takes about so long.
+fn takes() -> TimeDelta {
+    #[allow(clippy::cast_possible_truncation, reason = "a few hours")]
+    TimeDelta::seconds((JOB_H * 3600.0) as i64)
+}
+
+/// What is wrong with the time of an order whose work is still to be done, and whose port call
+/// is not where it was.
+fn unfit(order: &Appointment) -> Option<&'static str> {
+    let is_ahead = matches!(
+        order.state,
+        State::Offered
+            | State::Proposed
+            | State::Accepted
+            | State::OnBoard
+            | State::Measured
+            | State::Adjusting
+    );
+    match order.call_fit.filter(|_| is_ahead)? {
+        CallFit::Fits => None,
+        CallFit::OtherHour => Some(
+            "The port call has moved since this time was agreed: another hour of that day is \
+             needed.",
+        ),
+        CallFit::NeedsNewDay => {
+            Some("The port call has moved since this time was agreed: a new day is needed.")
+        }
+        CallFit::NoCall => Some(
+            "The port call that this time was agreed for is withdrawn, or is at another port: \
+             another time is needed.",
+        ),
+    }
+}
+
+fn status(order: &Appointment) -> EventStatus {
+    match order.state {
         State::Planned | State::Offered | State::Proposed | State::Declined => {
             EventStatus::Tentative
         }
         State::Cancelled => EventStatus::Cancelled,
+        _ if unfit(order).is_some() => EventStatus::Tentative,
         _ => EventStatus::Confirmed,
     }
 }

@@ -5,7 +5,7 @@ use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::ids::{CallId, CompassId, FeedId, FirmId, OperatorId, OrderId, UserId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::work_orders::State;
+use crate::work_orders::{CallFit, State};
 use uuid::Uuid;
 
 /// Orders of so long ago are shown no more.
@@ -66,6 +66,8 @@ pub(super) struct Appointment {
     pub last_seq: i64,
     /// The last of them.
     pub line: String,
+    /// How its time lies in its port call, where that has moved since the time was agreed.
+    pub call_fit: Option<CallFit>,
 }
 
 pub(super) async fn list(
@@ -166,7 +168,7 @@ pub(super) async fn appointments(
         Appointment,
         "SELECT o.id, o.port, o.berth, o.planned_at, v.name AS vessel_name,
                 c.name AS compass_name, p.name AS operator_name, o.firm, o.adjuster_name,
-                o.last_seq, e.line,
+                o.last_seq, e.line, o.call_fit,
                 CASE f.state WHEN 'open' THEN 'offered' WHEN 'proposed' THEN 'proposed'
                              ELSE o.state END AS state
          FROM work_orders o

@@ -43,6 +43,7 @@ pub(super) fn next_due(facts: &Facts<'_>) -> Option<NextDue> {
         events: facts.logbook.iter().filter_map(event).collect(),
         predicted: vec![Predicted {
             on: facts.at.day().parse().ok()?,
+            place: None,
             worst_deviation_deg: facts.worst_deviation_deg.abs(),
         }],
         ..needs::Compass::default()

@@ -223,7 +223,28 @@ pub async fn must_have_room(
         return Ok(());
     }
     Err(Error::WrongState(match told {
-        Told::Operator => format!("{firm_name} has no team left on {that_day}"),
+        Told::Operator => {
+            let mine = others
+                .iter()
+                .filter(|one| counts(one) && one.operator_id == visit.operator);
+            let mine: Vec<String> = mine
+                .map(|one| {
+                    let Booking {
+                        order_id,
+                        vessel_name,
+                        port,
+                        ..
+                    } = one;
+                    format!("work order {order_id} of {vessel_name} at {port}")
+                })
+                .collect();
+            let holding = if mine.is_empty() {
+                String::new()
+            } else {
+                format!(": you have {}", mine.join(", "))
+            };
+            format!("{firm_name} has no team left on {that_day}{holding}")
+        }
         Told::Firm => {
             let ships = others.iter().filter(|one| one.is_taken);
             let ships: BTreeSet<String> = ships

@@ -22,6 +22,16 @@ impl<T> Amended<T> {
     }
 }
 
+/// Reads a value that can be changed and not taken away: null is refused.
+///
+/// # Errors
+/// When it is no such value.
+pub fn never_null<'de, D: Deserializer<'de>, T: Deserialize<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
+}
+
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Amended<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         Option::deserialize(deserializer).map(Amended::Set)

@@ -11,7 +11,7 @@ mod json;
 mod page;
 mod routes;
 
-pub use amended::Amended;
+pub use amended::{Amended, never_null};
 pub use file::{file, file_name};
 pub use json::{
     Id, Json, Params, Valid, ValidOrNone, degrees, is_control, optional_text, text, time,

@@ -3,7 +3,7 @@
 use super::need::Ahead;
 use super::particulars::{Particulars, place_of};
 use super::since::Since;
-use crate::alerts::Findings;
+use crate::alerts::{AlertLimits, Findings};
 use crate::deviation::{table, worst_of};
 use crate::ids::{CompassId, VesselId};
 use crate::models::StoredModel;
@@ -16,7 +16,7 @@ use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_schedule::needs::{Change, Compass, Event, FailedVerification, Predicted, Ship};
 use binnacle_schedule::ports::{self, PortCode};
-use binnacle_schedule::rules::EventKind;
+use binnacle_schedule::rules::{EventKind, Limit};
 use chrono::NaiveDate;
 
 /// Degrees of heading between those on which the greatest deviation is looked for.
@@ -54,6 +54,14 @@ pub(super) struct Work {
     pub(super) to: Option<Time>,
 }
 
+/// The last adjustment that an order brought about.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Completed {
+    pub(super) at: Time,
+    /// Whether headings at sea have yet to say whether it holds.
+    pub(super) awaits_verification: bool,
+}
+
 /// A place and a time ahead.
 #[derive(Clone, Debug)]
 pub(super) struct Waypoint {
@@ -64,17 +72,20 @@ pub(super) struct Waypoint {
 /// What is stored of a compass.
 pub(super) struct Stored<'a> {
     pub(super) work: Vec<&'a Work>,
-    pub(super) completed: Option<Time>,
+    pub(super) completed: Option<Completed>,
+    /// Until when headings at sea were looked at that spoke against the last completed order,
+    /// and by how much the worst of them was off, degrees.
     pub(super) failed: Option<(Time, f64)>,
     pub(super) model: Option<&'a StoredModel>,
     pub(super) findings: Option<&'a Findings>,
-    pub(super) band_limit_deg: f64,
+    pub(super) limits: AlertLimits,
     pub(super) calls: &'a [Waypoint],
     pub(super) since: &'a Since,
 }
 
 /// Where the ship is.
 const HERE: &str = "here";
+const PANAMA_CANAL: &str = "Panama Canal";
 
 impl Facts {
     /// What is not known of the vessel.
@@ -101,17 +112,18 @@ pub(super) fn compass(
     let here = ahead.iter().find(|ahead| ahead.place == HERE);
     let seen = here.map(|here| stored.since.seen(here.on, here.worst_deviation_deg));
     let has_been = seen.iter().flat_map(Since::levels);
-    let predicted = has_been.chain(
-        ahead
-            .iter()
-            .map(|ahead| (ahead.on, ahead.worst_deviation_deg)),
-    );
+    let has_been = has_been.filter(|(on, _)| *on < day(now));
+    let has_been = has_been.map(|(on, worst_deviation_deg)| Predicted {
+        on,
+        place: None,
+        worst_deviation_deg,
+    });
     let adjusted = stored
         .work
         .iter()
         .filter(|work| work.kind == LogbookKind::Adjustment)
         .map(|work| work.from)
-        .chain(stored.completed)
+        .chain(stored.completed.map(|completed| completed.at))
         .filter(|at| *at <= now)
         .max();
     // What is planned has not happened.
@@ -122,8 +134,10 @@ pub(super) fn compass(
             on: day(work.to.unwrap_or(work.from)),
         })
     });
+    // By instants: she may be adjusted anew on the day of the verdict.
     let failed = stored
         .failed
+        .filter(|(until, _)| adjusted.is_none_or(|adjusted| *until >= adjusted))
         .map(|(at, worst_error_deg)| FailedVerification {
             on: day(at),
             worst_error_deg,
@@ -131,19 +145,31 @@ pub(super) fn compass(
     let compass = Compass {
         adjusted_on: adjusted.map(day),
         events: events.collect(),
-        predicted: predicted
-            .map(|(on, worst_deviation_deg)| Predicted {
-                on,
-                worst_deviation_deg,
-            })
-            .collect(),
+        predicted: has_been.chain(ahead.iter().map(predicted)).collect(),
+        deviation_limit_deg: Limit::try_from(stored.limits.deviation_deg).ok(),
         change: stored
             .findings
             .and_then(|findings| change(findings, adjusted)),
         failed_verification: failed,
+        awaits_verification: stored.completed.is_some_and(|completed| {
+            completed.awaits_verification && adjusted == Some(completed.at)
+        }),
     };
     let since = seen.unwrap_or_else(|| stored.since.clone());
     (compass, ahead, since)
+}
+
+fn predicted(ahead: &Ahead) -> Predicted {
+    let place = match ahead.place.as_str() {
+        HERE => "her position",
+        PANAMA_CANAL => "the Panama Canal",
+        port => port,
+    };
+    Predicted {
+        on: ahead.on,
+        place: Some(place.to_owned()),
+        worst_deviation_deg: ahead.worst_deviation_deg,
+    }
 }
 
 /// What of a logbook a rule asks about.
@@ -196,7 +222,7 @@ fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead
         let sure = worst.filter(|worst| {
             worst
                 .band95_deg
-                .is_some_and(|band| band <= stored.band_limit_deg)
+                .is_some_and(|band| band <= stored.limits.band95_deg)
         });
         ahead.extend(sure.map(|worst| Ahead {
             on,
@@ -221,7 +247,7 @@ fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead
         if transit.on >= day(now)
             && let Some(earth) = position.zip(noon).and_then(|(place, at)| earth(place, at))
         {
-            add(transit.on, "Panama Canal", earth);
+            add(transit.on, PANAMA_CANAL, earth);
         }
     }
     ahead

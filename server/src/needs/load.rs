@@ -1,6 +1,6 @@
 //! What needs are found from, out of the database: a few queries for a whole fleet.
 
-use super::facts::{Facts, Stored, Waypoint, Work, compass};
+use super::facts::{Completed, Facts, Stored, Waypoint, Work, compass};
 use super::particulars::Particulars;
 use super::since::{self, Since};
 use crate::alerts::{AlertLimits, Findings};
@@ -12,6 +12,7 @@ use crate::ids::{CompassId, OperatorId, OrderId, VesselId};
 use crate::models::{self, StoredModel};
 use crate::port_calls;
 use crate::time::Time;
+use crate::work_orders::State;
 use binnacle_magnetics::analyse::LogbookKind;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -25,7 +26,7 @@ struct Loaded {
     compasses: Vec<Compass>,
     particulars: BTreeMap<VesselId, Particulars>,
     work: BTreeMap<VesselId, Vec<Work>>,
-    completed: BTreeMap<Of, Time>,
+    completed: BTreeMap<Of, Completed>,
     failed: BTreeMap<Of, (Time, f64)>,
     models: Vec<StoredModel>,
     findings: BTreeMap<Of, Findings>,
@@ -113,12 +114,7 @@ impl Loaded {
                 failed: self.failed.get(&of).copied(),
                 model: models.get(&of).copied(),
                 findings: self.findings.get(&of),
-                band_limit_deg: self
-                    .limits
-                    .get(&vessel)
-                    .copied()
-                    .unwrap_or_default()
-                    .band95_deg,
+                limits: self.limits.get(&vessel).copied().unwrap_or_default(),
                 calls: self.calls.get(&vessel).map_or(&[], Vec::as_slice),
                 since: self.since.get(&of).unwrap_or(&never),
             };
@@ -201,23 +197,32 @@ async fn work(db: &Db, operator: OperatorId) -> Result<BTreeMap<VesselId, Vec<Wo
     Ok(work)
 }
 
-async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Time>> {
+/// Each compass's last.
+async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Completed>> {
     let found = rows!(
         db,
-        (VesselId, CompassId, Time),
-        "SELECT o.vessel_id, o.compass_id, MAX(o.completed_at)
+        (VesselId, CompassId, Time, State),
+        "SELECT o.vessel_id, o.compass_id, o.completed_at, o.state
          FROM work_orders o JOIN vessels v ON v.id = o.vessel_id
          WHERE v.operator_id = $1 AND o.completed_at IS NOT NULL
-         GROUP BY o.vessel_id, o.compass_id
-         ORDER BY o.vessel_id, o.compass_id",
+         ORDER BY o.vessel_id, o.completed_at, o.id",
         operator
     )?;
-    let by = |(vessel, compass, at)| ((vessel, compass), at);
+    let by = |(vessel, compass, at, state)| {
+        let awaits_verification = state == State::Adjusted;
+        let completed = Completed {
+            at,
+            awaits_verification,
+        };
+        ((vessel, compass), completed)
+    };
+    // Of one compass the last stays.
     Ok(found.into_iter().map(by).collect())
 }
 
-/// Orders that stand failed, or did when they were closed: until when headings at sea were looked at, and by how much
-/// the worst of them was off.
+/// Orders that stand failed, or did when they were closed, where no other of the compass was
+/// completed later: until when headings at sea were looked at, and by how much the worst of
+/// them was off.
 async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, (Time, f64)>> {
     let found = rows!(
         db,
@@ -228,6 +233,10 @@ async fn failed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, (Time, f64
          JOIN work_order_entries e ON e.vessel_id = o.vessel_id AND e.order_id = o.id
          WHERE v.operator_id = $1 AND o.completed_at IS NOT NULL
            AND (o.state = 'failed' OR (o.state = 'closed' AND o.verified_at IS NULL))
+           AND NOT EXISTS (
+               SELECT 1 FROM work_orders later
+               WHERE later.vessel_id = o.vessel_id AND later.compass_id = o.compass_id
+                 AND later.completed_at > o.completed_at)
          ORDER BY o.vessel_id, o.completed_at, e.seq",
         operator
     )?;

@@ -31,7 +31,7 @@ pub(super) enum CauseKindSchema {
     Interval,
     /// A rule asks for an adjustment after an event.
     Event,
-    /// Predicted deviation is over a rule's limit.
+    /// Predicted deviation is over a rule's limit, or the vessel's own.
     OverLimit,
     /// A transit asks for a newer table or a smaller deviation.
     Transit,

@@ -1,7 +1,7 @@
 //! A port call, as it is asked for, written and shown.
 
 use crate::error::{Error, Result};
-use crate::http::{Amended, optional_text, text, time};
+use crate::http::{Amended, never_null, optional_text, text, time};
 use crate::ids::{CallId, VesselId};
 use crate::time::Time;
 use binnacle_schedule::calls::{self, BerthHeading, CallError, HeadingSource};
@@ -50,18 +50,24 @@ pub(super) struct NewCall {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Amendment {
+    #[serde(default, deserialize_with = "never_null")]
     port: Option<PortCode>,
     #[serde(default)]
     berth: Amended<String>,
+    #[serde(default, deserialize_with = "never_null")]
     eta: Option<Instant>,
+    #[serde(default, deserialize_with = "never_null")]
     eta_uncertainty_h: Option<f64>,
+    #[serde(default, deserialize_with = "never_null")]
     etd: Option<Instant>,
+    #[serde(default, deserialize_with = "never_null")]
     etd_uncertainty_h: Option<f64>,
     #[serde(default)]
     berth_heading_deg: Amended<f64>,
 }
 
-/// What is to be changed of a call; what is left out stays, null takes a value away.
+/// What is to be changed of a call; what is left out stays, null takes the berth or her
+/// heading there away.
 #[derive(ToSchema)]
 #[schema(as = PortCallAmendment, example = json!({
     "eta": "2026-12-09T02:00:00Z", "etd": "2026-12-11T12:00:00Z"
@@ -69,14 +75,17 @@ pub(super) struct Amendment {
 #[allow(dead_code, reason = "describes Amendment")]
 pub(super) struct AmendmentSchema {
     /// UN/LOCODE.
+    #[schema(nullable = false)]
     port: Option<String>,
     #[schema(max_length = 200)]
     berth: Option<String>,
+    #[schema(nullable = false)]
     eta: Option<Time>,
-    #[schema(minimum = 0, maximum = 720)]
+    #[schema(minimum = 0, maximum = 720, nullable = false)]
     eta_uncertainty_h: Option<f64>,
+    #[schema(nullable = false)]
     etd: Option<Time>,
-    #[schema(minimum = 0, maximum = 720)]
+    #[schema(minimum = 0, maximum = 720, nullable = false)]
     etd_uncertainty_h: Option<f64>,
     #[schema(minimum = 0, maximum = 360)]
     berth_heading_deg: Option<f64>,
@@ -309,7 +318,7 @@ impl Content {
         if ports::find(self.port).is_none() {
             return Err(Error::Invalid {
                 field: "port",
-                detail: format!("{} is no sea port of the UN/LOCODE table", self.port),
+                detail: ports::unknown(self.port),
             });
         }
         self.of("", "").checked(Instant(now.0))?;

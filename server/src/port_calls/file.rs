@@ -46,7 +46,8 @@ pub(super) struct Taken<'a> {
     pub(super) new: Vec<Content>,
     pub(super) amended: Vec<(&'a Row, Content)>,
     pub(super) unchanged: usize,
-    pub(super) withdrawn: Vec<&'a Row>,
+    /// And why.
+    pub(super) withdrawn: Vec<(&'a Row, &'static str)>,
 }
 
 /// What a file has of one vessel.
@@ -83,9 +84,12 @@ impl OfVessel {
             .iter()
             .map(|(line, call)| (call.reference.clone(), *line))
             .collect();
-        let is_gone = |row: &Row| {
-            self.cancelled.contains(&row.reference)
-                || (replaces && row.source == source && row.etd > now)
+        let why_gone = |row: &Row| {
+            if self.cancelled.contains(&row.reference) {
+                return Some("cancelled in the file");
+            }
+            let is_left_out = replaces && row.source == source && row.etd > now;
+            is_left_out.then_some("not in the file any more")
         };
         let mut taken = Taken::default();
         let mut calls = Vec::new();
@@ -93,10 +97,9 @@ impl OfVessel {
             if lines.contains_key(&row.reference) {
                 continue;
             }
-            if is_gone(row) {
-                taken.withdrawn.push(row);
-            } else {
-                calls.push(row.content()?.of(&row.reference, ""));
+            match why_gone(row) {
+                Some(why) => taken.withdrawn.push((row, why)),
+                None => calls.push(row.content()?.of(&row.reference, "")),
             }
         }
         for (_, call) in self.calls {

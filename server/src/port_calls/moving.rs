@@ -43,9 +43,10 @@ pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec
     for (row, call) in &taken.amended {
         all.extend(amended(row, call)?);
     }
-    for row in &taken.withdrawn {
+    for (row, _) in &taken.withdrawn {
         let moving = withdrawn(row)?;
-        let gone = taken.withdrawn.iter().filter(|gone| gone.port == row.port);
+        let gone = taken.withdrawn.iter();
+        let gone = gone.filter(|(gone, _)| gone.port == row.port);
         let came = new.iter().filter(|(_, call)| is_at(row, call));
         let becomes = becomes(row, &mut free, gone.count() == came.count());
         all.push(match becomes {

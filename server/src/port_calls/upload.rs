@@ -198,8 +198,8 @@ async fn take(
         for (row, call) in amended {
             store::revise(&mut tx, row, call, source, &author).await?;
         }
-        for row in withdrawn {
-            store::withdraw(&mut tx, row, Some("not in the file any more"), &author).await?;
+        for (row, why) in withdrawn {
+            store::withdraw(&mut tx, row, Some(why), &author).await?;
         }
     }
     commit(app, tx, &changed, told, now).await?;

@@ -4,7 +4,7 @@
 //! changes while the rest is read asks again. Who is whose is known by ids, and sentences
 //! name people's names.
 
-use super::orders::{self, Order};
+use super::orders::{self, Aside, Order};
 use super::plan::{Compass, LeftOut, Plan, UnderWay};
 use super::{pins, settings, store};
 use crate::app::App;
@@ -34,6 +34,10 @@ pub(super) struct Gathered {
     pub(super) names: Names,
     pub(super) under_way: Vec<UnderWay>,
     pub(super) left_out: Vec<LeftOut>,
+    /// Orders that a firm has accepted and that are beside the plan.
+    pub(super) aside: Vec<Aside>,
+    /// Orders whose teams are left to the plan, which has their jobs.
+    pub(super) held: BTreeSet<OrderId>,
     /// Whether there is any firm to plan with.
     pub(super) has_firms: bool,
     /// As the solver reads it.
@@ -66,8 +70,12 @@ pub(super) struct Agreed {
     pub(super) day: NaiveDate,
 }
 
-/// Gathers it.
-pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> {
+/// Gathers it. Orders that the plan has moved their jobs away from hold their teams.
+pub(super) async fn gather(
+    app: &App,
+    operator: OperatorId,
+    moved: &BTreeSet<OrderId>,
+) -> Result<Gathered> {
     let asks = store::asks(&app.db, operator).await?;
     let former = store::current(&app.db, operator).await?;
     let now: Time = app.clock.now().into();
@@ -80,6 +88,10 @@ pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> 
     let (mut planned_with, left_out) = firms_of(app, operator, &mut names).await?;
     let orders = orders::under_way(&app.db, operator).await?;
     let beside = names.take_orders(&orders, &ahead, &planned_with);
+    let aside: Result<Vec<Aside>> = beside
+        .iter()
+        .filter_map(|(order, _)| order.aside(&ahead).transpose())
+        .collect();
     let busy: BTreeSet<CompassId> = beside.iter().map(|(order, _)| order.compass_id).collect();
     let today = as_of.0.to_chrono().date_naive();
     let found: Vec<Need> = facts
@@ -122,7 +134,8 @@ pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> 
             names.pinned.insert(pin.compass_id);
         }
     }
-    book(app, operator, as_of, &all, &names, &mut planned_with).await?;
+    let planned = names.planned(&all);
+    book(app, operator, as_of, &planned, &mut planned_with).await?;
     let has_firms = !planned_with.is_empty();
     let mut input = Input {
         now: Instant(as_of.0),
@@ -138,27 +151,20 @@ pub(super) async fn gather(app: &App, operator: OperatorId) -> Result<Gathered> 
         terms: settings.terms,
     };
     let sha256 = sha256_hex(&serde_json::to_string(&input)?);
+    // What follows from the plan made of it says nothing new either.
+    let held: BTreeSet<OrderId> = planned.difference(moved).copied().collect();
+    book(app, operator, as_of, &held, &mut input.firms).await?;
     all.add_proposed(former.as_ref());
     input.former = all.joined();
     Ok(Gathered {
         as_of,
         asks,
         former,
-        under_way: beside
-            .into_iter()
-            .filter_map(|(order, why)| {
-                let (vessel_id, vessel_name, _) = names.compasses.get(&order.compass_id)?;
-                Some(UnderWay {
-                    vessel_id: *vessel_id,
-                    vessel_name: vessel_name.clone(),
-                    compass: names.compass(order.compass_id),
-                    order_id: order.id,
-                    why,
-                })
-            })
-            .collect(),
+        under_way: names.under_way(beside),
         names,
         left_out,
+        aside: aside?,
+        held,
         has_firms,
         text: serde_json::to_string(&input)?,
         sha256,
@@ -248,17 +254,10 @@ async fn book(
     app: &App,
     operator: OperatorId,
     as_of: Time,
-    former: &Former,
-    names: &Names,
+    planned: &BTreeSet<OrderId>,
     firms: &mut [Firm],
 ) -> Result<()> {
     let from = Time(as_of.0.plus_seconds(-86_400.0));
-    let planned: BTreeSet<OrderId> = names
-        .agreed
-        .iter()
-        .filter(|(compass, _)| former.taken.contains(compass))
-        .map(|(_, agreed)| agreed.order_id)
-        .collect();
     for firm in firms {
         let id = FirmId(Uuid::parse_str(&firm.id).map_err(anyhow::Error::from)?);
         let all = firms::bookings(&app.db, id, from).await?;
@@ -416,6 +415,30 @@ impl Names {
             self.agreed.insert(order.compass_id, agreed);
         }
         beside
+    }
+
+    /// Orders beside the plan, and why, with everybody's names.
+    fn under_way(&self, beside: Vec<(&Order, String)>) -> Vec<UnderWay> {
+        let named = beside.into_iter().filter_map(|(order, why)| {
+            let (vessel_id, vessel_name, _) = self.compasses.get(&order.compass_id)?;
+            Some(UnderWay {
+                vessel_id: *vessel_id,
+                vessel_name: vessel_name.clone(),
+                compass: self.compass(order.compass_id),
+                order_id: order.id,
+                why,
+            })
+        });
+        named.collect()
+    }
+
+    /// The orders that are jobs of the plan before.
+    fn planned(&self, former: &Former) -> BTreeSet<OrderId> {
+        let agreed = self.agreed.iter();
+        agreed
+            .filter(|(compass, _)| former.taken.contains(compass))
+            .map(|(_, agreed)| agreed.order_id)
+            .collect()
     }
 
     pub(super) fn compass(&self, id: CompassId) -> Compass {

@@ -10,7 +10,7 @@ use crate::firms::port_meant;
 use crate::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::port_calls::Row as Call;
 use crate::time::Time;
-use crate::work_orders::State;
+use crate::work_orders::{Alongside, CallFit, State};
 use binnacle_schedule::input::JobState;
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::time::Instant;
@@ -30,6 +30,18 @@ pub(super) struct Order {
     pub(super) firm_id: Option<FirmId>,
     /// At which call it is to be done, where that is known.
     pub(super) call_id: Option<CallId>,
+}
+
+/// An order that a firm has accepted, of which the plan cannot tell whether it is to be done.
+#[derive(Clone, Debug)]
+pub(super) struct Aside {
+    pub(super) vessel_id: VesselId,
+    pub(super) compass_id: CompassId,
+    pub(super) order_id: OrderId,
+    pub(super) firm_id: FirmId,
+    pub(super) day: NaiveDate,
+    /// Why it does not fit any more, where that is known.
+    pub(super) unfit: Option<String>,
 }
 
 /// A fleet's orders that are under way; each once.
@@ -143,6 +155,44 @@ impl Order {
         let mut then =
             there.filter(|call| call.eta <= self.planned_at && self.planned_at <= call.etd);
         self.call_id.or_else(|| then.next().map(|call| call.id))
+    }
+
+    /// As an order beside the plan; none where no firm has it, or its work has begun.
+    pub(super) fn aside(&self, ahead: &[Call]) -> Result<Option<Aside>> {
+        let (Some(JobState::Confirmed), Some(firm_id)) = (self.job_state(), self.firm_id) else {
+            return Ok(None);
+        };
+        let call = self.call(ahead);
+        let row = ahead.iter().find(|row| Some(row.id) == call);
+        let is_known = ahead.iter().any(|row| row.vessel_id == self.vessel_id);
+        let unfit = match row {
+            Some(row) => self.unfit(&row.alongside()?),
+            None if call.is_some() => Some("its port call is cancelled or over".to_owned()),
+            None => is_known.then(|| "no port call is known at its port and time".to_owned()),
+        };
+        Ok(Some(Aside {
+            vessel_id: self.vessel_id,
+            compass_id: self.compass_id,
+            order_id: self.id,
+            firm_id,
+            day: self.day(row.map(|row| row.port.as_str())),
+            unfit,
+        }))
+    }
+
+    /// Why its time does not lie in its call, if so.
+    fn unfit(&self, there: &Alongside) -> Option<String> {
+        let meant = port_meant(&self.port).map(|port| port.code.to_string());
+        let port = meant.unwrap_or_else(|| there.port.clone());
+        match there.fit(&port, self.planned_at) {
+            CallFit::Fits => None,
+            CallFit::NoCall => Some(format!("its port call is at {} now", there.port)),
+            CallFit::OtherHour | CallFit::NeedsNewDay => Some(format!(
+                "the ship is now alongside from {} to {}",
+                there.eta.to_the_minute(),
+                there.etd.to_the_minute()
+            )),
+        }
     }
 
     /// Whether it was cancelled.

@@ -4,7 +4,7 @@
 //! from, or not at all; who comes second gathers and solves anew.
 
 use super::gather::{Agreed, Gathered, Names, gather};
-use super::orders;
+use super::orders::{self, Aside};
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
 use crate::alerts::{self, AlertWanted, Cause, Dated, Evidence, Severity};
@@ -17,8 +17,9 @@ use anyhow::Context;
 use binnacle_schedule::input::{JobState, read};
 use binnacle_schedule::plan::{self as solved, ChangeKind, Schedule, plan};
 use binnacle_schedule::ports;
+use chrono::NaiveDate;
 use metrics::histogram;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
 use std::time::Instant;
 use tracing::info;
@@ -32,7 +33,7 @@ const MOST_TRIES: usize = 5;
 /// Makes the operator's plan anew, or finds that nothing has changed.
 pub(super) async fn solve(app: &App, operator: OperatorId) -> Result<Plan> {
     for _ in 0..MOST_TRIES {
-        let gathered = gather(app, operator).await?;
+        let gathered = gather(app, operator, &BTreeSet::new()).await?;
         if let Some(former) = &gathered.former
             && former.input_sha256 == gathered.sha256
         {
@@ -41,7 +42,7 @@ pub(super) async fn solve(app: &App, operator: OperatorId) -> Result<Plan> {
             return Ok(former);
         }
         let begun = Instant::now();
-        let schedule = run(app, gathered.text.clone()).await?;
+        let (schedule, gathered) = settled(app, operator, gathered).await?;
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
         let plan = named(schedule, &gathered, app.clock.now().into(), took_s)?;
@@ -54,6 +55,52 @@ pub(super) async fn solve(app: &App, operator: OperatorId) -> Result<Plan> {
     Err(Error::WrongState(
         "others make the schedule at the same time; try again".to_owned(),
     ))
+}
+
+/// The plan in which an order that a job was moved away from holds its team still, as it does
+/// until somebody cancels it; and what that plan was made from.
+async fn settled(
+    app: &App,
+    operator: OperatorId,
+    mut gathered: Gathered,
+) -> Result<(Schedule, Gathered)> {
+    let mut moved = BTreeSet::new();
+    let mut schedule = run(app, gathered.text.clone()).await?;
+    loop {
+        let more = moved_away(&schedule, &gathered)?;
+        if more.is_empty() {
+            return Ok((schedule, gathered));
+        }
+        moved.extend(more);
+        gathered = gather(app, operator, &moved).await?;
+        let mut next = run(app, gathered.text.clone()).await?;
+        // Why a job moved is what moved it first, not that its order is in its way now.
+        for change in &mut next.changes {
+            let mut known = schedule.changes.iter();
+            let known = known.find(|known| {
+                (&known.needs, &known.from, &known.to) == (&change.needs, &change.from, &change.to)
+            });
+            if let Some(known) = known {
+                change.why.clone_from(&known.why);
+            }
+        }
+        schedule = next;
+    }
+}
+
+/// Orders whose compass a plan does not have with their firm on their day.
+fn moved_away(schedule: &Schedule, gathered: &Gathered) -> Result<Vec<OrderId>> {
+    let mut planned = BTreeMap::new();
+    for job in &schedule.jobs {
+        for need in &job.needs {
+            planned.insert(CompassId(id(need)?), (FirmId(id(&job.firm)?), job.day));
+        }
+    }
+    let agreed = gathered.names.agreed.iter();
+    let moved = agreed
+        .filter(|(_, agreed)| gathered.held.contains(&agreed.order_id))
+        .filter(|(compass, agreed)| planned.get(*compass) != Some(&(agreed.firm_id, agreed.day)));
+    Ok(moved.map(|(_, agreed)| agreed.order_id).collect())
 }
 
 /// Forgets what asked, for an operator that has no firms to plan with.
@@ -90,8 +137,10 @@ async fn keep(app: &App, operator: OperatorId, plan: &Plan, gathered: &Gathered)
         let (vessel, order, call) = (agreed.vessel_id, agreed.order_id, agreed.call_id);
         orders::at_call(&mut tx, vessel, order, call).await?;
     }
-    let wanted = at_risk(plan, &gathered.names);
-    let mut told = alerts::of_schedule(&mut tx, operator, wanted, plan.solved_at).await?;
+    let mut wanted = at_risk(plan, &gathered.names);
+    let not_told = aside(plan, gathered, &mut wanted);
+    let mut told =
+        alerts::of_schedule(&mut tx, operator, wanted, &not_told, plan.solved_at).await?;
     for vessel in store::told(plan) {
         let kind = events::Kind::Schedule;
         told.push(events::insert(&mut tx, vessel, kind, plan.solved_at).await?);
@@ -118,26 +167,57 @@ fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, CompassId), AlertW
         let Some((compass, agreed)) = held.first().filter(|_| !stands) else {
             continue;
         };
-        let orders = held.iter();
-        let orders = orders.map(|(_, agreed)| format!("Work order {}.", agreed.order_id));
-        let alert = AlertWanted {
-            cause: Cause::AgreedJobAtRisk,
-            severity: Severity::Warning,
-            since: plan.solved_at,
-            dated: Dated::default(),
-            summary: format!(
-                "The adjustment agreed with {} for {} does not fit any more: {}.",
-                names.firm(agreed.firm_id),
-                agreed.day,
-                change.why
-            ),
-            advice: "Agree on another time with the firm, or cancel its order and offer the \
-                     job as the schedule has it now.",
-            evidence: Evidence(orders.collect()),
-        };
+        let orders: Vec<OrderId> = held.iter().map(|(_, agreed)| agreed.order_id).collect();
+        let firm = names.firm(agreed.firm_id);
+        let alert = unfit(plan, &firm, agreed.day, &change.why, &orders);
         wanted.insert((agreed.vessel_id, *compass), alert);
     }
     wanted
+}
+
+/// The same of orders beside the plan; those of whose alerts nothing can be told come back.
+fn aside(
+    plan: &Plan,
+    gathered: &Gathered,
+    wanted: &mut BTreeMap<(VesselId, CompassId), AlertWanted>,
+) -> BTreeSet<(VesselId, CompassId)> {
+    let mut not_told = BTreeSet::new();
+    let mut jobs: BTreeMap<(VesselId, FirmId, NaiveDate), Vec<&Aside>> = BTreeMap::new();
+    for one in &gathered.aside {
+        let job = (one.vessel_id, one.firm_id, one.day);
+        jobs.entry(job).or_default().push(one);
+        not_told.insert((one.vessel_id, one.compass_id));
+    }
+    for ((vessel, firm, day), of_job) in jobs {
+        let first = of_job
+            .iter()
+            .find_map(|one| Some((one, one.unfit.as_ref()?)));
+        let Some((first, why)) = first else {
+            continue;
+        };
+        let orders: Vec<OrderId> = of_job.iter().map(|one| one.order_id).collect();
+        let firm = gathered.names.firm(firm);
+        let alert = unfit(plan, &firm, day, why, &orders);
+        not_told.remove(&(vessel, first.compass_id));
+        wanted.insert((vessel, first.compass_id), alert);
+    }
+    not_told
+}
+
+fn unfit(plan: &Plan, firm: &str, day: NaiveDate, why: &str, orders: &[OrderId]) -> AlertWanted {
+    let orders = orders.iter().map(|order| format!("Work order {order}."));
+    AlertWanted {
+        cause: Cause::AgreedJobAtRisk,
+        severity: Severity::Warning,
+        since: plan.solved_at,
+        dated: Dated::default(),
+        summary: format!(
+            "The adjustment agreed with {firm} for {day} does not fit any more: {why}."
+        ),
+        advice: "Agree on another time with the firm, or cancel its order and offer the job as \
+                 the schedule has it now.",
+        evidence: Evidence(orders.collect()),
+    }
 }
 
 /// The solver's answer with everybody's names.

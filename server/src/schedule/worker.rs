@@ -10,6 +10,7 @@ use crate::app::App;
 use crate::error::Error;
 use crate::ids::OperatorId;
 use crate::time::Time;
+use std::collections::BTreeSet;
 use std::time::Duration;
 use tracing::{error, warn};
 
@@ -71,7 +72,7 @@ pub async fn step(app: &App) -> anyhow::Result<Option<OperatorId>> {
 
 /// Who plans with no firm has no use for a plan until it is asked for.
 async fn make(app: &App, operator: OperatorId) -> crate::error::Result<()> {
-    let gathered = gather(app, operator).await?;
+    let gathered = gather(app, operator, &BTreeSet::new()).await?;
     if !gathered.has_firms && gathered.former.is_none() {
         return solve::forget_asks(app, operator, &gathered).await;
     }

@@ -52,12 +52,12 @@ mod whereabouts;
 pub use completed::{AtSea, CompletedOrder, completed, foretold_from};
 pub use deadlines::{lapse, watch};
 pub use done::{Done, Span, done};
-pub use moved::{Alongside, Moving, calls_move};
+pub use moved::{Alongside, CallFit, Moving, calls_move};
 pub use offering::NewOffer;
 pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};
 pub use store::{lock_compass, must_not_be_adjusting};
-pub use verification::{after_analysis, alert};
+pub use verification::{adjusted_at, after_analysis, alert};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
 use crate::app::App;

@@ -14,14 +14,13 @@ use crate::events::Event;
 use crate::ids::{CallId, OrderId, VesselId};
 use crate::schedule;
 use crate::time::Time;
+use binnacle_schedule::input::JOB_H;
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::time::Instant;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
 
-/// A job takes so long alongside, as the schedule has it where nobody says otherwise.
-const JOB_H: f64 = 3.0;
 const DAY_H: f64 = 24.0;
 
 /// How an order's time lies in its port call.
@@ -111,7 +110,7 @@ impl Alongside {
     }
 
     /// How a time lies in it, of an order that is for a port.
-    pub(super) fn fit(&self, port: &str, planned_at: Time) -> CallFit {
+    pub fn fit(&self, port: &str, planned_at: Time) -> CallFit {
         if self.port != port {
             return CallFit::NoCall;
         }

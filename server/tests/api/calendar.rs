@@ -91,7 +91,7 @@ async fn a_calendar_is_read_by_its_secret_address_until_it_is_removed(shore: Sho
     let calendar = lines(&found.text);
     assert_eq!(of(&calendar, "X-WR-CALNAME"), "Our fleet");
     assert_eq!(of(&calendar, "DTSTART"), "20261122T080000Z");
-    assert_eq!(of(&calendar, "DTEND"), "20261122T100000Z");
+    assert_eq!(of(&calendar, "DTEND"), "20261122T110000Z");
     assert_eq!(of(&calendar, "STATUS"), "TENTATIVE");
     assert_eq!(of(&calendar, "LOCATION"), "Bilbao\\, A5");
     assert_eq!(found.text, read(&shore, &made).await.text);
@@ -196,7 +196,7 @@ async fn long_and_strange_words_come_through(shore: Shore) {
 }
 
 /// The events of a calendar as a reader of its own has them, by their UIDs.
-fn events(text: &str) -> BTreeMap<String, icalendar::Event> {
+pub(crate) fn events(text: &str) -> BTreeMap<String, icalendar::Event> {
     let calendar: icalendar::Calendar = text.parse().unwrap();
     let all = calendar.components.into_iter().map(|component| {
         let CalendarComponent::Event(event) = component else {

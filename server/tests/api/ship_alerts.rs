@@ -59,6 +59,12 @@ pub(crate) async fn departs(ship: &Ship) {
     put(ship, 1, passage(DAY, 6), vec![open]).await;
 }
 
+/// The same with that and no sample.
+pub(crate) async fn says_that_it_departs(ship: &Ship, seq: u64) {
+    let open = alert(1, 1, ShipAlertState::Open);
+    put(ship, seq, Vec::new(), vec![open]).await;
+}
+
 /// Nothing comes for hours.
 async fn hours_pass(shore: &Shore) {
     shore.advance(7.0 * 3600.0);

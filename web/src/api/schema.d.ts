@@ -6921,7 +6921,8 @@ export interface components {
             withdrawn_by: string | null;
         };
         /**
-         * @description What is to be changed of a call; what is left out stays, null takes a value away.
+         * @description What is to be changed of a call; what is left out stays, null takes the berth or her
+         *     heading there away.
          * @example {
          *       "eta": "2026-12-09T02:00:00Z",
          *       "etd": "2026-12-11T12:00:00Z"
@@ -6931,14 +6932,14 @@ export interface components {
             berth?: string | null;
             /** Format: double */
             berth_heading_deg?: number | null;
-            eta?: components["schemas"]["Time"] | null;
+            eta?: components["schemas"]["Time"];
             /** Format: double */
-            eta_uncertainty_h?: number | null;
-            etd?: components["schemas"]["Time"] | null;
+            eta_uncertainty_h?: number;
+            etd?: components["schemas"]["Time"];
             /** Format: double */
-            etd_uncertainty_h?: number | null;
+            etd_uncertainty_h?: number;
             /** @description UN/LOCODE. */
-            port?: string | null;
+            port?: string;
         };
         /** @description What a call says, wherever it comes from. */
         PortCallContent: {

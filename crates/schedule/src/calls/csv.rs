@@ -292,8 +292,7 @@ fn row(
     let port = PortCode::parse(needed("port")?)
         .map_err(|error| FileError::new(line, "port", error.to_string()))?;
     if ports::find(port).is_none() {
-        let what = format!("{port} is no sea port of the UN/LOCODE table");
-        return Err(FileError::new(line, "port", what));
+        return Err(FileError::new(line, "port", ports::unknown(port)));
     }
     let (eta, etd) = (instant("eta")?, instant("etd")?);
     let vessel = cell("vessel").or(vessel);

@@ -185,7 +185,7 @@ fn calls_of(input: &Input, vessels: &BTreeSet<&str>) -> Result<()> {
         let path = format!("port_calls[{at}]");
         known(vessels, format!("{path}.vessel"), &call.vessel, "vessel")?;
         if ports::find(call.port).is_none() {
-            let what = format!("{} is no sea port of the UN/LOCODE table", call.port);
+            let what = ports::unknown(call.port);
             return Err(InputError::new(format!("{path}.port"), what));
         }
         if let Err(error) = call.checked(input.now) {

@@ -13,7 +13,7 @@ mod weights;
 pub use firm::{Firm, ServedPort, Taken};
 pub use read::{InputError, read};
 pub use sound::{FirmError, firm_is_sound};
-pub use weights::Weights;
+pub use weights::{JOB_H, Weights};
 
 use crate::calls::PortCall;
 use crate::needs::{Compass, Ship, Terms, Transit, Urgency};

@@ -48,8 +48,7 @@ pub fn firm_is_sound(firm: &Firm) -> Result<(), FirmError> {
     let mut served = BTreeSet::new();
     for port in &firm.ports {
         if ports::find(port.port).is_none() {
-            let what = format!("{} is no sea port of the UN/LOCODE table", port.port);
-            return wrong("ports", &what);
+            return wrong("ports", &ports::unknown(port.port));
         }
         if !served.insert(port.port) {
             return wrong("ports", &format!("{} stands there twice", port.port));

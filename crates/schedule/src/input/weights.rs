@@ -4,6 +4,9 @@ use crate::needs::Urgency;
 use crate::time::Eur;
 use serde::{Deserialize, Serialize};
 
+/// Hours that a job takes on board where nobody says otherwise.
+pub const JOB_H: f64 = 3.0;
+
 /// A figure for each urgency.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -76,7 +79,7 @@ impl Default for Weights {
             changed_eur: Eur::whole(150),
             withdrawn_eur: Eur::whole(500),
             late_days: None,
-            job_h: 3.0,
+            job_h: JOB_H,
             join_days: 90,
         }
     }

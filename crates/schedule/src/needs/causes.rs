@@ -1,8 +1,12 @@
 //! Each cause of a due date.
 
-use super::{Cause, CauseKind, Compass, Event, Ship, Terms};
+use super::{Cause, CauseKind, Compass, Event, Predicted, Ship, Terms};
 use crate::rules::{Applies, DeviationRecord, Limit, Requirement, Rule};
 use chrono::{Days, NaiveDate};
+use std::cmp::Ordering;
+
+/// Said before the interval that begins with an adjustment which may yet fail.
+const NOT_VERIFIED: &str = "adjusted, not yet verified at sea: ";
 
 /// All causes, those of rules in the rules' order.
 pub(super) fn find(
@@ -38,7 +42,15 @@ pub(super) fn find(
                 Some(day) => (
                     CauseKind::Interval,
                     months.after(day),
-                    format!("{} months after the adjustment of {day}", months.get()),
+                    format!(
+                        "{}{} months after the adjustment of {day}",
+                        if compass.awaits_verification {
+                            NOT_VERIFIED
+                        } else {
+                            ""
+                        },
+                        months.get()
+                    ),
                 ),
                 None => (
                     CauseKind::NeverAdjusted,
@@ -58,7 +70,9 @@ pub(super) fn find(
                 })
                 .min_by_key(|found| found.1),
             Requirement::Deviation { adjust_above_deg } => {
-                over(compass, *adjust_above_deg, terms, today)
+                let limit = *adjust_above_deg;
+                let words = format!("where more than {}° must be adjusted", limit.degrees());
+                over(compass, limit, &words, terms, today)
             }
         };
         causes.extend(found.map(|(kind, due, words)| Cause {
@@ -68,7 +82,38 @@ pub(super) fn find(
             rule: Some(rule.id.clone()),
         }));
     }
+    causes.extend(over_own_limit(ship, compass, rules, terms, today));
     causes
+}
+
+/// Over the limit that the ship's operator has set, where no rule that binds her sets as
+/// strict a one.
+fn over_own_limit(
+    ship: &Ship,
+    compass: &Compass,
+    rules: &[Rule],
+    terms: &Terms,
+    today: NaiveDate,
+) -> Option<Cause> {
+    let own = compass.deviation_limit_deg?;
+    let is_ruled = rules.iter().any(|rule| {
+        let Requirement::Deviation { adjust_above_deg } = &rule.requires else {
+            return false;
+        };
+        let holds = rule.effective_from.is_none_or(|from| from <= today);
+        holds && *adjust_above_deg <= own && binds(&rule.applies, ship)
+    });
+    if is_ruled {
+        return None;
+    }
+    let words = format!("over the vessel's own limit of {}°", own.degrees());
+    let (kind, due, reason) = over(compass, own, &words, terms, today)?;
+    Some(Cause {
+        kind,
+        due,
+        reason,
+        rule: None,
+    })
 }
 
 /// Whether a rule binds a ship. What is not known of her is taken to be as the rule has
@@ -100,25 +145,47 @@ fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
 }
 
 /// The first day on which the prediction is over a limit, or since which the deviation has
-/// been.
-fn over(compass: &Compass, limit: Limit, terms: &Terms, today: NaiveDate) -> Option<Found> {
-    let over = compass
-        .predicted
-        .iter()
-        .filter(|predicted| predicted.worst_deviation_deg > limit.degrees())
-        .min_by_key(|predicted| predicted.on)?;
-    let (deviation_deg, limit_deg) = (over.worst_deviation_deg, limit.degrees());
-    let how_much = if over.on < today {
-        format!("{deviation_deg:.1}° of deviation or more since {}", over.on)
-    } else {
-        format!("{deviation_deg:.1}° of deviation predicted for {}", over.on)
+/// been: since the last adjustment at the earliest, for what was before it is over.
+fn over(
+    compass: &Compass,
+    limit: Limit,
+    words: &str,
+    terms: &Terms,
+    today: NaiveDate,
+) -> Option<Found> {
+    let limit_deg = limit.degrees();
+    let over = || {
+        let all = compass.predicted.iter();
+        all.filter(|predicted| predicted.worst_deviation_deg > limit_deg)
     };
-    let words = format!("{how_much}, where more than {limit_deg}° must be adjusted");
+    let first = over().min_by_key(|predicted| predicted.on)?;
+    let since = first.on.max(compass.adjusted_on.unwrap_or(first.on));
+    let first_deg = first.worst_deviation_deg;
+    let how_much = match first.on.cmp(&today) {
+        Ordering::Greater => {
+            let (on, at) = (first.on, at(first));
+            format!("{first_deg:.1}° of deviation predicted for {on}{at}")
+        }
+        Ordering::Equal => format!("{first_deg:.1}° of deviation{} on {today}", at(first)),
+        Ordering::Less => match over().find(|predicted| predicted.on == today) {
+            Some(now) => format!(
+                "{:.1}° of deviation{}, {first_deg:.1}° or more since {since}",
+                now.worst_deviation_deg,
+                at(now)
+            ),
+            None => format!("{first_deg:.1}° of deviation or more since {since}"),
+        },
+    };
     Some((
         CauseKind::OverLimit,
-        plus(over.on, terms.over_limit_days),
-        words,
+        plus(since, terms.over_limit_days),
+        format!("{how_much}, {words}"),
     ))
+}
+
+fn at(predicted: &Predicted) -> String {
+    let place = predicted.place.as_ref();
+    place.map_or_else(String::new, |place| format!(" at {place}"))
 }
 
 fn at_transit(
@@ -160,7 +227,7 @@ fn at_transit(
 fn change(compass: &Compass, terms: &Terms) -> Option<Cause> {
     let change = compass.change?;
     let counts = change.size_deg.abs() * 100.0 >= f64::from(terms.change_centideg);
-    let since = compass.adjusted_on.is_none_or(|day| change.on > day);
+    let since = compass.adjusted_on.is_none_or(|day| change.on >= day);
     (counts && since).then(|| Cause {
         kind: CauseKind::Change,
         due: plus(change.on, terms.after_event_days),

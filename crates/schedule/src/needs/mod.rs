@@ -6,7 +6,7 @@
 
 mod causes;
 
-use crate::rules::{Canal, DeviationRecord, EventKind, Flag, Rule, Trade};
+use crate::rules::{Canal, DeviationRecord, EventKind, Flag, Limit, Rule, Trade};
 use chrono::{Days, NaiveDate};
 use serde::{Deserialize, Serialize};
 
@@ -55,12 +55,19 @@ pub struct Compass {
     /// that is past, what it has been at least since.
     #[serde(default)]
     pub predicted: Vec<Predicted>,
+    /// The greatest deviation on any heading that the ship's operator lets stand, degrees;
+    /// none where none is said.
+    #[serde(default)]
+    pub deviation_limit_deg: Option<Limit>,
     /// A change of the ship's magnetism that was found.
     #[serde(default)]
     pub change: Option<Change>,
     /// A verification at sea that the last adjustment did not pass.
     #[serde(default)]
     pub failed_verification: Option<FailedVerification>,
+    /// Whether headings at sea have yet to say whether the last adjustment holds.
+    #[serde(default)]
+    pub awaits_verification: bool,
 }
 
 /// An event.
@@ -74,11 +81,14 @@ pub struct Event {
 }
 
 /// A prediction.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Predicted {
     /// For which day.
     pub on: NaiveDate,
+    /// For where, as it stands behind "at"; none where that is not said.
+    #[serde(default)]
+    pub place: Option<String>,
     /// The largest deviation on any heading, either way.
     pub worst_deviation_deg: f64,
 }
@@ -155,7 +165,7 @@ pub enum CauseKind {
     Interval,
     /// A rule asks for an adjustment after an event.
     Event,
-    /// Predicted deviation is over a rule's limit.
+    /// Predicted deviation is over a rule's limit, or the vessel's own.
     OverLimit,
     /// A transit asks for a newer table or a smaller deviation.
     Transit,
@@ -207,9 +217,23 @@ pub fn due(
     Some(Due {
         on: first.due,
         urgency: urgency(&causes, terms, today),
-        reason: first.reason.clone(),
+        reason: reason(first, &causes),
         causes,
     })
+}
+
+/// The first cause's. Nothing is due before what was never adjusted, so what presses beside
+/// that is said with it.
+fn reason(first: &Cause, causes: &[Cause]) -> String {
+    let over = causes
+        .iter()
+        .find(|cause| cause.kind == CauseKind::OverLimit);
+    match over {
+        Some(over) if first.kind == CauseKind::NeverAdjusted => {
+            format!("{}; {}", first.reason, over.reason)
+        }
+        _ => first.reason.clone(),
+    }
 }
 
 impl Terms {

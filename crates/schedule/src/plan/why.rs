@@ -62,6 +62,16 @@ struct Found {
     planned_late: bool,
 }
 
+/// That a call somewhere would help. No ship makes one by the day that it is, or before.
+fn called_in_time(input: &Input, job: &Job<'_>, place: &str) -> String {
+    let today = input.now.date(0);
+    if job.due() <= today || job.is_overdue(today) {
+        format!("as soon as she can call at {place}")
+    } else {
+        format!("a call by {} at {place}", job.due())
+    }
+}
+
 impl Found {
     /// It is planned, and late.
     fn late(&mut self, job: &Job<'_>, way: &Way<'_>) {
@@ -118,11 +128,8 @@ impl Found {
             let help = if ports.is_empty() {
                 "a firm that the flag accepts: there is none".to_owned()
             } else {
-                format!(
-                    "a call by {} at a port that a firm serves: {}",
-                    job.due(),
-                    ports.join(", ")
-                )
+                let ports = ports.join(", ");
+                called_in_time(input, job, &format!("a port that a firm serves: {ports}"))
             };
             self.near.insert((3, job.due(), help));
         }
@@ -163,7 +170,11 @@ impl Found {
             for day in days.filter(|day| !late || *day <= job.due()) {
                 match quote::quote(input, job, call, firm, day) {
                     Ok(_) => self.taken(firm, call, day, taken),
-                    Err(obstacles) => self.obstacles(job, call, firm, day, &obstacles),
+                    Err(obstacles) => {
+                        let come = format!("{}: {} could come", port.name, firm.called());
+                        let in_time = called_in_time(input, job, &come);
+                        self.obstacles(job, call, firm, day, &obstacles, &in_time);
+                    }
                 }
             }
         }
@@ -210,6 +221,7 @@ impl Found {
         firm: &Firm,
         day: NaiveDate,
         obstacles: &[Obstacle],
+        in_time: &str,
     ) {
         let (name, port, due) = (firm.called(), quote::port_of(call).name, job.due());
         // What would help against days that are too late is about the due date.
@@ -258,7 +270,7 @@ impl Found {
                         "call {} at {port} on {day} is after the due date, {due}",
                         call.called()
                     ),
-                    format!("a call at {port} by {due}: {name} could come"),
+                    in_time.to_owned(),
                 ),
                 Obstacle::Declined => (
                     format!("{name} declined"),

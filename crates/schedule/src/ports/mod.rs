@@ -4,7 +4,7 @@
 //! 2023-1; function 1, port), as it is published for everyone's use; where UNECE gives
 //! no position, from the list "sea-ports" 0.0.9 (MIT licence, © marchah). Positions are
 //! rounded to a hundredth of a degree: good for the day's date and for distances, not
-//! for navigation.
+//! for navigation. `data/places.csv` is made by `scripts/places.py` from the same list.
 //!
 //! What always holds: a [`PortCode`] is two capital letters and three capital letters or
 //! digits; the table is sorted by it and names each once.
@@ -55,6 +55,21 @@ pub fn find(code: PortCode) -> Option<&'static Port> {
     let ports = all();
     let at = ports.binary_search_by_key(&code, |port| port.code).ok()?;
     Some(&ports[at])
+}
+
+/// What is wrong with a code that no port of the table has, and the one that may be meant:
+/// cities and airports have codes of their own.
+pub fn unknown(code: PortCode) -> String {
+    let wrong = format!("{code} is no sea port of the UN/LOCODE table");
+    let places = include_str!("../../data/places.csv").lines().skip(1);
+    let mut places = places.filter_map(|line| line.split_once(','));
+    let text = code.to_string();
+    let meant = places.find(|(place, _)| *place == text);
+    let port = meant.and_then(|(_, port)| find(PortCode::parse(port).ok()?));
+    match port {
+        Some(port) => format!("{wrong}; the sea port {} is {}", port.name, port.code),
+        None => wrong,
+    }
 }
 
 /// Ports whose code or name begins with a text, then those whose name has it
@@ -182,6 +197,26 @@ mod tests {
                 .abs()
                 .max((port.position.lon_deg() - lon).abs());
             assert!(off < 0.3, "{code} is {off}° off");
+        }
+    }
+
+    #[test]
+    fn a_city_or_an_airport_is_no_port_and_tells_the_port_of_its_name() {
+        let said = |code: &str| unknown(PortCode::parse(code).unwrap());
+        assert_eq!(
+            said("CNSHA"),
+            "CNSHA is no sea port of the UN/LOCODE table; the sea port Shanghai is CNSGH"
+        );
+        assert!(said("CNNGB").ends_with("the sea port Ningbo is CNNBO"));
+        assert_eq!(said("XXXXX"), "XXXXX is no sea port of the UN/LOCODE table");
+    }
+
+    #[test]
+    fn every_place_of_the_table_is_no_port_and_names_one() {
+        let places = include_str!("../../data/places.csv").lines().skip(1);
+        for (place, port) in places.map(|line| line.split_once(',').unwrap()) {
+            assert!(find(PortCode::parse(place).unwrap()).is_none(), "{place}");
+            assert!(find(PortCode::parse(port).unwrap()).is_some(), "{port}");
         }
     }
 

@@ -28,6 +28,28 @@ fn a_ship_without_calls_wants_one_in_a_port_that_is_served() {
 }
 
 #[test]
+fn what_is_overdue_or_due_today_is_wanted_as_soon_as_can_be_and_by_no_day_gone_by() {
+    for due in ["2026-03-20", "2026-11-21"] {
+        let found = unscheduled(|input| {
+            input["needs"][0]["due"] = json!(due);
+            input["port_calls"] = json!([]);
+        });
+        assert_eq!(
+            found.would_help,
+            ["as soon as she can call at a port that a firm serves: NLRTM"]
+        );
+    }
+    let today = unscheduled(|input| {
+        input["needs"][0]["due"] = json!("2026-11-21");
+        input["weights"] = json!({"late_days": 0});
+    });
+    assert_eq!(
+        today.would_help[0],
+        "as soon as she can call at Rotterdam: f could come"
+    );
+}
+
+#[test]
 fn a_port_that_no_firm_serves_wants_a_firm() {
     let found = unscheduled(|input| input["port_calls"][0]["port"] = json!("BEANR"));
     assert_eq!(found.because, ["no firm serves Antwerpen (BEANR), call c"]);
@@ -87,7 +109,7 @@ fn who_allows_no_late_days_is_told_what_would_help_instead() {
     assert_eq!(
         found.would_help,
         [
-            "a call at Rotterdam by 2026-11-30: f could come",
+            "a call by 2026-11-30 at Rotterdam: f could come",
             "a call by 2026-11-30 at a port that a firm serves: NLRTM",
             "an extension to 2026-12-01, asked of flag NO where its rules know one"
         ]

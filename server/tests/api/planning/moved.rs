@@ -1,7 +1,8 @@
 //! A port call that moves under an order: both sides are told, and agree on another time.
 
-use super::offers::{alerts, firm, offer};
+use super::offers::{alerts, direct, firm, offer};
 use super::{due_vessel, enter, first, follow, put, solve, terms};
+use crate::calendar::events;
 use crate::logbook::patch;
 use crate::notifications::told;
 use crate::on_both;
@@ -9,6 +10,7 @@ use crate::port_calls;
 use crate::support::{Answer, Person, Shore};
 use crate::webhooks::{Receiver, deliver, make};
 use binnacle_server::work_orders::lapse;
+use icalendar::Component;
 use reqwest::Method;
 use serde_json::{Value, json};
 
@@ -22,6 +24,8 @@ on_both!(
     a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks,
     a_call_withdrawn_after_acceptance_is_told_and_done_at_another,
     what_nobody_is_asked_for_moves_in_silence,
+    an_agreed_job_stays_at_risk_when_its_firm_is_left_out,
+    an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known,
 );
 
 /// A ship in Rotterdam from the fourteenth to the fifteenth, and a firm that has the job.
@@ -98,6 +102,15 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
     let order = agreed.seen().await;
+    for person in [&agreed.ada, &agreed.rosa] {
+        let mut calendar = events(&person.get("/calendar.ics").await.text);
+        let uid = format!("{}@binnacle", order["id"].as_str().unwrap());
+        let job = calendar.remove(&uid).unwrap();
+        assert_eq!(job.property_value("STATUS"), Some("TENTATIVE"));
+        let said = job.get_description().unwrap();
+        assert!(said.contains("call has moved since"), "{said}");
+        assert!(said.contains("a new day is needed"), "{said}");
+    }
     // What was agreed stands, and says that it does not do.
     assert_eq!(order["planned_at"], "2026-12-15T08:00:00Z");
     assert_eq!(order["state"], "accepted");
@@ -412,5 +425,64 @@ async fn what_nobody_is_asked_for_moves_in_silence(shore: Shore) {
         .await;
     assert_eq!(agreed.seen().await["call_fit"], Value::Null);
     assert_eq!(messages(&agreed.ada, &agreed.order).await.len(), 0);
+    shore.finish().await;
+}
+
+async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(shore: Shore) {
+    let agreed = Agreed::new(&shore).await;
+    let ada = &agreed.ada;
+    solve(ada).await;
+    let path = format!("/firms/{}/terms", agreed.firm);
+    let left_out = async || {
+        Answer::of(ada.request(Method::DELETE, &path)).await;
+        let plan = solve(ada).await;
+        assert_eq!(plan["under_way"].as_array().unwrap().len(), 1, "{plan}");
+        alerts(ada).await
+    };
+    assert_eq!(left_out().await, [] as [Value; 0]);
+    put(ada, &path, &terms()).await.good();
+    agreed
+        .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
+        .await;
+    solve(ada).await;
+    let before = alerts(ada).await;
+    assert_eq!(before.len(), 1, "{before:?}");
+    let after = left_out().await;
+    assert_eq!(after.len(), 1, "{after:?}");
+    assert_eq!(after[0]["id"], before[0]["id"]);
+    let summary = after[0]["summary"].as_str().unwrap();
+    assert!(
+        summary.contains("alongside from 2026-12-22 06:00 UTC to 2026-12-23 18:00 UTC"),
+        "{summary}"
+    );
+    let cancelled = json!({ "text": "sold" });
+    ada.post(&format!("{}/cancel", agreed.order), &cancelled)
+        .await
+        .good();
+    solve(ada).await;
+    assert_eq!(alerts(ada).await, [] as [Value; 0]);
+    shore.finish().await;
+}
+
+async fn an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let (id, rosa) = firm(&shore, &ada, "rosa").await;
+    let order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &id);
+    let order = ada.post("/work-orders", &order).await.good();
+    let order = format!("/work-orders/{}", order["id"].as_str().unwrap());
+    rosa.post(&format!("{order}/accept"), &json!({}))
+        .await
+        .good();
+    solve(&ada).await;
+    assert_eq!(alerts(&ada).await, [] as [Value; 0]);
+    enter(&ada, &nao, "BEANR", 14).await;
+    solve(&ada).await;
+    let told = alerts(&ada).await;
+    let summary = told[0]["summary"].as_str().unwrap();
+    assert!(summary.contains("no port call is known"), "{summary}");
+    enter(&ada, &nao, "NLRTM", 16).await;
+    solve(&ada).await;
+    assert_eq!(alerts(&ada).await.len(), 1);
     shore.finish().await;
 }

@@ -16,6 +16,7 @@ on_both!(
     what_is_planned_has_not_happened,
     deviation_over_its_limit_becomes_overdue,
     predicted_deviation_at_a_port_ahead_brings_a_need_forward,
+    deviation_over_the_vessels_own_limit_brings_a_need_forward,
     particulars_are_checked_and_ones_own,
     a_cancelled_order_is_no_adjustment,
     an_operators_own_terms_are_what_counts,
@@ -209,6 +210,53 @@ async fn predicted_deviation_at_a_port_ahead_brings_a_need_forward(shore: Shore)
             .unwrap()
             .contains("Australian")
     );
+    shore.finish().await;
+}
+
+async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let mut astray = truth();
+    astray.parameters_over_lambda.bx_nt += 3_000.0;
+    let (nao, vessel) = australian(&shore, &ada, &astray).await;
+    // No rule of her flag limits deviation.
+    let known = json!({ "flag_state": "NO", "deviation_record": "kept" });
+    put(&ada, &nao.path("/particulars"), &known).await.good();
+    let never = need(&ada, &vessel).await;
+    let reason = never["reason"].as_str().unwrap();
+    assert!(reason.contains("no adjustment is on record"), "{reason}");
+    assert!(reason.contains("the vessel's own limit of 5°"), "{reason}");
+    let adjusted = json!({ "kind": "adjustment", "from": "2026-11-01T08:00:00Z" });
+    ada.post(&nao.path("/logbook"), &adjusted).await.good();
+    let over = need(&ada, &vessel).await;
+    assert_eq!(
+        (&over["due_on"], &over["urgency"]),
+        (&json!("2026-12-05"), &json!("urgent"))
+    );
+    assert_eq!(over["causes"][0]["kind"], "over_limit");
+    assert_eq!(over["causes"][0]["rule"], Value::Null);
+    let here = over["predicted"][0]["worst_deviation_deg"]
+        .as_f64()
+        .unwrap();
+    assert_eq!(
+        over["reason"],
+        format!(
+            "{here:.1}° of deviation at her position on 2026-11-21, over the vessel's own limit \
+             of 5°"
+        )
+    );
+    let alerts = |figure: &str, deg: f64| {
+        let mut settings = json!({ "deviation_deg": 5.0, "band95_deg": 45.0 });
+        settings[figure] = json!(deg);
+        settings
+    };
+    // Neither below a larger limit, nor of a model that is too unsure to tell.
+    for wider in [alerts("deviation_deg", 45.0), alerts("band95_deg", 0.5)] {
+        let mut settings = ada.get(&nao.path("/settings")).await.good();
+        settings["alerts"] = wider;
+        put(&ada, &nao.path("/settings"), &settings).await.good();
+        let need = need(&ada, &vessel).await;
+        assert_eq!(need["due_on"], "2028-11-01", "{need}");
+    }
     shore.finish().await;
 }
 

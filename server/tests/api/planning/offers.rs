@@ -15,6 +15,7 @@ on_both!(
     an_order_that_is_cancelled_is_in_nobodys_way,
     no_firm_is_asked_for_a_time_at_which_it_is_closed,
     no_firm_is_offered_more_ships_than_it_has_teams,
+    a_team_that_an_order_still_holds_is_planned_for_no_other_ship,
     an_offer_is_of_the_plan_that_was_looked_at,
     a_job_is_offered_whole_or_not_at_all,
     a_firm_is_booked_once_by_all_operators_together,
@@ -290,6 +291,59 @@ async fn no_firm_is_offered_more_ships_than_it_has_teams(shore: Shore) {
     shore.finish().await;
 }
 
+/// As long as an order stands that its job was moved away from, its firm keeps the day.
+async fn a_team_that_an_order_still_holds_is_planned_for_no_other_ship(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let call = enter(&ada, &nao, "NLRTM", 14).await;
+    let (firm_id, rosa) = firm(&shore, &ada, "rosa").await;
+    let plan = solve(&ada).await;
+    let order = offer(&ada, &plan, &nao).await;
+    rosa.post(&format!("{order}/accept"), &json!({}))
+        .await
+        .good();
+    solve(&ada).await;
+    let call = call["id"].as_str().unwrap();
+    let call = format!("{}/{call}", port_calls::path(&nao));
+    let late = json!({ "eta": "2026-12-22T06:00:00Z", "etd": "2026-12-23T18:00:00Z" });
+    patch(&ada, &call, &late).await.good();
+    enter(&ada, &nao, "BEANR", 17).await;
+    let pinta = due_vessel(&ada, "Pinta").await;
+    let mut that_day = port_calls::call("NLRTM", 15);
+    that_day["etd"] = json!("2026-12-15T20:00:00Z");
+    ada.post(&port_calls::path(&pinta), &that_day).await.good();
+    let plan = solve(&ada).await;
+    let id = order.rsplit('/').next().unwrap();
+    assert_eq!(first(&plan), ("BEANR", "2026-12-18", "rosa"));
+    assert_eq!(plan["jobs"][0]["instead_of"], json!([id]));
+    assert_eq!(plan["jobs"].as_array().unwrap().len(), 1, "{plan}");
+    let because = plan["unscheduled"][0]["because"].to_string();
+    assert!(
+        because.contains("rosa's teams of 2026-12-15 are booked"),
+        "{because}"
+    );
+    let why = plan["changes"].to_string();
+    assert!(why.contains("not long enough in rosa's hours"), "{why}");
+    // Nothing new was learnt by that.
+    assert_eq!(solve(&ada).await["version"], plan["version"]);
+    let asked = direct(&pinta, "NLRTM", "2026-12-15T09:00:00Z", &firm_id);
+    let full = ada.post("/work-orders", &asked).await;
+    assert_eq!(full.problem(), "wrong-state");
+    assert!(
+        full.text
+            .contains(&format!("you have work order {id} of Nao")),
+        "{full:?}"
+    );
+    let cancelled = json!({ "text": "she is late" });
+    ada.post(&format!("{order}/cancel"), &cancelled)
+        .await
+        .good();
+    let plan = solve(&ada).await;
+    assert_eq!(first(&plan), ("NLRTM", "2026-12-15", "rosa"));
+    offer(&ada, &plan, &pinta).await;
+    shore.finish().await;
+}
+
 async fn an_offer_is_of_the_plan_that_was_looked_at(shore: Shore) {
     let ada = shore.admin("ada").await;
     let eve = shore.admin("eve").await;
@@ -313,7 +367,7 @@ async fn an_offer_is_of_the_plan_that_was_looked_at(shore: Shore) {
     shore.finish().await;
 }
 
-fn direct(vessel: &Value, port: &str, planned_at: &str, firm: &str) -> Value {
+pub(super) fn direct(vessel: &Value, port: &str, planned_at: &str, firm: &str) -> Value {
     json!({ "vessel_id": vessel["id"], "compass_id": compass_of(vessel), "port": port,
             "planned_at": planned_at, "offer": { "firms": [firm] } })
 }
@@ -381,11 +435,11 @@ async fn a_firm_is_booked_once_by_all_operators_together(shore: Shore) {
             .contains("your firm has no team left on 2026-12-15: it goes to"),
         "{refused:?}"
     );
-    // Who asks later is told that, and nothing of whom.
-    let (late, ship) = if one.status == 409 {
-        (&ada, "Niña")
+    // Who asks later is told that, and nothing of whom but of one's own.
+    let (late, ship, theirs) = if one.status == 409 {
+        (&ada, "Niña", "Hind")
     } else {
-        (&eve, "Golden")
+        (&eve, "Golden", "Nao")
     };
     let ship = due_vessel(late, ship).await;
     let full = late
@@ -396,10 +450,7 @@ async fn a_firm_is_booked_once_by_all_operators_together(shore: Shore) {
         full.text.contains("rosa has no team left on 2026-12-15"),
         "{full:?}"
     );
-    assert!(
-        !full.text.contains("Hind") && !full.text.contains("Nao"),
-        "{full:?}"
-    );
+    assert!(!full.text.contains(theirs), "{full:?}");
     shore.finish().await;
 }
 

@@ -219,6 +219,10 @@ async fn a_calendar_is_taken_and_what_it_cancels_is_withdrawn(shore: Shore) {
     ]);
     assert_eq!(send(&ada, &ics, &next).await.good(), did(0, 1, 0, 1, 0));
     assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 11"]);
+    let all = format!("{}?withdrawn=true", path(&nao));
+    let all = ada.get(&all).await.good();
+    let cancelled = &all["items"][0];
+    assert_eq!(cancelled["withdrawal_reason"], "cancelled in the file");
     let floating = next.replace("20261211T060000Z", "20261211T060000");
     let answer = send(&ada, &ics, floating).await;
     assert!(

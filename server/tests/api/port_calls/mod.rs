@@ -66,6 +66,16 @@ async fn a_call_is_entered_amended_and_withdrawn_and_each_revision_is_kept(shore
         (&json!(2), &json!("A5"))
     );
     assert_eq!(amended["eta_uncertainty_h"], 12.0);
+    for field in [
+        "port",
+        "eta",
+        "etd",
+        "eta_uncertainty_h",
+        "etd_uncertainty_h",
+    ] {
+        let nothing = patch(&ada, &one, &json!({ field: null })).await;
+        assert_eq!(nothing.problem(), "invalid", "{field}");
+    }
     // The same again changes nothing.
     assert_eq!(patch(&ada, &one, &later).await.good()["revision"], 2);
     let withdrawn = ada
@@ -98,6 +108,7 @@ async fn what_is_no_call_is_refused_by_its_field_and_leaves_nothing(shore: Shore
         ("berth", json!("x".repeat(201)), "longer than 200"),
         ("reference", json!("a\nb"), "control characters"),
         ("colour", json!("red"), "unknown field"),
+        ("port", json!("CNSHA"), "the sea port Shanghai is CNSGH"),
     ] {
         let mut wrong = call("NLRTM", 8);
         wrong[field] = value.clone();

@@ -52,11 +52,16 @@ impl Job {
 
     /// The same aboard a ship of this magnetism.
     async fn aboard(shore: &Shore, person: Person, truth: &Model) -> Job {
-        let ship = shore.ship(&person, "Nao").await;
         let mut samples = days_at_sea(truth, "2026-11-01T00:00:00Z", 10.0);
         samples.extend(days_in((10.0, -25.0), truth, "2026-11-11T00:00:00Z", 5.0));
         samples.extend(days_at_sea(truth, "2026-11-16T00:00:00Z", 4.0));
-        ship.put(1, &samples).await.good();
+        Job::after(shore, person, &samples).await
+    }
+
+    /// The same aboard a ship that has sent these samples.
+    async fn after(shore: &Shore, person: Person, samples: &[Sample]) -> Job {
+        let ship = shore.ship(&person, "Nao").await;
+        ship.put(1, samples).await.good();
         shore.advance(60.0);
         shore.work().await;
         let compasses = person.get(&ship.path("/compasses")).await.good();

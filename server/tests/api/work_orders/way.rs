@@ -1,14 +1,18 @@
 //! The whole way, from the berth to the sea.
 
-use super::{Job, LAMBDA, foretold, reading, word};
+use super::{Job, LAMBDA, foretold, reading, reading_aboard, word};
 use crate::on_both;
-use crate::support::{Shore, days_at_sea};
+use crate::ship_alerts;
+use crate::support::{Shore, days_at_sea, days_in, struck, truth};
 use serde_json::{Value, json};
 
 on_both!(
     an_order_goes_from_the_berth_to_a_predicted_model,
     headings_at_sea_verify_an_adjustment,
     a_heading_at_sea_that_does_not_agree_is_an_alert,
+    an_adjustment_after_the_verdict_answers_it_on_its_very_day,
+    another_orders_adjustment_answers_the_verdict_of_the_first,
+    an_adjustment_clears_what_was_open_about_the_ship_before_it,
 );
 
 async fn an_order_goes_from_the_berth_to_a_predicted_model(shore: Shore) {
@@ -84,9 +88,14 @@ async fn headings_at_sea_verify_an_adjustment(shore: Shore) {
     assert!(needed.as_u64().unwrap() > 0, "{some}");
     let early = job.post("/close", &json!({ "text": "done" })).await;
     assert_eq!(early.problem(), "wrong-state");
+    let not_verified = "adjusted, not yet verified at sea: ";
+    let reason = reason_of_need(&job).await;
+    assert!(reason.starts_with(not_verified), "{reason}");
     let more = job.sail(&shore, &ship, 3, 6.0).await;
     assert_eq!(more["state"], "verified", "{}", more["verification"]);
     assert_eq!(more["standing"], "verified at sea");
+    let reason = reason_of_need(&job).await;
+    assert!(!reason.contains(not_verified), "{reason}");
     assert_eq!(job.open_alerts().await, Vec::<Value>::new());
     let told = job.person.get("/notifications?kind=verified").await.good();
     let subject = &told["items"][0]["subject"];
@@ -137,5 +146,113 @@ async fn a_heading_at_sea_that_does_not_agree_is_an_alert(shore: Shore) {
         causes.contains(&&json!("adjustment_not_confirmed")),
         "{causes:?}"
     );
+    shore.finish().await;
+}
+
+async fn reason_of_need(job: &Job) -> String {
+    let needs = job.person.get("/needs").await.good();
+    let need = &needs["items"][0];
+    assert_eq!(need["urgency"], "routine", "{need}");
+    need["reason"].as_str().unwrap().to_owned()
+}
+
+/// A job that the sea has disproved, on the day after the adjustment.
+async fn disproved(shore: &Shore) -> Job {
+    let mut job = Job::begin(shore).await;
+    let mut ship = foretold(&job.complete().await);
+    ship.parameters_over_lambda.bx_nt += 4000.0;
+    let failed = job.sail(shore, &ship, 2, 1.0).await;
+    assert_eq!(failed["state"], "failed");
+    assert!(is_failed(&job).await);
+    job
+}
+
+async fn is_failed(job: &Job) -> bool {
+    let needs = job.person.get("/needs").await.good();
+    let mut causes = needs["items"][0]["causes"].as_array().unwrap().iter();
+    causes.any(|cause| cause["kind"] == "failed_verification")
+}
+
+async fn an_adjustment_after_the_verdict_answers_it_on_its_very_day(shore: Shore) {
+    let job = disproved(&shore).await;
+    // The last heading at sea was at 11:50 on that day.
+    let before = json!({ "kind": "adjustment", "from": "2026-11-22T09:00:00Z" });
+    let logbook = job.ship.path("/logbook");
+    job.person.post(&logbook, &before).await.good();
+    assert!(is_failed(&job).await);
+    let after = json!({ "kind": "adjustment", "from": "2026-11-22T15:00:00Z" });
+    job.person.post(&logbook, &after).await.good();
+    assert!(!is_failed(&job).await);
+    shore.finish().await;
+}
+
+async fn another_orders_adjustment_answers_the_verdict_of_the_first(shore: Shore) {
+    let job = disproved(&shore).await;
+    let mut again = job.new_order();
+    again["planned_at"] = json!("2026-11-23T09:00:00Z");
+    job.person.post("/work-orders", &again).await.good();
+    // An hour after the first, before the sea's verdict came.
+    shore
+        .sql(
+            "UPDATE work_orders SET state = 'adjusted', completed_at =
+                 (SELECT MAX(c.completed_at) FROM work_orders c) + 3600000000
+             WHERE completed_at IS NULL",
+        )
+        .await;
+    assert!(!is_failed(&job).await);
+    let needs = job.person.get("/needs").await.good().to_string();
+    assert!(
+        needs.contains("adjusted, not yet verified at sea"),
+        "{needs}"
+    );
+    shore.finish().await;
+}
+
+async fn an_adjustment_clears_what_was_open_about_the_ship_before_it(shore: Shore) {
+    let person = shore.admin("ada").await;
+    let now = struck(3000.0, 2000.0);
+    let mut samples = days_at_sea(&truth(), "2026-10-27T00:00:00Z", 12.0);
+    samples.extend(days_in(
+        (10.0, -25.0),
+        &truth(),
+        "2026-11-08T00:00:00Z",
+        7.0,
+    ));
+    samples.extend(days_at_sea(&now, "2026-11-15T00:00:00Z", 5.0));
+    let job = Job::after(&shore, person, &samples).await;
+    ship_alerts::says_that_it_departs(&job.ship, 2).await;
+    shore.work().await;
+    let causes = |alerts: &[Value]| -> Vec<String> {
+        let causes = alerts.iter().map(|alert| alert["cause"].as_str().unwrap());
+        causes.map(str::to_owned).collect()
+    };
+    let open = causes(&job.open_alerts().await);
+    for cause in [
+        "lightning_or_shock",
+        "deviation_over_limit",
+        "reported_aboard",
+    ] {
+        assert!(open.iter().any(|one| one == cause), "{open:?}");
+    }
+    job.post("/berth-reading", &reading_aboard(&now))
+        .await
+        .good();
+    job.follow_a_plan().await;
+    job.post("/complete", &word()).await.good();
+    shore.work().await;
+    assert_eq!(job.open_alerts().await, Vec::<Value>::new());
+    let list = job.person.get("/alerts").await.good();
+    for alert in list["items"].as_array().unwrap() {
+        let why = alert["clearing_reason"].as_str().unwrap_or_default();
+        assert!(
+            why.contains("the card that was foretold then holds"),
+            "{alert}"
+        );
+    }
+    // Nor does what the new samples show bring it back within its week.
+    let ship = foretold(&job.seen().await);
+    let mut job = job;
+    job.sail(&shore, &ship, 9, 2.0).await;
+    assert_eq!(job.open_alerts().await, Vec::<Value>::new());
     shore.finish().await;
 }

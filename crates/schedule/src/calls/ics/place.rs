@@ -21,13 +21,12 @@ pub(super) fn port<'a>(
     let said = |name: &str| find(name).filter(|line| !line.value.trim().is_empty());
     let summary = said("SUMMARY").map_or("", |line| line.value.as_str());
     if let Some(line) = said("X-UNLOCODE") {
-        let code = PortCode::parse(&line.value).ok();
-        return code
-            .filter(|code| ports::find(*code).is_some())
-            .ok_or_else(|| {
-                let what = format!("{:?} is no sea port of the UN/LOCODE table", line.value);
-                FileError::new(line.number, "X-UNLOCODE", what)
-            });
+        let wrong = |what| FileError::new(line.number, "X-UNLOCODE", what);
+        let code = PortCode::parse(&line.value).map_err(|error| wrong(error.to_string()))?;
+        return match ports::find(code) {
+            Some(_) => Ok(code),
+            None => Err(wrong(ports::unknown(code))),
+        };
     }
     match said("LOCATION") {
         Some(line) => of_location(&line.value, summary)
