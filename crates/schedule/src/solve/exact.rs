@@ -4,8 +4,8 @@
 //! one given; it is called optimal only where the solver finished its proof on every
 //! part. Work is limited in nodes, not in seconds: the same problem, the same answer.
 
-use super::LARGE;
 use super::problem::{Assignment, Problem};
+use super::{LARGE, Open};
 use microlp::{
     ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
 };
@@ -18,23 +18,20 @@ pub(super) struct Finished {
     pub(super) optimal: bool,
 }
 
-/// The cheapest assignment with the choices that are `open`, part by part
-/// of those that share no need and no firm's day. A part of many choices may take
+/// The cheapest assignment with what is `open`, part by part
+/// of the choices that share no need and no firm's day. A part of many choices may take
 /// fewer nodes, and one that is too large none: `effort` is nodes times choices.
-pub(super) fn finish(
-    problem: &Problem,
-    open: &[bool],
-    known: Assignment,
-    effort: usize,
-) -> Finished {
+pub(super) fn finish(problem: &Problem, open: &Open, known: Assignment, effort: usize) -> Finished {
     let mut assignment = known;
     let mut optimal = true;
-    for part in parts(problem, open) {
-        // With one choice for each need, and that one made, there is nothing to find.
-        if part
-            .iter()
-            .all(|index| assignment[problem.choices[*index].need] == Some(*index))
-        {
+    for part in parts(problem, &open.choices) {
+        // With one choice for each need, that one made and none to give up, there is
+        // nothing to find.
+        let is_settled = |index: &usize| {
+            let need = problem.choices[*index].need;
+            assignment[need] == Some(*index) && !open.unmet[need]
+        };
+        if part.iter().all(is_settled) {
             continue;
         }
         if part.len() > LARGE {

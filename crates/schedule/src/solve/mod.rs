@@ -67,7 +67,7 @@ pub fn solve(problem: &Problem) -> Solved {
         if large && is_small(cost - bound.cost, cost) {
             break;
         }
-        let open = open(problem, &bound, &found, cost);
+        let open = Open::of(problem, &bound, &found, cost);
         let finished = exact::finish(problem, &open, found, EFFORT);
         found = finished.assignment;
         if finished.optimal {
@@ -96,13 +96,27 @@ fn is_small(gap: i64, cost: i64) -> bool {
     gap * SMALL_GAP <= cost
 }
 
-/// The choices that a better assignment may have, and those of this one.
-fn open(problem: &Problem, bound: &Bound, found: &[Option<usize>], cost: i64) -> Vec<bool> {
-    let gap = cost - bound.cost;
-    let choices = problem.choices.iter().zip(&bound.reduced).enumerate();
-    choices
-        .map(|(index, (choice, reduced))| *reduced < gap || found[choice.need] == Some(index))
-        .collect()
+/// What a better assignment may have.
+struct Open {
+    /// Each choice, those of the assignment in hand among them.
+    choices: Vec<bool>,
+    /// Whether each need may be left unmet.
+    unmet: Vec<bool>,
+}
+
+impl Open {
+    fn of(problem: &Problem, bound: &Bound, found: &[Option<usize>], cost: i64) -> Open {
+        let gap = cost - bound.cost;
+        let choices = problem.choices.iter().zip(&bound.reduced).enumerate();
+        Open {
+            choices: choices
+                .map(|(index, (choice, reduced))| {
+                    *reduced < gap || found[choice.need] == Some(index)
+                })
+                .collect(),
+            unmet: bound.reduced_unmet.iter().map(|it| *it < gap).collect(),
+        }
+    }
 }
 
 fn cost_of(problem: &Problem, assignment: &[Option<usize>]) -> i64 {

@@ -2,11 +2,11 @@
 //! the same teams are solved anew, all others held.
 
 use super::problem::{Assignment, Problem};
-use super::{EFFORT_NEAR, NEIGHBOURS, exact};
+use super::{EFFORT_NEAR, NEIGHBOURS, Open, exact};
 
 /// Goes through all neighbourhoods once.
-pub(super) fn improve(problem: &Problem, open: &[bool], known: Assignment) -> Assignment {
-    let wishes = wishes(problem, open);
+pub(super) fn improve(problem: &Problem, open: &Open, known: Assignment) -> Assignment {
+    let wishes = wishes(problem, &open.choices);
     let mut wanted_by: Vec<Vec<usize>> = vec![Vec::new(); problem.teams.len()];
     for (need, days) in wishes.iter().enumerate() {
         for day in days {
@@ -28,11 +28,19 @@ pub(super) fn improve(problem: &Problem, open: &[bool], known: Assignment) -> As
             done[need] |= at < NEIGHBOURS / 2;
         }
         let choices = problem.choices.iter().enumerate();
-        let some: Vec<bool> = choices
-            .map(|(index, choice)| {
-                found[choice.need] == Some(index) || (open[index] && free[choice.need])
-            })
-            .collect();
+        let some = Open {
+            choices: choices
+                .map(|(index, choice)| {
+                    let is_open = open.choices[index] && free[choice.need];
+                    is_open || found[choice.need] == Some(index)
+                })
+                .collect(),
+            unmet: free
+                .iter()
+                .zip(&open.unmet)
+                .map(|(free, open)| *free && *open)
+                .collect(),
+        };
         found = exact::finish(problem, &some, found, EFFORT_NEAR).assignment;
     }
     found

@@ -81,6 +81,30 @@ fn two_ships_in_one_port_share_a_teams_travel() {
     assert_eq!((solved.cost, solved.bound), (800, 800));
 }
 
+/// To give up one of them alone saves nothing, for the other's team goes all the same.
+#[test]
+fn two_needs_that_are_not_worth_their_teams_travel_are_left_unmet_together() {
+    let visit = Visit {
+        firm_day: 0,
+        travel: 3,
+        jobs_a_team: 2,
+    };
+    let choice = |need, cost| Choice {
+        need,
+        visit: 0,
+        cost,
+    };
+    let problem = Problem {
+        unmet: vec![1482, 663, 873, 258],
+        visits: vec![visit],
+        teams: vec![2],
+        choices: vec![choice(0, 0), choice(1, 662), choice(2, 0), choice(3, 257)],
+    };
+    let solved = solve(&problem);
+    assert_eq!(solved.assignment, [Some(0), None, Some(2), None]);
+    assert_eq!((solved.cost, solved.bound), (924, 924));
+}
+
 #[test]
 fn a_problem_without_needs_costs_nothing() {
     let solved = solve(&Problem::default());
