@@ -77,6 +77,7 @@ export function worstAhead({
 export type Reason =
   | {
       kind: 'alert';
+      id: string;
       severity: Severity;
       cause: AlertCause;
       why: string;
@@ -91,10 +92,11 @@ export function reasonsOf(vessel: FleetLine): Reason[] {
   const { alert, open_alerts, unoffered } = vessel;
   const reasons: Reason[] = [];
   if (alert) {
-    const { severity, cause, summary: why } = alert;
+    const { id, severity, cause, summary: why } = alert;
     const known = alert.state !== 'raised';
     reasons.push({
       kind: 'alert',
+      id,
       severity,
       cause,
       why,

@@ -25,7 +25,7 @@ function vessel(name: string, more: Partial<FleetVessel> = {}): FleetVessel {
 }
 
 const alert = (severity: 'notice' | 'warning' | 'critical', state: 'raised' | 'acknowledged') => ({
-  alert: { cause: 'drift', severity, state, summary: 'It drifts.' } as const,
+  alert: { id: 'a', cause: 'drift', severity, state, summary: 'It drifts.' } as const,
   open_alerts: state === 'raised' ? 1 : 0,
 });
 
@@ -224,11 +224,17 @@ describe('who needs someone', () => {
 
   it('counts the other alerts, and names a large deviation once', () => {
     const over = {
-      alert: { cause: 'deviation_over_limit', severity: 'critical', state: 'raised', summary: 's' },
+      alert: {
+        id: 'a',
+        cause: 'deviation_over_limit',
+        severity: 'critical',
+        state: 'raised',
+        summary: 's',
+      },
       open_alerts: 3,
       worst: large,
     } as const;
-    expect(reasonsOf(vessel('x', over))).toMatchObject([{ kind: 'alert', more: 2 }]);
+    expect(reasonsOf(vessel('x', over))).toMatchObject([{ kind: 'alert', id: 'a', more: 2 }]);
   });
 
   it('looks at each of her compasses', () => {

@@ -13,7 +13,7 @@ use crate::app::App;
 use crate::deviation::{self, Worst};
 use crate::error::{Problem, Result};
 use crate::http::{Json, Params};
-use crate::ids::VesselId;
+use crate::ids::{AlertId, VesselId};
 use crate::models::StoredModel;
 use crate::time::Time;
 use crate::vessels::LastPosition;
@@ -124,6 +124,8 @@ pub struct NextCall {
 /// An alert, in short.
 #[derive(Debug, Serialize, ToSchema)]
 pub struct FleetAlert {
+    /// Its id.
+    pub id: AlertId,
     /// What it is about.
     pub cause: Cause,
     /// How bad it is.
@@ -256,6 +258,7 @@ impl FleetModel {
 impl From<WorstAlert> for FleetAlert {
     fn from(alert: WorstAlert) -> FleetAlert {
         FleetAlert {
+            id: alert.id,
             cause: alert.cause,
             severity: alert.severity,
             state: alert.state,

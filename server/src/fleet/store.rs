@@ -46,7 +46,7 @@ pub(super) struct StoredTrack {
 /// An alert that is not cleared.
 #[derive(sqlx::FromRow)]
 pub(super) struct WorstAlert {
-    id: AlertId,
+    pub(super) id: AlertId,
     pub(super) vessel_id: VesselId,
     pub(super) cause: Cause,
     pub(super) severity: Severity,

@@ -80,6 +80,8 @@ async fn an_alert_follows_the_vessels_limits_and_is_updated_not_repeated(shore: 
     let vessel = ada.get(&nao.path("")).await.good();
     assert_eq!(vessel["open_alerts"], 1);
     assert_eq!(vessel["worst_alert"], alert["severity"]);
+    let at_a_glance = ada.get("/fleet").await.good()["vessels"][0]["alert"].clone();
+    assert_eq!(at_a_glance["id"], alert["id"]);
 
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     let updated = list(&ada, "").await;

@@ -5001,6 +5001,8 @@ export interface components {
         FleetAlert: {
             /** @description What it is about. */
             cause: components["schemas"]["AlertCause"];
+            /** @description Its id. */
+            id: components["schemas"]["AlertId"];
             /** @description How bad it is. */
             severity: components["schemas"]["Severity"];
             /** @description How far people have come with it. */

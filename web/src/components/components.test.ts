@@ -142,6 +142,7 @@ test('the list shows side, heading and band, and what is not there yet', () => {
     open_alerts: 3,
     next_call: null,
     alert: {
+      id: '0b8e6c7e-1f3d-4a5c-9c2b-7d1e2f3a4b5c',
       cause: 'deviation_over_limit',
       severity: 'critical',
       state: 'raised',
