@@ -1,5 +1,6 @@
 //! The schedule: what it is made from, and that it follows what changes.
 
+mod agreed;
 mod concurrent;
 mod fees;
 mod firms;
@@ -8,6 +9,7 @@ mod needs;
 mod offers;
 mod pins;
 mod plans;
+mod teams;
 
 use crate::port_calls;
 use crate::support::{Answer, Person, Shore};

@@ -1,5 +1,6 @@
 //! A port call that moves under an order: both sides are told, and agree on another time.
 
+use super::agreed::Agreed;
 use super::offers::{alerts, direct, firm, offer};
 use super::{due_vessel, enter, first, follow, put, solve, terms};
 use crate::calendar::events;
@@ -27,63 +28,6 @@ on_both!(
     an_agreed_job_stays_at_risk_when_its_firm_is_left_out,
     an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known,
 );
-
-/// A ship in Rotterdam from the fourteenth to the fifteenth, and a firm that has the job.
-struct Agreed {
-    ada: Person,
-    rosa: Person,
-    firm: String,
-    nao: Value,
-    /// Paths of the order and of the call.
-    order: String,
-    call: String,
-}
-
-impl Agreed {
-    async fn new(shore: &Shore) -> Agreed {
-        let ada = shore.admin("ada").await;
-        let nao = due_vessel(&ada, "Nao").await;
-        let call = enter(&ada, &nao, "NLRTM", 14).await;
-        let (firm, rosa) = firm(shore, &ada, "rosa").await;
-        let plan = solve(&ada).await;
-        let order = offer(&ada, &plan, &nao).await;
-        rosa.post(&format!("{order}/accept"), &json!({}))
-            .await
-            .good();
-        let id = call["id"].as_str().unwrap();
-        let call = format!("{}/{id}", port_calls::path(&nao));
-        Agreed {
-            ada,
-            rosa,
-            firm,
-            nao,
-            order,
-            call,
-        }
-    }
-
-    async fn moves(&self, eta: &str, etd: &str) {
-        let times = json!({ "eta": eta, "etd": etd });
-        patch(&self.ada, &self.call, &times).await.good();
-    }
-
-    async fn seen(&self) -> Value {
-        self.ada.get(&self.order).await.good()
-    }
-
-    async fn retime(&self, at: &str) -> Answer {
-        let asked = json!({ "terms": { "planned_at": at }, "answer_within_hours": 1,
-                            "text": "She is late." });
-        self.ada
-            .post(&format!("{}/retime", self.order), &asked)
-            .await
-    }
-
-    async fn answer(&self, who: &Person, yes: &str) -> Answer {
-        who.post(&format!("{}/retime/{yes}", self.order), &json!({}))
-            .await
-    }
-}
 
 async fn messages(person: &Person, order: &str) -> Vec<Value> {
     let list = person.get(&format!("{order}/messages")).await.good();
