@@ -27,9 +27,9 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use uuid::Uuid;
 
-/// Made on a Friday ashore, it can be typed on board after the weekend.
 /// What is told of how the link did is of so many seconds.
 const WEEK_S: f64 = 7.0 * 86_400.0;
+/// Made on a Friday ashore, it can be typed on board after the weekend.
 const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
 const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
 

@@ -44,6 +44,9 @@ fn together(all: &[Notification]) -> Letter {
         lines.push(String::new());
         lines.push(format!("And {} more.", all.len() - MOST_TOLD));
     }
+    if !lines.is_empty() {
+        lines.push(String::new());
+    }
     lines.push("All of them:".to_owned());
     let urgent = all.iter().any(|one| one.urgent);
     let first = if urgent { "Urgent: " } else { "" };

@@ -8,6 +8,7 @@
 //! - Whatever changes what it rests on asks for another one in the same transaction.
 //! - Solving holds no transaction, and of two who solve at once the second begins anew.
 
+mod at_risk;
 mod gather;
 mod offer;
 mod orders;

@@ -3,11 +3,12 @@
 //! What always holds: a plan is kept as the next version after the one that it was made
 //! from, or not at all; who comes second gathers and solves anew.
 
+use super::at_risk::{aside, at_risk};
 use super::gather::{Agreed, Gathered, Names, gather};
-use super::orders::{self, Aside};
+use super::orders;
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
-use crate::alerts::{self, AlertWanted, Cause, Dated, Evidence, Severity};
+use crate::alerts;
 use crate::app::App;
 use crate::error::{Error, Result};
 use crate::events;
@@ -17,7 +18,6 @@ use anyhow::Context;
 use binnacle_schedule::input::{JobState, read};
 use binnacle_schedule::plan::{self as solved, ChangeKind, Schedule, plan};
 use binnacle_schedule::ports;
-use chrono::NaiveDate;
 use metrics::histogram;
 use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
@@ -25,8 +25,6 @@ use std::time::Instant;
 use tracing::info;
 use uuid::Uuid;
 
-/// What the solver says of a confirmed job that stands.
-const STANDS: &str = "confirmed";
 /// Who comes second so often gives up.
 const MOST_TRIES: usize = 5;
 
@@ -150,74 +148,6 @@ async fn keep(app: &App, operator: OperatorId, plan: &Plan, gathered: &Gathered)
         app.publish(event);
     }
     Ok(true)
-}
-
-/// What people must know of: agreed adjustments that do not fit any more.
-fn at_risk(plan: &Plan, names: &Names) -> BTreeMap<(VesselId, CompassId), AlertWanted> {
-    let mut wanted = BTreeMap::new();
-    for change in &plan.changes {
-        let stands = change.what == ChangeKind::Kept && change.why == STANDS;
-        let held: Vec<(CompassId, &Agreed)> = change
-            .compasses
-            .iter()
-            .filter_map(|one| Some((one.compass_id, names.agreed.get(&one.compass_id)?)))
-            .filter(|(_, agreed)| agreed.state == JobState::Confirmed)
-            .collect();
-        // A job is told of once, however many compasses it is for.
-        let Some((compass, agreed)) = held.first().filter(|_| !stands) else {
-            continue;
-        };
-        let orders: Vec<OrderId> = held.iter().map(|(_, agreed)| agreed.order_id).collect();
-        let firm = names.firm(agreed.firm_id);
-        let alert = unfit(plan, &firm, agreed.day, &change.why, &orders);
-        wanted.insert((agreed.vessel_id, *compass), alert);
-    }
-    wanted
-}
-
-/// The same of orders beside the plan; those of whose alerts nothing can be told come back.
-fn aside(
-    plan: &Plan,
-    gathered: &Gathered,
-    wanted: &mut BTreeMap<(VesselId, CompassId), AlertWanted>,
-) -> BTreeSet<(VesselId, CompassId)> {
-    let mut not_told = BTreeSet::new();
-    let mut jobs: BTreeMap<(VesselId, FirmId, NaiveDate), Vec<&Aside>> = BTreeMap::new();
-    for one in &gathered.aside {
-        let job = (one.vessel_id, one.firm_id, one.day);
-        jobs.entry(job).or_default().push(one);
-        not_told.insert((one.vessel_id, one.compass_id));
-    }
-    for ((vessel, firm, day), of_job) in jobs {
-        let first = of_job
-            .iter()
-            .find_map(|one| Some((one, one.unfit.as_ref()?)));
-        let Some((first, why)) = first else {
-            continue;
-        };
-        let orders: Vec<OrderId> = of_job.iter().map(|one| one.order_id).collect();
-        let firm = gathered.names.firm(firm);
-        let alert = unfit(plan, &firm, day, why, &orders);
-        not_told.remove(&(vessel, first.compass_id));
-        wanted.insert((vessel, first.compass_id), alert);
-    }
-    not_told
-}
-
-fn unfit(plan: &Plan, firm: &str, day: NaiveDate, why: &str, orders: &[OrderId]) -> AlertWanted {
-    let orders = orders.iter().map(|order| format!("Work order {order}."));
-    AlertWanted {
-        cause: Cause::AgreedJobAtRisk,
-        severity: Severity::Warning,
-        since: plan.solved_at,
-        dated: Dated::default(),
-        summary: format!(
-            "The adjustment agreed with {firm} for {day} does not fit any more: {why}."
-        ),
-        advice: "Agree on another time with the firm, or cancel its order and offer the job as \
-                 the schedule has it now.",
-        evidence: Evidence(orders.collect()),
-    }
 }
 
 /// The solver's answer with everybody's names.

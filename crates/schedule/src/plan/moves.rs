@@ -136,7 +136,7 @@ fn cause(
         .collect();
     let teams = input.firms[old.firm].teams_on(old.day) as usize
         * input.firms[old.firm].jobs_a_team_day as usize;
-    if names.len() >= teams && names.is_empty() {
+    if teams == 0 {
         let firm = input.firms[old.firm].called();
         return format!("{firm}'s teams of {} are booked", old.day);
     }
