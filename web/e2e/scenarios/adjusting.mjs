@@ -41,6 +41,16 @@ async function fieldAtBerth(page, vessel) {
   };
 }
 
+/** Says by the API that she calls there tomorrow. */
+async function callAtBerth(page, vessel) {
+  const at = (days) => new Date(Date.now() + days * 86_400_000).toISOString();
+  const answer = await page.request.post(`/api/v1/vessels/${vessel}/port-calls`, {
+    headers: { 'X-Binnacle-Request': '1' },
+    data: { port: 'MTMLA', eta: at(1), etd: at(3), berth: 'A5' },
+  });
+  assert.ok(answer.ok(), await answer.text());
+}
+
 async function orderOf(page, vessel) {
   const listed = await (await page.request.get(`/api/v1/work-orders?vessel=${vessel.id}`)).json();
   return listed.items[0];
@@ -65,6 +75,7 @@ export const adjusting = {
       await page.getByRole('link', { name: 'Work orders' }).click();
       await page.getByRole('heading', { name: 'Work orders', level: 1 }).waitFor();
       await page.getByText('No adjustment is under way').waitFor();
+      await callAtBerth(page, vessel.id);
       await page.getByRole('link', { name: 'Order an adjustment' }).click();
       await page.getByLabel('Vessel').selectOption(vessel.id);
       await page.getByText('its binnacle, with the correctors on board').waitFor();
@@ -120,8 +131,16 @@ export const adjusting = {
       await order.click();
       await page.getByRole('alert').getByText('Say in which port').waitFor();
       assert.equal(await page.getByLabel('Vessel').inputValue(), vessel.id);
-      await page.getByLabel('Port').fill('Valletta');
-      await page.getByLabel('Berth').fill('A5');
+      // Her call tells where and when; who can do it there comes first.
+      await page.getByRole('radio', { name: /^Valletta \(MTMLA\)/ }).check();
+      assert.equal(await page.getByLabel('Berth (optional)').inputValue(), 'A5');
+      await page.getByText(/^On board: .* UTC\+1$/).waitFor();
+      const can = page.getByRole('group', { name: 'Who adjusts' });
+      await can.getByText('2 firms cannot do it there and then: why').waitFor();
+      await can.getByText('Maas Compass: No terms are said.').waitFor();
+      await fitsItsWidth(page);
+      await shoot('order-new', { fullPage: true });
+      await can.getByRole('radio', { name: 'Someone else, by name' }).check();
       await page.getByLabel('Adjuster').fill('M. Etxeberria');
       await page.getByLabel('Licence number').fill('ES-CA-114');
       await order.click();
@@ -294,7 +313,8 @@ export const adjusting = {
       await signIn(page, settings);
       const { id, name } = await struck(page);
       await page.goto(`/work-orders/new?vessel=${id}`);
-      await page.getByLabel('Port').fill('Valletta');
+      await page.getByText('No port call of hers is known.').waitFor();
+      await page.getByLabel('Port', { exact: true }).fill('Valletta');
       await page.getByRole('button', { name: 'Order it' }).click();
       const title = { name: `${name}: adjustment`, level: 1 };
       await page.getByRole('heading', title).waitFor();

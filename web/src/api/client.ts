@@ -186,6 +186,10 @@ export const listCallsSince = (id: string, from: string) =>
     ),
   );
 
+/** What rules on adjusting ask about her. */
+export const findParticulars = (id: string) =>
+  answer(client.GET('/api/v1/vessels/{id}/particulars', { params: { path: { id } } }));
+
 /** A key that no other request has; `randomUUID` is for pages over TLS only. */
 export function newKey(): string {
   const bytes = crypto.getRandomValues(new Uint8Array(16));

@@ -85,12 +85,6 @@ export async function findOrderBinnacle(id: string): Promise<BinnacleRevision | 
 export const findOrderModel = (id: string) =>
   answer(client.GET('/api/v1/work-orders/{id}/model', { params: { path: { id } } }));
 
-/** The firms that the operator works with. */
-export const listFirms = () =>
-  everyPage((after) =>
-    answer(client.GET('/api/v1/firms', { params: { query: page(longestPage, after) } })),
-  );
-
 export const offerOrder = (id: string, body: NewOffer, key: string) =>
   answer(client.POST('/api/v1/work-orders/{id}/offer', { params: toPath(id, key), body }));
 

@@ -3,10 +3,9 @@
  * the nautical zone of her longitude at sea, and the port's in port.
  */
 
-import { SvelteMap } from 'svelte/reactivity';
-import { searchPorts } from '../api/schedule';
 import { atSea, zoneOf, type Clocks } from '../format';
 import type { Where } from '../whereabouts';
+import { ports } from './ports.svelte';
 
 export const clockChoices: Clocks[] = ['utc', 'ship', 'both'];
 
@@ -14,10 +13,6 @@ const key = 'binnacle-clocks';
 
 class TimesState {
   clocks = $state<Clocks>(stored());
-  #zones = new SvelteMap<string, number>();
-  #asked = new Set<string>();
-  /** One question at a time: what else a page asks for is looked at first. */
-  #last: Promise<void> = Promise.resolve();
 
   set(clocks: Clocks): void {
     this.clocks = clocks;
@@ -38,20 +33,7 @@ class TimesState {
   #zoneAt(where: Where): number | undefined {
     if (!where) return undefined;
     if ('lon' in where) return zoneOf(where.lon);
-    // Only a UN/LOCODE is known, alone or behind the name: an order may name its port in words.
-    const code = /^(?:.*\()?([A-Z]{2}[A-Z2-9]{3})\)?$/.exec(where.port ?? '')?.[1];
-    if (code === undefined || this.clocks === 'utc') return undefined;
-    if (!this.#asked.has(code)) {
-      this.#asked.add(code);
-      this.#last = this.#last.then(() => this.#learn(code));
-    }
-    return this.#zones.get(code);
-  }
-
-  async #learn(code: string): Promise<void> {
-    const found = await searchPorts(code, 20).catch(() => []);
-    const port = found.find((known) => known.code === code);
-    if (port) this.#zones.set(code, port.zone_h);
+    return this.clocks === 'utc' ? undefined : ports.find(where.port)?.zone_h;
   }
 }
 

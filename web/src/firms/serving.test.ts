@@ -1,0 +1,73 @@
+import { describe, expect, test } from 'vitest';
+import type { FirmTerms, FirmWithTerms } from '../api/types';
+import { candidates, type Job } from './serving';
+
+const now = new Date('2026-12-01T00:00:00Z');
+/** A Tuesday, ten o'clock on board. */
+const job: Job = {
+  port: 'NLRTM',
+  at: '2026-12-08T10:00:00Z',
+  zoneH: 0,
+  flag: 'PA',
+  licence: null,
+};
+const firm = (name: string, terms: Partial<FirmTerms> | null, problems: string[] = []) =>
+  ({
+    firm_id: name,
+    firm_name: name,
+    terms: terms && { fee_eur: 1800, ports: [{ port: 'NLRTM', travel_eur: 100 }], ...terms },
+    problems,
+  }) as FirmWithTerms;
+const against = (terms: Partial<FirmTerms> | null, asked: Partial<Job> = {}) =>
+  candidates([firm('one', terms)], { ...job, ...asked }, now).others[0]?.against ?? [];
+
+describe('firms for a job', () => {
+  test('are first those that can do it, the cheapest with travel before', () => {
+    const { able, others } = candidates(
+      [
+        firm('elsewhere', { fee_eur: 1, ports: [{ port: 'BEANR' }] }),
+        firm('dear', { ports: [{ port: 'NLRTM', travel_eur: 900 }] }),
+        firm('cheap', {}),
+        firm('unknown', null),
+      ],
+      job,
+      now,
+    );
+    expect(able.map(({ name, fee }) => [name, fee])).toEqual([
+      ['cheap', 1900],
+      ['dear', 2700],
+    ]);
+    expect(others.map(({ name }) => name)).toEqual(['elsewhere', 'unknown']);
+  });
+
+  test('that cannot say why', () => {
+    expect(against(null)).toEqual(['No terms are said.']);
+    expect(against({ ports: [] })).toEqual(['Does not serve this port.']);
+    expect(against({ flags: ['NL'] })).toEqual(['Is not accepted by the flag PA.']);
+    expect(against({}, { licence: 'NL-114' })).toEqual(['Does not hold the licence NL-114.']);
+    expect(against({ closed: ['2026-12-08'] })).toEqual(['Is closed on that day.']);
+    expect(against({ working_days: ['Mon'] })).toEqual(['Does not work on a Tuesday.']);
+    expect(against({ lead_time_h: 240 })).toEqual(['Asks for 240 h of notice.']);
+  });
+
+  test('work in ship’s time', () => {
+    expect(against({}, { zoneH: 9 })).toEqual(['Works from 08:00 to 18:00 ship’s time.']);
+    expect(against({ first_hour: 9.5 }, { zoneH: -1 })).toEqual([
+      'Works from 09:30 to 18:00 ship’s time.',
+    ]);
+    expect(against({}, { at: '2026-12-04T20:00:00Z', zoneH: 12 })).toEqual([
+      'Does not work on a Saturday.',
+    ]);
+  });
+
+  test('are told what the schedule finds wrong with their terms', () => {
+    const { others } = candidates([firm('one', {}, ['working_days: none'])], job, now);
+    expect(others[0]?.against).toEqual(['working_days: none']);
+  });
+
+  test('are not left out for what nobody knows', () => {
+    expect(
+      against({ flags: ['NL'], ports: [] }, { port: undefined, at: null, flag: null }),
+    ).toEqual([]);
+  });
+});

@@ -1,0 +1,40 @@
+/** The port calls that an order may be of. Pure functions. */
+
+import type { PortCall } from '../api/types';
+
+const hourMs = 3_600_000;
+const dayMs = 24 * hourMs;
+/** Hours between which people work at a berth, ship's time. */
+const [firstHour, lastHour] = [8, 17];
+
+/** Her calls that are not over, the next one first. */
+export const callsAhead = (calls: readonly PortCall[], now: Date): PortCall[] =>
+  calls
+    .filter((call) => call.withdrawn_at === null && Date.parse(call.etd) > now.getTime())
+    .sort((a, b) => Date.parse(a.eta) - Date.parse(b.eta));
+
+/**
+ * When the work is best begun at a call, for a port so many hours ahead of UTC: at the first
+ * full hour of a working day alongside, or as soon as she is there where her stay has none.
+ */
+export function bestBegin(call: { eta: string; etd: string }, zoneH: number, now: Date): Date {
+  const soonest = Math.ceil(Math.max(Date.parse(call.eta), now.getTime()) / hourMs) * hourMs;
+  const midnight = Math.floor((soonest + zoneH * hourMs) / dayMs) * dayMs - zoneH * hourMs;
+  const hour = (soonest - midnight) / hourMs;
+  const wanted =
+    hour < firstHour
+      ? midnight + firstHour * hourMs
+      : hour < lastHour
+        ? soonest
+        : midnight + dayMs + firstHour * hourMs;
+  return new Date(wanted < Date.parse(call.etd) ? wanted : soonest);
+}
+
+/** How an instant lies to a call: within it, or on which side. */
+export function beside(
+  call: { eta: string; etd: string },
+  at: string,
+): 'before' | 'after' | undefined {
+  if (Date.parse(at) < Date.parse(call.eta)) return 'before';
+  return Date.parse(at) > Date.parse(call.etd) ? 'after' : undefined;
+}

@@ -1,0 +1,9 @@
+/** Ports as they are written: by name with their UN/LOCODE behind it. Pure functions. */
+
+/** `Rotterdam (NLRTM)`. */
+export const portWritten = ({ code, name }: { code: string; name: string }): string =>
+  name === '' || name === code ? code : `${name} (${code})`;
+
+/** The UN/LOCODE that words name, alone or behind the name; an order may say its port otherwise. */
+export const codeOf = (words: string | null | undefined): string | undefined =>
+  /^(?:.*\()?([A-Z]{2}[A-Z2-9]{3})\)?$/.exec(words?.trim() ?? '')?.[1];
