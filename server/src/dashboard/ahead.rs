@@ -54,8 +54,11 @@ pub(super) fn links(path: &str, request: &HeaderMap) -> Option<HeaderValue> {
         .and_then(|id| Uuid::try_parse(id).ok());
     let mut links = Vec::new();
     if request.contains_key(COOKIE) {
-        let ours = vessel.map(|id| format!("vessels/{id}"));
-        let data = ["me".to_owned()].into_iter().chain(ours);
+        // What is read first of a vessel: who she is, and what is due.
+        let ours = vessel.map(|id| [format!("vessels/{id}"), format!("vessels/{id}/needs")]);
+        let data = ["me".to_owned()]
+            .into_iter()
+            .chain(ours.into_iter().flatten());
         links.extend(
             data.map(|data| format!("</api/v1/{data}>; rel=preload; as=fetch; crossorigin")),
         );
@@ -122,6 +125,10 @@ mod tests {
         assert!(both.contains("</api/v1/me>"), "{both}");
         assert!(
             both.contains(&format!("</api/v1/{VESSELS_PAGE}>; rel=preload; as=fetch")),
+            "{both}"
+        );
+        assert!(
+            both.contains(&format!("</api/v1/{VESSELS_PAGE}/needs>; rel=preload")),
             "{both}"
         );
         assert!(!links("vessels/none\r\nX: y", &somebody).contains("vessels"));
