@@ -26,12 +26,39 @@ export function land(): Plugin {
 function path(): string {
   const file = createRequire(import.meta.url).resolve('world-atlas/land-110m.json');
   const atlas = JSON.parse(readFileSync(file, 'utf8')) as Topology<{ land: GeometryCollection }>;
-  return feature(atlas, atlas.objects.land)
-    .features.flatMap(({ geometry }) =>
-      geometry.type === 'MultiPolygon' ? geometry.coordinates : [],
-    )
-    .flatMap((polygon) => polygon.map(ring))
-    .join('');
+  const rings = feature(atlas, atlas.objects.land).features.flatMap(({ geometry }) =>
+    geometry.type === 'MultiPolygon' ? geometry.coordinates.flat() : [],
+  );
+  return joined(rings).map(ring).join('');
+}
+
+/** The atlas cuts an island in two along the antimeridian; the cut is no coast. */
+function joined(rings: number[][][]): number[][][] {
+  const whole: number[][][] = [];
+  for (const ring of rings) {
+    const cut = cutOf(ring);
+    const other = whole.findIndex((known) => {
+      const theirs = cutOf(known);
+      return cut && theirs && cut.from === theirs.to && cut.to === theirs.from;
+    });
+    if (other < 0) whole.push(ring);
+    else whole[other] = [...fromCut(whole[other] ?? []), ...fromCut(ring)];
+  }
+  return whole;
+}
+
+/** A ring's step along the antimeridian: where it begins, and from which latitude to which. */
+function cutOf(ring: number[][]): { at: number; from: string; to: string } | null {
+  const onIt = (point?: number[]) => Math.abs(Math.abs(point?.[0] ?? 0) - 180) < 1e-9;
+  const lat = (point?: number[]) => (point?.[1] ?? 0).toFixed(6);
+  const at = ring.findIndex((point, i) => i > 0 && onIt(point) && onIt(ring[i - 1])) - 1;
+  return at < 0 ? null : { at, from: lat(ring[at]), to: lat(ring[at + 1]) };
+}
+
+/** The ring from the end of its cut round to the beginning. */
+function fromCut(ring: number[][]): number[][] {
+  const at = cutOf(ring)?.at ?? 0;
+  return [...ring.slice(at + 1, -1), ...ring.slice(0, at + 1)];
 }
 
 /** A ring in tenths of a unit, each point as the way from the last. */

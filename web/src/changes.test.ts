@@ -1,5 +1,5 @@
 import { describe, expect, test } from 'vitest';
-import { delay, lines, mostParted, pairs, sampledSince, sentence, sureness, when } from './changes';
+import { delay, lines, mostParted, pairs, sampledSince, sizes, sureness, when } from './changes';
 import type { Change, DeviationRow, Epoch, LogbookEntry, Timeline } from './api/types';
 
 const curve = (deviation_deg: number): DeviationRow[] =>
@@ -121,6 +121,22 @@ describe('a change', () => {
     expect(most?.degrees).toBe(-6);
   });
 
+  test('has each figure of its size by its name', () => {
+    expect(sizes(timeline, struck)).toEqual([
+      { what: 'Deviation on the worst heading, where she was then', size: 'changed by 6.2°' },
+      { what: 'Deviation on 090°, the worst where she was last', size: 'changed by 6.0°' },
+      {
+        what: 'Permanent field fore-and-aft, forward positive',
+        size: 'changed by +3.0 ± 0.1\u00a0µT',
+      },
+      {
+        what: 'Permanent field athwartships, starboard positive',
+        size: 'changed by −2.0 ± 0.1\u00a0µT',
+      },
+    ]);
+    expect(sizes(timeline, { ...struck, cause: 'magnetic_storm' })).toEqual([]);
+  });
+
   test('has one curve while there is no other', () => {
     const [first = epoch({}), second = epoch({})] = timeline.epochs;
     const early = { ...timeline, epochs: [first, { ...second, curve: null }] };
@@ -132,13 +148,11 @@ describe('a change', () => {
   });
 });
 
-test('words for probabilities, and clauses as sentences', () => {
+test('words for probabilities', () => {
   expect([0.99, 0.6, 0.2, 0.02].map(sureness)).toEqual([
     'all but certain',
     'likely',
     'possible',
     'unlikely',
   ]);
-  expect(sentence('it began at sea')).toBe('It began at sea.');
-  expect(sentence('Is it? ')).toBe('Is it?');
 });

@@ -4,7 +4,7 @@
  */
 
 import type { Change, ChangeCause, DeviationRow, Epoch, LogbookEntry, Timeline } from './api/types';
-import { signed, time } from './format';
+import { degrees, heading, signed, time } from './format';
 import * as text from './text';
 import { withoutItsDay, type At } from './whereabouts';
 
@@ -85,19 +85,35 @@ export function delay(change: Change): string | null {
 export const component = (nt: number, seNt: number): string =>
   `${signed(nt / 1000, 1)} ± ${(Math.abs(seNt) / 1000).toFixed(1)}\u00a0µT`;
 
+/** A figure of a change, and what it is a figure of. */
+export interface Size {
+  what: string;
+  size: string;
+}
+
+/** How large a change of the ship's magnetism is, each figure by its name. */
+export function sizes(timeline: Timeline, change: Change): Size[] {
+  if (!isTheShips(change)) return [];
+  const t = text.changes.sizes;
+  const { deviation_change_deg: then, step } = change;
+  const last = mostParted(pairs(timeline, change));
+  const all: Size[] = [];
+  const add = (what: string, size: string) => all.push({ what, size: t.by(size) });
+  if (then !== null) add(t.then, degrees(Math.abs(then)));
+  if (last) add(t.last(heading(last.pair.compass_deg)), degrees(Math.abs(last.degrees)));
+  if (step) {
+    add(t.foreAft, component(step.bx_nt, step.bx_se_nt));
+    add(t.athwart, component(step.by_nt, step.by_se_nt));
+  }
+  return all;
+}
+
 /** How sure a probability is, in a word. */
 export function sureness(probability: number): string {
   const { words } = text.changes;
   if (probability >= 0.95) return words.certain;
   if (probability >= 0.5) return words.likely;
   return probability >= 0.1 ? words.possible : words.unlikely;
-}
-
-/** A server's clause as a sentence. */
-export function sentence(clause: string): string {
-  const trimmed = clause.trim();
-  const ended = /[.!?]$/.test(trimmed) ? trimmed : `${trimmed}.`;
-  return ended.charAt(0).toUpperCase() + ended.slice(1);
 }
 
 /** A heading's deviation before and after. */

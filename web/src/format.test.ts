@@ -120,3 +120,10 @@ describe('times and counts', () => {
     expect(format.microtesla(-24_130)).toBe('−24.1\u00a0µT');
   });
 });
+
+test('a server’s clause becomes a sentence, with true minus signs', () => {
+  expect(format.sentence('it began at sea')).toBe('It began at sea.');
+  expect(format.sentence('Is it? ')).toBe('Is it?');
+  expect(format.sentence('compass less gyro is -3.7°')).toBe('Compass less gyro is −3.7°.');
+  expect(format.sentence('since 2026-11-23, in 015-240')).toBe('Since 2026-11-23, in 015-240.');
+});

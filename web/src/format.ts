@@ -183,6 +183,13 @@ export function microteslaFine(nanotesla: number | null | undefined): string {
   return `${plain(nanotesla / 1000, 2)}\u00a0µT`;
 }
 
+/** A server's clause as a sentence, its negative figures with a true minus sign. */
+export function sentence(clause: string): string {
+  const trimmed = clause.trim().replace(/(^|[\s(])-(?=\d)/g, '$1−');
+  const ended = /[.!?]$/.test(trimmed) ? trimmed : `${trimmed}.`;
+  return ended.charAt(0).toUpperCase() + ended.slice(1);
+}
+
 /** A count with thin spaces between thousands: `12 480`. */
 export function count(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return unknown;

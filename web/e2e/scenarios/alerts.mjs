@@ -203,8 +203,14 @@ export const alerts = {
       await change.first().waitFor();
       const said = await change.first().innerText();
       assert.match(said, /\d{1,2} [A-Z][a-z]{2} 20\d\d, \d\d:\d\d UTC/);
-      assert.match(said, /Deviation changed by \d+\.\d°/);
-      assert.match(said, /[+−]\d\.\d ± \d\.\d\sµT fore-and-aft/);
+      assert.match(
+        said,
+        /Deviation on the worst heading, where she was then\s+changed by \d+\.\d°/,
+      );
+      assert.match(
+        said,
+        /Permanent field fore-and-aft, forward positive\s+changed by [+−]\d\.\d ± \d\.\d\sµT/,
+      );
       await shoot('changes-closed', {}, changes);
 
       await change.getByText('Why this cause').press('Enter');

@@ -237,9 +237,9 @@ describe('the timeline', () => {
     const said = shown({ ...calm, changes: [struck] });
     for (const part of [
       'Lightning or a shock some time between 8 Nov 2026, 23:40 UTC and 9 Nov 2026, 00:10 UTC',
-      'Deviation changed by 6.2° on the heading where it changed most.',
-      '+3.0 ± 0.1 µT fore-and-aft',
-      '−2.0 ± 0.1 µT athwartships',
+      'Deviation on the worst heading, where she was then changed by 6.2°',
+      'Permanent field fore-and-aft, forward positive changed by +3.0 ± 0.1 µT',
+      'Permanent field athwartships, starboard positive changed by −2.0 ± 0.1 µT',
       'Found 2 h after that.',
       'It began at sea.',
       'Lightning or a shock 96 %, all but certain',

@@ -29,6 +29,9 @@ const rings: Point[][] = land
     return points;
   });
 
+/** South of it there is only Antarctica, which is closed along the map's edge. */
+const lowestLand = pointOf({ lat: -60, lon: 0 }).y;
+
 /** Whether a place is drawn as land: inside an odd number of rings, of one of the map's copies. */
 function isLand(place: Place): boolean {
   const at = pointOf(place);
@@ -80,6 +83,17 @@ describe('the chart', () => {
       ),
     );
     expect(longest).toBeLessThanOrEqual(180);
+  });
+
+  it('ships with coasts that do not run along the antimeridian, where the atlas is cut', () => {
+    const cuts = rings.flatMap((ring) =>
+      ring.filter((a, i) => {
+        const b = ring[i + 1] ?? ring[0] ?? a;
+        const onIt = (x: number) => Math.abs(Math.abs(x) - 180) < 0.05;
+        return onIt(a.x) && onIt(b.x) && Math.abs(a.y - b.y) > 0.2 && a.y < lowestLand;
+      }),
+    );
+    expect(cuts).toEqual([]);
   });
 
   it.each([

@@ -17,6 +17,13 @@ test('the schedule’s figures as fields, read again, are the same', () => {
   expect(settingsOf('180', fieldsOf(settings))).toEqual(settings);
 });
 
+test('hundredths of a degree are degrees in the form', () => {
+  const counts = { horizon_days: 180, weights: {}, terms: { change_centideg: 29 } };
+  const fields = fieldsOf(counts as unknown as ScheduleSettings);
+  expect(fields).toMatchObject([{ name: 'change_centideg', value: '0.29' }]);
+  expect(settingsOf('180', fields)).toEqual(counts);
+});
+
 test('a changed figure is changed and no other', () => {
   const fields = fieldsOf(settings).map((field) =>
     field.urgency === 'soon' ? { ...field, value: '31000.5' } : field,

@@ -13,6 +13,9 @@ export interface Field {
 /** A figure, one for each urgency, or none said. */
 type Figure = number | Record<string, number> | null;
 
+/** A form speaks of degrees where the server counts hundredths of one. */
+const scaleOf = (name: string): number => (name.endsWith('_centideg') ? 100 : 1);
+
 /** Every figure that the server knows, in its order. */
 export function fieldsOf(settings: ScheduleSettings): Field[] {
   return (['weights', 'terms'] as const).flatMap((part) =>
@@ -25,13 +28,26 @@ export function fieldsOf(settings: ScheduleSettings): Field[] {
               urgency,
               value: String(figure),
             }))
-          : [{ part, name, urgency: null, value: value === null ? '' : String(value) }],
+          : [
+              {
+                part,
+                name,
+                urgency: null,
+                value: value === null ? '' : String(value / scaleOf(name)),
+              },
+            ],
     ),
   );
 }
 
 /** What may be left empty: nobody has said how late a job may be. */
 const mayBeUnsaid: ReadonlySet<string> = new Set(['late_days']);
+
+function numberOf(name: string, value: string): number {
+  const scale = scaleOf(name);
+  // 0.29 × 100 is not quite 29.
+  return scale === 1 ? Number(value) : Math.round(Number(value) * scale);
+}
 
 /** The settings that such fields say, or the field that is no number. */
 export function settingsOf(
@@ -47,7 +63,7 @@ export function settingsOf(
   for (const field of fields) {
     const { part, name, urgency, value } = field;
     if (isUnsaid(field)) parts[part][name] = null;
-    else if (urgency === null) parts[part][name] = Number(value);
+    else if (urgency === null) parts[part][name] = numberOf(name, value);
     else
       parts[part][name] = {
         ...(parts[part][name] as Record<string, number> | undefined),

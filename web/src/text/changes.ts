@@ -29,11 +29,18 @@ export const changes = {
   found: (later: string) => `Found ${later} after that.`,
   foundAtOnce: 'Found at once.',
   deviation: (degrees: string) =>
-    `Deviation changed by ${degrees} on the heading where it changed most.`,
+    `Deviation changed by up to ${degrees} on the worst heading, where she was then.`,
+  sizes: {
+    title: 'How large it was',
+    then: 'Deviation on the worst heading, where she was then',
+    last: (heading: string) => `Deviation on ${heading}, the worst where she was last`,
+    foreAft: 'Permanent field fore-and-aft, forward positive',
+    athwart: 'Permanent field athwartships, starboard positive',
+    by: (size: string) => `changed by ${size}`,
+    errors: 'After ± stands the standard error.',
+  },
   notHers: 'The ship’s own magnetism did not change.',
   perhapsNotHers: 'As far as can be told yet, the ship’s own magnetism did not change.',
-  step: (foreAft: string, athwart: string) =>
-    `Permanent magnetism changed by ${foreAft} fore-and-aft (forward positive) and ${athwart} athwartships (starboard positive).`,
   why: 'Why this cause',
   likelihoods: 'How likely each cause is',
   likelihood: (percent: string, words: string) => `${percent}, ${words}`,

@@ -175,7 +175,7 @@ export const settings = {
       over_limit_days: 'Days before predicted deviation goes over the limit',
       urgent_days: 'Urgent within, days',
       soon_days: 'Soon within, days',
-      change_centideg: 'A change of magnetism that counts, hundredths of a degree',
+      change_centideg: 'A change of deviation that counts, degrees',
     } as Record<string, string>,
   },
 };

@@ -1,0 +1,37 @@
+/**
+ * A place and an instant in an address, so that a page that is opened again, or sent to
+ * somebody, shows the same waters. What is no place counts as none.
+ */
+
+import type { Place } from '../api/client';
+
+/** To some ten metres: `lat=-31.45&lon=15.207&at=2026-11-23T12:00:00.000Z`. */
+const digits = 4;
+const names = ['lat', 'lon', 'at'] as const;
+
+export function placeInSearch(search: string): Place | undefined {
+  const params = new URLSearchParams(search);
+  const [lat, lon] = [angleOf(params.get('lat'), 90), angleOf(params.get('lon'), 180)];
+  const at = new Date(params.get('at') ?? '');
+  if (lat === undefined || lon === undefined || Number.isNaN(at.getTime())) return undefined;
+  return { lat, lon, at: at.toISOString() };
+}
+
+function angleOf(text: string | null, most: number): number | undefined {
+  if (text === null || text.trim() === '') return undefined;
+  const value = Number(text);
+  return Math.abs(value) <= most ? value : undefined;
+}
+
+/** The address's search with this place and no other; all else in it stays. */
+export function withPlace(search: string, place: Place | undefined): string {
+  const params = new URLSearchParams(search);
+  for (const name of names) params.delete(name);
+  if (place) {
+    params.set('lat', String(Number(place.lat.toFixed(digits))));
+    params.set('lon', String(Number(place.lon.toFixed(digits))));
+    params.set('at', place.at);
+  }
+  const said = params.toString();
+  return said === '' ? '' : `?${said}`;
+}
