@@ -39,9 +39,9 @@ function joined(rings: number[][][]): number[][][] {
     const cut = cutOf(ring);
     const other = whole.findIndex((known) => {
       const theirs = cutOf(known);
-      return cut && theirs && cut.from === theirs.to && cut.to === theirs.from;
+      return theirs?.to === cut?.from && theirs?.from === cut?.to;
     });
-    if (other < 0) whole.push(ring);
+    if (!cut || other < 0) whole.push(ring);
     else whole[other] = [...fromCut(whole[other] ?? []), ...fromCut(ring)];
   }
   return whole;

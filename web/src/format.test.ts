@@ -127,3 +127,8 @@ test('a server’s clause becomes a sentence, with true minus signs', () => {
   expect(format.sentence('compass less gyro is -3.7°')).toBe('Compass less gyro is −3.7°.');
   expect(format.sentence('since 2026-11-23, in 015-240')).toBe('Since 2026-11-23, in 015-240.');
 });
+
+test('a count beyond what there is room for says that it is more', () => {
+  expect(format.atMost(99, 99)).toBe('99');
+  expect(format.atMost(1033, 99)).toBe('99+');
+});

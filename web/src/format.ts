@@ -177,6 +177,10 @@ export function microtesla(nanotesla: number | null | undefined): string {
   return `${plain(nanotesla / 1000, 1)}\u00a0µT`;
 }
 
+/** A count where there is room for few figures: `7`, `99+`. */
+export const atMost = (value: number, most: number): string =>
+  value > most ? `${most}+` : String(value);
+
 /** A field to a hundredth of a microtesla: what a magnetometer shows. */
 export function microteslaFine(nanotesla: number | null | undefined): string {
   if (nanotesla === null || nanotesla === undefined || !Number.isFinite(nanotesla)) return unknown;

@@ -125,6 +125,11 @@ export const vessel = {
           .count(),
         0,
       );
+      await page.waitForURL(/[?&]lat=62\.5083&lon=5\.2&at=/);
+      await page.reload();
+      await page.getByText('At 62° 30.5′ N, 005° 12.0′ E', { exact: false }).first().waitFor();
+      await page.getByRole('button', { name: 'Back to the last position' }).click();
+      await page.waitForURL((url) => url.search === '');
     },
   },
 
