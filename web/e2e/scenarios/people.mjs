@@ -45,6 +45,31 @@ async function signInAs(page, { email, password }, heading) {
   await page.getByRole('heading', { name: heading, level: 1 }).waitFor();
 }
 
+/** Waits in the page until the browser has an order, and the files of its page. */
+async function untilKept(id) {
+  const opened = await new Promise((done, fail) => {
+    const opening = indexedDB.open('binnacle-orders');
+    opening.onsuccess = () => done(opening.result);
+    opening.onerror = () => fail(opening.error);
+  });
+  const keptOrder = () =>
+    new Promise((done, fail) => {
+      const asked = opened.transaction('orders').objectStore('orders').getKey(id);
+      asked.onsuccess = () => done(asked.result === id);
+      asked.onerror = () => fail(asked.error);
+    });
+  const keptPage = async () =>
+    (await (await caches.open('binnacle-page-1')).keys()).some(({ url }) =>
+      url.includes('/assets/WorkOrder-'),
+    );
+  const soon = Date.now() + 15_000;
+  while (!((await keptOrder()) && (await keptPage()))) {
+    if (Date.now() > soon) throw new Error('the order is not kept');
+    await new Promise((drawn) => requestAnimationFrame(drawn));
+  }
+  opened.close();
+}
+
 export const people = {
   'someone is invited, sets a password, and sets up a second factor': {
     allowedErrors: [notSignedIn, /status of 422 .*\/me\/second-factor/],
@@ -264,8 +289,9 @@ export const people = {
 
   'an adjuster signs in on a phone and finds today’s ship': {
     viewport: phone,
-    allowedErrors: [notSignedIn],
-    async run({ page, browser, settings, shoot }) {
+    // Her binnacle was not entered; and without a connection every call fails.
+    allowedErrors: [notSignedIn, /status of 404 .*\/binnacle/, /ERR_INTERNET_DISCONNECTED/],
+    async run({ page, context, browser, settings, shoot }) {
       const office = await browser.newContext({ baseURL: settings.url });
       const theirs = await office.newPage();
       await signIn(theirs, settings);
@@ -316,6 +342,26 @@ export const people = {
       await shoot('home-phone', { fullPage: true });
       const way = today.getByRole('link', { name: 'Go to the binnacle' });
       assert.equal(await way.getAttribute('href'), `/work-orders/${id}`);
+
+      // It is kept before anybody looks at it: on the quay there is no connection.
+      await page.evaluate(untilKept, id);
+      await context.setOffline(true);
+      await page.reload();
+      await page.getByText('These orders are kept on this device').waitFor();
+      await today.getByText(/^Kept on this device as it was on \d+ \w+, \d\d:\d\d$/).waitFor();
+      await fitsItsWidth(page);
+      await shoot('home-offline-phone', { fullPage: true });
+      await way.click();
+      await page.getByRole('heading', { name: `${vessel.name}: adjustment`, level: 1 }).waitFor();
+      await page.getByRole('button', { name: 'I am on board' }).click();
+      await page.getByRole('heading', { name: 'Read the field' }).waitFor();
+      await shoot('home-offline-step-phone');
+      await page.goBack();
+      await today.getByText('1 thing is waiting to be sent').waitFor();
+      await today.getByText('Adjuster on board', { exact: true }).waitFor();
+      await context.setOffline(false);
+      await page.getByText('These orders are kept on this device').waitFor({ state: 'detached' });
+      await today.getByRole('link', { name: vessel.name }).waitFor();
       for (const path of ['/alerts', `/vessels/${vessel.id}`]) {
         await page.goto(path);
         await page.getByRole('heading', { name: 'This page is the operator’s' }).waitFor();

@@ -34,7 +34,7 @@ export class Desk {
   /** What was kept first, then what the server says. */
   open = async (): Promise<void> => {
     const kept = await outbox.shelf.then((shelf) => shelf.order(this.id)).catch(() => undefined);
-    if (kept) {
+    if (kept && kept.user === session.me?.user_id) {
       this.order.show(kept.order, new Date(kept.at));
       if (kept.binnacle) this.binnacle.show(kept.binnacle, new Date(kept.at));
       if (kept.offer && kept.offeredFor === asked(kept.order)) {
@@ -100,6 +100,7 @@ export class Desk {
     if (!order) return;
     const kept = {
       id: this.id,
+      user: session.me?.user_id ?? '',
       order,
       offer: this.offer.value,
       offeredFor: this.#offeredFor,

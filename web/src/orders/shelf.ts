@@ -13,6 +13,8 @@ import type { Write } from './writes';
 /** An order as it was last seen, with what is needed to go on without a connection. */
 export interface Kept {
   id: string;
+  /** Who saw it: what is kept for one is not shown to another. */
+  user: string;
   order: WorkOrder;
   offer?: PlanOffer | undefined;
   /** What the planner was asked. */
@@ -30,6 +32,7 @@ export interface Shelf {
   change: (write: Write) => Promise<void>;
   remove: (seq: number) => Promise<void>;
   order: (id: string) => Promise<Kept | undefined>;
+  orders: () => Promise<Kept[]>;
   /** Keeps an order; what the page has of it is copied. */
   keep: (kept: Kept) => Promise<void>;
   forgetOrders: () => Promise<void>;
@@ -96,6 +99,8 @@ function inDatabase(db: IDBDatabase): Shelf {
         'readonly',
         (store) => store.get(id) as IDBRequest<Kept | undefined>,
       ),
+    orders: () =>
+      run<Kept[]>('orders', 'readonly', (store) => store.getAll() as IDBRequest<Kept[]>),
     keep: async (kept) => {
       await run('orders', 'readwrite', (store) => store.put(kept));
     },
@@ -126,6 +131,7 @@ export function inMemory(): Shelf {
       return Promise.resolve();
     },
     order: (id) => Promise.resolve(orders.get(id)),
+    orders: () => Promise.resolve([...orders.values()]),
     keep: (kept) => {
       orders.set(kept.id, kept);
       return Promise.resolve();

@@ -79,4 +79,9 @@ export const home = {
   begin: 'Go to the binnacle',
   look: 'See the order',
   here: (time: string) => `${time} by this device’s clock`,
+  onDevice:
+    'The server cannot be reached. These orders are kept on this device, and the work on them goes on; all others come as soon as the connection is back.',
+  keptAt: (time: string) => `Kept on this device as it was on ${time}`,
+  waiting: (n: number) =>
+    n === 1 ? '1 thing is waiting to be sent' : `${n} things are waiting to be sent`,
 };
