@@ -1,5 +1,6 @@
 /** Alerts, who is told of them, and what changed. */
 import assert from 'node:assert/strict';
+import { findings } from '../axe.mjs';
 import { phone, notSignedIn, signIn, withModel, struck, limit, fitsItsWidth } from '../helpers.mjs';
 
 export const alerts = {
@@ -45,6 +46,38 @@ export const alerts = {
         .first()
         .waitFor();
       await limit(page, vessel.id, { deviation_deg: 45 });
+    },
+  },
+
+  'from when on there are alerts is said on her page, and holds': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await withModel(page);
+      const path = `/api/v1/vessels/${vessel.id}/settings`;
+      const before = await (await page.request.get(path)).json();
+      await page.goto(`/vessels/${vessel.id}#limits`);
+      const panel = page.getByRole('region', { name: 'Alert limits and settings' });
+      await panel.getByRole('button', { name: 'Change the settings' }).click();
+      const deviation = panel.getByLabel('Deviation, °');
+      await deviation.fill('0.5');
+      await panel.getByRole('button', { name: 'Save the settings' }).click();
+      await panel.getByRole('alert').getByText('“Deviation, °” is a number from 1 to 45').waitFor();
+      assert.equal(await deviation.getAttribute('aria-invalid'), 'true');
+      await deviation.fill('1,5');
+      await fitsItsWidth(page);
+      await shoot('limits', {}, panel);
+      assert.deepEqual(await findings(page), []);
+      await panel.getByRole('button', { name: 'Save the settings' }).click();
+      await panel.getByText('The settings are saved.').waitFor();
+      const { alerts, analysis } = await (await page.request.get(path)).json();
+      assert.deepEqual(alerts, { ...before.alerts, deviation_deg: 1.5 });
+      assert.deepEqual(analysis, before.analysis);
+      await page.goto('/alerts');
+      const card = page.getByRole('article').filter({ hasText: `${vessel.name}: Deviation over` });
+      await card.getByText('over the limit of 1.5°').waitFor();
+      await limit(page, vessel.id, { deviation_deg: 45 });
+      await card.waitFor({ state: 'detached' });
     },
   },
 

@@ -17,6 +17,7 @@ import type {
   NewVessel,
   NewWebhook,
   Severity,
+  VesselSettings,
 } from './types';
 
 /** A place and a time at which to show the deviation. */
@@ -189,6 +190,12 @@ export const listCallsSince = (id: string, from: string) =>
 /** What rules on adjusting ask about her. */
 export const findParticulars = (id: string) =>
   answer(client.GET('/api/v1/vessels/{id}/particulars', { params: { path: { id } } }));
+
+export const findSettings = (id: string) =>
+  answer(client.GET('/api/v1/vessels/{id}/settings', { params: { path: { id } } }));
+
+export const changeSettings = (id: string, body: VesselSettings) =>
+  answer(client.PUT('/api/v1/vessels/{id}/settings', { params: { path: { id } }, body }));
 
 /** A key that no other request has; `randomUUID` is for pages over TLS only. */
 export function newKey(): string {

@@ -130,3 +130,4 @@ export type NotificationSettings = Schemas['NotificationSettings'];
 export type NotificationSettingsInForce = Schemas['NotificationSettingsInForce'];
 export type NotificationWay = Schemas['NotificationWay'];
 export type Weekday = Schemas['Weekday'];
+export type VesselSettings = Schemas['VesselSettings'];

@@ -16,6 +16,7 @@ export * from './fields';
 export * from './firms';
 export * from './fleet';
 export * from './foretold';
+export * from './limits';
 export * from './mail';
 export * from './needs';
 export * from './new-order';
