@@ -1,9 +1,10 @@
 //! Schedules a made-up fleet and says how long it took:
-//! `cargo run --release -p binnacle-schedule --example fleet VESSELS CALLS FIRMS SEED PORTS`.
+//! `cargo run --release -p binnacle-schedule --example fleet VESSELS CALLS FIRMS SEED PORTS DAYS`.
 //!
 //! Ships call at forty large ports, or at the first so many of them, the larger ones more
 //! often, an eighth of the calls for less than a working day; an ETA is good to two hours
-//! tomorrow and to two days in half a year. Firms serve three to nine ports with one to three teams, each of which
+//! tomorrow and to two days in half a year. All calls begin within half a year, or within so
+//! many days, and all is due by then: the fewer, the scarcer the teams. Firms serve three to nine ports with one to three teams, each of which
 //! does one or two jobs a day, and half of the firms are not accepted by every flag.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // a benchmark, run by hand
@@ -32,13 +33,14 @@ fn main() {
     let mut next = |default| arguments.next().unwrap_or(default);
     let (vessels, calls, firms, seed) = (next(200), next(6), next(15), next(1));
     let ports = next(PORTS.len() as u64);
-    let text = fleet(vessels, calls, firms, seed, ports).to_string();
+    let days = next(180);
+    let text = fleet([vessels, calls, firms], seed, ports, days).to_string();
     let checked = read(&text).unwrap();
     let began = Instant::now();
     let schedule = plan(&checked);
     let took_s = began.elapsed().as_secs_f64();
     println!(
-        "{vessels} vessels × {calls} calls × {firms} firms, seed {seed}, {ports} ports: {} jobs, {} unscheduled, \
+        "{vessels} vessels × {calls} calls × {firms} firms, seed {seed}, {ports} ports, {days} days: {} jobs, {} unscheduled, \
          {:.0} euros, gap {:.4} %, optimal {}, {took_s:.2} s",
         schedule.jobs.len(),
         schedule.unscheduled.len(),
@@ -48,7 +50,7 @@ fn main() {
     );
 }
 
-fn fleet(vessels: u64, calls: u64, firms: u64, seed: u64, ports: u64) -> Value {
+fn fleet([vessels, calls, firms]: [u64; 3], seed: u64, ports: u64, days: u64) -> Value {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let now = Time::parse("2026-11-21T00:00:00Z").unwrap();
     let known: Vec<&str> = PORTS
@@ -67,13 +69,13 @@ fn fleet(vessels: u64, calls: u64, firms: u64, seed: u64, ports: u64) -> Value {
             json!({"id": id, "flag": FLAGS.choose(&mut random).unwrap()}),
         );
         let due = now
-            .plus_hours(24.0 * random.random_range(5.0..180.0))
+            .plus_hours(24.0 * random.random_range(5.0..days as f64))
             .date(0);
         push(
             "needs",
             json!({"id": format!("n{vessel}"), "vessel": id, "due": due}),
         );
-        let apart_h = 180.0 * 24.0 / calls as f64;
+        let apart_h = days as f64 * 24.0 / calls as f64;
         for call in 0..calls {
             let begins_h = apart_h * (call as f64 + random.random_range(0.0..0.6));
             let short = random.random_range(0..8) == 0;

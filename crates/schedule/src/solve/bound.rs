@@ -9,7 +9,7 @@
 //! rounded to cents, made feasible, and the bound added up from them in whole numbers
 //! (weak duality), so that a wrong price makes the bound worse, never false.
 
-use super::problem::Problem;
+use super::problem::{Problem, Visit};
 use microlp::{ComparisonOp, LinearExpr, OptimizationDirection, Variable};
 
 /// A lower bound, and each choice's reduced cost against it.
@@ -19,6 +19,9 @@ pub(super) struct Bound {
     pub(super) cost: i64,
     /// An assignment with this choice costs at least so much more than the bound.
     pub(super) reduced: Vec<i64>,
+    /// What one more job's place on each visit is worth at these prices; it guides search
+    /// and proves nothing.
+    pub(super) worth: Vec<i64>,
     /// One that leaves this need unmet, too.
     pub(super) reduced_unmet: Vec<i64>,
 }
@@ -151,7 +154,10 @@ fn add_up(problem: &Problem, shared: &[bool], prices: &Prices) -> Bound {
         .zip(&prices.mu)
         .map(|(teams, mu)| i64::from(*teams) * mu)
         .sum();
+    let worth =
+        |visit: &Visit| (visit.travel + prices.mu[visit.firm_day]) / i64::from(visit.jobs_a_team);
     Bound {
+        worth: problem.visits.iter().map(worth).collect(),
         cost: pi.iter().sum::<i64>() - days,
         reduced: problem
             .choices

@@ -5,7 +5,7 @@
 //! part. Work is limited in nodes, not in seconds: the same problem, the same answer.
 
 use super::problem::{Assignment, Problem};
-use super::{LARGE, Open};
+use super::{LARGE_PART, Open};
 use microlp::{
     ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
 };
@@ -34,7 +34,7 @@ pub(super) fn finish(problem: &Problem, open: &Open, known: Assignment, effort: 
         if part.iter().all(is_settled) {
             continue;
         }
-        if part.len() > LARGE {
+        if part.len() > LARGE_PART {
             optimal = false;
             continue;
         }

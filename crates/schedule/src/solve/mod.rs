@@ -1,8 +1,9 @@
 //! The best assignment there is, or a good one and how far from the best it can be.
 //!
-//! Search gives an assignment, prices give a bound: the linear relaxation's, or for a
-//! problem that is too large for it those of a subgradient. A choice whose reduced cost
-//! is beyond the gap between them is in no better assignment. What is left falls into
+//! Prices give a bound: the linear relaxation's, or for a problem that is too large for it
+//! those of a subgradient. Search, which these prices guide, gives an assignment: needs
+//! make way for each other, and teams are sent elsewhere. A choice whose reduced cost is
+//! beyond the gap between the two is in no better assignment. What is left falls into
 //! small parts, which branch and bound finishes; where one is too large for that,
 //! neighbourhoods of it are, each in turn, and the gap is stated.
 //!
@@ -10,11 +11,13 @@
 //! cost, and both are the same for the same problem.
 
 mod bound;
+mod chain;
 mod exact;
 mod near;
 mod prices;
 mod problem;
 mod search;
+mod teams;
 
 use bound::Bound;
 
@@ -28,6 +31,9 @@ const EFFORT_NEAR: usize = 60_000;
 const NEIGHBOURS: usize = 60;
 /// With more choices than these the linear relaxation alone takes minutes.
 const LARGE: usize = 20_000;
+/// Open choices of the largest part that is branched on: the relaxation of a larger one takes
+/// longer than all else, and there was no better assignment behind it.
+const LARGE_PART: usize = 15_000;
 /// Rounds over all neighbourhoods, at most.
 const ROUNDS: usize = 3;
 /// No further round where the gap is this part of the cost, or less: half a per cent.
@@ -48,13 +54,14 @@ pub struct Solved {
 pub fn solve(problem: &Problem) -> Solved {
     let order = problem.by_need();
     let begin = vec![None; problem.unmet.len()];
-    let mut found = search::improve(problem, begin, &order);
+    let mut found = search::greedy(problem, begin, &order);
     let large = problem.choices.len() > LARGE;
     let bound = if large {
         prices::bound(problem, cost_of(problem, &found))
     } else {
         bound::bound(problem)
     };
+    found = teams::improve(problem, found, &order, &bound);
     for round in 0..=ROUNDS {
         let cost = cost_of(problem, &found);
         if bound.cost >= cost {
@@ -63,9 +70,6 @@ pub fn solve(problem: &Problem) -> Solved {
                 cost,
                 bound: cost,
             };
-        }
-        if large && is_small(cost - bound.cost, cost) {
-            break;
         }
         let open = Open::of(problem, &bound, &found, cost);
         let finished = exact::finish(problem, &open, found, EFFORT);
@@ -79,7 +83,7 @@ pub fn solve(problem: &Problem) -> Solved {
             };
         }
         let cost = cost_of(problem, &found);
-        if round == ROUNDS || (round > 0 && is_small(cost - bound.cost, cost)) {
+        if round == ROUNDS || ((large || round > 0) && is_small(cost - bound.cost, cost)) {
             break;
         }
         found = near::improve(problem, &open, found);

@@ -16,9 +16,9 @@ use super::bound::Bound;
 use super::problem::Problem;
 
 /// Steps of the subgradient, at most.
-const STEPS: usize = 600;
+const STEPS: usize = 3000;
 /// The step is halved after so many without a better bound.
-const PATIENCE: usize = 12;
+const PATIENCE: usize = 30;
 /// Below this factor steps lead nowhere.
 const SMALLEST_STEP: f64 = 1e-4;
 /// Beyond every cost, and far from overflowing.
@@ -174,6 +174,7 @@ fn taken(problem: &Problem, layout: &Layout, prices: &[f64]) -> (f64, Vec<u32>) 
 fn add_up(problem: &Problem, layout: &Layout, prices: &[i64]) -> Bound {
     let mut cost: i64 = prices.iter().sum();
     let mut reduced = vec![0; problem.choices.len()];
+    let mut worth = vec![0; problem.visits.len()];
     for (day, visits) in layout.visits.iter().enumerate() {
         let teams = problem.teams[day] as usize;
         let gain = |choice: usize| {
@@ -200,6 +201,7 @@ fn add_up(problem: &Problem, layout: &Layout, prices: &[i64]) -> Bound {
         };
         for (&index, gains) in visits.iter().zip(&gains) {
             let visit = problem.visits[index];
+            worth[index] = (visit.travel - last) / i64::from(visit.jobs_a_team);
             let beside = visit.jobs_a_team as usize - 1;
             for &choice in &layout.choices[index] {
                 let others = gains.iter().filter(|(_, other)| *other != choice);
@@ -212,6 +214,7 @@ fn add_up(problem: &Problem, layout: &Layout, prices: &[i64]) -> Bound {
     Bound {
         cost,
         reduced,
+        worth,
         reduced_unmet: problem
             .unmet
             .iter()
@@ -224,32 +227,9 @@ fn add_up(problem: &Problem, layout: &Layout, prices: &[i64]) -> Bound {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solve::{Choice, Visit, solve};
-    use proptest::collection::vec;
+    use crate::solve::problem::made_up::problems;
+    use crate::solve::solve;
     use proptest::prelude::*;
-
-    fn problems() -> impl Strategy<Value = Problem> {
-        let visits = vec((0..4_usize, 0..900_i64, 1..=3_u32), 6);
-        let choices = vec((0..5_usize, 0..6_usize, 0..2000_i64), 0..13);
-        (vec(0..3000_i64, 5), visits, vec(0..3_u32, 4), choices).prop_map(
-            |(unmet, visits, teams, choices)| Problem {
-                unmet,
-                visits: visits
-                    .into_iter()
-                    .map(|(firm_day, travel, jobs_a_team)| Visit {
-                        firm_day,
-                        travel,
-                        jobs_a_team,
-                    })
-                    .collect(),
-                teams,
-                choices: choices
-                    .into_iter()
-                    .map(|(need, visit, cost)| Choice { need, visit, cost })
-                    .collect(),
-            },
-        )
-    }
 
     proptest! {
         #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]

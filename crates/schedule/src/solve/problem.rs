@@ -91,3 +91,34 @@ impl Problem {
         of
     }
 }
+
+/// Small problems for the tests beside.
+#[cfg(test)]
+pub(super) mod made_up {
+    use super::{Choice, Problem, Visit};
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    pub(in crate::solve) fn problems() -> impl Strategy<Value = Problem> {
+        let visits = vec((0..4_usize, 0..900_i64, 1..=3_u32), 6);
+        let choices = vec((0..5_usize, 0..6_usize, 0..2000_i64), 0..13);
+        (vec(0..3000_i64, 5), visits, vec(0..3_u32, 4), choices).prop_map(
+            |(unmet, visits, teams, choices)| Problem {
+                unmet,
+                visits: visits
+                    .into_iter()
+                    .map(|(firm_day, travel, jobs_a_team)| Visit {
+                        firm_day,
+                        travel,
+                        jobs_a_team,
+                    })
+                    .collect(),
+                teams,
+                choices: choices
+                    .into_iter()
+                    .map(|(need, visit, cost)| Choice { need, visit, cost })
+                    .collect(),
+            },
+        )
+    }
+}

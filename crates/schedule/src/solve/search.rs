@@ -1,40 +1,36 @@
-//! A good assignment by greedy insertion and local search.
+//! An assignment under change, and a first one: each need in turn takes what is best for it.
 //!
-//! What always holds: what is found is feasible, never worse than what the search
-//! began with, and the same for the same problem.
+//! What always holds: what is found is feasible, and the same for the same problem.
 
 use super::problem::{Assignment, Problem};
 
 /// An assignment under change, with what each visit and each firm's day carries.
-struct State<'a> {
-    problem: &'a Problem,
-    chosen: Assignment,
-    jobs: Vec<u32>,
-    sent: Vec<u32>,
-    at_visit: Vec<Vec<usize>>,
-    visits_of: Vec<Vec<usize>>,
+pub(super) struct State<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) chosen: Assignment,
+    pub(super) jobs: Vec<u32>,
+    pub(super) sent: Vec<u32>,
+    pub(super) at_visit: Vec<Vec<usize>>,
+    pub(super) visits_of: Vec<Vec<usize>>,
 }
 
-/// Improves an assignment until no move of one need, and no move of one that makes
-/// another one give way, makes it cheaper.
-pub(super) fn improve(problem: &Problem, begin: Assignment, order: &[Vec<usize>]) -> Assignment {
+/// Each need in turn takes what is cheapest then, until none finds cheaper.
+pub(super) fn greedy(problem: &Problem, begin: Assignment, order: &[Vec<usize>]) -> Assignment {
     let mut state = State::new(problem, begin);
-    let mut queue: Vec<usize> = (0..problem.unmet.len()).collect();
-    // Each round walks over all needs; costs fall with every move, so that it ends.
+    // Costs fall with every move, so that it ends.
     loop {
         let mut moved = false;
-        for need in queue.drain(..) {
+        for need in 0..problem.unmet.len() {
             moved |= state.improve_one(need, order);
         }
         if !moved {
             return state.chosen;
         }
-        queue.extend(0..problem.unmet.len());
     }
 }
 
 impl<'a> State<'a> {
-    fn new(problem: &'a Problem, begin: Assignment) -> State<'a> {
+    pub(super) fn new(problem: &'a Problem, begin: Assignment) -> State<'a> {
         let mut visits_of = vec![Vec::new(); problem.teams.len()];
         for (index, visit) in problem.visits.iter().enumerate() {
             visits_of[visit.firm_day].push(index);
@@ -66,19 +62,29 @@ impl<'a> State<'a> {
         free.then_some(choice.cost + visit.travel)
     }
 
-    fn put(&mut self, need: usize, choice: usize) {
-        let at = self.problem.choices[choice].visit;
-        let visit = self.problem.visits[at];
-        if self.jobs[at].is_multiple_of(visit.jobs_a_team) {
-            self.sent[visit.firm_day] += 1;
-        }
-        self.jobs[at] += 1;
-        self.at_visit[at].push(need);
+    /// Whether a visit has a team with one job there.
+    pub(super) fn has_single(&self, visit: usize) -> bool {
+        let others = self.jobs[visit].checked_sub(1);
+        others.is_some_and(|others| others.is_multiple_of(self.problem.visits[visit].jobs_a_team))
+    }
+
+    /// Meets a need by a choice, whether there is a team for it or not; gives what that costs.
+    pub(super) fn put(&mut self, need: usize, choice: usize) -> i64 {
+        let chosen = self.problem.choices[choice];
+        let visit = self.problem.visits[chosen.visit];
+        let sends = self.jobs[chosen.visit].is_multiple_of(visit.jobs_a_team);
+        self.jobs[chosen.visit] += 1;
+        self.at_visit[chosen.visit].push(need);
         self.chosen[need] = Some(choice);
+        if sends {
+            self.sent[visit.firm_day] += 1;
+            return chosen.cost + visit.travel;
+        }
+        chosen.cost
     }
 
     /// Takes a need's choice back; gives what that saves.
-    fn take(&mut self, need: usize) -> i64 {
+    pub(super) fn take(&mut self, need: usize) -> i64 {
         let Some(choice) = self.chosen[need].take() else {
             return self.problem.unmet[need];
         };
@@ -91,6 +97,21 @@ impl<'a> State<'a> {
             return choice.cost + visit.travel;
         }
         choice.cost
+    }
+
+    /// Makes all choices what they were.
+    pub(super) fn go_back(&mut self, before: &[Option<usize>]) {
+        let moved: Vec<usize> = (0..before.len())
+            .filter(|need| self.chosen[*need] != before[*need])
+            .collect();
+        for need in &moved {
+            self.take(*need);
+        }
+        for need in moved {
+            if let Some(choice) = before[need] {
+                self.put(need, choice);
+            }
+        }
     }
 
     /// The cheapest way to meet a need now, `None` where leaving it unmet is.
@@ -118,39 +139,6 @@ impl<'a> State<'a> {
                 self.put(need, choice);
             }
             return true;
-        }
-        // One other need gives way, and takes what is best for it then.
-        for &choice in &order[need] {
-            let wanted = self.problem.choices[choice];
-            if wanted.cost >= saved {
-                break;
-            }
-            if self.price_of(choice).is_some() {
-                continue;
-            }
-            let firm_day = self.problem.visits[wanted.visit].firm_day;
-            let others: Vec<usize> = self.visits_of[firm_day]
-                .iter()
-                .flat_map(|visit| self.at_visit[*visit].iter().copied())
-                .collect();
-            for other in others {
-                let Some(had) = self.chosen[other] else {
-                    continue;
-                };
-                let freed = self.take(other);
-                if let Some(price) = self.price_of(choice) {
-                    self.put(need, choice);
-                    let (instead, instead_price) = self.best(other, order);
-                    if price + instead_price < saved + freed {
-                        if let Some(instead) = instead {
-                            self.put(other, instead);
-                        }
-                        return true;
-                    }
-                    self.take(need);
-                }
-                self.put(other, had);
-            }
         }
         if let Some(before) = before {
             self.put(need, before);

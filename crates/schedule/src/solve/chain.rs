@@ -1,0 +1,341 @@
+//! Chains of needs that make way for each other.
+//!
+//! A need goes where another one was, which goes where a third was, and so on to one that
+//! finds room, or is given up: the shortest augmenting path of a minimum-cost flow, were
+//! teams not sent as a whole. Where a day's teams are all sent, one that has a single job
+//! may be called away for it. The way is searched in order of what it costs with the
+//! worth of the places that it takes.
+//!
+//! What always holds: the assignment stays feasible, and a need is placed at the cost
+//! that is given back.
+
+use super::search::State;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Beyond every cost.
+const NEVER: i64 = i64::MAX / 4;
+
+/// How a chain came to a visit: by which need, from the visit where that one made way.
+#[derive(Clone, Copy)]
+struct Link {
+    from: Option<usize>,
+    need: usize,
+    choice: usize,
+}
+
+/// The cheapest chains from one need to each visit.
+pub(super) struct Chains<'a> {
+    /// Each need's choices, the cheapest first.
+    order: &'a [Vec<usize>],
+    /// What a place on each visit is worth.
+    worth: &'a [i64],
+    cost: Vec<i64>,
+    by: Vec<Link>,
+    queue: BinaryHeap<Reverse<(i64, usize)>>,
+    /// Visits with a cost, to be cleared.
+    seen: Vec<usize>,
+}
+
+/// The best end of a chain so far.
+struct End {
+    cost: i64,
+    at: Option<usize>,
+    /// Who is left unmet there.
+    given_up: Option<usize>,
+}
+
+impl End {
+    fn offer(&mut self, cost: i64, at: usize, given_up: Option<usize>) {
+        if cost < self.cost {
+            (self.cost, self.at, self.given_up) = (cost, Some(at), given_up);
+        }
+    }
+}
+
+impl<'a> Chains<'a> {
+    pub(super) fn new(order: &'a [Vec<usize>], worth: &'a [i64]) -> Chains<'a> {
+        let none = Link {
+            from: None,
+            need: 0,
+            choice: 0,
+        };
+        Chains {
+            order,
+            worth,
+            cost: vec![NEVER; worth.len()],
+            by: vec![none; worth.len()],
+            queue: BinaryHeap::new(),
+            seen: Vec::new(),
+        }
+    }
+
+    /// Moves a need where a chain from it makes the whole cheaper.
+    pub(super) fn improve(&mut self, state: &mut State<'_>, need: usize) -> bool {
+        let before = state.chosen[need];
+        let home = self.worth_of_place(state, need);
+        let saved = state.take(need);
+        if self.place(state, need, saved, home).is_some() {
+            return true;
+        }
+        if let Some(before) = before {
+            state.put(need, before);
+        }
+        false
+    }
+
+    /// What the place is worth that a need has.
+    pub(super) fn worth_of_place(&self, state: &State<'_>, need: usize) -> i64 {
+        state.chosen[need].map_or(0, |choice| self.worth[state.problem.choices[choice].visit])
+    }
+
+    /// Places a need that has no choice, where that costs less than `limit`; gives what it
+    /// costs with all that makes way. Room that is found by the way is worth at most `room`.
+    pub(super) fn place(
+        &mut self,
+        state: &mut State<'_>,
+        need: usize,
+        limit: i64,
+        room: i64,
+    ) -> Option<i64> {
+        let end = self.search(state, need, limit, room);
+        if end.cost >= limit {
+            return None;
+        }
+        let mut moves: Vec<(usize, Option<usize>)> = Vec::new();
+        moves.extend(end.given_up.map(|need| (need, None)));
+        let mut at = end.at;
+        while let Some(visit) = at {
+            let link = self.by[visit];
+            moves.push((link.need, Some(link.choice)));
+            at = link.from;
+        }
+        carry_out(state, need, &moves, limit)
+    }
+
+    fn search(&mut self, state: &State<'_>, need: usize, limit: i64, room: i64) -> End {
+        for visit in self.seen.drain(..) {
+            self.cost[visit] = NEVER;
+        }
+        self.queue.clear();
+        let mut end = End {
+            cost: limit.min(state.problem.unmet[need]),
+            at: None,
+            given_up: None,
+        };
+        self.go_on(state, need, None, 0, &end, room);
+        while let Some(Reverse((key, at))) = self.queue.pop() {
+            if key >= end.cost.saturating_add(room) {
+                break;
+            }
+            let cost = self.cost[at];
+            if key == cost + self.worth[at] {
+                self.arrive(state, at, cost, &mut end, room);
+            }
+        }
+        end
+    }
+
+    /// Ends a chain on a visit, or lets a need there make way.
+    fn arrive(&mut self, state: &State<'_>, at: usize, cost: i64, end: &mut End, room: i64) {
+        let problem = state.problem;
+        let visit = problem.visits[at];
+        if !state.jobs[at].is_multiple_of(visit.jobs_a_team) {
+            end.offer(cost, at, None);
+            return;
+        }
+        if state.sent[visit.firm_day] < problem.teams[visit.firm_day] {
+            end.offer(cost + visit.travel, at, None);
+            return;
+        }
+        for &beside in &state.visits_of[visit.firm_day] {
+            let other = problem.visits[beside];
+            let cost = if beside == at {
+                cost
+            } else if state.has_single(beside) {
+                // The team that has one job there comes here.
+                cost + visit.travel - other.travel
+            } else {
+                continue;
+            };
+            for &need in &state.at_visit[beside] {
+                let Some(had) = state.chosen[need] else {
+                    continue;
+                };
+                let cost = cost - problem.choices[had].cost;
+                end.offer(cost + problem.unmet[need], at, Some(need));
+                self.go_on(state, need, Some(at), cost, end, room);
+            }
+        }
+    }
+
+    /// From a need that makes way to all visits where it may go.
+    fn go_on(
+        &mut self,
+        state: &State<'_>,
+        need: usize,
+        from: Option<usize>,
+        cost: i64,
+        end: &End,
+        room: i64,
+    ) {
+        let most = end.cost.saturating_add(room);
+        let order = self.order;
+        for &choice in &order[need] {
+            let to = state.problem.choices[choice];
+            let cost = cost + to.cost;
+            if cost >= most {
+                break;
+            }
+            let key = cost + self.worth[to.visit];
+            if key >= most || cost >= self.cost[to.visit] || self.passed(state, from, to.visit) {
+                continue;
+            }
+            if self.cost[to.visit] == NEVER {
+                self.seen.push(to.visit);
+            }
+            self.cost[to.visit] = cost;
+            self.by[to.visit] = Link { from, need, choice };
+            self.queue.push(Reverse((key, to.visit)));
+        }
+    }
+
+    /// Whether a chain has been on a visit's day, whose teams it counts on only once.
+    fn passed(&self, state: &State<'_>, from: Option<usize>, visit: usize) -> bool {
+        let day = state.problem.visits[visit].firm_day;
+        let mut at = from;
+        while let Some(passed) = at {
+            if state.problem.visits[passed].firm_day == day {
+                return true;
+            }
+            at = self.by[passed].from;
+        }
+        false
+    }
+}
+
+/// Makes a chain's moves; none of them where they are not possible together at less than
+/// the limit, for a link may have changed since the chain went on from it.
+fn carry_out(
+    state: &mut State<'_>,
+    need: usize,
+    moves: &[(usize, Option<usize>)],
+    limit: i64,
+) -> Option<i64> {
+    // A need that is in it twice goes only once.
+    let twice = |at: usize| moves[..at].iter().any(|(need, _)| *need == moves[at].0);
+    if (0..moves.len()).any(twice) {
+        return None;
+    }
+    let before = state.chosen.clone();
+    let mut cost = 0;
+    for (moved, _) in moves {
+        if *moved != need {
+            cost -= state.take(*moved);
+        }
+    }
+    for (moved, choice) in moves {
+        cost += match choice {
+            Some(choice) => state.put(*moved, *choice),
+            None => state.problem.unmet[*moved],
+        };
+    }
+    if moves.is_empty() {
+        cost = state.problem.unmet[need];
+    }
+    let fits = moves.iter().all(|(_, choice)| {
+        choice.is_none_or(|choice| {
+            let day = state.problem.visits[state.problem.choices[choice].visit].firm_day;
+            state.sent[day] <= state.problem.teams[day]
+        })
+    });
+    if fits && cost < limit {
+        return Some(cost);
+    }
+    state.go_back(&before);
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::problem::made_up::problems;
+    use crate::solve::search::greedy;
+    use crate::solve::{Choice, Problem, Visit, prices};
+    use proptest::prelude::*;
+
+    fn visit(firm_day: usize) -> Visit {
+        Visit {
+            firm_day,
+            travel: 0,
+            jobs_a_team: 2,
+        }
+    }
+
+    #[test]
+    fn three_needs_change_places_where_no_two_could() {
+        let choice = |need, visit, cost| Choice { need, visit, cost };
+        let one_job = |firm_day| Visit {
+            jobs_a_team: 1,
+            ..visit(firm_day)
+        };
+        let problem = Problem {
+            unmet: vec![1_000; 3],
+            visits: (0..3).map(one_job).collect(),
+            teams: vec![1; 3],
+            choices: vec![
+                choice(0, 0, 20),
+                choice(0, 1, 10),
+                choice(1, 1, 20),
+                choice(1, 2, 10),
+                choice(2, 2, 20),
+                choice(2, 0, 10),
+            ],
+        };
+        let mut state = State::new(&problem, vec![Some(0), Some(2), Some(4)]);
+        let order = problem.by_need();
+        assert!(Chains::new(&order, &[0; 3]).improve(&mut state, 0));
+        assert_eq!(state.chosen, [Some(1), Some(3), Some(5)]);
+    }
+
+    #[test]
+    fn a_team_with_one_job_is_called_to_another_port() {
+        let choice = |need, visit, cost| Choice { need, visit, cost };
+        let problem = Problem {
+            unmet: vec![1_000, 5_000],
+            visits: vec![visit(0), visit(0), visit(1)],
+            teams: vec![1, 1],
+            choices: vec![choice(0, 0, 10), choice(0, 2, 90), choice(1, 1, 10)],
+        };
+        let mut state = State::new(&problem, vec![Some(0), None]);
+        let order = problem.by_need();
+        assert!(Chains::new(&order, &[0; 3]).improve(&mut state, 1));
+        assert_eq!(state.chosen, [Some(1), Some(2)]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_need_is_placed_at_the_cost_that_is_given_back_or_nothing_changes(problem in problems()) {
+            let order = problem.by_need();
+            let begin = greedy(&problem, vec![None; problem.unmet.len()], &order);
+            let worth = prices::bound(&problem, problem.cost(&begin).unwrap()).worth;
+            for worth in [worth.clone(), vec![0; worth.len()]] {
+                let mut chains = Chains::new(&order, &worth);
+                let mut state = State::new(&problem, begin.clone());
+                for need in 0..problem.unmet.len() {
+                    let home = chains.worth_of_place(&state, need);
+                    state.take(need);
+                    let taken = state.chosen.clone();
+                    let without = problem.cost(&taken).unwrap() - problem.unmet[need];
+                    if let Some(cost) = chains.place(&mut state, need, i64::MAX / 8, home) {
+                        prop_assert_eq!(problem.cost(&state.chosen), Some(without + cost));
+                    } else {
+                        prop_assert_eq!(&state.chosen, &taken);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! Whole teams sent elsewhere.
+//!
+//! Where a team has several jobs a day no chain of single needs calls it away. So each
+//! visit in turn is sent one team more, one that is free or another visit's of that day;
+//! it takes the jobs that are best there, and those that it had are placed anew by chains.
+
+use super::bound::Bound;
+use super::chain::Chains;
+use super::problem::{Assignment, Problem};
+use super::search::State;
+
+/// Rounds over all needs and all visits, at most.
+const ROUNDS: usize = 12;
+
+/// Improves an assignment by chains and by teams until neither makes it cheaper.
+pub(super) fn improve(
+    problem: &Problem,
+    begin: Assignment,
+    order: &[Vec<usize>],
+    bound: &Bound,
+) -> Assignment {
+    let mut teams = Teams {
+        chains: Chains::new(order, &bound.worth),
+        state: State::new(problem, begin),
+        of_visit: problem.by_visit(),
+        bound,
+        order,
+    };
+    for _ in 0..ROUNDS {
+        let mut moved = 0;
+        loop {
+            let before = moved;
+            for need in 0..problem.unmet.len() {
+                moved += usize::from(teams.chains.improve(&mut teams.state, need));
+            }
+            if moved == before {
+                break;
+            }
+        }
+        for visit in 0..problem.visits.len() {
+            moved += usize::from(teams.send_one_more(visit));
+        }
+        if moved == 0 {
+            break;
+        }
+    }
+    teams.state.chosen
+}
+
+struct Teams<'a> {
+    chains: Chains<'a>,
+    state: State<'a>,
+    of_visit: Vec<Vec<usize>>,
+    bound: &'a Bound,
+    order: &'a [Vec<usize>],
+}
+
+impl Teams<'_> {
+    fn send_one_more(&mut self, visit: usize) -> bool {
+        let problem = self.state.problem;
+        let day = problem.visits[visit].firm_day;
+        if self.state.sent[day] < problem.teams[day] {
+            return self.send(visit, &[]);
+        }
+        let others = self.state.visits_of[day].clone();
+        others.into_iter().any(|other| {
+            let called_away = self.last_load(other);
+            other != visit && !called_away.is_empty() && self.send(visit, &called_away)
+        })
+    }
+
+    /// The jobs of the team that is least missed on a visit.
+    fn last_load(&self, visit: usize) -> Vec<usize> {
+        let jobs = self.state.jobs[visit];
+        if jobs == 0 {
+            return Vec::new();
+        }
+        let misfit = |need: &usize| {
+            let reduced = self.state.chosen[*need].map(|choice| self.bound.reduced[choice]);
+            (reduced.unwrap_or(0), *need)
+        };
+        let mut needs = self.state.at_visit[visit].clone();
+        needs.sort_by_key(misfit);
+        let load = (jobs - 1) % self.state.problem.visits[visit].jobs_a_team + 1;
+        needs.split_off(needs.len() - load as usize)
+    }
+
+    /// Sends a team to a visit and places anew what it had elsewhere, where all that is
+    /// cheaper.
+    fn send(&mut self, visit: usize, called_away: &[usize]) -> bool {
+        let problem = self.state.problem;
+        let before = self.state.chosen.clone();
+        let wishes = self.wishes(visit);
+        let (mut cost, mut room) = (0, 0);
+        for &need in called_away {
+            cost -= self.state.take(need);
+        }
+        for choice in wishes {
+            let need = problem.choices[choice].need;
+            if !called_away.contains(&need) {
+                room = room.max(self.chains.worth_of_place(&self.state, need));
+                cost -= self.state.take(need);
+            }
+            cost += self.state.put(need, choice);
+        }
+        let mut waiting = called_away.to_vec();
+        waiting.retain(|need| self.state.chosen[*need].is_none());
+        let day = problem.visits[visit].firm_day;
+        let fits = self.state.sent[day] <= problem.teams[day];
+        if fits && self.place_anew(&waiting, cost, room) {
+            return true;
+        }
+        self.state.go_back(&before);
+        false
+    }
+
+    /// The choices that gain most on a visit, as many as a team does there.
+    fn wishes(&self, visit: usize) -> Vec<usize> {
+        let problem = self.state.problem;
+        let mut gains: Vec<(i64, usize)> = Vec::new();
+        for &choice in &self.of_visit[visit] {
+            let to = problem.choices[choice];
+            let had = self.state.chosen[to.need].map(|had| problem.choices[had]);
+            let gain = to.cost - had.map_or(problem.unmet[to.need], |had| had.cost);
+            if gain < 0 && had.is_none_or(|had| had.visit != visit) {
+                gains.push((gain, choice));
+            }
+        }
+        gains.sort_unstable();
+        let mut needs = Vec::new();
+        let mut wishes: Vec<usize> = gains.into_iter().map(|(_, choice)| choice).collect();
+        // Two choices of one need on a visit: the cheaper.
+        wishes.retain(|choice| {
+            let need = problem.choices[*choice].need;
+            let first = !needs.contains(&need);
+            needs.push(need);
+            first
+        });
+        wishes.truncate(problem.visits[visit].jobs_a_team as usize);
+        wishes
+    }
+
+    /// Places needs one after the other; whether `cost` with what they cost is less than
+    /// nothing then.
+    fn place_anew(&mut self, waiting: &[usize], mut cost: i64, room: i64) -> bool {
+        let mut left: i64 = waiting.iter().map(|need| self.alone(*need)).sum();
+        for &need in waiting {
+            left -= self.alone(need);
+            let limit = -cost - left;
+            match self.chains.place(&mut self.state, need, limit, room) {
+                Some(placed) => cost += placed,
+                None => return false,
+            }
+        }
+        cost < 0
+    }
+
+    /// What a need costs where it has the first choice of all teams.
+    fn alone(&self, need: usize) -> i64 {
+        let problem = self.state.problem;
+        let cheapest = self.order[need].first();
+        let cheapest = cheapest.map_or(i64::MAX, |choice| problem.choices[*choice].cost);
+        cheapest.min(problem.unmet[need])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solve::problem::made_up::problems;
+    use crate::solve::search::greedy;
+    use crate::solve::{Choice, Visit, bound, prices};
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_team_with_two_jobs_is_called_away_for_one_that_has_no_other() {
+        let visit = |firm_day| Visit {
+            firm_day,
+            travel: 100,
+            jobs_a_team: 2,
+        };
+        let choice = |need, visit, cost| Choice { need, visit, cost };
+        let problem = Problem {
+            unmet: vec![5_000, 5_000, 9_000],
+            visits: vec![visit(0), visit(0), visit(1)],
+            teams: vec![1, 1],
+            choices: vec![
+                choice(0, 0, 100),
+                choice(1, 0, 100),
+                choice(2, 1, 100),
+                choice(0, 2, 300),
+                choice(1, 2, 300),
+            ],
+        };
+        let begin = vec![Some(0), Some(1), None];
+        let order = problem.by_need();
+        let found = improve(&problem, begin, &order, &bound::bound(&problem));
+        assert_eq!(found, [Some(3), Some(4), Some(2)]);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn what_is_found_is_feasible_and_no_dearer_than_the_beginning(problem in problems()) {
+            let order = problem.by_need();
+            let nothing = vec![None; problem.unmet.len()];
+            for begin in [nothing.clone(), greedy(&problem, nothing, &order)] {
+                let before = problem.cost(&begin).unwrap();
+                for bound in [bound::bound(&problem), prices::bound(&problem, before)] {
+                    let found = improve(&problem, begin.clone(), &order, &bound);
+                    let after = problem.cost(&found);
+                    prop_assert!(after.is_some_and(|after| after <= before), "{after:?} {before}");
+                    prop_assert!(after.is_some_and(|after| after >= bound.cost));
+                }
+            }
+        }
+    }
+}
