@@ -38,6 +38,10 @@ const LARGE_PART: usize = 15_000;
 const ROUNDS: usize = 3;
 /// No further round where the gap is this part of the cost, or less: half a per cent.
 const SMALL_GAP: i64 = 200;
+/// With more open choices than these the neighbourhoods take minutes.
+const MANY_OPEN: usize = 5_000;
+/// None with so many, where the gap is this part of the cost, or less: one per cent.
+const SMALL_GAP_OF_MANY: i64 = 100;
 
 /// An assignment, and what is known of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,7 +87,7 @@ pub fn solve(problem: &Problem) -> Solved {
             };
         }
         let cost = cost_of(problem, &found);
-        if round == ROUNDS || ((large || round > 0) && is_small(cost - bound.cost, cost)) {
+        if round == ROUNDS || open.is_enough(round, cost - bound.cost, cost) {
             break;
         }
         found = near::improve(problem, &open, found);
@@ -96,10 +100,6 @@ pub fn solve(problem: &Problem) -> Solved {
     }
 }
 
-fn is_small(gap: i64, cost: i64) -> bool {
-    gap * SMALL_GAP <= cost
-}
-
 /// What a better assignment may have.
 struct Open {
     /// Each choice, those of the assignment in hand among them.
@@ -109,6 +109,17 @@ struct Open {
 }
 
 impl Open {
+    /// Whether the gap is too small for a round over the neighbourhoods. A small problem has
+    /// one in any case, for it may be proven by it.
+    fn is_enough(&self, round: usize, gap: i64, cost: i64) -> bool {
+        let many = self.choices.iter().filter(|open| **open).count() > MANY_OPEN;
+        if many {
+            gap * SMALL_GAP_OF_MANY <= cost
+        } else {
+            round > 0 && gap * SMALL_GAP <= cost
+        }
+    }
+
     fn of(problem: &Problem, bound: &Bound, found: &[Option<usize>], cost: i64) -> Open {
         let gap = cost - bound.cost;
         let choices = problem.choices.iter().zip(&bound.reduced).enumerate();
