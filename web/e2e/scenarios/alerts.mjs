@@ -76,8 +76,22 @@ export const alerts = {
       await page.goto('/alerts');
       const card = page.getByRole('article').filter({ hasText: `${vessel.name}: Deviation over` });
       await card.getByText('over the limit of 1.5°').waitFor();
+      // A link to it leads to it, when it is over too.
+      const id = await card.getAttribute('id');
+      await page.goto('/');
+      await page.goto(`/alerts#${id}`);
+      const isFocused = (id) => document.activeElement?.id === id;
+      await page.waitForFunction(isFocused, id);
       await limit(page, vessel.id, { deviation_deg: 45 });
-      await card.waitFor({ state: 'detached' });
+      await page.getByText('Cleared lately').waitFor();
+      await card.waitFor({ state: 'hidden' });
+      await page.goto('/');
+      await page.goto(`/alerts#${id}`);
+      await page.waitForFunction(isFocused, id);
+      await shoot('alert-sought');
+      await page.goto('/');
+      await page.goto('/alerts#of-nobody');
+      await page.getByText('neither open nor among those cleared lately').waitFor();
     },
   },
 

@@ -20,6 +20,7 @@ export const alerts = {
   confirmClear: 'Clear the alert',
   saidAcknowledged: 'The alert is acknowledged.',
   saidCleared: 'The alert is cleared.',
+  noSuch: 'The alert that the link names is neither open nor among those cleared lately.',
   clearedTitle: 'Cleared lately',
   toMail: 'Mail',
   toWebhooks: 'Webhooks',
