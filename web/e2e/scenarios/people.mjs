@@ -173,7 +173,8 @@ export const people = {
       await firm.getByLabel('Saturday').check();
       await firm.getByLabel('Sunday').uncheck();
       await firm.getByRole('button', { name: 'Save the terms' }).click();
-      await firm.getByText('NLRTM (€ 150 travel), BEANR (€ 400 travel)').waitFor();
+      const ports = 'Rotterdam (NLRTM), € 150 travel; Antwerpen (BEANR), € 400 travel';
+      await firm.getByText(ports).waitFor();
       await firm.getByText(/Friday, Saturday, 08:00 to 18:00/).waitFor();
       await fitsItsWidth(page);
       await shoot('firms', { fullPage: true });

@@ -23,7 +23,7 @@ export const firms = {
   lead_: 'Lead time',
   leadOf: (hours: number) => `${hours} hours from being asked`,
   ports: 'Ports',
-  portOf: (port: string, travel: string) => `${port} (${travel} travel)`,
+  portOf: (port: string, travel: string) => `${port}, ${travel} travel`,
   noPorts: 'none',
   flags: 'Flags',
   allFlags: 'all',
