@@ -11,6 +11,7 @@
 #[path = "../../tests/voyages/mod.rs"]
 mod voyages;
 
+mod bands;
 mod causes;
 mod large;
 mod quiet;
@@ -56,6 +57,12 @@ fn main() {
     }
     if wanted("large") {
         large::large(ships);
+    }
+    if wanted("bands") {
+        bands::bands(ships);
+    }
+    if wanted("undisturbed") {
+        bands::undisturbed(ships);
     }
     if wanted("return") {
         returns::returns(ships);

@@ -296,6 +296,7 @@ impl Course {
             earlier,
             own,
             prior: prior(first, before, reference.check.constant_sd_deg),
+            is_struck: first.begun_by_change == Some(Cause::LightningOrShock),
             is_known: first.begun_by_change.is_some() && before.is_some_and(|b| b.model.is_some()),
             reference,
         }

@@ -1,11 +1,12 @@
 //! Intervals of constant magnetism, and the fit of each.
 
 use super::logbook::{LogbookEntry, LogbookKind};
+use super::one_course::open_along;
 use super::reading::Reading;
 use super::reading::heading_reading;
 use super::{Epoch, SampleReason};
 use crate::change::Cause;
-use crate::estimate::Prior;
+use crate::estimate::{Prior, unseen_sd_nt};
 use crate::fit::{
     FitError, HeadingReading, Observation, REJECTED_BELOW, ReferenceCheck, RobustFit,
     RobustOptions, fit_known_ship, fit_robust, refer,
@@ -15,7 +16,8 @@ use crate::ship::PARAMETERS;
 use crate::time::Timestamp;
 use std::ops::Range;
 
-/// As many times as large as what has been seen a step may be in what has not been.
+/// As many times as large as what has been seen a step that was no strike may be in what has
+/// not been.
 const BEYOND_SEEN: f64 = 1.2;
 /// Rounds in which a prior is widened to what its model says: the first may be far too
 /// narrow.
@@ -147,6 +149,8 @@ pub(super) struct Stretch<'a> {
     pub(super) prior: Prior,
     /// Whether the prior is of this very ship.
     pub(super) is_known: bool,
+    /// Whether she was struck since: by what size, only the courses that show it tell.
+    pub(super) is_struck: bool,
     pub(super) reference: &'a Reference,
 }
 
@@ -207,17 +211,29 @@ impl Stretch<'_> {
             options.prior = wider;
             fitted = fit_known_ship(&observations, &options);
         }
+        if let Ok(fit) = &mut fitted
+            && self.is_struck
+        {
+            let known = options.prior.covariance;
+            let unseen_nt = known[0][0].max(known[2][2]).sqrt();
+            open_along(fit, &observations, unseen_nt);
+        }
         (taken, fitted)
     }
 
-    /// A prior that allows for a step of bx and by as large as the model has, each; none
-    /// where the stretch's own does.
+    /// A prior that allows for a step of bx and by as large as the model has, each, or, of a
+    /// strike, as large as it may yet be; none where the stretch's own does.
     fn wider(&self, model: &Model) -> Option<Prior> {
         let moved = |j: usize| {
             let now = model.parameters_over_lambda.to_array();
             now[j] - self.prior.mean[j]
         };
-        let size = BEYOND_SEEN * moved(0).hypot(moved(2));
+        let seen = moved(0).hypot(moved(2));
+        let size = if self.is_struck {
+            unseen_sd_nt(seen)
+        } else {
+            BEYOND_SEEN * seen
+        };
         let mut prior = self.prior.clone();
         let is_new = [0, 2]
             .map(|j| {

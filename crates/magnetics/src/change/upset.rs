@@ -12,6 +12,8 @@ use crate::ship::PARAMETERS;
 /// in what is induced.
 const STEP: f64 = 0.8;
 const STEP_INDUCED: f64 = 0.3;
+/// Of what a strike may leave in bx and by.
+const STRUCK: f64 = 6.0;
 /// Of a step of either reference, degrees, unless the first reading after it is
 /// further off.
 const REFERENCE_DEG: f64 = 5.0;
@@ -52,18 +54,27 @@ pub(super) const BURST: Burst = Burst {
 
 /// The filter with that having happened just now, by how much not being known.
 pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
-    let mut copy = now.clone();
-    let p = &mut copy.covariance;
     // All else sets in as it goes on: within its memory, not at once.
     if kind == Kind::Step {
-        for j in 0..PARAMETERS {
-            let step = if matches!(j, 0 | 2) {
-                STEP
-            } else {
-                STEP_INDUCED
-            };
-            p.add(j, j, step * step);
-        }
+        return stepped(now, STEP);
+    }
+    now.clone()
+}
+
+/// The filter of a ship that may have been struck by far harder than she is as a rule.
+pub(super) fn struck(now: &Filter) -> Filter {
+    stepped(now, STRUCK)
+}
+
+fn stepped(now: &Filter, permanent: f64) -> Filter {
+    let mut copy = now.clone();
+    for j in 0..PARAMETERS {
+        let step = if matches!(j, 0 | 2) {
+            permanent
+        } else {
+            STEP_INDUCED
+        };
+        copy.covariance.add(j, j, step * step);
     }
     copy
 }

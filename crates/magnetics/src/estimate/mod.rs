@@ -42,6 +42,7 @@ pub(crate) use noise::{
 };
 pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
+pub(crate) use prior::unseen_sd_nt;
 pub(crate) use quality::CAUTION_H_NT;
 pub(crate) use row::{
     CONSTANT, OFFSET_SD_DEG, Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,

@@ -21,6 +21,14 @@ const FREEDOM: [f64; 2] = [6.0, 3.0];
 /// part of the population's standard deviations.
 const INDUCED_UPSET: f64 = 0.4;
 
+/// The largest step of permanent magnetism that lightning is known to leave, nT.
+const LARGEST_STEP_NT: f64 = 20_000.0;
+/// A step may be so many times as large in what has not been seen as in what has, however
+/// large that was.
+const BEYOND_SEEN: f64 = 1.2;
+/// Two-sided 95 % of a normal distribution, in standard deviations.
+const NORMAL_95: f64 = 1.959_964;
+
 /// What is known beforehand: of ships at large, or of the same ship's epoch
 /// before. The constant is as headings show it, the reference's own in it.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +100,19 @@ impl Prior {
     }
 }
 
+/// Standard deviation, nT, of what a step left where no heading has shown it, when `seen_nt`
+/// of it have been: across the needle on one course, and along it as yet nothing.
+///
+/// Steps go in any direction, and as many are from 1 to 2 µT as from 5 to 10: then what is
+/// unseen has the density 1/(seen² + unseen²), up to the largest step there is. The 95 % of
+/// that are those of the normal distribution which this is of.
+pub(crate) fn unseen_sd_nt(seen_nt: f64) -> f64 {
+    let seen = seen_nt.abs().max(1.0);
+    let most = (LARGEST_STEP_NT.powi(2) - seen * seen).max(0.0).sqrt();
+    let within_95 = seen * (0.95 * (most / seen).atan()).tan();
+    (within_95 / NORMAL_95).max(BEYOND_SEEN * seen)
+}
+
 /// How far a solution lies out in the prior's tail: factors for the standard
 /// deviations of the seven parameters and of the constant, from the solution's
 /// distance to the mean with its covariance.
@@ -122,4 +143,35 @@ pub(crate) fn scales() -> [f64; 8] {
     let mut scale = [1.0; 8];
     scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
     scale
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_may_be_several_times_as_large_where_nothing_shows_it() {
+        let times = |seen_nt: f64| unseen_sd_nt(seen_nt) / seen_nt;
+        assert!((3.5..4.5).contains(&times(1000.0)), "{}", times(1000.0));
+        assert!((1.6..2.2).contains(&times(4000.0)), "{}", times(4000.0));
+        // What is as large as any step yet has no more to hide.
+        assert!((times(20_000.0) - BEYOND_SEEN).abs() < 1e-9);
+        assert!(unseen_sd_nt(0.0) < 10.0);
+    }
+
+    #[test]
+    fn of_many_steps_in_any_direction_the_band_holds_what_is_unseen_of_95_in_100() {
+        // Sizes with the density 1/size from 0.02 to 20 µT, directions evenly.
+        let (mut all, mut held) = (0.0, 0.0);
+        for size in 0..300 {
+            let nt = 20.0 * 1000_f64.powf(f64::from(size) / 299.0);
+            for direction in 0..360 {
+                let (sin, cos) = f64::from(direction).to_radians().sin_cos();
+                let unseen = (nt * cos).abs();
+                all += 1.0;
+                held += f64::from(unseen <= 1.96 * unseen_sd_nt(nt * sin));
+            }
+        }
+        assert!(held / all > 0.93, "{}", held / all);
+    }
 }

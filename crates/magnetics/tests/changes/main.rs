@@ -6,6 +6,7 @@ mod cargo;
 mod faults;
 mod named;
 mod passing;
+mod struck;
 #[allow(dead_code, unused_imports)]
 #[path = "../voyages/mod.rs"]
 mod voyages;

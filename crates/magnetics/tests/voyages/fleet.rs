@@ -4,7 +4,7 @@
 //! The field is the IGRF's, as the analysis has it; all else is this folder's own.
 
 use super::kept::Kept;
-use super::{Errors, Faults, Passage, Truth, Variety, gauss};
+use super::{Errors, Faults, Passage, Truth, Variety, gauss, needle};
 use binnacle_magnetics::angle::{CompassHeading, wrap_180};
 use binnacle_magnetics::field::{FieldAt, FieldModel};
 use binnacle_magnetics::model::Parameters;
@@ -24,7 +24,9 @@ pub(crate) enum Event {
     Nothing,
     /// A step of (bx, by) of so many nT in any direction, at sea.
     Step(f64),
-    /// The same, of which a third decays over weeks.
+    /// The same, so many degrees from the way her needle points then.
+    StepBy(f64, f64),
+    /// A step in any direction, of which a third decays over weeks.
     Lightning(f64),
     /// All seven parameters, from a port call to the one after the next.
     Cargo,
@@ -198,16 +200,23 @@ impl World {
         &mut self,
         plan: &Plan,
         minute: i64,
-        (arrived, at_sea_for): (bool, i64),
+        (arrived, at_sea_for, compass_deg): (bool, i64, f64),
         truth: &mut Truth,
         rng: &mut ChaCha8Rng,
     ) {
         let due = minute as f64 >= plan.event_day * 1440.0;
         let at_sea = at_sea_for > 600;
         match (self.state, plan.event) {
-            (Stage::ToCome, Event::Step(nt) | Event::Lightning(nt)) if due && at_sea => {
+            (Stage::ToCome, Event::Step(nt) | Event::StepBy(nt, _) | Event::Lightning(nt))
+                if due && at_sea =>
+            {
                 let before = truth.parameters;
-                let (sin, cos) = (TAU * rng.random::<f64>()).sin_cos();
+                let (sin, cos) = match plan.event {
+                    // Compass north lies as far to port of the bow as she heads east of it.
+                    Event::StepBy(_, from_needle) => (from_needle - compass_deg).to_radians(),
+                    _ => TAU * rng.random::<f64>(),
+                }
+                .sin_cos();
                 truth.parameters.bx_nt += nt * cos;
                 truth.parameters.by_nt += nt * sin;
                 self.changed = Some([before, truth.parameters]);
@@ -375,6 +384,14 @@ fn storms(sun: u64, days: f64, a_month: f64) -> Vec<(i64, f64)> {
     storms
 }
 
+/// What her compass shows, were nothing wrong but the ship's magnetism.
+fn shown_deg(truth: &Truth, passage: &Passage, field: &FieldAt) -> f64 {
+    let position = Position::new(passage.lat, passage.lon).unwrap();
+    let here = field.at(position, 0.0).unwrap();
+    let magnetic = passage.course - here.declination().degrees_east();
+    needle(&truth.parameters, magnetic, here.h_nt(), here.z_nt)
+}
+
 /// Sails a ship and keeps what her agent would.
 pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -431,7 +448,12 @@ pub(crate) fn sail_log(seed: u64, plan: &Plan) -> Log {
         let alongside = passage.berth_minutes > 0.0;
         let arrived = alongside && at_sea_for > 0;
         at_sea_for = if alongside { 0 } else { at_sea_for + 1 };
-        world.plan(plan, minute, (arrived, at_sea_for), &mut truth, &mut rng);
+        let compass_deg = match plan.event {
+            Event::StepBy(..) => shown_deg(&truth, &passage, &field),
+            _ => 0.0,
+        };
+        let now = (arrived, at_sea_for, compass_deg);
+        world.plan(plan, minute, now, &mut truth, &mut rng);
         let (astray, gyro_off) = world.chance(plan, minute, &passage, &errors, &mut rng);
         if alongside || passage.turning_minutes > 0.0 {
             kept.break_off();

@@ -250,6 +250,7 @@ impl Search<'_> {
         self.null = filter;
         self.bank.clear();
         self.faint = None;
+        self.passed = None;
         self.rivals.clear();
         self.doubt = None;
         self.spawned = k;

@@ -3,6 +3,7 @@
 use super::{EVERY, Event, Leads, Search, What};
 use crate::change::bank::{Kind, Lead};
 use crate::change::calls::Candidate;
+use crate::change::filter::Filter;
 use crate::fit::Observation;
 
 /// A step must be likelier by this than a burst, nats; or by that, when its lead
@@ -140,6 +141,7 @@ impl Search<'_> {
                 None => {}
             }
             self.burst = Some(self.events.len());
+            self.passed = self.before(first);
             self.faint = None;
             self.push(k, What::Burst, first, (first, first), leads, None);
         } else {
@@ -170,6 +172,13 @@ impl Search<'_> {
         } else {
             0.0
         }
+    }
+
+    /// The filter before a row, or soon before it, and the row that it is of.
+    fn before(&self, row: usize) -> Option<(usize, Filter)> {
+        let mut spawns = self.bank.spawns.iter();
+        let spawn = spawns.rfind(|spawn| spawn.at <= row)?;
+        Some((spawn.at, spawn.origin().clone()))
     }
 
     /// The last event, if it is this passing disturbance.

@@ -113,6 +113,9 @@ struct Search<'a> {
     doubt: Option<Doubt>,
     /// The burst that goes on, if one does.
     burst: Option<usize>,
+    /// The filter before the last burst that was told, and its first row, as long as nothing
+    /// that lasts was.
+    passed: Option<(usize, Filter)>,
     /// A disturbance that leads by too little to be told.
     faint: Option<Faint>,
     events: Vec<Event>,
@@ -145,6 +148,7 @@ impl<'a> Search<'a> {
             rivals: Vec::new(),
             doubt: None,
             burst: None,
+            passed: None,
             faint: None,
             events: Vec::new(),
         }

@@ -5,31 +5,86 @@
 
 use super::{Leads, Search};
 use crate::change::bank::Kind;
-use crate::change::cause::odds;
-use crate::estimate::POPULATION_SD;
+use crate::change::filter::Filter;
+use crate::change::upset::{WILD_DEG, struck};
+use crate::estimate::{POPULATION_SD, unseen_sd_nt};
+use std::ops::Range;
 
 /// A smaller step than this leaves the band as it is, population units (1500 nT).
-const LARGE: f64 = 1.0;
+const LARGE: f64 = 0.5;
 /// One must be likelier by this than nothing, nats.
 const WORTH_NATS: f64 = 5.0;
 /// And is out of question when something else is likelier by this.
 const OUT_OF_QUESTION_NATS: f64 = 25.0;
-/// Until then it is held to be no less likely than this: the ship goes aground by the band
-/// that is too narrow.
-const AT_LEAST: f64 = 0.3;
+/// A disturbance that has passed may have been one for so many rows: three days.
+const ROWS: usize = 432;
+/// The rows are linearised so often, each time at the ship that the last supposed: deviation
+/// is not linear in a large step.
+const ROUNDS: usize = 4;
+/// Half of so many rows are astray while a compass is.
+const NOW_ROWS: usize = 3;
+/// Where H is this, an error of the variation has its nominal size.
+const NOMINAL_H_NT: f64 = 24_000.0;
 
 impl Search<'_> {
     /// What the step that may have been adds to the variance of bx and by, nT².
     pub(super) fn open_nt2(&self, leads: &Leads) -> Option<f64> {
-        let step = leads[Kind::Step as usize].filter(|step| step.nats > WORTH_NATS)?;
+        let last = self.observations.len().checked_sub(1)?;
         let others = leads.iter().flatten().map(|lead| lead.nats);
-        let behind = others.fold(0.0, f64::max) - step.nats;
-        let spawn = &self.bank.spawns[step.spawn];
-        let size = spawn.copy(step.kind)?.far_from(spawn.origin());
-        if size < LARGE || behind > OUT_OF_QUESTION_NATS {
+        let likeliest = others.fold(0.0, f64::max);
+        let passed = self.passed.as_ref().filter(|(at, _)| last < at + ROWS);
+        if likeliest < WORTH_NATS && passed.is_none() {
             return None;
         }
-        let probability = (1.0 / (1.0 + odds(behind))).max(AT_LEAST);
-        Some(probability * (size * POPULATION_SD[0]).powi(2))
+        let spawns = self.bank.spawns.iter().filter(|s| last < s.at + ROWS);
+        let spawns = spawns.map(|spawn| (spawn.at, spawn.origin()));
+        let open = spawns
+            .chain(passed.map(|(at, before)| (*at, before)))
+            // The reading in which it happened is of neither ship.
+            .flat_map(|(at, before)| [at, at + 1].map(|first| (at, first, before)))
+            .filter_map(|(at, first, before)| {
+                let after = self.after_strike(at..first, before);
+                let nats = after.log_likelihood - self.null.log_likelihood;
+                let size = after.far_from(before);
+                let is_open =
+                    size > LARGE && nats > WORTH_NATS.max(likeliest - OUT_OF_QUESTION_NATS);
+                is_open.then_some((nats, size))
+            })
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, size)| size * POPULATION_SD[0]);
+        let wild = self.wild_nt(leads, last);
+        let seen_nt = open.into_iter().chain(wild).max_by(f64::total_cmp)?;
+        Some(unseen_sd_nt(seen_nt).powi(2))
+    }
+
+    /// How far the compass is astray now, as a field in nT, while it swings by more than any
+    /// storm makes it: whatever that is, the base model does not say what she shows.
+    fn wild_nt(&self, leads: &Leads, last: usize) -> Option<f64> {
+        let lead = leads[Kind::Burst as usize].filter(|lead| lead.kind == Kind::Wild)?;
+        let spawn = &self.bank.spawns[lead.spawn];
+        let origin = spawn.origin();
+        let at = origin.unknowns();
+        let rows = spawn.at.max((last + 1).saturating_sub(NOW_ROWS))..=last;
+        let astray = rows.map(|row| origin.variation_astray_deg(&self.measure(row, &at)));
+        let mut astray: Vec<f64> = astray.collect();
+        astray.sort_by(f64::total_cmp);
+        let median = astray
+            .get(astray.len() / 2)
+            .filter(|deg| **deg > WILD_DEG)?;
+        Some(median.to_radians().min(1.0) * NOMINAL_H_NT)
+    }
+
+    /// The filter of a ship that was as `before` until the end of the rows `calm`, and struck
+    /// then, at the last row.
+    fn after_strike(&self, calm: Range<usize>, before: &Filter) -> Filter {
+        let first = calm.end;
+        let before = self.run(before.clone(), calm, &before.unknowns());
+        let begun = struck(&before);
+        let rows = first..self.observations.len();
+        let mut after = before;
+        for _ in 0..ROUNDS {
+            after = self.run(begun.clone(), rows.clone(), &after.unknowns());
+        }
+        after
     }
 }

@@ -1,0 +1,82 @@
+//! The band in the first hours after a strike: courses sailed since show what of it lies
+//! across the needle on them, and no more.
+
+use crate::voyages::fleet::{Event, Name, Plan, START, sail_log};
+use crate::voyages::{predicted, true_deviation};
+use crate::{HOUR_S, began, calm, is_sound, run};
+use binnacle_magnetics::angle::wrap_180;
+use binnacle_magnetics::time::Timestamp;
+
+const DAY_S: f64 = 86_400.0;
+
+/// Error of the deviation and its standard error, degrees, on every tenth degree of the
+/// compass, so many hours after a strike; none where there is no model. A heading that her
+/// compass does not show any more is left out.
+fn off_deg(seed: u64, event: Event, hours: f64) -> Vec<(f64, f64)> {
+    let plan = calm(event);
+    let log = sail_log(seed, &plan);
+    let at = began(&log, Name::Step);
+    let sailed = log.samples.iter().find(|s| s.time > at).unwrap().time;
+    let until = log
+        .samples
+        .partition_point(|s| s.time.seconds_since(sailed) < hours * HOUR_S);
+    let analysis = run(&log.samples[..until]);
+    is_sound(&analysis);
+    // The same ship as she was then: she drifts.
+    let last = log.samples[until - 1].time;
+    let days = last.seconds_since(Timestamp::parse(START).unwrap()) / DAY_S + 0.001;
+    let truth = sail_log(seed, &Plan { days, ..plan }).truth;
+    let place = analysis.last_place.unwrap();
+    let model = analysis.current_epoch().unwrap().model.as_ref();
+    let off = |k: i32| {
+        let compass_deg = 10.0 * f64::from(k);
+        let truth_deg = true_deviation(&truth, compass_deg, place.h_nt, place.z_nt);
+        let (predicted_deg, se_deg) = predicted(model?, compass_deg, place.h_nt, place.z_nt);
+        let off_deg = wrap_180(truth_deg - predicted_deg);
+        off_deg.is_finite().then_some((off_deg, se_deg))
+    };
+    (0..36).filter_map(off).collect()
+}
+
+/// On how many headings the band holds the truth.
+fn held(off_deg: &[(f64, f64)]) -> usize {
+    let held = |(off, se): &&(f64, f64)| off.abs() <= 1.96 * se;
+    off_deg.iter().filter(held).count()
+}
+
+#[test]
+fn an_hour_after_a_strike_that_showed_the_band_holds_the_truth_on_every_course() {
+    for nt in [4000.0, 8000.0] {
+        for seed in 1..6 {
+            // Half of it along the needle, where no heading shows it yet.
+            let off = off_deg(seed, Event::StepBy(nt, 45.0), 1.0);
+            let held = held(&off);
+            assert!(held > 33, "seed {seed}, {nt} nT: {held} of {}", off.len());
+        }
+    }
+}
+
+#[test]
+fn hours_after_a_strike_the_band_is_open_where_no_course_has_shown_it() {
+    let (mut all, mut in_band) = (0, 0);
+    for seed in 1..9 {
+        let off = off_deg(seed, Event::StepBy(6000.0, 60.0), 5.0);
+        all += off.len();
+        in_band += held(&off);
+        let runs_aground = |(off, se): &(f64, f64)| off.abs() > 10.0 && 1.96 * se < 5.0;
+        assert!(!off.iter().any(runs_aground), "seed {seed}: {off:?}");
+    }
+    assert!(all > 6 * 36, "{all}");
+    assert!(in_band as f64 > 0.93 * all as f64, "{in_band} of {all}");
+}
+
+#[test]
+fn days_after_a_strike_the_band_is_narrow_again() {
+    for seed in 1..4 {
+        let off = off_deg(seed, Event::StepBy(3000.0, 60.0), 96.0);
+        let widest = off.iter().map(|off| off.1).fold(0.0, f64::max);
+        assert!(widest < 1.5, "seed {seed}: {widest}");
+        let held = held(&off);
+        assert!(held > 30, "seed {seed}: {held}");
+    }
+}
