@@ -22,7 +22,7 @@ use crate::events::{self, Event};
 use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
 use crate::outbox::Kind;
 use crate::time::Time;
-use crate::{mail, notifications, webhooks, work_orders};
+use crate::{compasses, mail, notifications, vessels, webhooks, work_orders};
 use std::time::Duration;
 use tracing::{error, info};
 
@@ -36,6 +36,7 @@ const WITHDRAWN: &str = "it is withdrawn: the samples since do not bear out that
 const LEARNT: &str = "the model has learnt it: the deviation stays as it is now, and no card from \
                       before it holds";
 const RENAMED: &str = "something else is held to be its cause now, and has an alert of its own";
+const NO_SERVICE: &str = "the vessel is out of service";
 const FOLLOWED: &str = "another of its cause followed";
 
 /// A change of an alert: what became of it, or only other words.
@@ -104,6 +105,21 @@ fn why_cleared(alert: &Known, findings: &Findings) -> &'static str {
     }
 }
 
+/// Ends all alerts of a vessel that goes out of service.
+///
+/// # Errors
+/// When the database cannot be asked.
+pub async fn out_of_service(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<Vec<Event>> {
+    let mut events = Vec::new();
+    for compass in compasses::ids(tx, vessel).await? {
+        store::lock(tx, vessel, compass).await?;
+        let known = store::known(tx, vessel, compass).await?;
+        let news = bring_in_line(tx, vessel, compass, &known, &[], |_| OVER, now).await?;
+        events.extend(tell(tx, vessel, &news, now).await?);
+    }
+    Ok(events)
+}
+
 /// Looks which agents have fallen silent, and which have not.
 ///
 /// # Errors
@@ -167,12 +183,19 @@ pub(super) async fn bring_in_line(
     why_cleared: impl Fn(&Known) -> &'static str,
     now: Time,
 ) -> Result<Vec<News>> {
+    let in_service = vessels::is_in_service(tx, vessel).await?;
+    let wanted = if in_service { wanted } else { &[] };
     let mut news = Vec::new();
     for alert in known {
         if wanted.iter().any(|wanted| wanted.cause == alert.cause) {
             continue;
         }
-        store::end(tx, vessel, alert.id, why_cleared(alert), now).await?;
+        let why = if in_service {
+            why_cleared(alert)
+        } else {
+            NO_SERVICE
+        };
+        store::end(tx, vessel, alert.id, why, now).await?;
         if alert.state != State::Cleared {
             news.push(News::of(alert.id, Kind::AlertCleared));
         }

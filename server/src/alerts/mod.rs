@@ -6,6 +6,7 @@
 //!   one open alert of each cause: what goes on is updated, not repeated.
 //! - An alert clears itself when its cause is over. One that a person cleared comes
 //!   back only when its cause does, gets worse, or happens again.
+//! - A vessel out of service has none that is open.
 //! - It is about one event. Another one of its cause clears it, with what people said
 //!   of it, and raises the next.
 //! - It comes from an analysis, in the transaction that stores the analysis, from the
@@ -31,7 +32,7 @@ pub use alert::{Alert, AlertWanted, Cause, Dated, Evidence, Severity, State};
 pub use cloned::{agent_revoked, from_batch};
 pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;
-pub use look::{AlertNews, after_analysis, by_the_clock, for_silence, sum, watch};
+pub use look::{AlertNews, after_analysis, by_the_clock, for_silence, out_of_service, sum, watch};
 pub use store::{OpenAlert, Standing, open_of_compass, standing};
 pub use wanted::{alerts_of, silence};
 

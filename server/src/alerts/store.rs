@@ -354,7 +354,7 @@ pub(super) struct Heard {
     pub(super) alerts: i64,
 }
 
-/// When the agents of every compass that has any were last heard of.
+/// When the agents of every compass that has any were last heard of, of vessels in service.
 pub(super) async fn heard(db: &Db) -> DbResult<Vec<Heard>> {
     rows!(
         db,
@@ -365,6 +365,7 @@ pub(super) async fn heard(db: &Db) -> DbResult<Vec<Heard>> {
                  WHERE a.vessel_id = s.vessel_id AND a.compass_id = s.compass_id
                    AND a.cause = 'silent_agent' AND a.holds) AS alerts
          FROM streams s
+         JOIN vessels v ON v.id = s.vessel_id AND v.out_of_service_at IS NULL
          LEFT JOIN vessel_settings w ON w.vessel_id = s.vessel_id
          GROUP BY s.vessel_id, s.compass_id
          ORDER BY s.vessel_id, s.compass_id"

@@ -207,7 +207,8 @@ pub(super) async fn calls(
                 c.withdrawal_reason
          FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
-         WHERE v.operator_id = $1 AND ($2 IS NULL OR c.vessel_id = $2) AND c.etd > $3
+         WHERE v.operator_id = $1 AND c.etd > $3
+           AND (c.vessel_id = $2 OR ($2 IS NULL AND v.out_of_service_at IS NULL))
          ORDER BY c.eta DESC, c.id DESC
          LIMIT $4",
         operator,

@@ -3,7 +3,7 @@
 mod amendment;
 mod store;
 
-pub use store::{insert_standard, of_fleet, of_vessel};
+pub use store::{ids, insert_standard, of_fleet, of_vessel};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;

@@ -57,6 +57,17 @@ pub(super) async fn insert(tx: &mut Tx, compass: &Compass) -> Result<()> {
     Ok(())
 }
 
+/// The ids of a vessel's compasses, within a transaction.
+pub async fn ids(tx: &mut Tx, vessel: VesselId) -> Result<Vec<CompassId>> {
+    let found: Vec<(CompassId,)> = rows!(
+        in tx,
+        (CompassId,),
+        "SELECT id FROM compasses WHERE vessel_id = $1 ORDER BY id",
+        vessel
+    )?;
+    Ok(found.into_iter().map(|(id,)| id).collect())
+}
+
 /// The compass that every vessel begins with.
 pub async fn insert_standard(tx: &mut Tx, vessel: VesselId, now: Time) -> Result<()> {
     let compass = Compass {

@@ -114,6 +114,7 @@ async fn vessels(
         "SELECT id, name, imo_number, call_sign, last_upload_at, last_sample_at, last_lat, last_lon
          FROM vessels
          WHERE operator_id = $1 AND id BETWEEN $2 AND $3
+           AND (out_of_service_at IS NULL OR $2 = $3)
          ORDER BY id",
         operator,
         first,

@@ -70,6 +70,7 @@ impl Loaded {
                 (VesselId, String, Option<String>),
                 "SELECT id, name, flag FROM vessels
                  WHERE operator_id = $1 AND id BETWEEN $2 AND $3
+                   AND out_of_service_at IS NULL
                  ORDER BY id",
                 operator,
                 first,

@@ -102,7 +102,7 @@ impl Row {
     }
 }
 
-/// Calls of a fleet, or of one vessel of it, in order of time.
+/// Calls of the fleet in service, or of one vessel, in order of time.
 pub(super) async fn list(
     db: &Db,
     operator: OperatorId,
@@ -117,7 +117,8 @@ pub(super) async fn list(
         Row,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
-         WHERE v.operator_id = $1 AND ($2 IS NULL OR c.vessel_id = $2)
+         WHERE v.operator_id = $1
+           AND (c.vessel_id = $2 OR ($2 IS NULL AND v.out_of_service_at IS NULL))
            AND (c.eta, c.id) > ($3, $4)
            AND c.etd > $5 AND c.eta < $6
            AND ($7 IS NULL OR c.port = $7)
@@ -136,14 +137,15 @@ pub(super) async fn list(
     )?)
 }
 
-/// The fleet's calls that are not over and not withdrawn, by vessel and time.
+/// The calls of the fleet in service that are not over and not withdrawn, by vessel and time.
 pub async fn ahead(db: &Db, operator: OperatorId, now: Time) -> Result<Vec<Row>> {
     Ok(rows!(
         db,
         Row,
         "SELECT c.*, v.name AS vessel_name FROM port_calls c
          JOIN vessels v ON v.id = c.vessel_id
-         WHERE v.operator_id = $1 AND c.etd > $2 AND c.withdrawn_at IS NULL
+         WHERE v.operator_id = $1 AND v.out_of_service_at IS NULL
+           AND c.etd > $2 AND c.withdrawn_at IS NULL
          ORDER BY c.vessel_id, c.eta",
         operator,
         now

@@ -19,6 +19,7 @@ pub(super) struct Amendment {
     flag: Amended<String>,
     #[serde(default)]
     degaussing: Amended<String>,
+    pub(super) in_service: Option<bool>,
 }
 
 /// What is to be changed of a vessel; what is left out stays, null takes a value away.
@@ -39,6 +40,9 @@ pub(super) struct AmendmentSchema {
     /// How her degaussing coils are, in words.
     #[schema(max_length = 200, example = "no coils fitted")]
     degaussing: Option<String>,
+    /// False takes her out of service: she is in the fleet's lists no more, needs nothing and
+    /// calls for no alert; all that is stored of her stays, and what her agents send is kept.
+    in_service: Option<bool>,
 }
 
 impl Amendment {

@@ -1,12 +1,14 @@
 //! The fleet.
 //!
-//! What always holds: a vessel is found only together with the operator who asks.
+//! What always holds: a vessel is found only together with the operator who asks. One out of
+//! service is found by its id, with all that is stored of it; the fleet's lists are without it.
 
 mod amendment;
 mod imo;
+mod service;
 mod store;
 
-pub use store::{find_row, must_be_in_fleet, names};
+pub use store::{find_row, is_in_service, must_be_in_fleet, names};
 
 use crate::access::{Reader, Writer};
 use crate::alerts::{self, Severity, Standing};
@@ -15,7 +17,7 @@ use crate::audit;
 use crate::compasses::{self, Compass};
 use crate::deviation::Worst;
 use crate::error::{Error, Problem, Result};
-use crate::http::{Id, Json, Page, Valid, optional_text, text};
+use crate::http::{Id, Json, Page, Params, Valid, optional_text, text};
 use crate::idempotency::{self, Key};
 use crate::ids::{OperatorId, VesselId};
 use crate::models::{self, ModelSummary, StoredModel};
@@ -24,7 +26,7 @@ use amendment::{Amendment, AmendmentSchema};
 use axum::extract::State;
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
@@ -56,6 +58,9 @@ pub struct Vessel {
     pub degaussing: Option<String>,
     /// When it was entered here.
     pub created_at: Time,
+    /// Since when it is out of service.
+    #[schema(required)]
+    pub out_of_service_at: Option<Time>,
     /// When its last batch came.
     #[schema(required)]
     pub last_upload_at: Option<Time>,
@@ -117,15 +122,25 @@ pub struct VesselList {
     pub next: Option<String>,
 }
 
+/// Which vessels to list.
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
+struct Which {
+    /// Those in service, or those out of it; those in service if not said.
+    in_service: Option<bool>,
+}
+
 /// List the fleet
-#[utoipa::path(get, path = "/vessels", tag = "fleet", params(Page),
+#[utoipa::path(get, path = "/vessels", tag = "fleet", params(Which, Page),
     responses((status = 200, body = VesselList), (status = 401, body = Problem)))]
 async fn list_vessels(
     State(app): State<App>,
     reader: Reader,
+    Params(which): Params<Which>,
     page: Page,
 ) -> Result<Json<VesselList>> {
-    let found = store::list(&app.db, reader.operator, page.after_id()?, page.fetch()).await?;
+    let (in_service, after) = (which.in_service.unwrap_or(true), page.after_id()?);
+    let found = store::list(&app.db, reader.operator, in_service, after, page.fetch()).await?;
     let listed = page.cut(found, |row| row.id.to_string());
     let (Some(first), Some(last)) = (listed.items.first(), listed.items.last()) else {
         return Ok(Json(VesselList {
@@ -192,11 +207,13 @@ async fn find_vessel(
 
 /// Amend what is written of a vessel
 ///
-/// What is left out stays as it is; null takes a value away.
+/// What is left out stays as it is; null takes a value away. Out of service goes only a vessel
+/// none of whose work orders is under way.
 #[utoipa::path(patch, path = "/vessels/{id}", tag = "fleet", params(("id" = VesselId, Path)),
     request_body = AmendmentSchema,
     responses((status = 200, body = Vessel), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
+              (status = 409, description = "A work order of hers is under way", body = Problem),
               (status = 422, body = Problem)))]
 async fn amend_vessel(
     State(app): State<App>,
@@ -204,10 +221,19 @@ async fn amend_vessel(
     Id(id): Id<VesselId>,
     Valid(amendment): Valid<Amendment>,
 ) -> Result<Json<Vessel>> {
+    let now = app.clock.now().into();
     let mut tx = app.db.begin().await?;
     let vessel = store::lock(&mut tx, writer.operator, id).await?;
+    let told = match amendment.in_service {
+        Some(in_service) => service::set(&mut tx, &vessel, in_service, now).await?,
+        None => Vec::new(),
+    };
     store::update(&mut tx, id, &amendment.applied_to(vessel)?).await?;
     tx.commit().await?;
+    app.work.notify_one();
+    for event in told {
+        app.publish(event);
+    }
     Ok(Json(assemble(&app, writer.operator, id).await?))
 }
 
@@ -265,6 +291,7 @@ impl store::Row {
             flag: self.flag,
             degaussing: self.degaussing,
             created_at: self.created_at,
+            out_of_service_at: self.out_of_service_at,
             last_upload_at: self.last_upload_at,
             model: model.map(StoredModel::summary),
             worst: model.and_then(StoredModel::worst),

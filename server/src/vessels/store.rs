@@ -32,6 +32,8 @@ pub struct Row {
     pub last_lat: Option<f64>,
     /// Where, degrees east.
     pub last_lon: Option<f64>,
+    /// Since when it is out of service.
+    pub out_of_service_at: Option<Time>,
 }
 
 impl Row {
@@ -48,6 +50,7 @@ impl Row {
 pub(super) async fn list(
     db: &Db,
     operator: OperatorId,
+    in_service: bool,
     after: Option<Uuid>,
     limit: i64,
 ) -> Result<Vec<Row>> {
@@ -55,13 +58,14 @@ pub(super) async fn list(
         db,
         Row,
         "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
-                last_upload_at, last_sample_at, last_lat, last_lon
+                last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
          FROM vessels
-         WHERE operator_id = $1 AND id > $2
+         WHERE operator_id = $1 AND id > $2 AND (out_of_service_at IS NULL) = $3
          ORDER BY id
-         LIMIT $3",
+         LIMIT $4",
         operator,
         after.unwrap_or_default(),
+        in_service,
         limit
     )
 }
@@ -72,7 +76,7 @@ pub async fn find_row(db: &Db, operator: OperatorId, id: VesselId) -> Result<Opt
         db,
         Row,
         "SELECT id, name, imo_number, call_sign, flag, degaussing, created_at,
-                last_upload_at, last_sample_at, last_lat, last_lon
+                last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at
          FROM vessels
          WHERE id = $2 AND operator_id = $1
          ORDER BY id",
@@ -139,7 +143,7 @@ pub(super) async fn lock(tx: &mut Tx, operator: OperatorId, id: VesselId) -> err
         "UPDATE vessels SET name = name
          WHERE id = $2 AND operator_id = $1
          RETURNING id, name, imo_number, call_sign, flag, degaussing, created_at,
-                   last_upload_at, last_sample_at, last_lat, last_lon",
+                   last_upload_at, last_sample_at, last_lat, last_lon, out_of_service_at",
         operator,
         id
     )?;
@@ -160,4 +164,30 @@ pub(super) async fn update(tx: &mut Tx, id: VesselId, amended: &NewVessel) -> Re
         amended.degaussing.as_deref()
     )?;
     Ok(())
+}
+
+/// Writes since when a vessel is out of service, or that she is in it.
+pub(super) async fn set_out_of_service(
+    tx: &mut Tx,
+    id: VesselId,
+    since: Option<Time>,
+) -> Result<()> {
+    execute!(
+        tx,
+        "UPDATE vessels SET out_of_service_at = $2 WHERE id = $1",
+        id,
+        since
+    )?;
+    Ok(())
+}
+
+/// Whether a vessel is in service, within a transaction.
+pub async fn is_in_service(tx: &mut Tx, id: VesselId) -> Result<bool> {
+    let found = row!(
+        in tx,
+        (i64,),
+        "SELECT COUNT(*) FROM vessels WHERE id = $1 AND out_of_service_at IS NULL",
+        id
+    )?;
+    Ok(found.is_some_and(|(vessels,)| vessels > 0))
 }

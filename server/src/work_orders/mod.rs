@@ -56,7 +56,7 @@ pub use moved::{Alongside, CallFit, Moving, calls_move};
 pub use offering::NewOffer;
 pub use order::{NewOrder, State};
 pub use refusal::{Cure, Refusal};
-pub use store::{lock_compass, must_not_be_adjusting};
+pub use store::{is_any_under_way, lock_compass, must_not_be_adjusting};
 pub use verification::{adjusted_at, after_analysis, alert};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
@@ -70,6 +70,7 @@ use crate::idempotency::{self, Key};
 use crate::ids::{OperatorId, OrderId, VesselId};
 use crate::session;
 use crate::tenants::Tenant;
+use crate::vessels;
 use axum::extract::State as Shared;
 use axum::http::StatusCode;
 use change::{Change, Request};
@@ -166,8 +167,8 @@ async fn create_work_order(
 /// Writes a new order, and offers it where that is asked for.
 ///
 /// # Errors
-/// [`Error::WrongState`] when another order of the compass is under way, and what is wrong
-/// with the offer.
+/// [`Error::WrongState`] when another order of the compass is under way or the vessel out of
+/// service, and what is wrong with the offer.
 async fn open(
     app: &App,
     mut tx: Tx,
@@ -182,6 +183,11 @@ async fn open(
         return Err(Error::WrongState(
             "another order of this compass is under way".to_owned(),
         ));
+    }
+    if !vessels::is_in_service(&mut tx, vessel).await? {
+        return Err(Error::WrongState(format!(
+            "{vessel_name} is out of service: take her back into it first"
+        )));
     }
     // Whom it is offered to stands in entries of their own.
     let offer = new.offer.take();

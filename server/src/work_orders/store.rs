@@ -5,6 +5,7 @@ pub(super) use super::find::{lines, list, lock, overdue, summary, vessel_of_aske
 use super::offers::{Between, Offers};
 use super::order::{NewOrder, State, Summary};
 use super::standing::Standing;
+use crate::compasses;
 use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Result};
 use crate::ids::{CompassId, OperatorId, OrderId, PhotoId, VesselId};
@@ -102,6 +103,16 @@ pub(super) async fn is_under_way(
         compass
     )?;
     Ok(found.is_some_and(|(orders,)| orders > 0))
+}
+
+/// Whether an order of any of a vessel's compasses is under way.
+pub async fn is_any_under_way(tx: &mut Tx, vessel: VesselId) -> Result<bool> {
+    for compass in compasses::ids(tx, vessel).await? {
+        if is_under_way(tx, vessel, compass).await? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Refuses to write a binnacle whose correctors are being moved.

@@ -38,6 +38,7 @@ mod mail_tls;
 mod mail_tries;
 mod notifications;
 mod offers;
+mod out_of_service;
 mod people;
 mod plan;
 mod planning;

@@ -106,12 +106,43 @@ export const fleet = {
       const needs = page.locator('td[data-label="Needs"]');
       const alert = needs.getByRole('link', { name: 'Deviation over the limit' }).first();
       await alert.click();
-      await page.waitForURL(/\/alerts$/);
+      await page.waitForURL(/\/alerts#/);
       await page.goBack();
       await page.getByRole('combobox', { name: /^Show/ }).selectOption('attention');
       const due = needs.filter({ hasText: 'Overdue' }).getByRole('link', { name: 'not scheduled' });
       await due.first().click();
       await page.waitForURL(/\/schedule$/);
+    },
+  },
+
+  'a vessel that is sold leaves the fleet, and may come back': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const name = 'Sold Ship';
+      await page.getByRole('button', { name: 'Add a vessel' }).click();
+      await page.getByLabel('Name', { exact: true }).fill(name);
+      await page.getByRole('button', { name: 'Add vessel' }).click();
+      await page.getByRole('rowheader').getByRole('link', { name }).click();
+      const particulars = page.getByRole('region', { name: 'Particulars' });
+      await particulars.getByRole('button', { name: 'Take her out of service…' }).click();
+      await shoot('vessel-out-of-service-asked');
+      await particulars.getByRole('button', { name: 'Take her out of service' }).click();
+      await page.getByText(/^Out of service since/).waitFor();
+      await shoot('vessel-out-of-service');
+
+      await page.getByRole('link', { name: 'Fleet', exact: true }).click();
+      await page.getByRole('rowheader').first().waitFor();
+      assert.ok(!(await names(page)).includes(name));
+      await page.getByText('Vessels out of service').click();
+      await page.getByRole('listitem').getByRole('link', { name }).click();
+      await particulars.getByRole('button', { name: 'Take her back into service' }).click();
+      await particulars.getByRole('button', { name: 'Take her out of service…' }).waitFor();
+      assert.equal(await page.getByText(/^Out of service since/).count(), 0);
+      // The other scenarios' fleet is without her.
+      await particulars.getByRole('button', { name: 'Take her out of service…' }).click();
+      await particulars.getByRole('button', { name: 'Take her out of service' }).click();
+      await page.getByText(/^Out of service since/).waitFor();
     },
   },
 

@@ -99,10 +99,12 @@ export const findAtAGlance = async (vessel: string) => {
   return found.vessels[0];
 };
 
-export const listVessels = () =>
-  everyPage((after) =>
-    answer(client.GET('/api/v1/vessels', { params: { query: page(longestPage, after) } })),
-  );
+/** Those in service, or those out of it. */
+export const listVessels = (inService = true) =>
+  everyPage((after) => {
+    const query = { ...page(longestPage, after), ...(inService ? {} : { in_service: false }) };
+    return answer(client.GET('/api/v1/vessels', { params: { query } }));
+  });
 
 export const createVessel = (body: NewVessel) => answer(client.POST('/api/v1/vessels', { body }));
 

@@ -1547,7 +1547,8 @@ export interface paths {
         head?: never;
         /**
          * Amend what is written of a vessel
-         * @description What is left out stays as it is; null takes a value away.
+         * @description What is left out stays as it is; null takes a value away. Out of service goes only a vessel
+         *     none of whose work orders is under way.
          */
         patch: operations["amend_vessel"];
         trace?: never;
@@ -8436,6 +8437,7 @@ export interface components {
              * @description Alerts that nobody has acknowledged.
              */
             open_alerts: number;
+            out_of_service_at: components["schemas"]["Time"] | null;
             worst: components["schemas"]["WorstHeading"] | null;
             worst_alert: components["schemas"]["Severity"] | null;
         };
@@ -8458,6 +8460,11 @@ export interface components {
              * @example 9074729
              */
             imo_number?: string | null;
+            /**
+             * @description False takes her out of service: she is in the fleet's lists no more, needs nothing and
+             *     calls for no alert; all that is stored of her stays, and what her agents send is kept.
+             */
+            in_service?: boolean | null;
             name?: string | null;
         };
         /** @description The data of an event. */
@@ -14681,6 +14688,8 @@ export interface operations {
     list_vessels: {
         parameters: {
             query?: {
+                /** @description Those in service, or those out of it; those in service if not said. */
+                in_service?: boolean;
                 /** @description How many at most; 100 if not said. */
                 limit?: number;
                 /** @description `next` of the page before. */
@@ -14913,6 +14922,15 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A work order of hers is under way */
+            409: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -22,3 +22,19 @@ export const vessels = {
   creating: 'Adding…',
   nameMissing: 'A vessel needs a name.',
 };
+
+/** Taking a vessel out of service. */
+export const service = {
+  end: 'Take her out of service…',
+  question:
+    'Sold, laid up or broken up? She will be in no list of the fleet, her alerts end, and she ' +
+    'needs nothing any more. All that is stored of her stays, what her agents still send is ' +
+    'kept, and she can be taken back at any time.',
+  confirm: 'Take her out of service',
+  resume: 'Take her back into service',
+  out: (since: string) =>
+    `Out of service since ${since}: she is in no list of the fleet and calls for no alert.`,
+  list: 'Vessels out of service',
+  none: 'All vessels are in service.',
+  since: (since: string) => `since ${since}`,
+};
