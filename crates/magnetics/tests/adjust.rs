@@ -10,7 +10,7 @@ mod adjusting;
 #[allow(dead_code)]
 mod tally;
 
-use adjusting::knowledge::FLUXGATE;
+use adjusting::knowledge::{FLUXGATE, Instruments};
 use adjusting::random::Random;
 use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, plan};
 use binnacle_magnetics::corrector::effect;
@@ -199,4 +199,28 @@ fn the_band_holds_and_little_is_left_on_ships_that_the_planner_never_saw() {
     assert!(tally.planned >= 30, "{tally}");
     assert!(tally.coverage() >= 0.92, "{tally}");
     assert!(tally.within_3_deg() >= 0.95, "{tally}");
+}
+
+/// Whatever is said of the heading: across the needle by what turns the field by 5° to 10°.
+#[test]
+fn a_ship_that_changed_since_her_model_is_refused_however_unsure_the_heading_is_said_to_be() {
+    for heading_sd_deg in [0.5, 2.0, 5.0] {
+        let said = Instruments {
+            heading_sd_deg,
+            ..FLUXGATE
+        };
+        let changed = Tally::changed(0..8, [0.0..0.0, 5.0..10.0], (FLUXGATE, said), None);
+        assert_eq!(changed.planned, 0, "{heading_sd_deg}: {changed}");
+    }
+    let honest = Tally::changed(0..8, [0.0..0.0, 0.0..0.0], (FLUXGATE, FLUXGATE), None);
+    assert!(honest.planned >= 7, "{honest}");
+}
+
+#[test]
+fn a_change_along_the_needle_is_refused_where_an_earlier_berth_told_lambda() {
+    let by = (FLUXGATE, FLUXGATE);
+    let changed = Tally::changed(0..8, [5.0..10.0, 0.0..0.0], by, Some(0.012));
+    assert_eq!(changed.planned, 0, "{changed}");
+    let honest = Tally::changed(0..8, [0.0..0.0, 0.0..0.0], by, Some(0.012));
+    assert!(honest.planned >= 7, "{honest}");
 }

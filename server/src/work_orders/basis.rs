@@ -1,6 +1,7 @@
 //! What a reading is held against and a plan rests on: model, field, binnacle and
 //! waters, as they were when the magnetometer was read.
 
+use super::earlier::{self, EarlierBerth};
 use super::order::State;
 use super::store;
 use crate::analysis;
@@ -46,6 +47,9 @@ pub struct Basis {
     pub waters: Vec<Water>,
     /// Whether magnetic cargo is on board, by the logbook or the reading.
     pub cargo_on_board: bool,
+    /// What the compass's last adjustment told of λ.
+    #[serde(default)]
+    pub earlier: Option<EarlierBerth>,
 }
 
 /// The model that a plan rests on.
@@ -124,6 +128,7 @@ impl Basis {
             binnacle: binnacle.binnacle.0,
             waters: waters(app, vessel, compass, earth.for_ship()).await?,
             cargo_on_board: cargo || given.cargo_on_board,
+            earlier: earlier::of_compass(app, vessel, compass, given.at, &logbook).await?,
             model: ModelUsed {
                 headings_until: headings_until(app, vessel, &model).await?,
                 ..ModelUsed::from(model)
@@ -165,6 +170,7 @@ impl Prepared {
         let model = &self.basis.model;
         let until = model.headings_until.unwrap_or(model.data_until);
         let age_s = self.given.at.seconds_since(until.0);
+        let earlier = self.basis.earlier.as_ref();
         Adjustment {
             model: &self.basis.model.model,
             earth: self.basis.earth(),
@@ -178,6 +184,7 @@ impl Prepared {
             circumstances: Circumstances {
                 model_age_days: Some((age_s / 86_400.0).max(0.0)),
                 cargo_on_board: self.basis.cargo_on_board,
+                earlier_lambda: earlier.and_then(|earlier| earlier.set_as(&self.binnacle)),
             },
             limits: self.limits,
         }

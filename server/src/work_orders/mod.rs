@@ -21,6 +21,7 @@ mod completed;
 pub mod completion;
 mod deadlines;
 mod done;
+mod earlier;
 pub mod entry;
 mod find;
 mod finish;

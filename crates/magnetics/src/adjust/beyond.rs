@@ -18,12 +18,26 @@ pub(super) fn beyond_limits(
     after: &[PredictedTable],
     model: &Model,
 ) -> Vec<Refusal> {
-    match beyond(after, model, &adjustment.limits, adjustment.waters) {
+    let found = beyond(after, model, &adjustment.limits, adjustment.waters);
+    let is_by_band = match &found {
+        Some(Refusal::BandTooWide { .. }) => true,
+        Some(Refusal::ResidualTooLarge {
+            worst_deg,
+            limit_deg,
+            ..
+        }) => worst_deg <= limit_deg,
+        _ => false,
+    };
+    let mut refusals = match found {
         Some(too_large @ Refusal::ResidualTooLarge { .. }) => {
             spheres::residual_too_large(adjustment, condition, after, too_large)
         }
         found => found.into_iter().collect(),
+    };
+    if let Some(what) = condition.since.unchecked().filter(|_| is_by_band) {
+        refusals.insert(0, Refusal::UncheckedBerth { what });
     }
+    refusals
 }
 
 impl Plan {

@@ -4,6 +4,7 @@
 //! then. The needles' part of that effect was fitted at a mean H of her waters.
 
 use super::heeling::VerticalReading;
+use super::since::Since;
 use super::tolerance::errors_of;
 use super::vertical::Vertical;
 use super::{AdjustError, Adjustment};
@@ -23,6 +24,7 @@ pub(super) struct Condition<'a> {
     model: &'a Model,
     pub(super) estimate: BerthEstimate,
     joint: JointCovariance,
+    pub(super) since: Since,
     lambda: f64,
     base: ShipMagnetism,
     /// What the correctors did while the ship was measured.
@@ -65,6 +67,8 @@ impl<'a> Condition<'a> {
         }
         let mut joint = estimate.covariance.unwrap_or_default();
         joint[LAMBDA][LAMBDA] += (lambda * adjustment.scale_sd).powi(2);
+        let since = Since::new(adjustment, &estimate, joint[LAMBDA][LAMBDA]);
+        since.widen(&mut joint);
         let measured = ShipMagnetism::from_parameters(p, lambda);
         let base = minus(&measured, &then.as_ship(reference_h_nt));
         let mut condition = Condition {
@@ -72,6 +76,7 @@ impl<'a> Condition<'a> {
             model,
             estimate,
             joint,
+            since,
             lambda,
             base,
             then,

@@ -27,6 +27,7 @@ mod reading_of_card;
 mod recheck;
 mod refusal;
 mod search;
+mod since;
 mod spheres;
 mod strength;
 mod thinned;
@@ -45,6 +46,7 @@ pub use predicted::{PredictedRow, PredictedTable};
 pub use read::{HeadingFrom, Magnetometer, NumberError, ReadingForm, Unit};
 pub use recheck::{InAll, Proven, Recheck, recheck, recheck_elsewhere, turned_in_all};
 pub use refusal::{Coefficient, Cure, Refusal};
+pub use since::{Compared, EarlierLambda};
 pub use verify::{Needed, Settled, Verification, verify};
 
 use crate::berth::{BerthError, BerthReading};
@@ -104,6 +106,8 @@ pub struct Circumstances {
     pub model_age_days: Option<f64>,
     /// Whether magnetic cargo is on board that the model does not know.
     pub cargo_on_board: bool,
+    /// λ as an earlier berth of the same compass told it.
+    pub earlier_lambda: Option<EarlierLambda>,
 }
 
 /// What a plan must keep to.
@@ -290,6 +294,7 @@ pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
     let berth = BerthCheck::new(adjustment, &condition);
     let card = adjustment.card();
     refusals.extend(card.filter(Card::is_refused).map(Refusal::CardDisagrees));
+    refusals.extend(condition.since.refusal());
     let vertical = adjustment.vertical_judged();
     refusals.extend(vertical.and_then(|vertical| vertical.refusal()));
     if !refusals.is_empty() {

@@ -15,6 +15,8 @@ pub(super) fn notes(
 ) -> Vec<String> {
     let mut notes: Vec<String> = only_here(adjustment, plans).into_iter().collect();
     notes.extend(berth.in_words());
+    let shows_from_deg = berth.consistency.shows_from_deg();
+    notes.extend(condition.since.in_words(shows_from_deg));
     let unseen = mistakes::unseen(adjustment.model, adjustment.earth, adjustment.reading);
     notes.extend(unseen.iter().map(|mistake| {
         format!(

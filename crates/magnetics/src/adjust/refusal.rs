@@ -3,6 +3,7 @@
 use super::card::Card;
 use super::mistakes::{Mistake, mistakes};
 use super::read::Unit;
+use super::since::Compared;
 use super::vertical::swapped;
 use super::{AdjustError, Adjustment, Refused};
 use crate::berth::{BerthError, Consistency};
@@ -55,6 +56,21 @@ pub enum Refusal {
     /// As she is, some compass headings stand for several magnetic ones.
     AmbiguousHeadings {
         /// What the model says.
+        what: String,
+    },
+    /// λ is not what an earlier berth of the compass told.
+    OtherLambda {
+        /// What it would be now.
+        lambda: f64,
+        /// What changes of the ship along the needle would do that, nT.
+        along_nt: f64,
+        /// Beside the earlier one.
+        compared: Compared,
+    },
+    /// The berth has not shown whether the ship's magnetism is still the model's, and what that
+    /// leaves open is too much.
+    UncheckedBerth {
+        /// What it is, in words.
         what: String,
     },
     /// The residual is known too badly.
@@ -216,6 +232,16 @@ impl Refusal {
             Refusal::CardDisagrees(_) => vec![Cure::ReadAgain],
             Refusal::FieldTooWeak { .. } => vec![Cure::AnotherBerth],
             Refusal::AmbiguousHeadings { .. } => vec![Cure::Swing],
+            Refusal::OtherLambda { .. } => {
+                vec![Cure::ReadAgain, Cure::HeadingsAtSea, Cure::Swing]
+            }
+            Refusal::UncheckedBerth { .. } => vec![
+                Cure::ReadAgain,
+                Cure::AnotherBerth,
+                Cure::BetterMagnetometer,
+                Cure::HeadingsAtSea,
+                Cure::Swing,
+            ],
             Refusal::BandTooWide { .. } => {
                 vec![
                     Cure::HeadingsAtSea,
@@ -378,7 +404,21 @@ impl fmt::Display for Refusal {
                 f,
                 "the earth's horizontal field at the berth, {h_nt:.0} nT, is too weak for a compass"
             ),
-            Refusal::AmbiguousHeadings { what } => f.write_str(what),
+            Refusal::AmbiguousHeadings { what } | Refusal::UncheckedBerth { what } => {
+                f.write_str(what)
+            }
+            Refusal::OtherLambda {
+                lambda,
+                along_nt,
+                compared,
+            } => write!(
+                f,
+                "{}: the ship's magnetism has changed by {:.1} microtesla along the needle since \
+                 the model, or a magnetometer's scale or place was another, or iron near the \
+                 compass was altered, which the logbook should then say",
+                compared.apart(*lambda),
+                along_nt / 1e3
+            ),
             Refusal::BandTooWide {
                 place,
                 band_deg,

@@ -5,6 +5,7 @@ mod card;
 mod paper;
 mod refused;
 mod sea;
+mod since;
 
 mod steps;
 mod strength;

@@ -3,8 +3,8 @@
 //! Strength gives λ; direction is left over, and tests everything that was
 //! taken for granted.
 
-use super::BerthReading;
 use super::field::{Expected, Vector, dot};
+use super::{BerthReading, ReadingErrors};
 use crate::angle::wrap_180;
 use crate::model::Covariance;
 use crate::ship::{EarthField, compass_rad};
@@ -16,6 +16,13 @@ use std::fmt;
 const NORMAL_99: f64 = 2.575_829;
 /// Beyond this a berth is not a good one, whatever its errors explain.
 const GOOD_DEG: f64 = 1.0;
+/// The standard error of a good berth's angle: what one beyond its 99 % would have shown is
+/// not taken for an error because the errors are wider.
+const GOOD_ERROR_DEG: f64 = 1.0;
+/// As well as this a heading at a berth is known without ado.
+const GOOD_HEADING_DEG: f64 = 2.0;
+/// So lies a telephone; anything made for it lies better.
+const GOOD_ALIGNMENT_DEG: f64 = 2.0;
 /// Steel that turned the field farther would be nearer than a magnetometer is ever set up.
 const STEEL_DEG: f64 = 20.0;
 
@@ -122,6 +129,22 @@ impl Consistency {
         suspects
     }
 
+    /// How far the ship's own field may have turned since the model, degrees, one standard
+    /// deviation, that a good berth's check would have shown and this one has not: an angle
+    /// that only wide errors explain may as well be hers, and so may as much as heading and
+    /// alignment are less sure than they can be. Nil at a good berth.
+    pub fn unchecked_deg(&self, errors: ReadingErrors) -> f64 {
+        beyond(self.angle_deg, NORMAL_99 * GOOD_ERROR_DEG)
+            .hypot(beyond(errors.heading_sd_deg, GOOD_HEADING_DEG))
+            .hypot(beyond(errors.alignment_sd_deg, GOOD_ALIGNMENT_DEG))
+    }
+
+    /// What no more than one in a hundred such berths would have hidden, degrees: a turn of the
+    /// ship's field by less may have passed its check.
+    pub fn shows_from_deg(&self) -> Option<f64> {
+        self.standard_error_deg.map(|error| NORMAL_99 * error)
+    }
+
     /// The angle and its error.
     pub fn apart(&self) -> String {
         let error = self
@@ -139,6 +162,11 @@ impl Consistency {
         let suspects: Vec<String> = suspects.iter().map(ToString::to_string).collect();
         format!("{}; {}", self.apart(), suspects.join(", or "))
     }
+}
+
+/// What there is of a standard deviation beside a good one.
+fn beyond(value: f64, good: f64) -> f64 {
+    (value.powi(2) - good.powi(2)).max(0.0).sqrt()
 }
 
 fn verdict(angle_deg: f64, standard_error_deg: Option<f64>) -> Verdict {

@@ -189,6 +189,16 @@ pub(crate) struct Berthed {
     noise_nt: [f64; 3],
 }
 
+impl Berthed {
+    /// The same by somebody who says so of his instruments.
+    pub(crate) fn said_by(self, instruments: Instruments) -> Berthed {
+        Berthed {
+            reading: read(self.reading.field_nt(), self.told_deg, instruments),
+            ..self
+        }
+    }
+}
+
 /// Half of the noise's variance is steel that does not go away.
 const STEEL_SHARE: f64 = 0.5;
 
@@ -199,8 +209,19 @@ pub(crate) fn reading(
     place: Place,
     instruments: Instruments,
 ) -> Berthed {
-    let errors = errors(instruments);
     let heading = rng.between(0.0, 360.0);
+    reading_on(rng, truth, place, heading, instruments)
+}
+
+/// The same on this one.
+pub(crate) fn reading_on(
+    rng: &mut Random,
+    truth: &Standing,
+    place: Place,
+    heading: f64,
+    instruments: Instruments,
+) -> Berthed {
+    let errors = errors(instruments);
     let [x, y, z] = truth.field(place, heading);
     let tilt = [0, 1].map(|_| (errors.tilt_sd_deg * rng.gaussian()).to_radians());
     let (sin, cos) = (errors.alignment_sd_deg * rng.gaussian())

@@ -103,9 +103,14 @@ impl Standing {
     /// Degrees of deviation for each degree of heel to starboard, on north: the field
     /// across the ship that heel brings in, over the mean directive force.
     pub(crate) fn heeling_error(&self, place: Place) -> f64 {
-        let lambda = 1.0 + f64::midpoint(self.chi[0][0], self.chi[1][1]);
+        let lambda = self.lambda();
         let across = (self.chi[1][1] - self.chi[2][2]) * place.1 - self.b_nt[2];
         across / (lambda * place.0)
+    }
+
+    /// The mean share of the earth's horizontal field that reaches the compass.
+    pub(crate) fn lambda(&self) -> f64 {
+        1.0 + f64::midpoint(self.chi[0][0], self.chi[1][1])
     }
 
     /// The seven ratios to λ, as headings in a mean field have them.

@@ -1,11 +1,16 @@
 //! One ship at one berth, with all that is known of her.
 
-use super::knowledge::{Berthed, Instruments, REFERENCE_SD_DEG, model_by, reading, waters};
+use super::knowledge::{
+    Berthed, Instruments, REFERENCE_SD_DEG, model_by, reading, reading_on, waters,
+};
 use super::random::Random;
 use super::{Place, Standing, Truth};
-use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, VerticalReading, Water};
+use binnacle_magnetics::adjust::{
+    Adjustment, Circumstances, EarlierLambda, Limits, VerticalReading, Water,
+};
 use binnacle_magnetics::binnacle::Binnacle;
 use binnacle_magnetics::model::Model;
+use binnacle_magnetics::time::Timestamp;
 
 /// How well a card is read before the bowl is taken out, with its friction, degrees.
 const CARD_SD_DEG: f64 = 0.4;
@@ -25,6 +30,7 @@ pub(crate) struct Scene {
     /// What the compass read there, correctors as they were.
     compass_deg: f64,
     scale_sd: f64,
+    earlier_lambda: Option<EarlierLambda>,
 }
 
 impl Scene {
@@ -60,7 +66,40 @@ impl Scene {
             berthed,
             compass_deg: compass_deg.rem_euclid(360.0),
             scale_sd: instruments.scale_sd,
+            earlier_lambda: None,
         }
+    }
+
+    /// Changes her permanent field since the model, along the needle and across it, nT, and
+    /// has the berth read anew by instruments of which somebody says something else.
+    pub(crate) fn changed(
+        mut self,
+        [along_nt, across_nt]: [f64; 2],
+        instruments: Instruments,
+        said: Instruments,
+    ) -> Scene {
+        let (place, magnetic_deg) = (self.place(), self.berthed.magnetic_deg);
+        let [x, y, _] = self.standing.field(place, magnetic_deg);
+        let (north, east) = (x / x.hypot(y), y / x.hypot(y));
+        self.truth.bare_b_nt[0] += along_nt * north - across_nt * east;
+        self.truth.bare_b_nt[1] += along_nt * east + across_nt * north;
+        self.standing = self.truth.with(&self.binnacle.setting);
+        let (rng, standing) = (&mut self.rng, &self.standing);
+        let berthed = reading_on(rng, standing, place, magnetic_deg, instruments);
+        self.berthed = berthed.said_by(said);
+        self.compass_deg = (standing.compass_deg(place, magnetic_deg)
+            + CARD_SD_DEG * rng.gaussian())
+        .rem_euclid(360.0);
+        self
+    }
+
+    /// Has her λ been told, so well, at an earlier berth.
+    pub(crate) fn told_before(&mut self, standard_error: f64) {
+        self.earlier_lambda = Some(EarlierLambda {
+            at: Timestamp::parse("2026-05-01T00:00:00Z").unwrap(),
+            lambda: self.standing.lambda() + standard_error * self.rng.gaussian(),
+            standard_error,
+        });
     }
 
     /// The field at the berth.
@@ -82,7 +121,10 @@ impl Scene {
             binnacle: &self.binnacle,
             now: None,
             waters: &self.waters,
-            circumstances: Circumstances::default(),
+            circumstances: Circumstances {
+                earlier_lambda: self.earlier_lambda,
+                ..Circumstances::default()
+            },
             limits: Limits::default(),
         }
     }

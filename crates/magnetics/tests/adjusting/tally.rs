@@ -42,6 +42,32 @@ impl Tally {
         tally
     }
 
+    /// Ships whose permanent field has changed since the model, along the needle and across it,
+    /// by so much of the field that is read as these angles turn it by; their λ was told so
+    /// well at an earlier berth, if it was.
+    pub(crate) fn changed(
+        seeds: std::ops::Range<u64>,
+        [along_deg, across_deg]: [std::ops::Range<f64>; 2],
+        (instruments, said): (Instruments, Instruments),
+        told_before: Option<f64>,
+    ) -> Tally {
+        let mut tally = Tally::default();
+        for seed in seeds {
+            let mut scene = Scene::new(seed, 0, instruments);
+            let mut size = |of: &std::ops::Range<f64>| {
+                let sign = if scene.rng.unit() < 0.5 { -1.0 } else { 1.0 };
+                sign * scene.rng.between(of.start, of.end).to_radians().tan()
+            };
+            let [x, y] = scene.berthed.reading.field_nt();
+            let change = [size(&along_deg), size(&across_deg)].map(|share| share * x.hypot(y));
+            if let Some(error) = told_before {
+                scene.told_before(error);
+            }
+            tally.add(&scene.changed(change, instruments, said));
+        }
+        tally
+    }
+
     fn add(&mut self, scene: &Scene) {
         self.ships += 1;
         let outcome = plan(&scene.adjustment()).unwrap();

@@ -1,6 +1,6 @@
 //! Every refusal that an adjustment knows, brought about as it would be at the binnacle.
 
-use super::{HEADING_DEG, Job, reading, word};
+use super::{HEADING_DEG, Job, read_again, reading, word};
 use crate::binnacles::{binnacle, put};
 use crate::on_both;
 use crate::support::{Person, Shore};
@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 on_both!(
     a_reading_that_cannot_be_is_refused_by_its_word,
     a_plan_that_would_not_do_is_refused_by_its_word,
+    a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logbook_explains_it,
     limits_that_nobody_may_ask_for_are_refused,
     one_of_two_browsers_does_a_step,
     what_was_read_before_the_ship_changed_is_read_again,
@@ -98,6 +99,12 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(shore: Shore) {
             &json!({ "cargo_on_board": true }),
             "cargo_on_board",
         ),
+        // The heading is right, and nobody is sure of that.
+        (
+            json!({}),
+            &json!({ "heading_sd_deg": 4.0 }),
+            "unchecked_berth",
+        ),
     ] {
         job.order_again(limits.clone()).await;
         job.post("/berth-reading", &with(body)).await.good();
@@ -109,6 +116,44 @@ async fn a_plan_that_would_not_do_is_refused_by_its_word(shore: Shore) {
         assert_eq!(refused, word, "{limits}");
         assert_eq!(job.seen().await["state"], "measured");
     }
+    shore.finish().await;
+}
+
+/// As a ship whose magnetism has changed by 2 µT along the needle would make it.
+async fn a_lambda_that_the_last_adjustment_contradicts_is_refused_until_the_logbook_explains_it(
+    shore: Shore,
+) {
+    let mut job = Job::begin(&shore).await;
+    let done = job.complete().await;
+    let setting = done["plan"]["plan"]["setting"].clone();
+    let made = job.person.post("/work-orders", &job.new_order()).await;
+    made.good()["id"]
+        .as_str()
+        .unwrap()
+        .clone_into(&mut job.order);
+    let read = |times: f64| {
+        let mut body = reading();
+        let again = read_again(&setting);
+        for name in ["forward", "starboard"] {
+            body[name] = json!(again[name].as_f64().unwrap() * times);
+        }
+        body["compass_deg"] = Value::Null;
+        body
+    };
+    let is_other = |answer: &crate::support::Answer| answer.text.contains("\"other_lambda\"");
+    job.post("/berth-reading", &read(1.0)).await.good();
+    let same = job.person.get(&job.path("/plan")).await;
+    assert!(!is_other(&same), "{}", same.text);
+    job.post("/berth-reading", &read(1.1)).await.good();
+    let other = job.person.get(&job.path("/plan")).await;
+    assert!(is_other(&other), "{}", other.text);
+    assert!(other.text.contains("berth of 2026-11-21"), "{}", other.text);
+    let repair = json!({ "kind": "repair", "from": super::AT, "to": super::AT });
+    let path = job.ship.path("/logbook");
+    job.person.post(&path, &repair).await.good();
+    job.post("/berth-reading", &read(1.1)).await.good();
+    let explained = job.person.get(&job.path("/plan")).await;
+    assert!(!is_other(&explained), "{}", explained.text);
     shore.finish().await;
 }
 

@@ -22,7 +22,7 @@ use super::instructions::Step;
 use super::mistakes::Mistake;
 use super::predicted::{PredictedTable, tables_by};
 use super::read::Unit;
-use super::{AdjustError, Adjustment, Outcome, Refused, plan};
+use super::{AdjustError, Adjustment, Circumstances, Outcome, Refused, plan};
 use crate::berth::BerthReading;
 use crate::binnacle::{Binnacle, Setting};
 use crate::deviation::DeviationError;
@@ -276,8 +276,12 @@ impl Judge<'_> {
             vertical: self.vertical,
             binnacle: &binnacle,
             now: None,
-            // That was read before the steps.
+            // That was read before the steps, and the first reading was held against this.
             compass_deg: None,
+            circumstances: Circumstances {
+                earlier_lambda: None,
+                ..self.adjustment.circumstances
+            },
             ..self.adjustment.clone()
         })?;
         Ok(Verdict::Replan {
