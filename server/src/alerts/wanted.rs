@@ -58,6 +58,14 @@ pub fn alerts_of(findings: &Findings, limits: &AlertLimits, open: &[Cause]) -> V
         _ => None,
     };
     let mut wanted = changed(findings, limits);
+    // Who is told of a change is told with it that less is known for now.
+    let is_told = wanted
+        .iter()
+        .any(|alert| alert.cause != Cause::ReferenceFault);
+    let uncertain = uncertain.filter(|alert| {
+        let is_wide = alert.cause == Cause::WideBand;
+        !(is_wide && is_told) || open.contains(&Cause::WideBand)
+    });
     for alert in [over, references, uncertain].into_iter().flatten() {
         // What the detector says of a cause is the better word.
         if wanted.iter().all(|known| known.cause != alert.cause) {
