@@ -5,6 +5,9 @@ use super::{BinnacleError, BinnacleForm};
 
 /// Ways to set spheres and bar.
 const MOST_CHOICES: usize = 50_000;
+/// A tested moment is at least and at most so much of the nominal one.
+const WEAKEST: f64 = 0.1;
+const STRONGEST: f64 = 2.0;
 /// 2¹⁰ combinations of pieces are gone through.
 const MOST_PIECES: usize = 10;
 
@@ -14,17 +17,17 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
     count("aboard.magnets", form.aboard.magnets.len())?;
     for (index, lot) in form.aboard.magnets.iter().enumerate() {
         let field = |part: &str| format!("aboard.magnets[{index}].{part}");
-        if form.design.magnet(&lot.magnet).is_none() {
+        let Some(kind) = form.design.magnet(&lot.magnet) else {
             let what = format!("the type has no magnets {:?}", lot.magnet);
             return Err(BinnacleError::new(field("magnet"), what));
-        }
+        };
         let earlier = &form.aboard.magnets[..index];
         if earlier.iter().any(|other| other.magnet == lot.magnet) {
             let what = format!("{:?} stands there twice", lot.magnet);
             return Err(BinnacleError::new(field("magnet"), what));
         }
         if let Some(moment) = lot.tested_moment_am2 {
-            number(&field("tested_moment_am2"), moment, 1e-3, 100.0)?;
+            tested_moment(&field("tested_moment_am2"), moment, kind.moment_am2)?;
         }
         if let Some(sd) = lot.tested_sd {
             number(&field("tested_sd"), sd, 0.0, 0.5)?;
@@ -33,6 +36,20 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
     quadrantal(form)?;
     pieces(form)?;
     choices(form)
+}
+
+/// A magnet loses strength with the years, and a bar of its size holds little more than a
+/// maker gives it: what is farther off was read or written wrongly.
+fn tested_moment(field: &str, moment: f64, nominal: f64) -> Result<(), BinnacleError> {
+    if (WEAKEST * nominal..=STRONGEST * nominal).contains(&moment) {
+        return Ok(());
+    }
+    let what = format!(
+        "{moment} A·m² is no test of a magnet of {nominal} A·m²: between {:.3} and {:.3} is taken",
+        WEAKEST * nominal,
+        STRONGEST * nominal
+    );
+    Err(BinnacleError::new(field, what))
 }
 
 /// So that a search ends, and its memory is bounded.

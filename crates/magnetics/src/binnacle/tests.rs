@@ -102,6 +102,23 @@ fn a_hole_that_does_not_exist_is_named() {
 }
 
 #[test]
+fn a_test_that_no_magnet_of_its_kind_can_have_is_refused() {
+    let nominal = class_a().design.magnets[0].moment_am2;
+    let tested = |moment| {
+        let mut form: BinnacleForm = class_a().into();
+        form.aboard.magnets[0].tested_moment_am2 = Some(moment);
+        Binnacle::try_from(form)
+    };
+    for moment in [50.0, 2.1 * nominal, 0.09 * nominal, -nominal, f64::NAN] {
+        let error = tested(moment).unwrap_err();
+        assert_eq!(error.field, "aboard.magnets[0].tested_moment_am2");
+    }
+    for moment in [0.4 * nominal, nominal, 1.3 * nominal] {
+        tested(moment).unwrap();
+    }
+}
+
+#[test]
 fn an_empty_catalogue_is_named() {
     for (change, field) in [
         (
