@@ -7,8 +7,12 @@
 
 use super::alert::Cause;
 use super::findings::Findings;
-use super::store::Known;
+use super::store::{self, OpenAlert};
+use crate::db::Db;
+use crate::error::Result;
+use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
+use crate::work_orders;
 
 /// Why such an alert cleared itself.
 pub(super) const ADJUSTED: &str = "the compass has been adjusted since: the card that was foretold \
@@ -22,10 +26,24 @@ pub(super) fn forget_changes(findings: &mut Findings, adjusted: Time) {
     });
 }
 
+/// The alerts of a compass that are not cleared, the newest first; without those about the
+/// ship as she was before its last adjustment, which the next analysis clears.
+///
+/// # Errors
+/// When the database cannot be asked.
+pub async fn in_force(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec<OpenAlert>> {
+    let mut open = store::open_of_compass(db, vessel, compass).await?;
+    let last = work_orders::completed(db, vessel, compass).await?.pop();
+    if let Some(last) = last {
+        open.retain(|alert| !is_about_before(alert.cause, alert.since, last.at));
+    }
+    Ok(open)
+}
+
 /// Whether an alert is about the ship as she was before an adjustment.
-pub(super) fn is_about_before(alert: &Known, adjusted: Time) -> bool {
+pub(super) fn is_about_before(cause: Cause, since: Time, adjusted: Time) -> bool {
     let is_the_ships = matches!(
-        alert.cause,
+        cause,
         Cause::DeviationOverLimit
             | Cause::WideBand
             | Cause::NoModel
@@ -36,5 +54,5 @@ pub(super) fn is_about_before(alert: &Known, adjusted: Time) -> bool {
             | Cause::UnknownChange
             | Cause::AdjustmentNotConfirmed
     );
-    is_the_ships && alert.since < adjusted
+    is_the_ships && since < adjusted
 }

@@ -81,7 +81,7 @@ pub async fn after_analysis(
     let mut wanted = alerts_of(&findings, limits, &open);
     wanted.extend(work_orders::alert(tx, vessel, compass).await?);
     let why = |alert: &Known| match adjusted {
-        Some(adjusted) if is_about_before(alert, adjusted) => ADJUSTED,
+        Some(adjusted) if is_about_before(alert.cause, alert.since, adjusted) => ADJUSTED,
         _ => why_cleared(alert, &findings),
     };
     let mut news = bring_in_line(tx, vessel, compass, &known, &wanted, why, now).await?;

@@ -27,13 +27,14 @@ mod store;
 mod wanted;
 
 pub use aboard::from_ship;
+pub use adjusted::in_force;
 pub use agreed::of_schedule;
 pub use alert::{Alert, AlertWanted, Cause, Dated, Evidence, Severity, State};
 pub use cloned::{agent_revoked, from_batch};
 pub use findings::{Findings, FoundChange, findings_of};
 pub use limits::AlertLimits;
 pub use look::{AlertNews, after_analysis, by_the_clock, for_silence, out_of_service, sum, watch};
-pub use store::{OpenAlert, Standing, open_of_compass, standing};
+pub use store::{OpenAlert, Standing, standing};
 pub use wanted::{alerts_of, silence};
 
 use crate::access::{Reader, Writer};

@@ -304,12 +304,14 @@ pub async fn standing(
 pub struct OpenAlert {
     /// What it is about.
     pub cause: Cause,
+    /// Since when it is so.
+    pub since: Time,
     /// What is so, in a sentence.
     pub summary: String,
 }
 
 /// The alerts of a compass that are not cleared, the newest first.
-pub async fn open_of_compass(
+pub(super) async fn open_of_compass(
     db: &Db,
     vessel: VesselId,
     compass: CompassId,
@@ -317,7 +319,7 @@ pub async fn open_of_compass(
     rows!(
         db,
         OpenAlert,
-        "SELECT cause, summary FROM alerts
+        "SELECT cause, since, summary FROM alerts
          WHERE vessel_id = $1 AND compass_id = $2 AND state <> 'cleared'
          ORDER BY id DESC",
         vessel,

@@ -145,7 +145,7 @@ async fn find_plan(
     whole.must_be(&AT_BERTH, "there is nothing to plan")?;
     let prepared = whole.standing().prepared()?;
     must_still_hold(&app, &whole.summary, &prepared).await?;
-    Ok(Json(offer(&app, prepared).await?))
+    Ok(Json(offer(&app, &whole.summary, prepared).await?))
 }
 
 /// Choose a plan
@@ -170,7 +170,7 @@ async fn choose_plan(
     whole.must_be(&AT_BERTH, "there is nothing to plan")?;
     let prepared = whole.standing().prepared()?;
     must_still_hold(&app, &whole.summary, &prepared).await?;
-    let outcome = offer(&app, prepared).await?;
+    let outcome = offer(&app, &whole.summary, prepared).await?;
     let offered = outcome.plans.len();
     let planned = Planned::of(outcome, choice.plan.unwrap_or(1));
     let planned = planned.ok_or_else(|| Error::Invalid {

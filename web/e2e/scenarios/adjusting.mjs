@@ -271,7 +271,7 @@ export const adjusting = {
       const foretold = async (part) =>
         (await again.getByTestId(`foretold-${part}`).innerText()).replace(/\s*µT/, '');
       await sendField(await foretold(0), await foretold(1));
-      await again.getByText('The field is as planned', { exact: true }).waitFor();
+      await again.getByText('The field agrees with what was foretold, within its error').waitFor();
       await sign.waitFor();
       await fitsItsWidth(page);
       await context.setOffline(true);

@@ -216,7 +216,7 @@ export const berth = {
     looked: 'I have looked: they stand as planned',
     lookedNote: 'looked at after the second reading: they stand as planned',
     verdict: {
-      as_planned: 'The field is as planned',
+      as_planned: 'The field agrees with what was foretold, within its error',
       replan: 'A new plan is wanted',
       slip: 'A step seems to have gone wrong',
       unexplained: 'The field is not as planned',

@@ -1,6 +1,7 @@
 //! The card after an adjustment: predicted, verified at sea, and over with its epoch.
 
 use super::{Job, foretold};
+use crate::alerts::limit;
 use crate::on_both;
 use crate::support::{Shore, days_at_sea};
 use binnacle_magnetics::sample::Sample;
@@ -9,6 +10,7 @@ use serde_json::{Value, json};
 on_both!(
     a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch,
     an_adjustment_that_failed_at_sea_leaves_its_card_predicted,
+    a_card_right_after_an_adjustment_bears_no_alert_from_before_it,
 );
 
 impl Job {
@@ -155,5 +157,30 @@ async fn an_adjustment_that_failed_at_sea_leaves_its_card_predicted(shore: Shore
     let closed = job.post("/close", &json!({ "text": "to be swung" })).await;
     assert_eq!(closed.good()["standing"], "predicted, not a certificate");
     job.is_said_everywhere("predicted").await;
+    shore.finish().await;
+}
+
+async fn a_card_right_after_an_adjustment_bears_no_alert_from_before_it(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    limit(
+        &shore,
+        &job.person,
+        &job.ship,
+        json!({ "deviation_deg": 1.0 }),
+    )
+    .await;
+    let notes = async || job.card().await["notes"].to_string();
+    assert!(
+        notes().await.contains("over the limit of 1°"),
+        "{}",
+        notes().await
+    );
+    // No analysis has cleared the alert yet.
+    job.complete().await;
+    assert!(
+        !notes().await.contains("over the limit"),
+        "{}",
+        notes().await
+    );
     shore.finish().await;
 }

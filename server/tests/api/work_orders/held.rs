@@ -4,6 +4,7 @@
 use super::{AT, Job, read_again, reading, word};
 use crate::binnacles::{binnacle, put};
 use crate::on_both;
+use crate::ship_alerts::says_that_it_departs;
 use crate::support::{Answer, Person, Shore};
 use serde_json::{Value, json};
 
@@ -14,6 +15,7 @@ on_both!(
     cargo_that_was_withdrawn_from_the_logbook_refuses_no_new_reading,
     an_adjustment_is_not_dated_before_its_steps,
     a_prediction_that_nothing_proved_does_not_count_as_fresh,
+    an_alert_about_the_compass_is_told_with_the_plan,
 );
 
 fn number(value: &Value) -> f64 {
@@ -185,5 +187,16 @@ async fn a_prediction_that_nothing_proved_does_not_count_as_fresh(shore: Shore) 
         .unwrap();
     let model = &read["entry"]["content"]["basis"]["model"];
     assert_eq!(model["headings_until"], record["data"]["until"]);
+    shore.finish().await;
+}
+
+async fn an_alert_about_the_compass_is_told_with_the_plan(shore: Shore) {
+    let job = Job::begin(&shore).await;
+    job.post("/berth-reading", &reading()).await.good();
+    let notes = async || job.person.get(&job.path("/plan")).await.good()["notes"].to_string();
+    let says = "an alert about this compass is open: Compass and gyro parted";
+    assert!(!notes().await.contains(says));
+    says_that_it_departs(&job.ship, 2).await;
+    assert!(notes().await.contains(says), "{}", notes().await);
     shore.finish().await;
 }
