@@ -56,11 +56,11 @@ export const session = {
       await context.setOffline(true);
       await page.getByRole('button', { name: 'Choose another place' }).click();
       await page.getByRole('button', { name: 'Show', exact: true }).click();
-      await page.getByText('The server cannot be reached', { exact: false }).waitFor();
+      // What was not there yet says so too.
+      const said = page.getByText('The server cannot be reached').first();
+      await said.waitFor();
       await context.setOffline(false);
-      await page
-        .getByText('The server cannot be reached', { exact: false })
-        .waitFor({ state: 'detached' });
+      await said.waitFor({ state: 'detached' });
     },
   },
 
