@@ -225,7 +225,9 @@ async fn amend_vessel(
     let mut tx = app.db.begin().await?;
     let vessel = store::lock(&mut tx, writer.operator, id).await?;
     let told = match amendment.in_service {
-        Some(in_service) => service::set(&mut tx, &vessel, in_service, now).await?,
+        Some(in_service) => {
+            service::set(&mut tx, writer.operator, &vessel, in_service, now).await?
+        }
         None => Vec::new(),
     };
     store::update(&mut tx, id, &amendment.applied_to(vessel)?).await?;

@@ -3,9 +3,10 @@
 use super::store::{Row, set_out_of_service};
 use crate::db::Tx;
 use crate::error::{Error, Result};
-use crate::events::Event;
+use crate::events::{self, Event};
+use crate::ids::OperatorId;
 use crate::time::Time;
-use crate::{alerts, analysis, work_orders};
+use crate::{alerts, analysis, schedule, work_orders};
 
 /// Takes a vessel out of service, or back into it; what is so already stays.
 ///
@@ -13,6 +14,7 @@ use crate::{alerts, analysis, work_orders};
 /// [`Error::WrongState`] when a work order of hers is under way.
 pub(super) async fn set(
     tx: &mut Tx,
+    operator: OperatorId,
     vessel: &Row,
     in_service: bool,
     now: Time,
@@ -20,11 +22,13 @@ pub(super) async fn set(
     if in_service == vessel.out_of_service_at.is_none() {
         return Ok(Vec::new());
     }
+    schedule::ask(tx, operator, now).await?;
+    let mut told = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
     if in_service {
         set_out_of_service(tx, vessel.id, None).await?;
         // It raises what alerts there were again, if they still are called for.
         analysis::enqueue(tx, vessel.id, now, 0.0).await?;
-        return Ok(Vec::new());
+        return Ok(told);
     }
     if work_orders::is_any_under_way(tx, vessel.id).await? {
         return Err(Error::WrongState(format!(
@@ -33,5 +37,6 @@ pub(super) async fn set(
         )));
     }
     set_out_of_service(tx, vessel.id, Some(now)).await?;
-    alerts::out_of_service(tx, vessel.id, now).await
+    told.extend(alerts::out_of_service(tx, vessel.id, now).await?);
+    Ok(told)
 }

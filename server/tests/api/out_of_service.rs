@@ -2,6 +2,7 @@
 
 use crate::alerts::{limit, with_model};
 use crate::on_both;
+use crate::planning::{due_vessel, enter, follow, planned_firm, solve};
 use crate::support::{Answer, Person, Ship, Shore, passage};
 use reqwest::Method;
 use serde_json::{Value, json};
@@ -11,13 +12,14 @@ on_both!(
     what_her_agents_still_send_is_kept_and_back_in_service_she_is_as_before,
     a_vessel_with_an_order_under_way_stays_in_service,
     only_an_admin_of_hers_takes_a_vessel_out_of_service,
+    a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it,
 );
 
 const A_WHILE_S: f64 = 10.0;
 const LATER: &str = "2026-11-15T12:00:00Z";
 
-async fn set(person: &Person, ship: &Ship, in_service: bool) -> Answer {
-    let request = person.request(Method::PATCH, &ship.path(""));
+async fn set(person: &Person, vessel: &str, in_service: bool) -> Answer {
+    let request = person.request(Method::PATCH, vessel);
     Answer::of(request.json(&json!({ "in_service": in_service }))).await
 }
 
@@ -42,7 +44,7 @@ async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(shore: Sho
     let nao = over_her_limit(&shore, &ada).await;
     let kogge = shore.ship(&ada, "Kogge").await;
 
-    let vessel = set(&ada, &nao, false).await.good();
+    let vessel = set(&ada, &nao.path(""), false).await.good();
     assert!(vessel["out_of_service_at"].is_string(), "{vessel}");
     assert_eq!(
         (&vessel["name"], &vessel["open_alerts"]),
@@ -78,11 +80,10 @@ async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(shore: Sho
         .await
         .unwrap();
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
+    // Both have been silent.
     let open = items(&ada, "/alerts?open=true").await;
-    assert!(
-        open.iter().all(|alert| alert["vessel_name"] == "Kogge"),
-        "{open:?}"
-    );
+    assert_eq!(open.len(), 1, "{open:?}");
+    assert_eq!(open[0]["vessel_name"], "Kogge");
     drop(kogge);
     shore.finish().await;
 }
@@ -90,13 +91,13 @@ async fn a_vessel_out_of_service_is_in_no_list_and_calls_for_no_alert(shore: Sho
 async fn what_her_agents_still_send_is_kept_and_back_in_service_she_is_as_before(shore: Shore) {
     let ada = shore.admin("ada").await;
     let nao = over_her_limit(&shore, &ada).await;
-    set(&ada, &nao, false).await.good();
+    set(&ada, &nao.path(""), false).await.good();
     nao.put(2, &passage(LATER, 30)).await.good();
     shore.advance(A_WHILE_S);
     shore.work().await;
     assert_eq!(items(&ada, "/alerts?open=true").await, Vec::<Value>::new());
 
-    let vessel = set(&ada, &nao, true).await.good();
+    let vessel = set(&ada, &nao.path(""), true).await.good();
     assert_eq!(vessel["out_of_service_at"], Value::Null);
     shore.work().await;
     let open = items(&ada, "/alerts?open=true").await;
@@ -119,14 +120,14 @@ async fn a_vessel_with_an_order_under_way_stays_in_service(shore: Shore) {
         "planned_at": "2026-12-01T08:00:00Z",
     });
     let made = ada.post("/work-orders", &order).await.good();
-    let refused = set(&ada, &nao, false).await;
+    let refused = set(&ada, &nao.path(""), false).await;
     assert_eq!(
         (refused.status, refused.problem().as_str()),
         (409, "wrong-state")
     );
     let cancel = format!("/work-orders/{}/cancel", made["id"].as_str().unwrap());
     ada.post(&cancel, &json!({ "text": "Sold" })).await.good();
-    set(&ada, &nao, false).await.good();
+    set(&ada, &nao.path(""), false).await.good();
     let refused = ada.post("/work-orders", &order).await;
     assert_eq!(
         (refused.status, refused.problem().as_str()),
@@ -139,12 +140,32 @@ async fn only_an_admin_of_hers_takes_a_vessel_out_of_service(shore: Shore) {
     let ada = shore.admin("ada").await;
     let nao = shore.ship(&ada, "Nao").await;
     let eve = shore.admin("eve").await;
-    assert_eq!(set(&eve, &nao, false).await.status, 404);
+    assert_eq!(set(&eve, &nao.path(""), false).await.status, 404);
     let viewer = ada.viewer(&shore).await;
-    assert_eq!(set(&viewer, &nao, false).await.status, 403);
+    assert_eq!(set(&viewer, &nao.path(""), false).await.status, 403);
     assert_eq!(
         ada.get(&nao.path("")).await.good()["out_of_service_at"],
         Value::Null
     );
+    shore.finish().await;
+}
+
+async fn a_vessel_out_of_service_leaves_the_plan_and_comes_back_into_it(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    planned_firm(&shore, &ada, "rosa").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let path = format!("/vessels/{}", nao["id"].as_str().unwrap());
+    let jobs = async || {
+        let seen = ada.get("/schedule").await.good();
+        seen["plan"]["jobs"].as_array().unwrap().len()
+    };
+    solve(&ada).await;
+    assert_eq!(jobs().await, 1);
+    for (in_service, planned) in [(false, 0), (true, 1)] {
+        set(&ada, &path, in_service).await.good();
+        assert_eq!(follow(&shore).await, Some(ada.operator));
+        assert_eq!(jobs().await, planned);
+    }
     shore.finish().await;
 }
