@@ -116,6 +116,7 @@ async fn put_binnacle(
     let request = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
     let reason = optional_text("reason", why.reason.as_deref())?;
     let binnacle = Binnacle::try_from(form)?;
+    binnacle.must_be_credible()?;
     let now = app.clock.now().into();
     let wanted = BinnacleId::new();
     let mut tx = app.db.begin().await?;

@@ -76,6 +76,14 @@ impl Binnacle {
         lot.tested_sd = Some(sd);
         Binnacle::try_from(form)
     }
+
+    /// Refuses to have written what no magnet of its kind can have.
+    ///
+    /// # Errors
+    /// Names the lot whose tested moment it is, A·m².
+    pub fn must_be_credible(&self) -> Result<(), BinnacleError> {
+        stock::credible(&self.0)
+    }
 }
 
 impl Deref for Design {

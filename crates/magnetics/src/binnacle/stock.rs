@@ -17,17 +17,17 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
     count("aboard.magnets", form.aboard.magnets.len())?;
     for (index, lot) in form.aboard.magnets.iter().enumerate() {
         let field = |part: &str| format!("aboard.magnets[{index}].{part}");
-        let Some(kind) = form.design.magnet(&lot.magnet) else {
+        if form.design.magnet(&lot.magnet).is_none() {
             let what = format!("the type has no magnets {:?}", lot.magnet);
             return Err(BinnacleError::new(field("magnet"), what));
-        };
+        }
         let earlier = &form.aboard.magnets[..index];
         if earlier.iter().any(|other| other.magnet == lot.magnet) {
             let what = format!("{:?} stands there twice", lot.magnet);
             return Err(BinnacleError::new(field("magnet"), what));
         }
         if let Some(moment) = lot.tested_moment_am2 {
-            tested_moment(&field("tested_moment_am2"), moment, kind.moment_am2)?;
+            number(&field("tested_moment_am2"), moment, 1e-3, 100.0)?;
         }
         if let Some(sd) = lot.tested_sd {
             number(&field("tested_sd"), sd, 0.0, 0.5)?;
@@ -38,18 +38,26 @@ pub(super) fn check(form: &BinnacleForm) -> Result<(), BinnacleError> {
     choices(form)
 }
 
-/// A magnet loses strength with the years, and a bar of its size holds little more than a
-/// maker gives it: what is farther off was read or written wrongly.
-fn tested_moment(field: &str, moment: f64, nominal: f64) -> Result<(), BinnacleError> {
-    if (WEAKEST * nominal..=STRONGEST * nominal).contains(&moment) {
-        return Ok(());
+/// Whether magnets can have what was tested of them. One loses strength with the years, and a
+/// bar of its size holds little more than a maker gives it: what is farther off was read or
+/// written wrongly.
+pub(super) fn credible(form: &BinnacleForm) -> Result<(), BinnacleError> {
+    for (index, lot) in form.aboard.magnets.iter().enumerate() {
+        let nominal = form.design.magnet(&lot.magnet).map(|kind| kind.moment_am2);
+        let Some((moment, nominal)) = lot.tested_moment_am2.zip(nominal) else {
+            continue;
+        };
+        let (least, most) = (WEAKEST * nominal, STRONGEST * nominal);
+        if !(least..=most).contains(&moment) {
+            let what = format!(
+                "{moment} A·m² is no test of a magnet of {nominal} A·m²: between {least:.3} and \
+                 {most:.3} is taken"
+            );
+            let field = format!("aboard.magnets[{index}].tested_moment_am2");
+            return Err(BinnacleError::new(field, what));
+        }
     }
-    let what = format!(
-        "{moment} A·m² is no test of a magnet of {nominal} A·m²: between {:.3} and {:.3} is taken",
-        WEAKEST * nominal,
-        STRONGEST * nominal
-    );
-    Err(BinnacleError::new(field, what))
+    Ok(())
 }
 
 /// So that a search ends, and its memory is bounded.
