@@ -90,6 +90,9 @@ impl Second {
             let mut basis = prepared.basis.clone();
             basis.model.model = learnt.model_after.clone();
             basis.binnacle = binnacle;
+            // The first reading was held against it.
+            basis.earlier = None;
+            basis.has_learnt_here = true;
             basis
         };
         let (mut foretold, mut anew) = (None, None);

@@ -191,7 +191,7 @@ impl BerthForm {
             circumstances: Circumstances {
                 model_age_days: age,
                 cargo_on_board: given.cargo_on_board,
-                earlier_lambda: None,
+                ..Circumstances::default()
             },
             limits: self.limits,
         })

@@ -108,6 +108,9 @@ pub struct Circumstances {
     pub cargo_on_board: bool,
     /// λ as an earlier berth of the same compass told it.
     pub earlier_lambda: Option<EarlierLambda>,
+    /// Whether the model has learnt from a reading at this berth: then its covariance has what
+    /// may have become of the ship before it.
+    pub has_learnt_here: bool,
 }
 
 /// What a plan must keep to.

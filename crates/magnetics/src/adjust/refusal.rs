@@ -415,7 +415,8 @@ impl fmt::Display for Refusal {
                 f,
                 "{}: the ship's magnetism has changed by {:.1} microtesla along the needle since \
                  the model, or a magnetometer's scale or place was another, or iron near the \
-                 compass was altered, which the logbook should then say",
+                 compass was altered: an entry of repair in the logbook since then, that says \
+                 so, ends the comparison",
                 compared.apart(*lambda),
                 along_nt / 1e3
             ),

@@ -29,6 +29,17 @@ const BX: usize = 0;
 const BY: usize = 2;
 const LAMBDA: usize = PARAMETERS + 1;
 
+/// What bx and by may have wandered since the model's last heading, one standard deviation.
+fn drift_nt(adjustment: &Adjustment<'_>) -> f64 {
+    let circumstances = &adjustment.circumstances;
+    let days = circumstances.model_age_days.unwrap_or(0.0);
+    if circumstances.has_learnt_here {
+        0.0
+    } else {
+        NoiseLevels::TYPICAL.drift_nt * (days / DRIFT_DAYS).sqrt()
+    }
+}
+
 /// λ as an earlier berth of the same compass told it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EarlierLambda {
@@ -36,7 +47,7 @@ pub struct EarlierLambda {
     pub at: Timestamp,
     /// λ with the correctors set in one way: as they were, or as they are now.
     pub lambda: f64,
-    /// Its standard error, the magnetometer's scale in it.
+    /// Its standard error, the magnetometer's scale and the ship's drift until then in it.
     pub standard_error: f64,
 }
 
@@ -51,11 +62,13 @@ impl EarlierLambda {
     ) -> Result<Option<EarlierLambda>, AdjustError> {
         let condition = Condition::new(adjustment)?;
         let lambda = condition.lambda();
+        let [forward, starboard] = adjustment.reading.field_nt();
+        let drift = drift_nt(adjustment) / forward.hypot(starboard);
         // Without the model's covariance nothing is known of its error.
         let told = adjustment.model.covariance.map(|_| EarlierLambda {
             at,
             lambda,
-            standard_error: lambda * condition.lambda_sd_share(),
+            standard_error: lambda * condition.lambda_sd_share().hypot(drift),
         });
         Ok(told)
     }
@@ -130,17 +143,22 @@ impl Since {
         let field_nt = forward.hypot(starboard);
         let lambda = estimate.lambda.value;
         let circumstances = &adjustment.circumstances;
-        let days = circumstances.model_age_days.unwrap_or(0.0);
+        let drift_nt = drift_nt(adjustment);
+        let sd = lambda_variance.sqrt().hypot(drift_nt * lambda / field_nt);
         let compared = circumstances.earlier_lambda.map(|earlier| Compared {
             earlier,
             off: lambda - earlier.lambda,
-            standard_error: lambda_variance.sqrt().hypot(earlier.standard_error),
+            standard_error: sd.hypot(earlier.standard_error),
         });
-        let unchecked_deg = estimate.consistency.unchecked_deg(reading.errors());
+        let unchecked_deg = if circumstances.has_learnt_here {
+            0.0
+        } else {
+            estimate.consistency.unchecked_deg(reading.errors())
+        };
         Since {
             along: [forward / field_nt, starboard / field_nt],
             field_nt,
-            drift_nt: NoiseLevels::TYPICAL.drift_nt * (days / DRIFT_DAYS).sqrt(),
+            drift_nt,
             across_nt: unchecked_deg.to_radians() * field_nt,
             lambda,
             compared,

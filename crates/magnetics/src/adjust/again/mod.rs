@@ -280,6 +280,7 @@ impl Judge<'_> {
             compass_deg: None,
             circumstances: Circumstances {
                 earlier_lambda: None,
+                has_learnt_here: true,
                 ..self.adjustment.circumstances
             },
             ..self.adjustment.clone()
