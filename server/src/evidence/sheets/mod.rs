@@ -246,7 +246,7 @@ fn plan(paper: &mut Paper, record: &Value) {
     paper.fact(
         "Followed",
         &format!(
-            "{} steps; worst residual {:.1}°, weighted over the waters; widest band ±{:.1}°",
+            "{}; worst residual {:.1}°, weighted over the waters; widest band ±{:.1}°",
             steps_done(record),
             number(&plan["worst_residual_deg"]),
             number(&plan["widest_band_deg"])
@@ -295,10 +295,19 @@ fn plan(paper: &mut Paper, record: &Value) {
     }
 }
 
-/// How many of the steps moved something, those before a new plan with the rest.
-fn steps_done(record: &Value) -> usize {
+/// How many steps there were, those before a new plan with the rest, and how many of them
+/// moved something.
+fn steps_done(record: &Value) -> String {
     let steps = record["steps_as_read"].as_array().into_iter().flatten();
-    steps.filter(|step| step["moved"] == true).count()
+    let (moved, read): (Vec<&Value>, Vec<&Value>) = steps.partition(|step| step["moved"] == true);
+    let said = |steps: usize| match steps {
+        1 => "1 step".to_owned(),
+        steps => format!("{steps} steps"),
+    };
+    match (moved.len(), read.len()) {
+        (moved, 0) => said(moved),
+        (moved, read) => format!("{}, {moved} of which moved correctors", said(moved + read)),
+    }
 }
 
 fn photos(paper: &mut Paper, record: &Value) {

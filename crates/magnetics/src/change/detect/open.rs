@@ -10,7 +10,7 @@ use crate::change::upset::{WILD_DEG, struck};
 use crate::estimate::{POPULATION_SD, unseen_sd_nt};
 use std::ops::Range;
 
-/// A smaller step than this leaves the band as it is, population units (1500 nT).
+/// A smaller step than this leaves the band as it is, in population units of 1500 nT.
 const LARGE: f64 = 0.5;
 /// One must be likelier by this than nothing, nats.
 const WORTH_NATS: f64 = 5.0;
@@ -21,7 +21,7 @@ const ROWS: usize = 432;
 /// The rows are linearised so often, each time at the ship that the last supposed: deviation
 /// is not linear in a large step.
 const ROUNDS: usize = 4;
-/// Half of so many rows are astray while a compass is.
+/// Of so many rows the middle one is astray while a compass is.
 const NOW_ROWS: usize = 3;
 /// Where H is this, an error of the variation has its nominal size.
 const NOMINAL_H_NT: f64 = 24_000.0;
@@ -67,6 +67,9 @@ impl Search<'_> {
         let rows = spawn.at.max((last + 1).saturating_sub(NOW_ROWS))..=last;
         let astray = rows.map(|row| origin.variation_astray_deg(&self.measure(row, &at)));
         let mut astray: Vec<f64> = astray.collect();
+        if astray.len() < NOW_ROWS {
+            return None;
+        }
         astray.sort_by(f64::total_cmp);
         let median = astray
             .get(astray.len() / 2)
