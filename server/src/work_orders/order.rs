@@ -262,6 +262,8 @@ pub(super) struct Order {
     /// What the magnetometer said after the steps, the correctors standing as they stand.
     #[schema(required)]
     pub second_reading: Option<AgainSaid>,
+    /// Whether someone has said since that reading how the correctors stand.
+    pub looked_since: bool,
     /// How the correctors stand now; none before the first reading.
     #[schema(required, value_type = Option<SettingSchema>)]
     pub setting: Option<Setting>,
@@ -356,6 +358,7 @@ impl Order {
             steps_done: standing.steps_done,
             compass_deg: standing.compass_deg,
             last_step: standing.last_step,
+            looked_since: standing.looked_since && standing.again.is_some(),
             second_reading: standing.again.map(|again| again.said),
             reading: standing.read.as_ref().map(|read| read.given.clone()),
             berth_check: standing.read.and_then(|read| read.checked),

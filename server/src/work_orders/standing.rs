@@ -61,6 +61,8 @@ pub(super) struct Standing {
     pub looked_at: usize,
     /// What the magnetometer said after them, the correctors standing as they stand.
     pub again: Option<Box<ReadAgain>>,
+    /// Someone has said since that reading how the correctors stand.
+    pub looked_since: bool,
     /// The first reading of an order that was planned anew from a second one.
     pub first: Option<Box<Read>>,
     /// How the compass was before, by the last plan from the first reading.
@@ -121,6 +123,7 @@ impl Standing {
             unshown: Vec::new(),
             looked_at: 0,
             again: None,
+            looked_since: false,
             first: None,
             before: None,
             undone: None,
@@ -279,6 +282,7 @@ impl Standing {
         self.compass_deg = moved.compass_deg.or(still);
         // Someone has looked at every one of them.
         self.looked_at = self.steps.len();
+        self.looked_since = self.again.is_some();
         self.moved_to = Some(moved.after.clone());
         match &self.plan {
             Some(plan) if plan.plan.setting == moved.after => {
@@ -333,6 +337,7 @@ impl Standing {
             self.undone = Some(Box::new(before));
         }
         self.again = Some(Box::new(read.clone()));
+        self.looked_since = false;
     }
 
     /// As it stood before the last second reading became the one to plan from, where
@@ -354,6 +359,7 @@ impl Standing {
         self.unshown = before.unshown;
         self.looked_at = before.looked_at;
         self.again = before.again;
+        self.looked_since = before.looked_since;
         self.first = before.first;
         self.compass_deg = before.compass_deg;
     }

@@ -266,7 +266,7 @@ export const adjusting = {
       await fitsItsWidth(page);
       await shoot('berth-again-phone', { fullPage: true });
       await again.getByRole('button', { name: 'I have looked: they stand as planned' }).click();
-      await waiting.waitFor({ state: 'detached' });
+      await again.getByText('It is noted that they were looked at since').waitFor();
       await sign.waitFor({ state: 'detached' });
       const foretold = async (part) =>
         (await again.getByTestId(`foretold-${part}`).innerText()).replace(/\s*µT/, '');

@@ -116,13 +116,15 @@ export class Outbox {
     void this.#drain();
   };
 
-  async #read(): Promise<void> {
+  async #read(answered?: WorkOrder): Promise<void> {
     const all = await (await this.shelf).writes();
     this.writes = all.filter((write) => write.user === this.#user);
+    // In one go: without the write, the order of before its answer is not how it stands.
+    if (answered) for (const listener of this.#listeners) listener(answered);
   }
 
-  async #changed(): Promise<void> {
-    await this.#read();
+  async #changed(answered?: WorkOrder): Promise<void> {
+    await this.#read(answered);
     this.#channel?.postMessage('changed');
   }
 
@@ -154,8 +156,7 @@ export class Outbox {
     this.#waitMs = firstWaitMs;
     await shelf.remove(write.seq);
     if (!bearsOut(write.content, answered)) await this.#hold(write);
-    await this.#changed();
-    for (const listener of this.#listeners) listener(answered);
+    await this.#changed(answered);
     return true;
   }
 

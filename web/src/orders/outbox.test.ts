@@ -115,6 +115,26 @@ test('a step that the server judges otherwise holds the steps after it', async (
   outbox.stop();
 });
 
+test('a write goes and its answer comes in one go: the order never stands as before it', async () => {
+  const { outbox } = withServer([]);
+  let told = 0;
+  outbox.listen(() => (told += 1));
+  await outbox.start('u');
+  void outbox.add('o', step(1));
+  const seen: string[] = [];
+  for (let turn = 0; turn < 200; turn += 1) {
+    await Promise.resolve();
+    const stands = `${outbox.writes.length} waiting, ${told} answered`;
+    if (stands !== seen.at(-1)) seen.push(stands);
+  }
+  expect(seen).toEqual([
+    '0 waiting, 0 answered',
+    '1 waiting, 0 answered',
+    '0 waiting, 1 answered',
+  ]);
+  outbox.stop();
+});
+
 test('without a session nothing is tried until somebody signs in', async () => {
   const { outbox, sent } = withServer([new Problem(401, 'unauthenticated', 'sign in')]);
   await outbox.start('u');

@@ -214,6 +214,8 @@ export const berth = {
     heading: 'True heading, if the ship has moved',
     submit: 'Send what it reads',
     looked: 'I have looked: they stand as planned',
+    lookedSince:
+      'It is noted that they were looked at since, and how they stand. Now read the field once more.',
     lookedNote: 'looked at after the second reading: they stand as planned',
     verdict: {
       as_planned: 'The field agrees with what was foretold, within its error',
