@@ -14,8 +14,10 @@ mod candidates;
 mod card;
 mod condition;
 mod form;
+mod given;
 mod heeling;
 mod instructions;
+mod limits;
 mod mistakes;
 mod moves;
 mod notes;
@@ -41,6 +43,7 @@ pub use card::Card;
 pub use form::{AfterForm, Berth, BerthForm, FieldForm, FormError, WaterForm};
 pub use heeling::{HeelingPlan, VerticalReading};
 pub use instructions::{Action, Corrector, Place, Step};
+pub use limits::Limits;
 pub use mistakes::{Mistake, mistakes};
 pub use predicted::{PredictedRow, PredictedTable};
 pub use read::{HeadingFrom, Magnetometer, NumberError, ReadingForm, Unit};
@@ -111,60 +114,6 @@ pub struct Circumstances {
     /// Whether the model has learnt from a reading at this berth: then its covariance has what
     /// may have become of the ship before it.
     pub has_learnt_here: bool,
-}
-
-/// What a plan must keep to.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Limits {
-    /// The greatest residual that may be foretold, band included, degrees.
-    pub residual_deg: f64,
-    /// The widest 95 % band, degrees.
-    pub band_deg: f64,
-    /// Settings within this are as good as each other, and the one with the fewest
-    /// moves is taken, degrees.
-    pub near_equal_deg: f64,
-    /// The oldest model, days.
-    pub model_age_days: f64,
-    /// With a λ less sure than this share the soft iron is left as it is.
-    pub lambda_sd: f64,
-}
-
-impl Default for Limits {
-    fn default() -> Limits {
-        Limits {
-            residual_deg: 3.0,
-            band_deg: 2.5,
-            near_equal_deg: 0.1,
-            model_age_days: 60.0,
-            lambda_sd: 0.03,
-        }
-    }
-}
-
-impl Limits {
-    /// Whether somebody who answers for a compass may ask for this: no residual that flags
-    /// want adjusted again (5°), no band that tells nothing, no model of last season.
-    ///
-    /// # Errors
-    /// Names the limit.
-    pub fn must_be_sane(&self) -> Result<(), NumberError> {
-        for (field, value, least, greatest) in [
-            ("residual_deg", self.residual_deg, 0.5, 5.0),
-            ("band_deg", self.band_deg, 0.2, 4.0),
-            ("near_equal_deg", self.near_equal_deg, 0.0, 1.0),
-            ("model_age_days", self.model_age_days, 1.0, 90.0),
-            ("lambda_sd", self.lambda_sd, 0.005, 0.1),
-        ] {
-            if !(least..=greatest).contains(&value) {
-                return Err(NumberError {
-                    field,
-                    what: format!("{value} is not between {least} and {greatest}"),
-                });
-            }
-        }
-        Ok(())
-    }
 }
 
 /// What came of it.
@@ -284,7 +233,7 @@ pub enum AdjustError {
 /// When something given cannot be. An inconsistent berth, a model too old and the like
 /// are no errors but refusals.
 pub fn plan(adjustment: &Adjustment<'_>) -> Result<Outcome, AdjustError> {
-    check(adjustment)?;
+    given::check(adjustment)?;
     let mut refusals = refusal::beforehand(adjustment);
     let condition = match Condition::new(adjustment) {
         Ok(condition) => condition,
@@ -342,9 +291,6 @@ fn refused(berth: Option<BerthCheck>, refusals: Vec<Refusal>) -> Outcome {
     }
 }
 
-/// More places do not say more of where a vessel trades.
-const MOST_WATERS: usize = 24;
-
 /// How many plans are shown.
 const PLANS: usize = 5;
 
@@ -385,76 +331,6 @@ fn whole(
         model_after: condition.model_with(&found.setting)?,
         setting: found.setting.clone(),
     })
-}
-
-fn check(adjustment: &Adjustment<'_>) -> Result<(), AdjustError> {
-    let limits = &adjustment.limits;
-    let values = [
-        ("limits.residual_deg", limits.residual_deg, 0.0, 90.0),
-        ("limits.band_deg", limits.band_deg, 0.0, 90.0),
-        ("limits.near_equal_deg", limits.near_equal_deg, 0.0, 10.0),
-        ("limits.model_age_days", limits.model_age_days, 0.0, 1e5),
-        ("limits.lambda_sd", limits.lambda_sd, 0.0, 1.0),
-        ("scale_sd", adjustment.scale_sd, 0.0, 0.5),
-        (
-            "compass_deg",
-            adjustment.compass_deg.unwrap_or(0.0),
-            0.0,
-            360.0,
-        ),
-        (
-            "model_age_days",
-            adjustment.circumstances.model_age_days.unwrap_or(0.0),
-            0.0,
-            1e5,
-        ),
-    ];
-    for (field, value, least, greatest) in values {
-        if !(least..=greatest).contains(&value) {
-            return Err(AdjustError::Value {
-                field,
-                value,
-                least,
-                greatest,
-            });
-        }
-    }
-    if let Some(vertical) = &adjustment.vertical {
-        vertical.must_be_a_field()?;
-    }
-    let waters = adjustment.waters.len();
-    if waters > MOST_WATERS {
-        return Err(AdjustError::Value {
-            field: "number of waters",
-            value: waters as f64,
-            least: 1.0,
-            greatest: MOST_WATERS as f64,
-        });
-    }
-    for (index, water) in adjustment.waters.iter().enumerate() {
-        for (field, value, least, greatest) in [
-            ("h_nt", water.h_nt, 2_000.0, 100_000.0),
-            ("z_nt", water.z_nt, -100_000.0, 100_000.0),
-            ("weight", water.weight, 0.0, 1e9),
-        ] {
-            if !(least..=greatest).contains(&value) {
-                return Err(AdjustError::Water {
-                    index,
-                    field,
-                    value,
-                    least,
-                    greatest,
-                });
-            }
-        }
-    }
-    if !adjustment.waters.iter().any(|water| water.weight > 0.0) {
-        return Err(AdjustError::NoWaters);
-    }
-    if let Some(now) = adjustment.now {
-        adjustment.binnacle.with_setting(now.clone())?;
-    }
-    Ok(())
 }
 
 impl Adjustment<'_> {

@@ -153,7 +153,7 @@ pub fn read_again(
     compass_deg: Option<f64>,
     named: Unit,
 ) -> Result<Again, AdjustError> {
-    super::check(adjustment)?;
+    super::given::check(adjustment)?;
     if let Some(vertical) = vertical {
         vertical.must_be_a_field()?;
     }
@@ -192,7 +192,7 @@ pub fn read_again(
 /// # Errors
 /// When the adjustment itself cannot be.
 pub fn by_compass(adjustment: &Adjustment<'_>, done: &[Done]) -> Result<Learnt, AdjustError> {
-    super::check(adjustment)?;
+    super::given::check(adjustment)?;
     let condition = Condition::new(adjustment)?;
     let known = condition.known_with(adjustment.standing())?;
     let reading = adjustment.reading;
