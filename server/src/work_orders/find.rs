@@ -24,7 +24,10 @@ macro_rules! summary_sql {
                     o.firm_id, o.created_at, o.created_by, o.completed_at, o.last_seq,
                     o.last_sha256, o.call_fit,
                     CASE WHEN f.firm_id IS NULL THEN o.answer_by ELSE f.answer_by END
-                        AS answer_by
+                        AS answer_by,
+                    EXISTS (SELECT 1 FROM binnacles b
+                            WHERE b.vessel_id = o.vessel_id AND b.compass_id = o.compass_id)
+                        AS has_binnacle
              FROM work_orders o
              JOIN vessels v ON v.id = o.vessel_id
              JOIN operators p ON p.id = v.operator_id

@@ -195,6 +195,8 @@ pub(super) struct Summary {
     /// When it was completed.
     #[schema(required)]
     pub completed_at: Option<Time>,
+    /// Whether the compass's binnacle is entered.
+    pub has_binnacle: bool,
     /// Entries in its log.
     pub last_seq: i64,
     /// SHA-256 of the last of them.

@@ -120,9 +120,6 @@ const others = [
 /** Chromium's remark when the worker takes over between two loads that follow at once. */
 const unusedPreload = /cross-world service worker resource mismatch/;
 
-/** An order of today's is kept with its binnacle; this one's was not entered. */
-const noBinnacle = /status of 404 .*\/binnacle/;
-
 async function eachOf({ page, settings, shoot }, { who, home, paths }, look) {
   const found = [];
   await signInAs(page, settings[who], settings.password, home);
@@ -183,7 +180,7 @@ export const access = {
         `axe finds nothing on the ${other.who}’s pages, ${look.replace('-', ' by ')}`,
         {
           ...screen,
-          allowedErrors: [notSignedIn, unusedPreload, noBinnacle],
+          allowedErrors: [notSignedIn, unusedPreload],
           run: (tools) => eachOf(tools, other, look),
         },
       ]),

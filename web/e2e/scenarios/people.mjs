@@ -291,7 +291,7 @@ export const people = {
   'an adjuster signs in on a phone and finds today’s ship': {
     viewport: phone,
     // Her binnacle was not entered; and without a connection every call fails.
-    allowedErrors: [notSignedIn, /status of 404 .*\/binnacle/, /ERR_INTERNET_DISCONNECTED/],
+    allowedErrors: [notSignedIn, /ERR_INTERNET_DISCONNECTED/],
     async run({ page, context, browser, settings, shoot }) {
       const office = await browser.newContext({ baseURL: settings.url });
       const theirs = await office.newPage();

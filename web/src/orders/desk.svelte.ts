@@ -86,8 +86,11 @@ export class Desk {
     await this.loadOffer();
   }
 
-  async #loadBinnacle({ vessel_id, compass_id, state }: WorkOrder): Promise<void> {
-    if (!session.isAdjuster) {
+  async #loadBinnacle(order: WorkOrder): Promise<void> {
+    const { vessel_id, compass_id, state } = order;
+    if (!order.has_binnacle) {
+      this.binnacle.show(null, new Date());
+    } else if (!session.isAdjuster) {
       await this.binnacle.load(() => findBinnacle(vessel_id, compass_id));
     } else if (isUnderWay(state)) {
       // A firm's business only until the work is done.

@@ -65,6 +65,7 @@ impl Trade {
             .post("/work-orders", &trade.new_order())
             .await
             .good();
+        assert_eq!(made["has_binnacle"], false);
         made["id"].as_str().unwrap().clone_into(&mut trade.order);
         trade
     }

@@ -194,6 +194,7 @@ async fn a_word_that_explains_nothing_leaves_a_second_reading_open(shore: Shore)
     off["forward"] = json!(number(&off["forward"]) + 33.0);
     let order = job.post("/second-reading", &off).await.good();
     assert_eq!(order["second_reading"]["verdict"], "unexplained");
+    assert_eq!(order["looked_since"], false);
     // One magnet elsewhere makes nothing of so much.
     let mut other = setting.clone();
     let trays = if other["athwartship"] == json!([]) {
@@ -206,14 +207,14 @@ async fn a_word_that_explains_nothing_leaves_a_second_reading_open(shore: Shore)
     let stand = json!({ "setting": other });
     let order = job.post("/corrector-settings", &stand).await.good();
     assert_eq!(order["second_reading"]["verdict"], "unexplained");
+    assert_eq!(order["looked_since"], true);
     let stand = json!({ "setting": setting });
     job.post("/corrector-settings", &stand).await.good();
     job.post("/plan", &json!({})).await.good();
     let held = job.post("/complete", &word()).await;
     assert_eq!(held.problem(), "wrong-state");
-    job.post("/second-reading", &read_again(setting))
-        .await
-        .good();
+    let order = job.post("/second-reading", &read_again(setting)).await;
+    assert_eq!(order.good()["looked_since"], false);
     job.post("/complete", &word()).await.good();
     let record = job.person.get(&job.path("/record.json")).await.good();
     assert_eq!(record["settings_as_said"][0]["after"], other);

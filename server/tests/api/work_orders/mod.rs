@@ -76,6 +76,7 @@ impl Job {
         };
         let made = job.person.post("/work-orders", &job.new_order()).await;
         let made = made.good();
+        assert_eq!(made["has_binnacle"], true);
         made["id"].as_str().unwrap().clone_into(&mut job.order);
         job
     }
