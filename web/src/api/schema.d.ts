@@ -8609,6 +8609,8 @@ export interface components {
             last_step: components["schemas"]["StepSaid"] | null;
             /** @description What a plan must keep to. */
             limits: components["schemas"]["PlanLimits"];
+            /** @description Whether someone has said since that reading how the correctors stand. */
+            looked_since: boolean;
             next_step: components["schemas"]["PlanStep"] | null;
             /**
              * @description What became of its offers, in the order in which firms are asked; a firm sees its
@@ -8749,6 +8751,8 @@ export interface components {
             /** @description Their firm. */
             firm: string | null;
             firm_id: components["schemas"]["FirmId"] | null;
+            /** @description Whether the compass's binnacle is entered. */
+            has_binnacle: boolean;
             /** @description The order's id. */
             id: components["schemas"]["OrderId"];
             /**
