@@ -127,11 +127,7 @@ test('a write goes and its answer comes in one go: the order never stands as bef
     const stands = `${outbox.writes.length} waiting, ${told} answered`;
     if (stands !== seen.at(-1)) seen.push(stands);
   }
-  expect(seen).toEqual([
-    '0 waiting, 0 answered',
-    '1 waiting, 0 answered',
-    '0 waiting, 1 answered',
-  ]);
+  expect(seen).toEqual(['0 waiting, 0 answered', '1 waiting, 0 answered', '0 waiting, 1 answered']);
   outbox.stop();
 });
 
