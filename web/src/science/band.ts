@@ -32,18 +32,28 @@ const headings = Array.from({ length: 360 / stepDeg }, (_, i) => i * stepDeg);
  * or when the model came without a covariance.
  */
 export function band95(model: Model, compassDeg: number, field: Field): number | null {
-  const slopes = slopesOf(model, compassDeg, field);
-  if (!slopes || !model.covariance) return null;
-  const variance = quadratic(model.covariance, slopes);
+  return band95By(model.covariance, coefficients(model, field), compassDeg, field);
+}
+
+function band95By(
+  covariance: Model['covariance'],
+  by: Coefficients,
+  compassDeg: number,
+  field: Field,
+): number | null {
+  const slopes = slopesOf(by, compassDeg, field);
+  if (!slopes || !covariance) return null;
+  const variance = quadratic(covariance, slopes);
   return variance >= 0 ? normal95 * Math.sqrt(variance) : null;
 }
 
 /** The heading where the band is widest; none where any heading is ambiguous. */
 export function widestBand(model: Model, field: Field): Widest | null {
-  if (!steers(model, field)) return null;
+  const by = coefficients(model, field);
+  if (!steers(by)) return null;
   let widest: Widest | null = null;
   for (const compass_deg of headings) {
-    const found = band95(model, compass_deg, field);
+    const found = band95By(model.covariance, by, compass_deg, field);
     if (found === null) return null;
     if (!widest || found > widest.band95_deg) widest = { compass_deg, band95_deg: found };
   }
@@ -61,14 +71,18 @@ export function standardError(
 }
 
 function quadratic(covariance: number[][], v: number[]): number {
-  return v.reduce(
-    (sum, left, i) =>
-      sum + v.reduce((row, right, j) => row + left * right * (covariance[i]?.[j] ?? NaN), 0),
-    0,
-  );
+  let sum = 0;
+  for (let i = 0; i < v.length; i++) {
+    const [row, left] = [covariance[i], v[i] ?? NaN];
+    for (let j = 0; j < v.length; j++) sum += left * (v[j] ?? NaN) * (row?.[j] ?? NaN);
+  }
+  return sum;
 }
 
-function coefficients(model: Model, { h_nt, z_nt }: Field) {
+/** Coefficients A to E as parts of one, not degrees. */
+type Coefficients = Record<'a' | 'b' | 'c' | 'd' | 'e', number>;
+
+function coefficients(model: Model, { h_nt, z_nt }: Field): Coefficients {
   const p = model.parameters_over_lambda;
   return {
     a: (p.chi21 - p.chi12) / 2,
@@ -80,8 +94,11 @@ function coefficients(model: Model, { h_nt, z_nt }: Field) {
 }
 
 /** Degrees of deviation for each unit of each parameter, and 1 for the constant. */
-function slopesOf(model: Model, compassDeg: number, field: Field): number[] | null {
-  const { a, b, c, d, e } = coefficients(model, field);
+function slopesOf(
+  { a, b, c, d, e }: Coefficients,
+  compassDeg: number,
+  field: Field,
+): number[] | null {
   const { h_nt, z_nt } = field;
   const zeta = compassDeg / degreesPerRadian;
   const k1 = 1 - d * Math.cos(2 * zeta) + e * Math.sin(2 * zeta);
@@ -99,8 +116,7 @@ function slopesOf(model: Model, compassDeg: number, field: Field): number[] | nu
 }
 
 /** Whether some directive force is left on every magnetic heading. */
-function steers(model: Model, field: Field): boolean {
-  const { b, c, d, e } = coefficients(model, field);
+function steers({ b, c, d, e }: Coefficients): boolean {
   return headings.every((heading) => {
     const psi = heading / degreesPerRadian;
     const force =

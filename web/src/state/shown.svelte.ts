@@ -1,0 +1,190 @@
+/**
+ * All that one vessel's page shows, and how it is asked for.
+ *
+ * What always holds: what is seen first is asked for first; what is about a compass is that
+ * of the one chosen, her first until then.
+ */
+
+import {
+  findAtAGlance,
+  findCoverage,
+  findDeviation,
+  findModel,
+  findPicture,
+  findTimeline,
+  listAgents,
+  listCallsSince,
+  listLogbook,
+  listLogbookSince,
+} from '../api/client';
+import { gathered, live } from '../api/live.svelte';
+import { findOrder, listOrders } from '../api/orders';
+import type {
+  AdjustmentNeed,
+  AgentStream,
+  Coverage,
+  FleetVessel,
+  LogbookEntry,
+  ModelVersion,
+  PortCall,
+  SamplePicture,
+  Timeline,
+  Vessel,
+  WorkOrder,
+  WorkOrderSummary,
+} from '../api/types';
+import { inOrder } from '../orders/order';
+import { foretoldOf } from '../science/foretold';
+import { whereabouts, type At } from '../whereabouts';
+import { needsAsked, vesselAsked } from './ahead';
+import { PlacedDeviation } from './placed.svelte';
+import { Resource } from './resource.svelte';
+import { times } from './times.svelte';
+
+const dayMs = 86_400_000;
+/** Lines of the logbook at first, and more at a time. */
+const logbookStep = 20;
+/** A fleet that catches up sends many batches; the page follows at its own pace. */
+const [lightMs, heavyMs] = [1_500, 3_000];
+
+export class ShownVessel {
+  vessel = new Resource<Vessel>();
+  needs = new Resource<AdjustmentNeed[]>();
+  glance = new Resource<FleetVessel | undefined>();
+  orders = new Resource<WorkOrderSummary[]>();
+  model = new Resource<ModelVersion>();
+  picture = new Resource<SamplePicture>();
+  coverage = new Resource<Coverage>();
+  timeline = new Resource<Timeline>();
+  agents = new Resource<AgentStream[]>();
+  logbook = new Resource<{ items: LogbookEntry[]; truncated: boolean }>();
+  /** What was reported and where she called in the period that is shown. */
+  happened = new Resource<{ entries: LogbookEntry[]; calls: PortCall[] }>();
+  /** The order that foretold the model, if one did. */
+  #foretelling = new Resource<WorkOrder>();
+
+  compass = $state<string | undefined>();
+  /** Days of residuals. */
+  period = $state(90);
+  #logbookLines = logbookStep;
+
+  readonly id: string;
+  placed: PlacedDeviation;
+
+  #where = $derived(whereabouts(this.picture.value?.dots, this.happened.value?.calls ?? []));
+  foretold = $derived(
+    foretoldOf(this.model.value, this.orders.value ?? [], this.#foretelling.value),
+  );
+  noModelYet = $derived(this.model.problem?.kind === 'no-model-yet');
+
+  constructor(id: string) {
+    this.id = id;
+    this.placed = new PlacedDeviation((place) => findDeviation(id, this.compass, place));
+  }
+
+  /** An instant as the reader wants it, where she was then. */
+  at: At = (value, port) => times.at(value, port ? { port } : this.#where(value));
+
+  loadVessel = () => this.vessel.load(() => vesselAsked(this.id));
+  loadNeeds = () => this.needs.load(() => needsAsked(this.id));
+  loadOrders = () => this.orders.load(async () => inOrder(await listOrders(this.id)));
+  loadModel = async () => {
+    await this.model.load(() => findModel(this.id, this.compass));
+    await this.#loadForetelling();
+  };
+  loadCoverage = () => this.coverage.load(() => findCoverage(this.id, this.compass));
+  loadTimeline = () => this.timeline.load(() => findTimeline(this.id, this.compass));
+  loadPicture = () => this.picture.load(() => findPicture(this.id, this.#since(), this.compass));
+  loadAgents = () => this.agents.load(() => listAgents(this.id));
+  loadLogbook = () => this.logbook.load(() => listLogbook(this.id, this.#logbookLines));
+
+  /** All of it; what is seen first is drawn before the rest is asked for. */
+  loadAll = async (): Promise<void> => {
+    const needed = this.loadNeeds();
+    void this.glance.load(() => findAtAGlance(this.id));
+    void this.loadOrders();
+    await this.loadVessel();
+    if (!this.vessel.value) return;
+    await needed;
+    await new Promise((drawn) => setTimeout(drawn));
+    this.#loadScience();
+    void this.loadAgents();
+    void this.loadLogbook();
+  };
+
+  /** Keeps it up to date until the function it returns is called. */
+  follow(): () => void {
+    const light = gathered(() => {
+      void this.loadVessel();
+      void this.loadAgents();
+    }, lightMs);
+    const heavy = gathered(() => {
+      void this.loadNeeds();
+      this.#loadScience();
+    }, heavyMs);
+    const stop = live.listen((news) => {
+      if (news.vesselId !== null && news.vesselId !== this.id) return;
+      light.call();
+      if (news.kind === 'logbook' || news.kind === 'all') void this.loadLogbook();
+      if (['logbook', 'port_call'].includes(news.kind)) void this.#loadHappened();
+      if (news.kind === 'work_order' || news.kind === 'all') {
+        void this.loadOrders();
+        void this.#loadForetelling();
+      }
+      // An order's steps change nothing else here.
+      if (news.kind !== 'batch' && news.kind !== 'work_order') heavy.call();
+    });
+    return () => {
+      light.stop();
+      heavy.stop();
+      stop();
+    };
+  }
+
+  chooseCompass = (chosen: string): void => {
+    this.compass = chosen;
+    const ofCompass = [this.model, this.placed, this.picture, this.coverage, this.timeline];
+    for (const resource of ofCompass) resource.clear();
+    this.#loadScience();
+  };
+
+  choosePeriod = (days: number): void => {
+    this.period = days;
+    void this.loadPicture();
+    void this.#loadHappened();
+  };
+
+  showEarlier = (): void => {
+    this.#logbookLines += logbookStep;
+    void this.loadLogbook();
+  };
+
+  #loadScience(): void {
+    void this.loadModel();
+    this.placed.reload();
+    void this.loadCoverage();
+    void this.loadTimeline();
+    void this.loadPicture();
+    void this.#loadHappened();
+  }
+
+  async #loadForetelling(): Promise<void> {
+    const by = this.model.value?.foretold_by;
+    if (by) await this.#foretelling.load(() => findOrder(by));
+  }
+
+  #loadHappened = () =>
+    this.happened.load(async () => {
+      const [entries, calls] = await Promise.all([
+        listLogbookSince(this.id, this.#since()),
+        listCallsSince(this.id, this.#since()),
+      ]);
+      return { entries, calls };
+    });
+
+  /** Counted back from what there is: recorded data may be of years ago. */
+  #since(): string {
+    const latest = Date.parse(this.vessel.value?.last_position?.at ?? '') || Date.now();
+    return new Date(latest - this.period * dayMs).toISOString();
+  }
+}
