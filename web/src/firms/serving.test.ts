@@ -60,6 +60,13 @@ describe('firms for a job', () => {
     ]);
   });
 
+  test('are not judged by hours and days where ship’s time is not known', () => {
+    const night = { at: '2026-12-06T02:00:00Z', zoneH: undefined };
+    expect(against({ closed: ['2026-12-06'] }, { ...night, zoneH: 0 })).toHaveLength(3);
+    expect(against({ closed: ['2026-12-06'] }, night)).toEqual([]);
+    expect(against({ lead_time_h: 240 }, night)).toEqual(['Asks for 240 h of notice.']);
+  });
+
   test('are told what the schedule finds wrong with their terms', () => {
     const { others } = candidates([firm('one', {}, ['working_days: none'])], job, now);
     expect(others[0]?.against).toEqual(['working_days: none']);

@@ -10,7 +10,7 @@ export interface Job {
   port: string | undefined;
   at: string | null;
   /** Hours that ship's time is ahead of UTC there. */
-  zoneH: number;
+  zoneH: number | undefined;
   /** ISO 3166. */
   flag: string | null;
   /** A licence that the adjuster must hold. */
@@ -56,10 +56,14 @@ function against(terms: FirmTerms, job: Job, now: Date): string[] {
   if (job.port !== undefined && !ports?.some(({ port }) => port === job.port)) found.push(t.port);
   if (job.flag !== null && flags?.length && !flags.includes(job.flag)) found.push(t.flag(job.flag));
   if (job.licence !== null && !licences?.includes(job.licence)) found.push(t.licence(job.licence));
-  return job.at === null ? found : [...found, ...againstTime(terms, job.at, job.zoneH, now)];
+  if (job.at === null) return found;
+  if (job.zoneH !== undefined) found.push(...againstHours(terms, job.at, job.zoneH));
+  const lead = terms.lead_time_h ?? 0;
+  if (Date.parse(job.at) - now.getTime() < lead * hourMs) found.push(t.lead(lead));
+  return found;
 }
 
-function againstTime(terms: FirmTerms, at: string, zoneH: number, now: Date): string[] {
+function againstHours(terms: FirmTerms, at: string, zoneH: number): string[] {
   const t = text.newOrder.against;
   const there = new Date(Date.parse(at) + zoneH * hourMs);
   const day = weekdays[(there.getUTCDay() + 6) % 7] ?? 'Mon';
@@ -70,8 +74,6 @@ function againstTime(terms: FirmTerms, at: string, zoneH: number, now: Date): st
   if (!working.includes(day)) found.push(t.day(text.firms.day[day] ?? day));
   if (terms.closed?.includes(there.toISOString().slice(0, 10))) found.push(t.closed);
   if (hour < first || hour >= last) found.push(t.hours(clock(first), clock(last)));
-  const lead = terms.lead_time_h ?? 0;
-  if (Date.parse(at) - now.getTime() < lead * hourMs) found.push(t.lead(lead));
   return found;
 }
 

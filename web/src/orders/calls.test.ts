@@ -29,6 +29,11 @@ describe('the calls of an order', () => {
     );
   });
 
+  test('begin when she comes, as long as ship’s time is not known', () => {
+    const call = { eta: '2026-12-08T02:30:00Z', etd: '2026-12-09T18:00:00Z' };
+    expect(bestBegin(call, undefined, now).toISOString()).toBe('2026-12-08T03:00:00.000Z');
+  });
+
   test('begin when she comes, where she leaves before anybody works', () => {
     expect(begin('2026-12-08T20:10:00Z', '2026-12-09T04:00:00Z')).toBe('2026-12-08T21:00:00.000Z');
   });

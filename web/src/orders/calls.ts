@@ -15,10 +15,16 @@ export const callsAhead = (calls: readonly PortCall[], now: Date): PortCall[] =>
 
 /**
  * When the work is best begun at a call, for a port so many hours ahead of UTC: at the first
- * full hour of a working day alongside, or as soon as she is there where her stay has none.
+ * full hour of a working day alongside, or as soon as she is there where her stay has none or
+ * the port's time is not known.
  */
-export function bestBegin(call: { eta: string; etd: string }, zoneH: number, now: Date): Date {
+export function bestBegin(
+  call: { eta: string; etd: string },
+  zoneH: number | undefined,
+  now: Date,
+): Date {
   const soonest = Math.ceil(Math.max(Date.parse(call.eta), now.getTime()) / hourMs) * hourMs;
+  if (zoneH === undefined) return new Date(soonest);
   const midnight = Math.floor((soonest + zoneH * hourMs) / dayMs) * dayMs - zoneH * hourMs;
   const hour = (soonest - midnight) / hourMs;
   const wanted =
