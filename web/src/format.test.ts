@@ -121,11 +121,48 @@ describe('times and counts', () => {
   });
 });
 
+test('the server’s words have their instants and days as they are written here', () => {
+  for (const [words, written] of [
+    [
+      'call 2026-11-21T07:00:00Z to 2026-11-22T07:30:12.5Z',
+      'call 21 Nov 2026, 07:00 UTC to 22 Nov 2026, 07:30 UTC',
+    ],
+    ['since 2026-10-30 12:46 UTC they agree', 'since 30 Oct 2026, 12:46 UTC they agree'],
+    ['about 2026-10-12\n  03:00 UTC', 'about 12 Oct 2026, 03:00 UTC'],
+    [
+      'due 2026-11-21, a Saturday (by 2026-11-23).',
+      'due 21 Nov 2026, a Saturday (by 23 Nov 2026).',
+    ],
+    ['free on 2026-11-21–2026-11-24', 'free on 21 Nov 2026–24 Nov 2026'],
+  ] as const)
+    expect(format.dated(words)).toBe(written);
+});
+
+test('what is no day in the server’s words stays', () => {
+  for (const words of [
+    'ISO 25862:2019, Annex G',
+    'Marine Notice 19/2016',
+    'order WO-2026-11-21 and 2026-11-21-b, file 2026-11-21.pdf, /reports/2026-11-21',
+    '2026-02-31 and 2026-13-01',
+    '01a207db-8d7b-7526-853d-a49b4e42311f',
+    'headings 015-240, IMO 9299733, 2026-11',
+    'signed 2026-11-21T07:00:00+02:00 and 2026-11-21T25:61:00Z',
+  ])
+    expect(format.dated(words)).toBe(words);
+});
+
+test('instants in a sentence are by the reader’s clocks, days are as they are', () => {
+  const there = (instant: string) => format.atSea(instant, 2, 'ship');
+  expect(format.sentence('due 2026-11-23: since 2026-11-21 23:30 UTC', there)).toBe(
+    'Due 23 Nov 2026: since 22 Nov 2026, 01:30 UTC+2.',
+  );
+});
+
 test('a server’s clause becomes a sentence, with true minus signs', () => {
   expect(format.sentence('it began at sea')).toBe('It began at sea.');
   expect(format.sentence('Is it? ')).toBe('Is it?');
   expect(format.sentence('compass less gyro is -3.7°')).toBe('Compass less gyro is −3.7°.');
-  expect(format.sentence('since 2026-11-23, in 015-240')).toBe('Since 2026-11-23, in 015-240.');
+  expect(format.sentence('since 2026-11-23, in 015-240')).toBe('Since 23 Nov 2026, in 015-240.');
 });
 
 test('a count beyond what there is room for says that it is more', () => {

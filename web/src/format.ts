@@ -187,9 +187,26 @@ export function microteslaFine(nanotesla: number | null | undefined): string {
   return `${plain(nanotesla / 1000, 2)}\u00a0µT`;
 }
 
-/** A server's clause as a sentence, its negative figures with a true minus sign. */
-export function sentence(clause: string): string {
-  const trimmed = clause.trim().replace(/(^|[\s(])-(?=\d)/g, '$1−');
+/** `2026-11-21`, or an instant as `2026-11-21T07:00:00Z` or `2026-11-21 07:00 UTC`. */
+const dates =
+  /(?<![\w/-])(\d{4}-\d\d-\d\d)(?:[T\s]+(\d\d:\d\d(?::\d\d(?:\.\d+)?)?)(?:Z|\s?UTC))?(?![\w/-]|\.\w)/g;
+
+/** The server's words with their instants and days as they are written here. */
+export function dated(words: string, at: (instant: string) => string = time): string {
+  return words.replace(dates, (found, on: string, clock: string | undefined) => {
+    // What only looks like a day, as the 31st of February, stays.
+    if (toDate(on)?.toISOString().slice(0, 10) !== on) return found;
+    return clock === undefined
+      ? day(on)
+      : toDate(`${on}T${clock}Z`)
+        ? at(`${on}T${clock}Z`)
+        : found;
+  });
+}
+
+/** A server's clause as a sentence, its dates as elsewhere, a true minus before figures. */
+export function sentence(clause: string, at?: (instant: string) => string): string {
+  const trimmed = dated(clause.trim(), at).replace(/(^|[\s(])-(?=\d)/g, '$1−');
   const ended = /[.!?]$/.test(trimmed) ? trimmed : `${trimmed}.`;
   return ended.charAt(0).toUpperCase() + ended.slice(1);
 }

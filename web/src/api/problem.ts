@@ -1,5 +1,6 @@
 /** What went wrong with a call, as RFC 9457 problem documents say it. */
 
+import { dated } from '../format';
 import * as text from '../text';
 import { invalidInWords } from './invalid';
 import type { AdjustmentRefusal, CardWithdrawn, LeftOut, Refusal } from './types';
@@ -38,7 +39,7 @@ export function readProblem(status: number, body: unknown): Problem {
       : text.problem.unexpected(status);
   const kind = type.split('/').at(-1) ?? '';
   const words = kind === 'invalid' ? invalidInWords(detail) : detail;
-  return new Problem(status, kind, words, ...reasonsIn(about));
+  return new Problem(status, kind, dated(words), ...reasonsIn(about));
 }
 
 function reasonsIn(

@@ -1,7 +1,7 @@
 /** An entry of an order's log as a line for people. Pure. */
 
 import type { WorkOrderEntry, WorkOrderTerms } from '../api/types';
-import { degrees, fineHeading } from '../format';
+import { dated, degrees, fineHeading } from '../format';
 import * as text from '../text';
 import { feeInWords, termsInWords } from './terms';
 
@@ -52,7 +52,7 @@ export function lineOf({ entry }: WorkOrderEntry): Line {
 
 /** What was found, and what alone would explain it. */
 function refused({ words, could_be }: { words: string; could_be: string[] }): string {
-  return `${text.order.log.refused}: ${[words, ...could_be].join('; ')}`;
+  return `${text.order.log.refused}: ${[dated(words), ...could_be].join('; ')}`;
 }
 
 function words(kind: string, content: Read['content']): string {
@@ -69,17 +69,17 @@ function words(kind: string, content: Read['content']): string {
         ? ''
         : text.order.plan.chosen(content.chosen, content.offered?.length ?? 0);
     case 'step': {
-      const said = text.berth.step.verdict[content.verdict ?? ''] ?? content.words ?? '';
+      const said = text.berth.step.verdict[content.verdict ?? ''] ?? dated(content.words ?? '');
       return `${content.number ?? ''}, ${fineHeading(content.after_deg)}. ${said}`;
     }
     case 'photo':
       return content.caption ?? '';
     case 'second_reading':
-      return text.berth.again.verdict[content.verdict ?? ''] ?? content.words ?? '';
+      return text.berth.again.verdict[content.verdict ?? ''] ?? dated(content.words ?? '');
     case 'completion':
       return content.adjuster_name ?? '';
     case 'verification':
-      return content.words ?? '';
+      return dated(content.words ?? '');
     default:
       return [
         feeInWords(content.fee_eur),
