@@ -13,6 +13,7 @@ mod voyages;
 
 mod bands;
 mod causes;
+mod jams;
 mod large;
 mod quiet;
 mod returns;
@@ -57,6 +58,9 @@ fn main() {
     }
     if wanted("large") {
         large::large(ships);
+    }
+    if wanted("jams") {
+        jams::jams(ships);
     }
     if wanted("bands") {
         bands::bands(ships);
