@@ -88,6 +88,28 @@ impl Parameters {
         ]
     }
 
+    /// The same ship by a compass whose zero moved so that it reads more by so much, radians:
+    /// her iron lies as much further from its lubber line (docs/science.md, §9).
+    pub(crate) fn by_turned_compass(&self, rad: f64) -> Parameters {
+        let (sin, cos) = rad.sin_cos();
+        let (sin_2, cos_2) = (2.0 * rad).sin_cos();
+        let turned = |x: f64, y: f64| (x * cos + y * sin, y * cos - x * sin);
+        let (bx_nt, by_nt) = turned(self.bx_nt, self.by_nt);
+        let (chi13, chi23) = turned(self.chi13, self.chi23);
+        let lopsided = self.chi12 + self.chi21;
+        let lopsided_turned = lopsided * cos_2 - self.chi11_minus_chi22 * sin_2;
+        let more = (lopsided_turned - lopsided) / 2.0;
+        Parameters {
+            bx_nt,
+            chi13,
+            by_nt,
+            chi23,
+            chi11_minus_chi22: self.chi11_minus_chi22 * cos_2 + lopsided * sin_2,
+            chi12: self.chi12 + more,
+            chi21: self.chi21 + more,
+        }
+    }
+
     /// The deviation on a magnetic heading and its gradient at that fixed
     /// magnetic heading (docs/science.md, eq. 9).
     ///

@@ -3,9 +3,10 @@
 //! What always holds: every reading is of one epoch; an epoch is fitted once all that
 //! happened in it is known, and after those before it.
 
+mod allow;
+
 use super::cargo::{is_laden, take_idle};
-use super::changes::{Begun, Ended, Found, Known, MISTIMED_S, find, sharpen};
-use super::either::either;
+use super::changes::{Found, Known, MISTIMED_S, find, sharpen};
 use super::epoch::{Reference, Stretch, empty_epoch, fit_epoch, prior, reference, refuse};
 use super::logbook::LogbookEntry;
 use super::reading::Reading;
@@ -13,6 +14,7 @@ use super::settings::AnalysisSettings;
 use super::{Epoch, SampleReason};
 use crate::change::{Cause, CauseProbability, Change};
 use crate::time::Timestamp;
+use allow::zero_besides;
 use std::ops::Range;
 
 /// So long after the time that the logbook has for work the samples are asked whether it
@@ -150,6 +152,8 @@ impl Course {
         self.idle
             .extend(take_idle(&epoch, &found, readings, logbook));
         let boundaries = std::mem::take(&mut found.boundaries);
+        let last = boundaries.last().filter(|last| !last.resumes);
+        let zero_moved = last.and_then(|last| zero_besides(&found.changes[last.change]));
         // The epoch in which each change happened.
         let mut happened_in = vec![None; found.changes.len()];
         let mut from = 0;
@@ -186,6 +190,9 @@ impl Course {
         if let Some(begun) = found.unnoticed.as_ref().filter(|_| until.is_none()) {
             self.allow_for_change(begun, readings, reference);
         }
+        if let Some(probability) = zero_moved.filter(|_| until.is_none()) {
+            self.allow_for_zero(probability, readings, reference);
+        }
         if let Some(variance_nt2) = found.open_nt2.filter(|_| until.is_none()) {
             self.allow_for_step(variance_nt2);
         }
@@ -210,61 +217,6 @@ impl Course {
         let stretch = self.stretch(&epoch, own.clone(), reference);
         fit_epoch(&mut epoch, readings, &stretch);
         self.push(epoch, own);
-    }
-
-    /// Widens the last epoch's model where the ship may be again as she was in the
-    /// epoch `base`.
-    fn allow_for_end(
-        &mut self,
-        ended: &Ended,
-        base: Option<usize>,
-        readings: &[Reading],
-        reference: &Reference,
-    ) {
-        let resumed = Epoch {
-            resumes: base,
-            ..empty_epoch(Some(ended.at), None)
-        };
-        let from = readings.partition_point(|r| r.sample().time < ended.at);
-        let mut stretch = self.stretch(&resumed, 0..0, reference);
-        // As earlier ones: what does not fit the ship with cargo may fit her without.
-        stretch.earlier.push(from..readings.len());
-        let base = base.and_then(|_| stretch.model(readings));
-        let laden = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
-        let open = base
-            .zip(laden)
-            .and_then(|(base, laden)| either(laden, &base, ended.probability));
-        if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
-            last.model = open;
-        }
-    }
-
-    /// Widens the last epoch's model where the ship may be another since a port call.
-    fn allow_for_change(&mut self, begun: &Begun, readings: &[Reading], reference: &Reference) {
-        let changed = Epoch {
-            begun_by_change: Some(Cause::Unknown),
-            ..empty_epoch(Some(begun.at), None)
-        };
-        let from = readings.partition_point(|r| r.sample().time < begun.at);
-        let stretch = self.stretch(&changed, from..readings.len(), reference);
-        let now = self.epochs.last().and_then(|epoch| epoch.model.as_ref());
-        let open = stretch
-            .model(readings)
-            .zip(now)
-            .and_then(|(changed, now)| either(now, &changed, begun.probability));
-        if let Some(last) = self.epochs.last_mut().filter(|_| open.is_some()) {
-            last.model = open;
-        }
-    }
-
-    /// Widens the last epoch's model where the ship may have been struck hard just now.
-    fn allow_for_step(&mut self, variance_nt2: f64) {
-        let last = self.epochs.last_mut().and_then(|last| last.model.as_mut());
-        if let Some(covariance) = last.and_then(|model| model.covariance.as_mut()) {
-            for j in [0, 2] {
-                covariance[j][j] += variance_nt2;
-            }
-        }
     }
 
     /// What an epoch that follows the last is to be fitted to.
@@ -296,6 +248,7 @@ impl Course {
             earlier,
             own,
             prior: prior(first, before, reference.check.constant_sd_deg),
+            is_turned: first.begun_by_change == Some(Cause::Alignment),
             is_struck: first.begun_by_change == Some(Cause::LightningOrShock),
             is_known: first.begun_by_change.is_some() && before.is_some_and(|b| b.model.is_some()),
             reference,

@@ -151,6 +151,8 @@ pub(super) struct Stretch<'a> {
     pub(super) is_known: bool,
     /// Whether she was struck since: by what size, only the courses that show it tell.
     pub(super) is_struck: bool,
+    /// Whether her compass's zero moved.
+    pub(super) is_turned: bool,
     pub(super) reference: &'a Reference,
 }
 
@@ -222,28 +224,27 @@ impl Stretch<'_> {
     }
 
     /// A prior that allows for a step of bx and by as large as the model has, each, or, of a
-    /// strike, as large as it may yet be; none where the stretch's own does.
+    /// strike, as large as it may yet be, of a compass turned as far as that has it; none
+    /// where the stretch's own does.
     fn wider(&self, model: &Model) -> Option<Prior> {
-        let moved = |j: usize| {
-            let now = model.parameters_over_lambda.to_array();
-            now[j] - self.prior.mean[j]
-        };
+        let mut prior = self.prior.clone();
+        if self.is_turned {
+            prior = prior.by_turned_compass(model.constant_deg - prior.mean[PARAMETERS]);
+        }
+        let now = model.parameters_over_lambda.to_array();
+        let moved = |j: usize| now[j] - prior.mean[j];
         let seen = moved(0).hypot(moved(2));
         let size = if self.is_struck {
             unseen_sd_nt(seen)
         } else {
             BEYOND_SEEN * seen
         };
-        let mut prior = self.prior.clone();
-        let is_new = [0, 2]
-            .map(|j| {
-                let variance = &mut prior.covariance[j][j];
-                let wider = (size * size).max(*variance);
-                let is_new = wider > *variance;
-                *variance = wider;
-                is_new
-            })
-            .contains(&true);
+        let mut is_new = self.is_turned;
+        for j in [0, 2] {
+            let variance = &mut prior.covariance[j][j];
+            is_new |= size * size > *variance;
+            *variance = variance.max(size * size);
+        }
         is_new.then_some(prior)
     }
 

@@ -31,10 +31,11 @@ const ASKEW_DEG: f64 = 15.0;
 /// What a jammed card did not follow before such a turn.
 const SLIGHT_TURN_DEG: f64 = 1.5;
 /// Of a card that trembles, turns count between courses that were kept for so many
-/// readings, by all references: wild ones come singly. By one reference there must be
-/// more of them, for it may be that which errs.
+/// readings, by all references: wild ones come singly. No strike comes just at a turn and
+/// undoes it, so that by two references one is enough. By one there must be more of them,
+/// for it may be that which errs.
 const COURSE_READINGS: usize = 3;
-const TURNS_BY_BOTH: usize = 2;
+const TURNS_BY_BOTH: usize = 1;
 const TURNS_BY_ONE: usize = 4;
 
 /// Marks the readings of a stuck compass; tells each time that it stuck.
@@ -127,11 +128,14 @@ fn trembling(readings: &[Reading], stands: Range<usize>) -> Option<Stuck> {
     if sound.is_some_and(|sound| has_parted(ASKEW_DEG, sound, course)) {
         first = stands.start;
     }
+    // Readings from before it jammed have no part in where it stands.
+    let end = stands.end.max(first + standing(&readings[first..]));
+    let kept = self::courses(&readings[first..end]).len();
     Some(Stuck {
-        all: first..stands.end,
+        all: first..end,
         showed,
-        turns: courses.len() - 1,
-        trembles: (first..stands.end).any(|k| apart_deg(&readings[first], &readings[k]) > SAME_DEG),
+        turns: kept.max(courses.len() - 1),
+        trembles: (first..end).any(|k| apart_deg(&readings[first], &readings[k]) > SAME_DEG),
     })
 }
 

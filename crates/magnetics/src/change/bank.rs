@@ -55,9 +55,11 @@ pub(super) enum Kind {
     Satellite,
     /// The compass swings by more than any storm makes it.
     Wild,
+    /// The ship's magnetism changed by far more than it does as a rule.
+    Large,
 }
 
-pub(super) const KINDS: [Kind; 7] = [
+const KINDS: [Kind; 8] = [
     Kind::Step,
     Kind::Reference,
     Kind::Burst,
@@ -65,8 +67,11 @@ pub(super) const KINDS: [Kind; 7] = [
     Kind::Over,
     Kind::Satellite,
     Kind::Wild,
+    Kind::Large,
 ];
 
+/// Those in which the ship changed for good.
+const STEPS: [Kind; 2] = [Kind::Step, Kind::Large];
 const RIVALS: [Kind; 6] = [
     Kind::Reference,
     Kind::Burst,
@@ -110,6 +115,7 @@ impl Spawn {
         self.is_fresh = true;
     }
 
+    /// All but a large step, which reads rows of its own.
     fn take(&mut self, m: &Measurement, noise: &Noise, kinds: &[Kind]) {
         let goes_on = self.age_s < BURST_S;
         self.age_s += m.seconds;
@@ -135,7 +141,7 @@ impl Spawn {
                 }
             }
         }
-        for &kind in kinds {
+        for &kind in kinds.iter().filter(|kind| **kind != Kind::Large) {
             let burst = burst(kind);
             if let Some(copy) = &mut self.copies[kind as usize] {
                 copy.take(m, noise, burst.as_ref());
@@ -149,6 +155,18 @@ impl Spawn {
 
     pub(super) fn copy(&self, kind: Kind) -> Option<&Filter> {
         self.copies[kind as usize].as_deref()
+    }
+
+    pub(super) fn copy_mut(&mut self, kind: Kind) -> Option<&mut Filter> {
+        self.copies[kind as usize].as_deref_mut()
+    }
+
+    pub(super) fn set(&mut self, kind: Kind, copy: Filter) {
+        self.copies[kind as usize] = Some(Box::new(copy));
+    }
+
+    pub(super) fn astray_deg(&self) -> f64 {
+        self.astray_deg
     }
 }
 
@@ -178,7 +196,7 @@ pub(super) struct Bank {
 impl Bank {
     /// Forgets all that may have happened for good.
     pub(super) fn forget_lasting(&mut self) {
-        let lasting = [Kind::Step, Kind::Reference, Kind::Satellite];
+        let lasting = [Kind::Step, Kind::Large, Kind::Reference, Kind::Satellite];
         for spawn in &mut self.spawns {
             for kind in lasting {
                 spawn.copies[kind as usize] = None;
@@ -279,7 +297,7 @@ impl Bank {
         if at >= self.awake_until && leads.iter().all(|nats| *nats < SLEEP_NATS) {
             self.are_rivals_awake = false;
             for spawn in &mut self.spawns {
-                for kind in RIVALS {
+                for kind in KINDS.into_iter().filter(|kind| *kind != Kind::Step) {
                     spawn.copies[kind as usize] = None;
                 }
             }
@@ -306,6 +324,15 @@ impl Bank {
                 Some(Lead { nats, kind, spawn })
             })
             .max_by(|a, b| a.nats.total_cmp(&b.nats))
+    }
+
+    pub(super) fn are_rivals_awake(&self) -> bool {
+        self.are_rivals_awake
+    }
+
+    /// The likeliest copy of those in which the ship changed for good.
+    pub(super) fn step(&self, null: &Filter) -> Option<Lead> {
+        self.likeliest(&STEPS, null)
     }
 
     /// The likeliest copy of those in which the field goes or went astray.

@@ -271,14 +271,9 @@ impl Calls {
         }
     }
 
-    /// The step of `event` was none of the ship's, or none that is over at once.
+    /// The ship is as she was before `event`, or it was no step of hers: later ones are of the
+    /// past.
     pub(super) fn forget(&mut self, event: usize) {
-        self.bases.retain(|base| base.event != event);
-        self.calls.clear();
-    }
-
-    /// The ship is as she was before `event`: later ones are of the past.
-    pub(super) fn returned(&mut self, event: usize) {
         self.bases.retain(|base| base.event < event);
         self.calls.clear();
     }

@@ -27,6 +27,8 @@ pub(crate) struct Circumstances {
     pub(crate) ended_at_port: Option<bool>,
     /// By how much what was first taken for a step is likelier than that, nats.
     pub(crate) over_step: f64,
+    /// By how much a zero that moved is likelier than a step, nats, where that is open.
+    pub(crate) zero_over_step: Option<f64>,
     /// How long a burst lasted, or has lasted yet, and whether it is over.
     pub(crate) burst_s: Option<f64>,
     pub(crate) is_over: bool,
@@ -117,6 +119,13 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
     }
     if what == What::Alignment {
         weights.push((Cause::Alignment, ALIGNMENT_RATE * (rival - most).exp()));
+    }
+    if let Some(over) = known.zero_over_step.filter(|_| what == What::Step) {
+        // The headings sailed do not tell: it is not named for what may be as well.
+        let steps = weights.iter().map(|(_, weight)| *weight);
+        let likeliest = steps.fold(0.0, f64::max);
+        let zero = ALIGNMENT_RATE * (step + TEMPER * over - most).exp();
+        weights.push((Cause::Alignment, zero.min(likeliest)));
     }
     let passing = (burst - most).exp();
     let astray_deg = known.astray_deg.unwrap_or(0.0);

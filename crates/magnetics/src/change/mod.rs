@@ -18,6 +18,7 @@ mod detect;
 mod filter;
 mod fleet;
 mod found;
+mod large;
 mod symmetric;
 mod upset;
 

@@ -5,15 +5,17 @@
 
 use super::bank::Kind;
 use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES, VARIATION};
-use crate::estimate::OFFSET_SD_DEG;
+use crate::estimate::{OFFSET_SD_DEG, POPULATION_SD};
+use crate::model::Parameters;
 use crate::ship::PARAMETERS;
 
 /// Standard deviation of a step in bx and by, in population units (1500 nT), and
 /// in what is induced.
 const STEP: f64 = 0.8;
 const STEP_INDUCED: f64 = 0.3;
-/// Of what a strike may leave in bx and by.
-const STRUCK: f64 = 6.0;
+/// Of a large one in bx and by, and by how much that is less likely beforehand, nats.
+const LARGE: f64 = 6.0;
+const LARGE_AGAINST_NATS: f64 = 2.0;
 /// Of a step of either reference, degrees, unless the first reading after it is
 /// further off.
 const REFERENCE_DEG: f64 = 5.0;
@@ -42,7 +44,12 @@ impl Earlier<'_> {
         match self {
             Earlier::Ship(before) => set_back(now, before),
             Earlier::Reference(before) => mended(now, before, &[CONSTANT_STATE, OFFSET]),
-            Earlier::Zero(before) => mended(now, before, &[CONSTANT_STATE]),
+            Earlier::Zero(before) => {
+                let moved_deg = before.mean[CONSTANT_STATE] - now.mean[CONSTANT_STATE];
+                let mut back = now.clone();
+                back.mean = turned(now, moved_deg);
+                mended(&back, before, &[CONSTANT_STATE])
+            }
         }
     }
 }
@@ -55,15 +62,20 @@ pub(super) const BURST: Burst = Burst {
 /// The filter with that having happened just now, by how much not being known.
 pub(super) fn upset(now: &Filter, kind: Kind) -> Filter {
     // All else sets in as it goes on: within its memory, not at once.
-    if kind == Kind::Step {
-        return stepped(now, STEP);
+    match kind {
+        Kind::Step => stepped(now, STEP),
+        Kind::Large => {
+            let mut copy = struck(now);
+            copy.log_likelihood -= LARGE_AGAINST_NATS;
+            copy
+        }
+        _ => now.clone(),
     }
-    now.clone()
 }
 
 /// The filter of a ship that may have been struck by far harder than she is as a rule.
 pub(super) fn struck(now: &Filter) -> Filter {
-    stepped(now, STRUCK)
+    stepped(now, LARGE)
 }
 
 fn stepped(now: &Filter, permanent: f64) -> Filter {
@@ -104,6 +116,38 @@ pub(super) fn misled(now: &Filter, next: &Measurement, which: Kind) -> Filter {
         }
     }
     copy
+}
+
+/// The filter with the compass's zero having moved so that the constant is about another by
+/// `moved_deg`, where rows are to be linearised; how far, is not known but for its size.
+pub(super) fn misaligned(now: &Filter, moved_deg: f64, size_deg: f64) -> Filter {
+    let mut copy = now.clone();
+    copy.mean = turned(now, moved_deg);
+    let [less, more] = [-1.0, 1.0].map(|by| turned(now, moved_deg + by));
+    let slope: [f64; STATES] = std::array::from_fn(|i| (more[i] - less[i]) / 2.0);
+    for i in 0..=CONSTANT_STATE {
+        copy.mean[i] -= moved_deg * slope[i];
+        for j in 0..=i {
+            copy.covariance
+                .add(i, j, size_deg * size_deg * slope[i] * slope[j]);
+        }
+    }
+    copy
+}
+
+/// What the filter expects with a constant that is more by so much, degrees: the ship's own
+/// iron lies as much nearer to the lubber line.
+fn turned(now: &Filter, moved_deg: f64) -> [f64; STATES] {
+    let own = |j: usize| now.mean[j] * POPULATION_SD[j];
+    let turned = Parameters::from_array(std::array::from_fn(own))
+        .by_turned_compass(-moved_deg.to_radians())
+        .to_array();
+    let mut mean = now.mean;
+    for j in 0..PARAMETERS {
+        mean[j] = turned[j] / POPULATION_SD[j];
+    }
+    mean[CONSTANT_STATE] += moved_deg;
+    mean
 }
 
 /// The filter with some of the instruments' lasting errors as `before` had them.

@@ -83,6 +83,21 @@ impl Prior {
         Some(Prior { mean, covariance })
     }
 
+    /// The same ship by a compass whose zero moved so that the constant is more by so much,
+    /// degrees.
+    pub(crate) fn by_turned_compass(&self, moved_deg: f64) -> Prior {
+        let mut mean = self.mean;
+        let parameters = std::array::from_fn(|j| mean[j]);
+        let turned = crate::model::Parameters::from_array(parameters)
+            .by_turned_compass(-moved_deg.to_radians());
+        mean[..PARAMETERS].copy_from_slice(&turned.to_array());
+        mean[PARAMETERS] += moved_deg;
+        Prior {
+            mean,
+            covariance: self.covariance,
+        }
+    }
+
     /// Mean and information in units of the population's standard deviations;
     /// none when the covariance is not positive definite.
     pub(crate) fn in_population_units(&self) -> Option<([f64; 8], SMatrix<f64, 8, 8>)> {

@@ -21,6 +21,26 @@ fn a_ship_without_iron_has_no_deviation() {
     }
 }
 
+#[test]
+fn a_compass_whose_zero_moved_reads_as_much_more_on_every_heading() {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    for _ in 0..200 {
+        let (ship, earth) = (random_ship(&mut rng), random_earth(&mut rng));
+        let parameters = ship.parameters_over_lambda().unwrap();
+        let moved = rng.random_range(-0.5..0.5);
+        let turned = parameters.by_turned_compass(moved);
+        let compass = |p: &Parameters, magnetic: f64| {
+            let [forward, starboard] = p.field_over_lambda(magnetic, earth);
+            compass_rad(forward, starboard)
+        };
+        for degrees in (0..360).step_by(15) {
+            let magnetic = f64::from(degrees).to_radians();
+            let more = compass(&turned, magnetic + moved) - compass(&parameters, magnetic);
+            assert!(wrap_pi(more - moved).abs() < 1e-9, "{degrees}: {more}");
+        }
+    }
+}
+
 /// The table of the adjuster's handbooks: which way each cause pulls the
 /// compass on each heading (sign of sin, cos, sin 2, cos 2 of the heading).
 #[test]

@@ -1,6 +1,7 @@
 //! Instruments that fail: none of it is the ship's magnetism.
 
 use crate::voyages::fleet::{Event, Log, sail_log};
+use crate::voyages::{predicted, true_deviation};
 use crate::{HOUR_S, calm, is_sound, of_the_ship, run};
 use binnacle_magnetics::analyse::{Analysis, SampleReason};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
@@ -75,16 +76,7 @@ fn a_gyro_that_is_wild_now_and_then_makes_no_stuck_compass_of_a_steady_one() {
 #[test]
 fn a_compass_whose_zero_moved_is_no_struck_ship() {
     for (seed, moved_deg) in [(60, 3.0), (61, -4.0), (62, 3.0)] {
-        let mut log = sail_log(seed, &calm(Event::Nothing));
-        let moved = log
-            .samples
-            .iter()
-            .position(|s| day(&log, s) > 25.0)
-            .unwrap();
-        for sample in &mut log.samples[moved..] {
-            let compass = sample.compass.degrees() + moved_deg;
-            sample.compass = CompassHeading::new(compass).unwrap();
-        }
+        let (log, moved) = zero_moved(seed, moved_deg);
         let analysis = run(&log.samples);
         is_sound(&analysis);
         let told = of_the_ship(&analysis);
@@ -100,6 +92,91 @@ fn a_compass_whose_zero_moved_is_no_struck_ship() {
         let learnt = constant(1) - constant(0);
         assert!((learnt + moved_deg).abs() < 0.7, "seed {seed}: {learnt}");
     }
+}
+
+/// A calm voyage whose compass is off by so much on every heading from day 25 on.
+fn zero_moved(seed: u64, moved_deg: f64) -> (Log, usize) {
+    let mut log = sail_log(seed, &calm(Event::Nothing));
+    let is_past = |s: &Sample| day(&log, s) > 25.0;
+    let moved = log.samples.iter().position(is_past).unwrap();
+    for sample in &mut log.samples[moved..] {
+        let compass = sample.compass.degrees() + moved_deg;
+        sample.compass = CompassHeading::new(compass).unwrap();
+    }
+    (log, moved)
+}
+
+#[test]
+fn a_zero_that_moved_by_much_is_told_once() {
+    for (seed, moved_deg) in [
+        (60, 8.0),
+        (61, -8.0),
+        (62, 12.0),
+        (63, 20.0),
+        (64, -20.0),
+        (65, 20.0),
+    ] {
+        let (log, _) = zero_moved(seed, moved_deg);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        assert_eq!(told, [Cause::Alignment], "seed {seed}, {moved_deg} degrees");
+        let size_deg = certain(&analysis)[0].deviation_change_deg.unwrap();
+        assert!((size_deg - moved_deg.abs()).abs() < 1.0, "{size_deg}");
+    }
+}
+
+#[test]
+fn on_one_course_a_zero_that_moved_may_be_a_strike_and_the_band_holds_either() {
+    let (mut open, mut headings, mut held) = (0, 0, 0);
+    for seed in 60..66 {
+        let moved_deg = 12.0;
+        let (log, moved) = zero_moved(seed, moved_deg);
+        // What the compass shows three hours later, and what it showed before.
+        let analysis = run(&log.samples[..moved + 18]);
+        let told = certain(&analysis);
+        let zero = told.iter().flat_map(|c| &c.causes);
+        let zero = zero.filter(|c| c.cause == Cause::Alignment);
+        if zero.map(|c| c.probability).sum::<f64>() > 0.05 {
+            open += 1;
+        }
+        let place = analysis.last_place.unwrap();
+        let epoch = analysis.current_epoch().unwrap();
+        for k in 0..36 {
+            let shown_deg = 10.0 * f64::from(k);
+            let (h, z) = (place.h_nt, place.z_nt);
+            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
+            let (told_deg, se_deg) = predicted(epoch.model.as_ref().unwrap(), shown_deg, h, z);
+            let off_deg = wrap_180(sound_deg - moved_deg - told_deg).abs();
+            headings += 1;
+            held += usize::from(off_deg < 1.96 * se_deg);
+        }
+    }
+    assert!(open >= 5, "{open}");
+    assert!(10 * held > 9 * headings, "{held} of {headings}");
+}
+
+#[test]
+fn a_card_that_jams_for_hours_is_no_strike_for_all_that_she_turns_once() {
+    let mut told_as_stuck = 0;
+    for seed in 60..72 {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let is_past = |s: &Sample| day(&log, s) > 25.0;
+        let first = log.samples.iter().position(is_past).unwrap();
+        let jammed = log.samples[first].compass.degrees();
+        for sample in &mut log.samples[first..first + 36] {
+            let off = 0.3 * (2.0 * rng.random::<f64>() - 1.0);
+            sample.compass = CompassHeading::new(jammed + off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        let told = of_the_ship(&analysis);
+        assert!(told.is_empty(), "seed {seed}: {told:?}");
+        let mut causes = certain(&analysis).into_iter().map(|c| c.cause);
+        told_as_stuck += usize::from(causes.any(|cause| cause == Cause::CompassFault));
+    }
+    // Some have not turned meanwhile.
+    assert!(told_as_stuck >= 5, "{told_as_stuck}");
 }
 
 #[test]

@@ -131,6 +131,7 @@ impl Teller<'_> {
             creeps: self.creeps(index),
             in_a_day: self.in_a_day(index),
             over_step: event.over_step,
+            zero_over_step: event.zero_over_step,
             told_after_s: self.time(event.told).seconds_since(from),
             reported: self.reported(event, at_port),
         };

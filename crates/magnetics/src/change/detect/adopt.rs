@@ -1,6 +1,6 @@
 //! What is believed takes over from the filter, and becomes an event.
 
-use super::date::Dated;
+use super::date::{Dated, at_before};
 use super::event::{snapshot, take_out};
 use super::learn::Lesson;
 use super::unsettled::Unsettled;
@@ -12,6 +12,9 @@ use crate::change::upset::{Earlier, misled, upset};
 
 /// A change that is gone again within this, away from port, is none of the ship's.
 const BRIEF_S: f64 = 24.0 * 3600.0;
+/// A large step that is no less likely than the usual by this is taken for one, nats: of
+/// what lies along the needle the usual knows too little.
+const AS_LIKELY_NATS: f64 = 3.0;
 
 impl Search<'_> {
     /// The ship's magnetism or a reference changed: the copy that knew takes over.
@@ -19,6 +22,9 @@ impl Search<'_> {
         let Some(lead) = leads[kind as usize] else {
             return;
         };
+        let large = self.bank.lead(Kind::Large, &self.null);
+        let large = large.filter(|l| kind == Kind::Step && l.nats > lead.nats - AS_LIKELY_NATS);
+        let lead = large.unwrap_or(lead);
         let dated = self.date(lead.spawn, lead.kind, k);
         let earlier = self.calls.bases.last();
         let at_sea = self.misaligned.is_some() || earlier.is_some_and(|base| !base.at_port);
@@ -32,11 +38,8 @@ impl Search<'_> {
             }
         }
         let before = self.bank.spawns[dated.from].origin().clone();
-        let before = self.run(
-            before,
-            dated.at_spawn..dated.first,
-            &dated.filter.unknowns(),
-        );
+        let calm = at_before(dated.kind, &before, &dated.filter.unknowns());
+        let before = self.run(before, dated.at_spawn..dated.first, &calm);
         self.supersede_burst(dated.first);
         let what = match kind {
             Kind::Step => What::Step,
@@ -108,7 +111,7 @@ impl Search<'_> {
             let said = self.said_at(dated.first);
             self.calls.call(dated.first, before, event, said);
         }
-        let mut since = upset(before, Kind::Step);
+        let mut since = upset(before, dated.kind);
         for row in dated.first..=k {
             if row > dated.first && calls.contains(&row) {
                 let said = self.said_at(row);
@@ -172,7 +175,7 @@ impl Search<'_> {
                 Some((&before, &dated.filter)),
             );
         }
-        self.calls.returned(event);
+        self.calls.forget(event);
         self.unsettled = Unsettled::default();
         self.take_over(k, dated.filter, dated.first);
     }
@@ -216,6 +219,9 @@ impl Search<'_> {
 
     /// The ship has been herself again since a port call.
     pub(super) fn adopt_call(&mut self, k: usize, back: Candidate, leads: Leads) {
+        // Before places in the list move.
+        self.note_zeros();
+        self.rivals.clear();
         self.supersede_burst(back.at);
         self.misaligned = None;
         // What was taken for a step to something else was this.
@@ -241,12 +247,13 @@ impl Search<'_> {
             leads,
             Some((&before, &back.filter)),
         );
-        self.calls.returned(back.event);
+        self.calls.forget(back.event);
         self.unsettled = Unsettled::default();
         self.take_over(k, back.filter, back.at);
     }
 
     pub(super) fn take_over(&mut self, k: usize, filter: Filter, first: usize) {
+        self.note_zeros();
         self.null = filter;
         self.bank.clear();
         self.faint = None;
@@ -282,6 +289,7 @@ impl Search<'_> {
             withdrawn: None,
             was_step: false,
             over_step: 0.0,
+            zero_over_step: None,
         };
         self.events.push(event);
     }

@@ -4,6 +4,7 @@ use super::{Search, earlier};
 use crate::change::bank::Kind;
 use crate::change::filter::{Filter, Measurement};
 use crate::change::upset::{misled, upset};
+use crate::estimate::Unknowns;
 
 /// Times tried for the date of a change, in each of two rounds.
 const DATES: usize = 40;
@@ -19,11 +20,21 @@ const CALL_NATS: f64 = 8.0;
 pub(super) struct Dated {
     pub(super) first: usize,
     pub(super) between: (usize, usize),
+    pub(super) kind: Kind,
     /// The filter that knew of it, now.
     pub(super) filter: Filter,
     /// The spawn that it was dated from, and that one's row.
     pub(super) from: usize,
     pub(super) at_spawn: usize,
+}
+
+/// Where rows before a change are linearised that led to `after`: before a large step at the
+/// ship that she was, who is another altogether.
+pub(super) fn at_before(kind: Kind, origin: &Filter, after: &Unknowns) -> Unknowns {
+    match kind {
+        Kind::Large => origin.unknowns(),
+        _ => *after,
+    }
 }
 
 impl Search<'_> {
@@ -40,7 +51,12 @@ impl Search<'_> {
             _ => upset(filter, kind),
         };
         // Twice, for the rows are to be linearised at where the ship is now.
-        let mut at = self.point(k);
+        let mut at = match kind {
+            Kind::Large => spawns[winner]
+                .copy(kind)
+                .map_or_else(|| self.point(k), Filter::unknowns),
+            _ => self.point(k),
+        };
         let next = self.measure(origin.at, &at);
         let mut best = (origin.at, began(origin.origin(), &next));
         let mut likely = Vec::new();
@@ -54,16 +70,21 @@ impl Search<'_> {
             };
             let stride = (high - low) / DATES + 1;
             let rows = origin.at..k + 1;
-            let measured: Vec<Measurement> = rows.map(|row| self.measure(row, &at)).collect();
+            let measure = |at: &Unknowns| -> Vec<Measurement> {
+                rows.clone().map(|row| self.measure(row, at)).collect()
+            };
+            let measured = measure(&at);
             let since = |row: usize| &measured[row - origin.at..];
-            let mut before = self.take(origin.origin().clone(), &measured[..low - origin.at]);
+            let calm = measure(&at_before(kind, origin.origin(), &at));
+            let mut before = self.take(origin.origin().clone(), &calm[..low - origin.at]);
             let mut tried: Vec<(usize, Filter)> = Vec::new();
             let mut row = low;
             while row <= high.min(k) {
                 let filter = self.take(began(&before, &since(row)[0]), since(row));
                 tried.push((row, filter));
                 let next = row + stride;
-                before = self.take(before, &since(row)[..stride.min(k + 1 - row)]);
+                let until = next.min(k + 1);
+                before = self.take(before, &calm[row - origin.at..until - origin.at]);
                 row = next;
             }
             likely.extend(tried.iter().map(|(row, f)| (round, *row, f.log_likelihood)));
@@ -76,8 +97,8 @@ impl Search<'_> {
             at = best.1.unknowns();
         }
         let (first, filter) = best;
-        if kind == Kind::Step
-            && let Some(dated) = self.date_at_call(winner, &filter, first, k)
+        if matches!(kind, Kind::Step | Kind::Large)
+            && let Some(dated) = self.date_at_call((winner, kind), &filter, first, k)
         {
             return dated;
         }
@@ -98,6 +119,7 @@ impl Search<'_> {
         Dated {
             first,
             between: (earliest, latest),
+            kind,
             filter,
             from,
             at_spawn: origin.at,
@@ -114,7 +136,13 @@ impl Search<'_> {
 
     /// Whether it rather happened at a port call: many more steps do than at any one
     /// time at sea. `filter` is of the likeliest row.
-    fn date_at_call(&self, winner: usize, filter: &Filter, row: usize, k: usize) -> Option<Dated> {
+    fn date_at_call(
+        &self,
+        (winner, kind): (usize, Kind),
+        filter: &Filter,
+        row: usize,
+        k: usize,
+    ) -> Option<Dated> {
         let spawns = &self.bank.spawns;
         let since = row.saturating_sub(CALL_ROWS);
         let from = spawns.partition_point(|s| s.at <= since).saturating_sub(1);
@@ -127,9 +155,10 @@ impl Search<'_> {
         let calls = (origin.at.max(since).max(1)..=until.min(k)).rev();
         let calls = calls.filter(|&row| self.is_call(row)).take(CALLS);
         let at = filter.unknowns();
+        let calm = at_before(kind, origin.origin(), &at);
         let tried = calls.map(|call| {
-            let before = self.run(origin.origin().clone(), origin.at..call, &at);
-            (call, self.run(upset(&before, Kind::Step), call..k + 1, &at))
+            let before = self.run(origin.origin().clone(), origin.at..call, &calm);
+            (call, self.run(upset(&before, kind), call..k + 1, &at))
         });
         let (call, filter) = tried
             .filter(|(_, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
@@ -137,6 +166,7 @@ impl Search<'_> {
         Some(Dated {
             first: call,
             between: (call.min(row), call.max(row)),
+            kind,
             filter,
             from,
             at_spawn: origin.at,

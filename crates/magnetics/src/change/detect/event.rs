@@ -72,6 +72,8 @@ pub(crate) struct Event {
     pub(crate) was_step: bool,
     /// By how much it is likelier than the step for which it was first taken, nats.
     pub(crate) over_step: f64,
+    /// By how much a zero that moved is likelier than the step, nats, where that is open.
+    pub(crate) zero_over_step: Option<f64>,
 }
 
 impl Event {
@@ -169,6 +171,7 @@ mod tests {
             withdrawn: None,
             was_step: false,
             over_step: 0.0,
+            zero_over_step: None,
         }
     }
 

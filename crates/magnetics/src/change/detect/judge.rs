@@ -199,13 +199,16 @@ impl Search<'_> {
     }
 
     pub(super) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
+        let step = leads[Kind::Step as usize];
+        // A large step would explain the first hour of a storm, too.
+        let is_usual = step.is_some_and(|lead| lead.kind == Kind::Step);
         if over_burst <= STEP_AT_LEAST
             || (over_burst <= STEP_NATS + self.unlearnt_nats(k) + self.creeping_nats(k)
-                && lead <= LARGE_NATS)
+                && !(is_usual && lead > LARGE_NATS))
         {
             return false;
         }
-        let since = leads[Kind::Step as usize].map_or(k, |lead| self.bank.spawns[lead.spawn].at);
+        let since = step.map_or(k, |lead| self.bank.spawns[lead.spawn].at);
         let with_one = |rows: &[Observation]| {
             let one = rows.iter().filter(|o| o.gyro_less_satellite_deg.is_none());
             one.count() as f64 > ONE_REFERENCE_SHARE * rows.len() as f64

@@ -27,9 +27,10 @@ pub(crate) use unnoticed::Unnoticed;
 use super::bank::{Bank, Kind, Lead};
 use super::calls::Calls;
 use super::filter::{Filter, Measurement, Noise, measurement};
+use super::large::{fusion, relinearised};
 use super::upset::Earlier;
 use crate::estimate::{
-    NoiseLevels, Point, Prior, Station, USUAL_FUSION, Unknowns, are_times_believed, row, stations,
+    NoiseLevels, Point, Prior, Station, Unknowns, are_times_believed, row, stations,
 };
 use crate::fit::Observation;
 use crate::time::Timestamp;
@@ -165,8 +166,7 @@ impl<'a> Search<'a> {
         if is_due {
             self.settle_burst(k);
         }
-        let at = self.point(k);
-        let m = self.measure(k, &at);
+        let m = self.next(k);
         if is_due || (k >= FIRST_PASSING && self.is_astray(k, &m)) {
             let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
             self.bank.spawn(k, &self.null, &self.noise, earlier);
@@ -188,6 +188,9 @@ impl<'a> Search<'a> {
         let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
         let null = (&self.null, surprise);
         self.bank.take(k, m, &self.noise, null, earlier);
+        let mut bank = std::mem::take(&mut self.bank);
+        bank.take_large(k, &self.noise, |row, at| self.measure(row, at));
+        self.bank = bank;
         if k >= FIRST_PASSING {
             self.judge(k);
             self.settle_faint(k, false);
@@ -205,11 +208,19 @@ impl<'a> Search<'a> {
     /// Steps', references', bursts' (those that are over, too) and returns' best.
     fn leads(&self) -> Leads {
         [
-            self.bank.lead(Kind::Step, &self.null),
+            self.bank.step(&self.null),
             self.bank.reference(&self.null),
             self.bank.passing(&self.null),
             self.bank.lead(Kind::Return, &self.null),
         ]
+    }
+
+    /// Row `k` as the filter is to read it.
+    fn next(&self, k: usize) -> Measurement {
+        if k < self.start_until {
+            return self.measure(k, &self.start);
+        }
+        relinearised(&self.null, &self.noise, |at| self.measure(k, at))
     }
 
     /// Where row `k` is linearised.
@@ -239,7 +250,7 @@ impl<'a> Search<'a> {
 
     fn measured(&self, k: usize, at: &Unknowns, unsettled: f64) -> Measurement {
         let (o, station) = (&self.observations[k], &self.stations[k]);
-        let row = row(o, station, &Point::at(at, USUAL_FUSION));
+        let row = row(o, station, &Point::at(at, fusion(at)));
         measurement(station, &row, at, self.seconds(k), &self.noise, unsettled)
     }
 
@@ -305,6 +316,7 @@ impl<'a> Search<'a> {
         let returned = perhaps.map_or(0.0, |perhaps| perhaps.probability);
         let unnoticed = self.unnoticed(&leads, returned);
         let open_nt2 = self.open_nt2(&leads);
+        self.note_zeros();
         self.suspect();
         self.settle_faint(self.observations.len().saturating_sub(1), true);
         Told {

@@ -11,10 +11,12 @@ use super::unsettled::Unsettled;
 use super::{Leads, Search, What};
 use crate::change::bank::Kind;
 use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
+use crate::change::upset::misaligned;
 
 /// Standard deviation of the zero's step, degrees, unless the first reading after it is
 /// further off.
 const ZERO_DEG: f64 = 5.0;
+const ZERO_ROUNDS: usize = 3;
 /// What bx and by each drift by in thirty days, variance in population units (1500 nT):
 /// a ship that creeps, and one that drifts fast.
 const CREEPS: [f64; 2] = [0.5, 4.0];
@@ -29,9 +31,10 @@ const DRIFT_IN_PORT_NATS: f64 = 16.0;
 const BEFORE_PORT_ROWS: usize = 72;
 /// And no less likely by this than another step would be: two in a row are seldom.
 const BELOW_STEP: f64 = 3.0;
-/// A zero that moved takes a step's place once two sectors of this many, with another between
-/// them, have been sailed for so many rows each.
-const SECTORS: usize = 12;
+/// A zero that moved takes a step's place once two sectors of this many, with so many others
+/// between them, have been sailed for so many rows each: two headings 30° apart and more.
+const SECTORS: usize = 36;
+const BETWEEN: usize = 3;
 const SECTOR_ROWS: usize = 3;
 /// One that trails by this is given up, nats, and any after so many rows.
 const HOPELESS_NATS: f64 = 20.0;
@@ -63,18 +66,15 @@ impl Search<'_> {
 
     /// The zero moved when the step is dated.
     fn misaligned(&self, k: usize, dated: &Dated, before: &Filter) -> Rival {
-        let mut at = before.unknowns();
         let mut filter = before.clone();
-        // Twice, for the rows are to be linearised at where it ends.
-        for _ in 0..2 {
+        // So often, for the rows are to be linearised at where it ends.
+        for _ in 0..ZERO_ROUNDS {
+            let at = filter.unknowns();
+            let moved_deg = filter.mean[CONSTANT_STATE] - before.mean[CONSTANT_STATE];
             let next = self.measure(dated.first, &at);
-            let size = before.astray_deg(&next).max(ZERO_DEG);
-            filter = before.clone();
-            filter
-                .covariance
-                .add(CONSTANT_STATE, CONSTANT_STATE, size * size);
-            filter = self.run(filter, dated.first..k + 1, &at);
-            at = filter.unknowns();
+            let size_deg = before.astray_deg(&next).max(ZERO_DEG);
+            let moved = misaligned(before, moved_deg, size_deg);
+            filter = self.run(moved, dated.first..k + 1, &at);
         }
         Rival {
             what: What::Alignment,
@@ -175,7 +175,12 @@ impl Search<'_> {
         if nats < enough || nats < step - BELOW_STEP || nats < burst || nats < back {
             return false;
         }
-        if self.rivals[place].what == What::Alignment && !self.tells_from_step(place, k) {
+        // Another step upon the first is the rarer by far.
+        let is_needless = step > RIVAL_NATS;
+        if self.rivals[place].what == What::Alignment
+            && !is_needless
+            && !self.tells_from_step(place, k)
+        {
             return false;
         }
         let rival = self.rivals.swap_remove(place);
@@ -197,6 +202,17 @@ impl Search<'_> {
         true
     }
 
+    /// By how much it is likelier that the zero moved than that the ship did, for each step of
+    /// which that is open.
+    pub(super) fn note_zeros(&mut self) {
+        for rival in self.rivals.iter().filter(|r| r.what == What::Alignment) {
+            let nats = rival.filter.log_likelihood - self.null.log_likelihood;
+            if let Some(event) = self.events.get_mut(rival.event) {
+                event.zero_over_step = Some(nats);
+            }
+        }
+    }
+
     /// Whether she has sailed on headings since that tell a zero that moved from a step: on
     /// one, and on two that lie close, a step does the same.
     fn tells_from_step(&self, place: usize, k: usize) -> bool {
@@ -205,7 +221,8 @@ impl Search<'_> {
             rows[(o.compass.degrees() / 360.0 * SECTORS as f64) as usize % SECTORS] += 1;
         }
         let sailed = |sector: usize| rows[sector % SECTORS] >= SECTOR_ROWS;
-        (0..SECTORS).any(|one| sailed(one) && (2..=SECTORS - 2).any(|far| sailed(one + far)))
+        let apart = BETWEEN + 1..SECTORS - BETWEEN;
+        (0..SECTORS).any(|one| sailed(one) && apart.clone().any(|far| sailed(one + far)))
     }
 
     /// What had been taken for further steps was the same.

@@ -1,0 +1,94 @@
+//! A step that is far larger than most: lightning can leave many times what cargo does.
+//!
+//! What always holds: a ship to whom nothing large happened has none of these copies, so
+//! that small changes are judged as if there were none; each reads every row linearised at
+//! the ship that it supposes, for deviation is not linear in a large step.
+
+use super::bank::{Bank, Kind, Spawn};
+use super::filter::{Filter, Measurement, Noise};
+use super::upset::upset;
+use crate::estimate::{USUAL_FUSION, Unknowns};
+
+/// A large step is supposed once a reading was further astray than this, degrees where H is
+/// 24 µT.
+const LARGE_DEG: f64 = 4.0;
+/// Of times no more than so many rows ago: a ship on one course does not show what lies
+/// along her needle.
+const ROWS: usize = 72;
+/// A row is linearised again where it moves what is expected of it by more than this,
+/// degrees, and so often at most.
+const FAR_DEG: f64 = 2.0;
+const ROUNDS: usize = 6;
+/// A ship whose bx and by are beyond this is a strong magnet, population units (1500 nT).
+const STRONG: f64 = 4.0;
+/// One that is off by more than this is a wild reading, squared standard deviations.
+const WILD_Z_SQUARED: f64 = 9.0;
+
+/// The share that the reference has in the heading at which rows are taken: all of it for a
+/// ship so strong a magnet that her compass may turn several times as fast as she does,
+/// for there what the compass has in it would explain whatever it shows.
+pub(super) fn fusion(ship: &Unknowns) -> f64 {
+    if ship[0].hypot(ship[2]) > STRONG {
+        1.0
+    } else {
+        USUAL_FUSION
+    }
+}
+
+/// The row linearised at the ship that `filter` takes her for once it has read it, where
+/// that is far from the ship before.
+pub(super) fn relinearised(
+    filter: &Filter,
+    noise: &Noise,
+    measure: impl Fn(&Unknowns) -> Measurement,
+) -> Measurement {
+    let mut m = measure(&filter.unknowns());
+    let mut moved = filter.astray_deg(&m);
+    for _ in 0..ROUNDS {
+        if moved < FAR_DEG || filter.z_squared(&m) > WILD_Z_SQUARED {
+            break;
+        }
+        let mut after = filter.clone();
+        after.take(&m, noise, None);
+        m = measure(&after.unknowns());
+        moved = after.astray_deg(&m);
+    }
+    m
+}
+
+impl Bank {
+    /// Takes row `at` in, which the other copies have taken in before, where a large step
+    /// is supposed; `measure` is of any row at any ship.
+    pub(super) fn take_large(
+        &mut self,
+        at: usize,
+        noise: &Noise,
+        measure: impl Fn(usize, &Unknowns) -> Measurement,
+    ) {
+        if !self.are_rivals_awake() {
+            return;
+        }
+        for spawn in &mut self.spawns {
+            let rows = if spawn.copy(Kind::Large).is_some() {
+                at..at + 1
+            } else if is_new(spawn, at) {
+                spawn.set(Kind::Large, upset(spawn.origin(), Kind::Large));
+                spawn.at..at + 1
+            } else {
+                continue;
+            };
+            let Some(copy) = spawn.copy_mut(Kind::Large) else {
+                continue;
+            };
+            for row in rows {
+                let m = relinearised(copy, noise, |ship| measure(row, ship));
+                copy.take(&m, noise, None);
+            }
+        }
+    }
+}
+
+/// Whether a large step is to be supposed of that time from now on.
+fn is_new(spawn: &Spawn, at: usize) -> bool {
+    spawn.astray_deg() > LARGE_DEG && at <= spawn.at + ROWS
+}
