@@ -45,6 +45,8 @@ pub(crate) fn quiet(ships: u64) {
                     .iter()
                     .any(|h| h.what == Name::GyroFault && near(h, c))
         });
+        let compass = analysis.changes.iter();
+        let compass = compass.filter(|c| c.cause == Cause::CompassFault && c.confirmed);
         let passing = |c: &&Change| {
             c.confirmed
                 && matches!(
@@ -65,6 +67,7 @@ pub(crate) fn quiet(ships: u64) {
             false_passing,
             passed.iter().filter(|c| was_withdrawn(c)).count(),
             told().filter(|c| c.withdrawn).count(),
+            compass.count(),
         ]
     });
     let sum = |i: usize| found.iter().map(|f| f[i]).sum::<usize>();
@@ -80,6 +83,7 @@ pub(crate) fn quiet(ships: u64) {
         sum(4) as f64 / years
     );
     println!("  reference fault     {:.2}", sum(1) as f64 / years);
+    println!("  compass fault       {:.2}", sum(6) as f64 / years);
     println!(
         "  passing disturbance {:.2} (and {:.2} that were)",
         sum(3) as f64 / years,
