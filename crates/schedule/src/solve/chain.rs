@@ -9,10 +9,15 @@
 //! What always holds: the assignment stays feasible, and a need is placed at the cost
 //! that is given back.
 
+use super::moves::carry_out;
+use super::problem::Problem;
 use super::search::State;
+use super::work::Work;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+/// Looks of one search, at most.
+const MOST_LOOKS: usize = 300_000;
 /// Beyond every cost.
 const NEVER: i64 = i64::MAX / 4;
 
@@ -22,6 +27,15 @@ struct Link {
     from: Option<usize>,
     need: usize,
     choice: usize,
+}
+
+/// How far a chain is searched.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reach {
+    /// While it costs less at the worth of its places.
+    Near,
+    /// While a free place elsewhere could still pay for it.
+    Far,
 }
 
 /// The cheapest chains from one need to each visit.
@@ -35,6 +49,11 @@ pub(super) struct Chains<'a> {
     queue: BinaryHeap<Reverse<(i64, usize)>>,
     /// Visits with a cost, to be cleared.
     seen: Vec<usize>,
+    /// How many choices each visit has.
+    wanted: Vec<u32>,
+    /// Looks of this search.
+    looks: usize,
+    pub(super) work: &'a mut Work,
 }
 
 /// The best end of a chain so far.
@@ -54,7 +73,16 @@ impl End {
 }
 
 impl<'a> Chains<'a> {
-    pub(super) fn new(order: &'a [Vec<usize>], worth: &'a [i64]) -> Chains<'a> {
+    pub(super) fn new(
+        problem: &Problem,
+        order: &'a [Vec<usize>],
+        worth: &'a [i64],
+        work: &'a mut Work,
+    ) -> Chains<'a> {
+        let mut wanted = vec![0; worth.len()];
+        for choice in &problem.choices {
+            wanted[choice.visit] += 1;
+        }
         let none = Link {
             from: None,
             need: 0,
@@ -67,20 +95,24 @@ impl<'a> Chains<'a> {
             by: vec![none; worth.len()],
             queue: BinaryHeap::new(),
             seen: Vec::new(),
+            wanted,
+            looks: 0,
+            work,
         }
     }
 
     /// Moves a need where a chain from it makes the whole cheaper.
-    pub(super) fn improve(&mut self, state: &mut State<'_>, need: usize) -> bool {
-        let before = state.chosen[need];
-        let home = self.worth_of_place(state, need);
+    pub(super) fn improve(&mut self, state: &mut State<'_>, need: usize, reach: Reach) -> bool {
+        let mark = state.mark();
+        let mut home = self.worth_of_place(state, need);
+        if reach == Reach::Far {
+            home = home.max(self.left_over(state));
+        }
         let saved = state.take(need);
         if self.place(state, need, saved, home).is_some() {
             return true;
         }
-        if let Some(before) = before {
-            state.put(need, before);
-        }
+        state.go_back(mark);
         false
     }
 
@@ -113,19 +145,30 @@ impl<'a> Chains<'a> {
         carry_out(state, need, &moves, limit)
     }
 
+    /// What the free places are worth at most, beyond what they cost, that someone wants.
+    fn left_over(&mut self, state: &State<'_>) -> i64 {
+        self.work.spend(self.worth.len() / 2);
+        let worth = |at: usize| {
+            let price = state.price_of_place(at)?;
+            (self.wanted[at] > state.jobs[at]).then(|| self.worth[at] - price)
+        };
+        (0..self.worth.len()).filter_map(worth).max().unwrap_or(0)
+    }
+
     fn search(&mut self, state: &State<'_>, need: usize, limit: i64, room: i64) -> End {
         for visit in self.seen.drain(..) {
             self.cost[visit] = NEVER;
         }
         self.queue.clear();
+        self.looks = 0;
         let mut end = End {
             cost: limit.min(state.problem.unmet[need]),
             at: None,
             given_up: None,
         };
-        self.go_on(state, need, None, 0, &end, room);
+        self.go_on(state, need, None, 0, &mut end, room);
         while let Some(Reverse((key, at))) = self.queue.pop() {
-            if key >= end.cost.saturating_add(room) {
+            if key >= end.cost.saturating_add(room) || self.looks > MOST_LOOKS {
                 break;
             }
             let cost = self.cost[at];
@@ -133,6 +176,7 @@ impl<'a> Chains<'a> {
                 self.arrive(state, at, cost, &mut end, room);
             }
         }
+        self.work.spend(self.looks);
         end
     }
 
@@ -140,15 +184,8 @@ impl<'a> Chains<'a> {
     fn arrive(&mut self, state: &State<'_>, at: usize, cost: i64, end: &mut End, room: i64) {
         let problem = state.problem;
         let visit = problem.visits[at];
-        if !state.jobs[at].is_multiple_of(visit.jobs_a_team) {
-            end.offer(cost, at, None);
-            return;
-        }
-        if state.sent[visit.firm_day] < problem.teams[visit.firm_day] {
-            end.offer(cost + visit.travel, at, None);
-            return;
-        }
         for &beside in &state.visits_of[visit.firm_day] {
+            self.looks += 1;
             let other = problem.visits[beside];
             let cost = if beside == at {
                 cost
@@ -176,19 +213,26 @@ impl<'a> Chains<'a> {
         need: usize,
         from: Option<usize>,
         cost: i64,
-        end: &End,
+        end: &mut End,
         room: i64,
     ) {
-        let most = end.cost.saturating_add(room);
         let order = self.order;
         for &choice in &order[need] {
+            self.looks += 1;
             let to = state.problem.choices[choice];
             let cost = cost + to.cost;
+            let most = end.cost.saturating_add(room);
             if cost >= most {
                 break;
             }
+            // Where there is a place now, a chain ends, whatever that place is worth.
             let key = cost + self.worth[to.visit];
-            if key >= most || cost >= self.cost[to.visit] || self.passed(state, from, to.visit) {
+            let place = state.price_of_place(to.visit);
+            let leads = match place {
+                Some(price) => cost + price < end.cost,
+                None => key < most,
+            };
+            if !leads || cost >= self.cost[to.visit] || self.passed(state, from, to.visit) {
                 continue;
             }
             if self.cost[to.visit] == NEVER {
@@ -196,15 +240,19 @@ impl<'a> Chains<'a> {
             }
             self.cost[to.visit] = cost;
             self.by[to.visit] = Link { from, need, choice };
-            self.queue.push(Reverse((key, to.visit)));
+            match place {
+                Some(price) => end.offer(cost + price, to.visit, None),
+                None => self.queue.push(Reverse((key, to.visit))),
+            }
         }
     }
 
     /// Whether a chain has been on a visit's day, whose teams it counts on only once.
-    fn passed(&self, state: &State<'_>, from: Option<usize>, visit: usize) -> bool {
+    fn passed(&mut self, state: &State<'_>, from: Option<usize>, visit: usize) -> bool {
         let day = state.problem.visits[visit].firm_day;
         let mut at = from;
         while let Some(passed) = at {
+            self.looks += 1;
             if state.problem.visits[passed].firm_day == day {
                 return true;
             }
@@ -214,54 +262,13 @@ impl<'a> Chains<'a> {
     }
 }
 
-/// Makes a chain's moves; none of them where they are not possible together at less than
-/// the limit, for a link may have changed since the chain went on from it.
-fn carry_out(
-    state: &mut State<'_>,
-    need: usize,
-    moves: &[(usize, Option<usize>)],
-    limit: i64,
-) -> Option<i64> {
-    // A need that is in it twice goes only once.
-    let twice = |at: usize| moves[..at].iter().any(|(need, _)| *need == moves[at].0);
-    if (0..moves.len()).any(twice) {
-        return None;
-    }
-    let before = state.chosen.clone();
-    let mut cost = 0;
-    for (moved, _) in moves {
-        if *moved != need {
-            cost -= state.take(*moved);
-        }
-    }
-    for (moved, choice) in moves {
-        cost += match choice {
-            Some(choice) => state.put(*moved, *choice),
-            None => state.problem.unmet[*moved],
-        };
-    }
-    if moves.is_empty() {
-        cost = state.problem.unmet[need];
-    }
-    let fits = moves.iter().all(|(_, choice)| {
-        choice.is_none_or(|choice| {
-            let day = state.problem.visits[state.problem.choices[choice].visit].firm_day;
-            state.sent[day] <= state.problem.teams[day]
-        })
-    });
-    if fits && cost < limit {
-        return Some(cost);
-    }
-    state.go_back(&before);
-    None
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::prices::Prices;
     use crate::solve::problem::made_up::problems;
     use crate::solve::search::greedy;
-    use crate::solve::{Choice, Problem, Visit, prices};
+    use crate::solve::{Choice, Visit};
     use proptest::prelude::*;
 
     fn visit(firm_day: usize) -> Visit {
@@ -294,7 +301,12 @@ mod tests {
         };
         let mut state = State::new(&problem, vec![Some(0), Some(2), Some(4)]);
         let order = problem.by_need();
-        assert!(Chains::new(&order, &[0; 3]).improve(&mut state, 0));
+        let mut work = Work::new(1_000);
+        assert!(Chains::new(&problem, &order, &[0; 3], &mut work).improve(
+            &mut state,
+            0,
+            Reach::Near
+        ));
         assert_eq!(state.chosen, [Some(1), Some(3), Some(5)]);
     }
 
@@ -309,7 +321,12 @@ mod tests {
         };
         let mut state = State::new(&problem, vec![Some(0), None]);
         let order = problem.by_need();
-        assert!(Chains::new(&order, &[0; 3]).improve(&mut state, 1));
+        let mut work = Work::new(1_000);
+        assert!(Chains::new(&problem, &order, &[0; 3], &mut work).improve(
+            &mut state,
+            1,
+            Reach::Near
+        ));
         assert_eq!(state.chosen, [Some(1), Some(2)]);
     }
 
@@ -319,10 +336,13 @@ mod tests {
         #[test]
         fn a_need_is_placed_at_the_cost_that_is_given_back_or_nothing_changes(problem in problems()) {
             let order = problem.by_need();
-            let begin = greedy(&problem, vec![None; problem.unmet.len()], &order);
-            let worth = prices::bound(&problem, problem.cost(&begin).unwrap()).worth;
+            let mut work = Work::new(1_000_000);
+            let begin = greedy(&problem, vec![None; problem.unmet.len()], &order, &mut work);
+            let mut prices = Prices::new(&problem);
+            prices.improve(problem.cost(&begin).unwrap(), 300, &mut work);
+            let worth = prices.bound().worth;
             for worth in [worth.clone(), vec![0; worth.len()]] {
-                let mut chains = Chains::new(&order, &worth);
+                let mut chains = Chains::new(&problem, &order, &worth, &mut work);
                 let mut state = State::new(&problem, begin.clone());
                 for need in 0..problem.unmet.len() {
                     let home = chains.worth_of_place(&state, need);

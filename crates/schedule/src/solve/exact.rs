@@ -2,14 +2,19 @@
 //!
 //! What always holds: an assignment that comes back is feasible and no worse than the
 //! one given; it is called optimal only where the solver finished its proof on every
-//! part. Work is limited in nodes, not in seconds: the same problem, the same answer.
+//! part. Work is counted in nodes and pivots, not in seconds: the same problem, the same
+//! answer. What one relaxation takes is known only after it, and bounded by its part's size.
 
 use super::problem::{Assignment, Problem};
+use super::work::Work;
 use super::{LARGE_PART, Open};
 use microlp::{
     ComparisonOp, LinearExpr, OptimizationDirection, SolveOptions, TerminationReason, Variable,
 };
 use std::collections::BTreeMap;
+
+/// Looks at a choice that a step of the simplex takes for each choice.
+const PIVOT: usize = 2;
 
 /// What became of a problem.
 pub(super) struct Finished {
@@ -21,7 +26,14 @@ pub(super) struct Finished {
 /// The cheapest assignment with what is `open`, part by part
 /// of the choices that share no need and no firm's day. A part of many choices may take
 /// fewer nodes, and one that is too large none: `effort` is nodes times choices.
-pub(super) fn finish(problem: &Problem, open: &Open, known: Assignment, effort: usize) -> Finished {
+pub(super) fn finish(
+    problem: &Problem,
+    open: &Open,
+    known: Assignment,
+    effort: usize,
+    work: &mut Work,
+) -> Finished {
+    work.spend(2 * problem.choices.len());
     let mut assignment = known;
     let mut optimal = true;
     for part in parts(problem, &open.choices) {
@@ -34,28 +46,27 @@ pub(super) fn finish(problem: &Problem, open: &Open, known: Assignment, effort: 
         if part.iter().all(is_settled) {
             continue;
         }
-        if part.len() > LARGE_PART {
+        if part.len() > LARGE_PART || work.is_spent() {
             optimal = false;
             continue;
         }
         let nodes = (effort / part.len().max(1)).max(1) as u64;
-        match solve(problem, &part, &assignment, nodes) {
-            Some((found, proven)) => {
-                optimal &= proven;
-                let mut changed = assignment.clone();
-                for (need, choice) in found {
-                    changed[need] = choice;
-                }
-                let cheaper = match (problem.cost(&changed), problem.cost(&assignment)) {
-                    (Some(new), Some(old)) => new < old,
-                    (Some(_), None) => true,
-                    _ => false,
-                };
-                if cheaper {
-                    assignment = changed;
-                }
+        let Some((found, proven)) = solve(problem, &part, &assignment, nodes, work) else {
+            optimal = false;
+            continue;
+        };
+        optimal &= proven;
+        // No other part has a firm's day of this one.
+        let known = found.iter().map(|(need, _)| (*need, assignment[*need]));
+        let known = problem.cost_of(known);
+        let is_cheaper = match (problem.cost_of(found.iter().copied()), known) {
+            (Some(new), Some(old)) => new < old,
+            (new, _) => new.is_some(),
+        };
+        if is_cheaper {
+            for (need, choice) in found {
+                assignment[need] = choice;
             }
-            None => optimal = false,
         }
     }
     Finished {
@@ -103,6 +114,7 @@ fn solve(
     part: &[usize],
     known: &[Option<usize>],
     nodes: u64,
+    work: &mut Work,
 ) -> Option<(Found, bool)> {
     const CENTS: f64 = 100.0;
     let mut model = microlp::Problem::new(OptimizationDirection::Minimize);
@@ -153,7 +165,10 @@ fn solve(
     let mut options = SolveOptions::default();
     options.node_limit = Some(nodes);
     options.warm_start = Some(warm);
-    let solved = model.solve_with(options).ok()?.into_solution().ok()?;
+    let solved = model.solve_with(options).ok()?;
+    let pivots = usize::try_from(solved.stats().lp_iterations).unwrap_or(usize::MAX);
+    work.spend(pivots.saturating_mul(PIVOT * part.len()));
+    let solved = solved.into_solution().ok()?;
     let proven = solved.termination_reason() == TerminationReason::ProvenOptimal;
     let found = of_need
         .into_iter()

@@ -1,44 +1,56 @@
 //! The best assignment there is, or a good one and how far from the best it can be.
 //!
-//! Prices give a bound: the linear relaxation's, or for a problem that is too large for it
-//! those of a subgradient. Search, which these prices guide, gives an assignment: needs
-//! make way for each other, and teams are sent elsewhere. A choice whose reduced cost is
-//! beyond the gap between the two is in no better assignment. What is left falls into
-//! small parts, which branch and bound finishes; where one is too large for that,
+//! Prices of the needs give a bound, and say which choices they lean to. Search begins with
+//! these: needs make way for each other, and teams are sent elsewhere. A choice whose
+//! reduced cost is beyond the gap between the two is in no better assignment. What is left
+//! falls into small parts, which branch and bound finishes; where one is too large for that,
 //! neighbourhoods of it are, each in turn, and the gap is stated.
 //!
 //! What always holds: the answer is feasible, the bound is below every assignment's
-//! cost, and both are the same for the same problem.
+//! cost, and both are the same for the same problem. Work is counted and has a limit, so
+//! that no problem takes much longer than the largest that was thought of.
 
 mod bound;
 mod chain;
+mod days;
 mod exact;
+mod moves;
 mod near;
 mod prices;
 mod problem;
 mod search;
 mod teams;
+mod work;
 
 use bound::Bound;
+use prices::Prices;
+use work::Work;
 
 pub use problem::{Assignment, Choice, Problem, Visit};
 
+/// Looks at a choice, or what takes as long, that a problem may take: fifteen seconds of a
+/// processor of 2026 for 8,000 ships.
+const MOST_WORK: u64 = 1_200_000_000;
+/// Steps of the prices before each search.
+const STEPS: usize = 1000;
+/// Steps of the prices after the last.
+const LAST_STEPS: usize = 4000;
+/// Prices and searches, at most.
+const SEARCHES: usize = 3;
 /// Nodes of branch and bound times choices that a part may take: about a second.
 const EFFORT: usize = 300_000;
 /// The same for a neighbourhood.
 const EFFORT_NEAR: usize = 60_000;
 /// Needs of a neighbourhood.
 const NEIGHBOURS: usize = 60;
-/// With more choices than these the linear relaxation alone takes minutes.
-const LARGE: usize = 20_000;
 /// Open choices of the largest part that is branched on: the relaxation of a larger one takes
 /// longer than all else, and there was no better assignment behind it.
-const LARGE_PART: usize = 15_000;
+const LARGE_PART: usize = 5_000;
 /// Rounds over all neighbourhoods, at most.
 const ROUNDS: usize = 3;
 /// No further round where the gap is this part of the cost, or less: half a per cent.
 const SMALL_GAP: i64 = 200;
-/// With more open choices than these the neighbourhoods take minutes.
+/// With more open choices than these the neighbourhoods find next to nothing.
 const MANY_OPEN: usize = 5_000;
 /// None with so many, where the gap is this part of the cost, or less: one per cent.
 const SMALL_GAP_OF_MANY: i64 = 100;
@@ -52,52 +64,84 @@ pub struct Solved {
     pub cost: i64,
     /// What no assignment can cost less than.
     pub bound: i64,
+    /// The work that it took, in looks at a choice.
+    pub work: u64,
 }
 
 /// Solves a problem.
 pub fn solve(problem: &Problem) -> Solved {
-    let order = problem.by_need();
-    let begin = vec![None; problem.unmet.len()];
-    let mut found = search::greedy(problem, begin, &order);
-    let large = problem.choices.len() > LARGE;
-    let bound = if large {
-        prices::bound(problem, cost_of(problem, &found))
+    solve_within(problem, MOST_WORK)
+}
+
+/// Solves a problem with so much work, and little more: the less, the wider the gap may be.
+/// The prices have a third of it, search another, branch and bound the rest.
+pub fn solve_within(problem: &Problem, most_work: u64) -> Solved {
+    let (found, bound, mut spent) = search_by_prices(problem, most_work / 3);
+    let cost = cost_of(problem, &found);
+    let mut work = Work::new(most_work / 3);
+    let (assignment, optimal) = if bound.cost >= cost {
+        (found, true)
     } else {
-        bound::bound(problem)
+        branch(problem, &bound, found, &mut work)
     };
-    found = teams::improve(problem, found, &order, &bound);
+    spent += work.spent();
+    let cost = cost_of(problem, &assignment);
+    Solved {
+        assignment,
+        cost,
+        bound: if optimal { cost } else { bound.cost },
+        work: spent,
+    }
+}
+
+/// An assignment and a bound by prices and search, in turns, and the work that both took.
+fn search_by_prices(problem: &Problem, most_work: u64) -> (Assignment, Bound, u64) {
+    let order = problem.by_need();
+    let (mut for_prices, mut work) = (Work::new(most_work), Work::new(most_work));
+    let nothing = vec![None; problem.unmet.len()];
+    let mut found = search::greedy(problem, nothing, &order, &mut work);
+    let mut prices = Prices::new(problem);
+    let mut bound = prices.bound();
+    for _ in 0..SEARCHES {
+        let known = cost_of(problem, &found);
+        if bound.cost >= known {
+            break;
+        }
+        prices.improve(known, STEPS, &mut for_prices);
+        bound = prices.bound();
+        let begin = search::take_up(problem, &prices.leanings());
+        let begin = search::greedy(problem, begin, &order, &mut work);
+        let next = teams::improve(problem, begin, &order, &bound, &mut work);
+        if cost_of(problem, &next) < known {
+            found = next;
+        }
+    }
+    // Now that a good assignment is known, steps are no longer too long for it.
+    prices.improve(cost_of(problem, &found), LAST_STEPS, &mut for_prices);
+    (found, prices.bound(), for_prices.spent() + work.spent())
+}
+
+/// Branches on what is open, and on neighbourhoods of it; whether what is found is the best.
+fn branch(
+    problem: &Problem,
+    bound: &Bound,
+    mut found: Assignment,
+    work: &mut Work,
+) -> (Assignment, bool) {
     for round in 0..=ROUNDS {
-        let cost = cost_of(problem, &found);
-        if bound.cost >= cost {
-            return Solved {
-                assignment: found,
-                cost,
-                bound: cost,
-            };
-        }
-        let open = Open::of(problem, &bound, &found, cost);
-        let finished = exact::finish(problem, &open, found, EFFORT);
+        let open = Open::of(problem, bound, &found, cost_of(problem, &found));
+        let finished = exact::finish(problem, &open, found, EFFORT, work);
         found = finished.assignment;
-        if finished.optimal {
-            let cost = cost_of(problem, &found);
-            return Solved {
-                assignment: found,
-                cost,
-                bound: cost,
-            };
-        }
         let cost = cost_of(problem, &found);
+        if finished.optimal || bound.cost >= cost {
+            return (found, true);
+        }
         if round == ROUNDS || open.is_enough(round, cost - bound.cost, cost) {
             break;
         }
-        found = near::improve(problem, &open, found);
+        found = near::improve(problem, &open, found, work);
     }
-    let cost = cost_of(problem, &found);
-    Solved {
-        assignment: found,
-        cost,
-        bound: bound.cost,
-    }
+    (found, false)
 }
 
 /// What a better assignment may have.

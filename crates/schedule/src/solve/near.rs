@@ -2,10 +2,16 @@
 //! the same teams are solved anew, all others held.
 
 use super::problem::{Assignment, Problem};
+use super::work::Work;
 use super::{EFFORT_NEAR, NEIGHBOURS, Open, exact};
 
 /// Goes through all neighbourhoods once.
-pub(super) fn improve(problem: &Problem, open: &Open, known: Assignment) -> Assignment {
+pub(super) fn improve(
+    problem: &Problem,
+    open: &Open,
+    known: Assignment,
+    work: &mut Work,
+) -> Assignment {
     let wishes = wishes(problem, &open.choices);
     let mut wanted_by: Vec<Vec<usize>> = vec![Vec::new(); problem.teams.len()];
     for (need, days) in wishes.iter().enumerate() {
@@ -19,6 +25,9 @@ pub(super) fn improve(problem: &Problem, open: &Open, known: Assignment) -> Assi
         // A need that was within an earlier neighbourhood is the middle of none.
         if done[seed] || wishes[seed].len() < 2 {
             continue;
+        }
+        if work.is_spent() {
+            break;
         }
         let near = around(seed, &wishes, &wanted_by);
         let mut free = vec![false; problem.unmet.len()];
@@ -41,7 +50,7 @@ pub(super) fn improve(problem: &Problem, open: &Open, known: Assignment) -> Assi
                 .map(|(free, open)| *free && *open)
                 .collect(),
         };
-        found = exact::finish(problem, &some, found, EFFORT_NEAR).assignment;
+        found = exact::finish(problem, &some, found, EFFORT_NEAR, work).assignment;
     }
     found
 }

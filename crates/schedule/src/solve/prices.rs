@@ -1,227 +1,217 @@
-//! The bound of a problem that is too large for the linear relaxation.
+//! What no assignment can cost less than, what each choice costs beyond it, and which
+//! choices such prices lean to.
 //!
 //! That a need is met at most once is given a price (Lagrangian relaxation): what is left
 //! falls into the days of the firms, on each of which the teams take the best loads of
 //! jobs, and that is exact. Such a bound is at least the linear relaxation's with x ≤ y for
 //! each job and its team (A. M. Geoffrion, "Lagrangean relaxation for integer
 //! programming", Mathematical Programming Study 2, 1974, Theorem 1). Prices follow the
-//! subgradient with Polyak's step (M. Held, P. Wolfe, H. P. Crowder, "Validation of
-//! subgradient optimization", Mathematical Programming 6, 1974).
+//! mean of what was taken, which tends to the relaxation's own solution (F. Barahona and
+//! R. Anbil, "The volume algorithm: producing primal solutions with a subgradient method",
+//! Mathematical Programming 87, 2000, section 3).
 //!
 //! What always holds: the bound is right whatever the prices are. They are rounded to
 //! cents and the bound is added up from them in whole numbers, so that a bad price makes
 //! the bound worse, never false.
 
-use super::bound::Bound;
+use super::bound::{self, Bound};
+use super::days::{Days, Taken};
 use super::problem::Problem;
+use super::work::Work;
 
-/// Steps of the subgradient, at most.
-const STEPS: usize = 3000;
-/// The step is halved after so many without a better bound.
-const PATIENCE: usize = 30;
+/// Steps without a better bound, after which they are made smaller.
+const PATIENCE: usize = 20;
+/// The factor of a step to begin with.
+const FIRST_STEP: f64 = 0.1;
 /// Below this factor steps lead nowhere.
-const SMALLEST_STEP: f64 = 1e-4;
-/// Beyond every cost, and far from overflowing.
-const NEVER: i64 = 1 << 60;
+const SMALLEST_STEP: f64 = 1e-5;
+/// A step aims at most at this much beyond the bound in hand, however far what is known is.
+const AIM: f64 = 0.02;
+/// Steps after which the newest has less weight in the mean, where the bound has risen by
+/// less than a thousandth.
+const SLOW: usize = 100;
+/// The least such weight.
+const LEAST_WEIGHT: f64 = 1e-3;
 
-/// The bound by the best prices found; `known` is what an assignment costs.
-pub(super) fn bound(problem: &Problem, known: i64) -> Bound {
-    let layout = Layout::of(problem);
-    let prices = prices(problem, &layout, known as f64);
-    let whole: Vec<i64> = prices
-        .iter()
-        .zip(&problem.unmet)
-        .map(|(price, unmet)| (price.round() as i64).clamp(0, *unmet))
-        .collect();
-    add_up(problem, &layout, &whole)
+/// Prices of needs, in cents, at which the bound is the best so far.
+pub(super) struct Prices<'a> {
+    problem: &'a Problem,
+    days: Days<'a>,
+    at: Vec<f64>,
+    cost: f64,
+    /// What leaving each need unmet costs: its highest price.
+    most: Vec<f64>,
+    /// How much of each choice is in the mean.
+    mean: Vec<f64>,
+    /// How often each need is met in the mean.
+    met: Vec<f64>,
+    /// A part of Polyak's step.
+    factor: f64,
+    /// The weight of the newest in the mean, at most.
+    weight: f64,
 }
 
-/// Which choices are on which visit, and which visits on which day.
-struct Layout {
-    choices: Vec<Vec<usize>>,
-    visits: Vec<Vec<usize>>,
-}
-
-impl Layout {
-    fn of(problem: &Problem) -> Layout {
-        let choices = problem.by_visit();
-        let mut visits = vec![Vec::new(); problem.teams.len()];
-        for (index, visit) in problem.visits.iter().enumerate() {
-            if !choices[index].is_empty() {
-                visits[visit.firm_day].push(index);
-            }
+impl<'a> Prices<'a> {
+    /// To begin with each need pays what its cheapest choice costs alone.
+    pub(super) fn new(problem: &'a Problem) -> Prices<'a> {
+        let days = Days::of(problem);
+        let most: Vec<f64> = problem.unmet.iter().map(|unmet| *unmet as f64).collect();
+        let mut at = most.clone();
+        for choice in &problem.choices {
+            let visit = problem.visits[choice.visit];
+            let alone = (choice.cost + visit.travel) as f64;
+            at[choice.need] = at[choice.need].min(alone);
         }
-        Layout { choices, visits }
+        let taken = days.taken(&at);
+        let mut mean = vec![0.0; problem.choices.len()];
+        for choice in &taken.choices {
+            mean[*choice] = 1.0;
+        }
+        Prices {
+            met: met(problem, &taken),
+            problem,
+            days,
+            at,
+            cost: taken.cost,
+            most,
+            mean,
+            factor: FIRST_STEP,
+            weight: 0.1,
+        }
     }
-}
 
-/// The jobs that one team does on a visit, and what it gains by them: less than nothing.
-struct Load<T> {
-    gain: T,
-    visit: usize,
-    /// How many better loads the visit has.
-    place: usize,
-}
-
-/// What is worth its price on a visit, the best first.
-fn worthwhile<T: Copy + PartialOrd + Default>(
-    choices: &[usize],
-    gain: impl Fn(usize) -> T,
-) -> Vec<(T, usize)> {
-    let gains = choices.iter().map(|&index| (gain(index), index));
-    let mut gains: Vec<(T, usize)> = gains.filter(|(gain, _)| *gain < T::default()).collect();
-    gains.sort_by(|one, other| {
-        let by_gain = one.0.partial_cmp(&other.0);
-        by_gain.map_or_else(
-            || one.1.cmp(&other.1),
-            |order| order.then(one.1.cmp(&other.1)),
-        )
-    });
-    gains
-}
-
-/// Prices of needs, in cents, at which the bound is the best that was found.
-fn prices(problem: &Problem, layout: &Layout, known: f64) -> Vec<f64> {
-    let most: Vec<f64> = problem.unmet.iter().map(|unmet| *unmet as f64).collect();
-    // To begin with each need pays what its cheapest choice costs alone.
-    let mut at = most.clone();
-    for choice in &problem.choices {
-        let visit = problem.visits[choice.visit];
-        let alone = (choice.cost + visit.travel) as f64;
-        at[choice.need] = at[choice.need].min(alone);
-    }
-    let (mut best, mut best_cost) = (at.clone(), f64::NEG_INFINITY);
-    let (mut factor, mut since) = (1.0, 0);
-    for _ in 0..STEPS {
-        let (cost, met) = taken(problem, layout, &at);
-        if cost > best_cost {
-            (best_cost, since) = (cost, 0);
-            best.clone_from(&at);
-        } else {
-            since += 1;
-            if since > PATIENCE {
-                (factor, since) = (factor / 2.0, 0);
-                at.clone_from(&best);
-                if factor < SMALLEST_STEP {
-                    break;
+    /// Raises the bound by so many steps, at most, where an assignment costs `known`.
+    pub(super) fn improve(&mut self, known: i64, steps: usize, work: &mut Work) {
+        let each = self.mean.len() + self.at.len();
+        let (mut since, mut before) = (0, self.cost);
+        // Steps that became too small on the way to a worse assignment's cost begin anew.
+        self.factor = FIRST_STEP;
+        for step in 1..=steps.min(work.steps(each)) {
+            work.spend(each);
+            let Some(trial) = self.trial(known as f64) else {
+                return;
+            };
+            let taken = self.days.taken(&trial);
+            let met = met(self.problem, &taken);
+            let uphill = self.uphill(&met);
+            self.add_to_mean(&taken, &met, &trial);
+            if taken.cost > self.cost {
+                (self.at, self.cost, since) = (trial, taken.cost, 0);
+                if uphill {
+                    self.factor = (self.factor * 1.1).min(2.0);
                 }
-                continue;
-            }
-        }
-        let slope = |need: usize| {
-            let slope = 1.0 - f64::from(met[need]);
-            // A price at its end goes no further.
-            if slope > 0.0 && at[need] >= most[need] {
-                0.0
             } else {
-                slope
+                since += 1;
             }
-        };
-        let slopes: Vec<f64> = (0..at.len()).map(slope).collect();
-        let length: f64 = slopes.iter().map(|slope| slope * slope).sum();
-        if length < 0.5 || known - best_cost < 0.5 {
-            break;
-        }
-        let step = factor * (known - cost) / length;
-        for ((price, slope), most) in at.iter_mut().zip(&slopes).zip(&most) {
-            *price = (*price + step * slope).clamp(0.0, *most);
-        }
-    }
-    best
-}
-
-/// What all days cost at some prices, and how often each need is met by them.
-fn taken(problem: &Problem, layout: &Layout, prices: &[f64]) -> (f64, Vec<u32>) {
-    let mut cost: f64 = prices.iter().sum();
-    let mut met = vec![0; prices.len()];
-    for (day, visits) in layout.visits.iter().enumerate() {
-        let mut loads: Vec<Load<f64>> = Vec::new();
-        let mut of_visit: Vec<(usize, Vec<(f64, usize)>)> = Vec::new();
-        for &index in visits {
-            let visit = problem.visits[index];
-            let gains = worthwhile(&layout.choices[index], |choice| {
-                let choice = problem.choices[choice];
-                choice.cost as f64 - prices[choice.need]
-            });
-            for (place, load) in gains.chunks(visit.jobs_a_team as usize).enumerate() {
-                let gain = visit.travel as f64 + load.iter().map(|(gain, _)| gain).sum::<f64>();
-                if gain >= 0.0 {
-                    break;
+            if since >= PATIENCE {
+                (self.factor, since) = (self.factor * 0.66, 0);
+                if self.factor < SMALLEST_STEP {
+                    return;
                 }
-                let visit = of_visit.len();
-                loads.push(Load { gain, visit, place });
             }
-            of_visit.push((visit.jobs_a_team as usize, gains));
-        }
-        loads.sort_by(|one, other| {
-            let by_gain = one.gain.total_cmp(&other.gain);
-            by_gain.then((one.visit, one.place).cmp(&(other.visit, other.place)))
-        });
-        for load in loads.iter().take(problem.teams[day] as usize) {
-            cost += load.gain;
-            let (jobs, gains) = &of_visit[load.visit];
-            let done = gains.iter().skip(load.place * jobs).take(*jobs);
-            for (_, choice) in done {
-                met[problem.choices[*choice].need] += 1;
+            if step % SLOW == 0 {
+                if self.cost - before < 1e-3 * self.cost.abs() {
+                    self.weight = (self.weight / 2.0).max(LEAST_WEIGHT);
+                }
+                before = self.cost;
             }
         }
     }
-    (cost, met)
+
+    /// The next prices; none where the mean meets each need once or the gap is closed.
+    fn trial(&self, known: f64) -> Option<Vec<f64>> {
+        let slopes: Vec<f64> = (0..self.at.len()).map(|need| self.slope(need)).collect();
+        let length: f64 = slopes.iter().map(|slope| slope * slope).sum();
+        if length < 1e-9 || known - self.cost < 0.5 {
+            return None;
+        }
+        let aim = known.min(self.cost + AIM * self.cost.abs().max(1.0));
+        let step = self.factor * (aim - self.cost) / length;
+        let prices = self.at.iter().zip(&slopes).zip(&self.most);
+        Some(
+            prices
+                .map(|((price, slope), most)| (price + step * slope).clamp(0.0, *most))
+                .collect(),
+        )
+    }
+
+    /// By the mean, more is asked of a need that is met too seldom.
+    fn slope(&self, need: usize) -> f64 {
+        let slope = 1.0 - self.met[need];
+        let ended = if slope > 0.0 {
+            self.at[need] >= self.most[need]
+        } else {
+            self.at[need] <= 0.0
+        };
+        // A price at its end goes no further.
+        if ended { 0.0 } else { slope }
+    }
+
+    /// Whether the newest slope goes the way of the mean's.
+    fn uphill(&self, met: &[f64]) -> bool {
+        let each = met.iter().enumerate();
+        each.map(|(need, met)| (1.0 - met) * self.slope(need))
+            .sum::<f64>()
+            > 0.0
+    }
+
+    /// Adds the newest with the weight that makes the mean's slope the shortest.
+    fn add_to_mean(&mut self, taken: &Taken, met: &[f64], prices: &[f64]) {
+        let (mut down, mut square) = (0.0, 0.0);
+        for need in 0..met.len() {
+            let (mut mean, mut new) = (1.0 - self.met[need], 1.0 - met[need]);
+            if prices[need] >= self.most[need] {
+                (mean, new) = (mean.min(0.0), new.min(0.0));
+            }
+            down += mean * (mean - new);
+            square += (mean - new) * (mean - new);
+        }
+        let best = if square > 0.0 {
+            down / square
+        } else {
+            self.weight
+        };
+        let weight = best.clamp(self.weight / 10.0, self.weight);
+        for mean in &mut self.mean {
+            *mean *= 1.0 - weight;
+        }
+        for choice in &taken.choices {
+            self.mean[*choice] += weight;
+        }
+        for (mean, new) in self.met.iter_mut().zip(met) {
+            *mean = *mean * (1.0 - weight) + weight * new;
+        }
+    }
+
+    /// Choices that a twentieth of the mean has, or more, those with most first.
+    pub(super) fn leanings(&self) -> Vec<usize> {
+        let mut choices: Vec<usize> = (0..self.mean.len())
+            .filter(|choice| self.mean[*choice] > 0.05)
+            .collect();
+        choices.sort_by(|one, other| {
+            let by_mean = self.mean[*other].total_cmp(&self.mean[*one]);
+            by_mean.then(one.cmp(other))
+        });
+        choices
+    }
+
+    /// The bound at these prices, in whole cents.
+    pub(super) fn bound(&self) -> Bound {
+        let prices = self.at.iter().zip(&self.problem.unmet);
+        let whole: Vec<i64> = prices
+            .map(|(price, unmet)| (price.round() as i64).clamp(0, *unmet))
+            .collect();
+        bound::add_up(self.problem, &whole)
+    }
 }
 
-/// The bound at whole prices, and what each choice costs beyond it: it takes the place of
-/// the last load that the day's teams take.
-fn add_up(problem: &Problem, layout: &Layout, prices: &[i64]) -> Bound {
-    let mut cost: i64 = prices.iter().sum();
-    let mut reduced = vec![0; problem.choices.len()];
-    let mut worth = vec![0; problem.visits.len()];
-    for (day, visits) in layout.visits.iter().enumerate() {
-        let teams = problem.teams[day] as usize;
-        let gain = |choice: usize| {
-            let choice = problem.choices[choice];
-            choice.cost - prices[choice.need]
-        };
-        let gains: Vec<Vec<(i64, usize)>> = visits
-            .iter()
-            .map(|index| worthwhile(&layout.choices[*index], gain))
-            .collect();
-        let mut loads: Vec<i64> = Vec::new();
-        for (&index, gains) in visits.iter().zip(&gains) {
-            let visit = problem.visits[index];
-            let each = gains.chunks(visit.jobs_a_team as usize);
-            let each =
-                each.map(|load| visit.travel + load.iter().map(|(gain, _)| gain).sum::<i64>());
-            loads.extend(each.take_while(|gain| *gain < 0));
-        }
-        loads.sort_unstable();
-        cost += loads.iter().take(teams).sum::<i64>();
-        let last = match teams {
-            0 => -NEVER,
-            teams => loads.get(teams - 1).copied().unwrap_or(0),
-        };
-        for (&index, gains) in visits.iter().zip(&gains) {
-            let visit = problem.visits[index];
-            worth[index] = (visit.travel - last) / i64::from(visit.jobs_a_team);
-            let beside = visit.jobs_a_team as usize - 1;
-            for &choice in &layout.choices[index] {
-                let others = gains.iter().filter(|(_, other)| *other != choice);
-                let others: i64 = others.take(beside).map(|(gain, _)| gain).sum();
-                let load = visit.travel + gain(choice) + others;
-                reduced[choice] = (load - last).max(0);
-            }
-        }
+/// How often each need is met.
+fn met(problem: &Problem, taken: &Taken) -> Vec<f64> {
+    let mut met = vec![0.0; problem.unmet.len()];
+    for choice in &taken.choices {
+        met[problem.choices[*choice].need] += 1.0;
     }
-    Bound {
-        cost,
-        reduced,
-        worth,
-        reduced_unmet: problem
-            .unmet
-            .iter()
-            .zip(prices)
-            .map(|(unmet, price)| unmet - price)
-            .collect(),
-    }
+    met
 }
 
 #[cfg(test)]
@@ -236,13 +226,30 @@ mod tests {
 
         // The solver is held to every assignment there is by a test of its own.
         #[test]
-        fn no_best_assignment_costs_less_nor_has_a_choice_beyond_the_gap(problem in problems()) {
+        fn no_best_assignment_costs_less_nor_has_a_choice_beyond_the_gap(
+            problem in problems(),
+            steps in 0..200_usize,
+        ) {
             let best = solve(&problem);
-            let found = bound(&problem, best.cost);
+            let mut prices = Prices::new(&problem);
+            prices.improve(best.cost, steps, &mut Work::new(1_000_000));
+            let found = prices.bound();
             prop_assert!(found.cost <= best.cost, "{} {}", found.cost, best.cost);
-            for choice in best.assignment.iter().flatten() {
-                prop_assert!(found.reduced[*choice] <= best.cost - found.cost);
+            for (need, choice) in best.assignment.iter().enumerate() {
+                let reduced = choice.map_or(found.reduced_unmet[need], |choice| found.reduced[choice]);
+                prop_assert!(reduced <= best.cost - found.cost);
             }
+        }
+
+        #[test]
+        fn more_steps_make_the_bound_no_worse(problem in problems(), steps in 0..100_usize) {
+            let known = problem.unmet.iter().sum();
+            let mut prices = Prices::new(&problem);
+            let mut work = Work::new(1_000_000);
+            prices.improve(known, steps, &mut work);
+            let before = prices.cost;
+            prices.improve(known, steps, &mut work);
+            prop_assert!(prices.cost >= before);
         }
     }
 }

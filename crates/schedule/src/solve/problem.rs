@@ -47,9 +47,17 @@ pub type Assignment = Vec<Option<usize>>;
 impl Problem {
     /// What an assignment costs; `None` when it asks for more teams than there are.
     pub fn cost(&self, assignment: &[Option<usize>]) -> Option<i64> {
+        self.cost_of(assignment.iter().copied().enumerate())
+    }
+
+    /// What some needs cost with these choices, were there no others.
+    pub(super) fn cost_of(
+        &self,
+        choices: impl Iterator<Item = (usize, Option<usize>)>,
+    ) -> Option<i64> {
         let mut cost = 0;
         let mut jobs: BTreeMap<usize, u32> = BTreeMap::new();
-        for (need, choice) in assignment.iter().enumerate() {
+        for (need, choice) in choices {
             let Some(choice) = choice.map(|index| self.choices[index]) else {
                 cost += self.unmet[need];
                 continue;
@@ -87,6 +95,15 @@ impl Problem {
         let mut of = vec![Vec::new(); self.visits.len()];
         for (index, choice) in self.choices.iter().enumerate() {
             of[choice.visit].push(index);
+        }
+        of
+    }
+
+    /// The indices of each firm's day's visits.
+    pub(super) fn by_day(&self) -> Vec<Vec<usize>> {
+        let mut of = vec![Vec::new(); self.teams.len()];
+        for (index, visit) in self.visits.iter().enumerate() {
+            of[visit.firm_day].push(index);
         }
         of
     }

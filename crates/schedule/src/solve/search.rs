@@ -3,6 +3,7 @@
 //! What always holds: what is found is feasible, and the same for the same problem.
 
 use super::problem::{Assignment, Problem};
+use super::work::Work;
 
 /// An assignment under change, with what each visit and each firm's day carries.
 pub(super) struct State<'a> {
@@ -12,54 +13,77 @@ pub(super) struct State<'a> {
     pub(super) sent: Vec<u32>,
     pub(super) at_visit: Vec<Vec<usize>>,
     pub(super) visits_of: Vec<Vec<usize>>,
+    /// Who was put or taken since the last that is settled, and what it had before.
+    moves: Vec<(usize, Option<usize>)>,
 }
 
 /// Each need in turn takes what is cheapest then, until none finds cheaper.
-pub(super) fn greedy(problem: &Problem, begin: Assignment, order: &[Vec<usize>]) -> Assignment {
+pub(super) fn greedy(
+    problem: &Problem,
+    begin: Assignment,
+    order: &[Vec<usize>],
+    work: &mut Work,
+) -> Assignment {
     let mut state = State::new(problem, begin);
-    // Costs fall with every move, so that it ends.
     loop {
         let mut moved = false;
         for need in 0..problem.unmet.len() {
+            work.spend(order[need].len());
             moved |= state.improve_one(need, order);
         }
-        if !moved {
+        state.settle();
+        if !moved || work.is_spent() {
             return state.chosen;
         }
     }
 }
 
+/// The first of these choices for which there is a team, of each need.
+pub(super) fn take_up(problem: &Problem, choices: &[usize]) -> Assignment {
+    let mut state = State::new(problem, vec![None; problem.unmet.len()]);
+    for &choice in choices {
+        let need = problem.choices[choice].need;
+        if state.chosen[need].is_none() && state.price_of(choice).is_some() {
+            state.put(need, choice);
+        }
+    }
+    state.chosen
+}
+
 impl<'a> State<'a> {
     pub(super) fn new(problem: &'a Problem, begin: Assignment) -> State<'a> {
-        let mut visits_of = vec![Vec::new(); problem.teams.len()];
-        for (index, visit) in problem.visits.iter().enumerate() {
-            visits_of[visit.firm_day].push(index);
-        }
         let mut state = State {
             problem,
             chosen: vec![None; problem.unmet.len()],
             jobs: vec![0; problem.visits.len()],
             sent: vec![0; problem.teams.len()],
             at_visit: vec![Vec::new(); problem.visits.len()],
-            visits_of,
+            visits_of: problem.by_day(),
+            moves: Vec::new(),
         };
         for (need, choice) in begin.into_iter().enumerate() {
             if let Some(choice) = choice {
                 state.put(need, choice);
             }
         }
+        state.settle();
         state
     }
 
     /// What it costs to add a choice, travel included; none when no team is left.
-    fn price_of(&self, choice: usize) -> Option<i64> {
+    pub(super) fn price_of(&self, choice: usize) -> Option<i64> {
         let choice = self.problem.choices[choice];
-        let visit = self.problem.visits[choice.visit];
-        if !self.jobs[choice.visit].is_multiple_of(visit.jobs_a_team) {
-            return Some(choice.cost);
+        Some(choice.cost + self.price_of_place(choice.visit)?)
+    }
+
+    /// What one more place on a visit costs; none when no team is left.
+    pub(super) fn price_of_place(&self, at: usize) -> Option<i64> {
+        let visit = self.problem.visits[at];
+        if !self.jobs[at].is_multiple_of(visit.jobs_a_team) {
+            return Some(0);
         }
         let free = self.sent[visit.firm_day] < self.problem.teams[visit.firm_day];
-        free.then_some(choice.cost + visit.travel)
+        free.then_some(visit.travel)
     }
 
     /// Whether a visit has a team with one job there.
@@ -76,6 +100,7 @@ impl<'a> State<'a> {
         self.jobs[chosen.visit] += 1;
         self.at_visit[chosen.visit].push(need);
         self.chosen[need] = Some(choice);
+        self.moves.push((need, None));
         if sends {
             self.sent[visit.firm_day] += 1;
             return chosen.cost + visit.travel;
@@ -88,6 +113,7 @@ impl<'a> State<'a> {
         let Some(choice) = self.chosen[need].take() else {
             return self.problem.unmet[need];
         };
+        self.moves.push((need, Some(choice)));
         let choice = self.problem.choices[choice];
         let visit = self.problem.visits[choice.visit];
         self.jobs[choice.visit] -= 1;
@@ -99,19 +125,25 @@ impl<'a> State<'a> {
         choice.cost
     }
 
-    /// Makes all choices what they were.
-    pub(super) fn go_back(&mut self, before: &[Option<usize>]) {
-        let moved: Vec<usize> = (0..before.len())
-            .filter(|need| self.chosen[*need] != before[*need])
-            .collect();
-        for need in &moved {
-            self.take(*need);
+    /// Where [`State::go_back`] leads to.
+    pub(super) fn mark(&self) -> usize {
+        self.moves.len()
+    }
+
+    /// Undoes all moves since a mark.
+    pub(super) fn go_back(&mut self, mark: usize) {
+        for (need, before) in self.moves.split_off(mark).into_iter().rev() {
+            match before {
+                Some(choice) => self.put(need, choice),
+                None => self.take(need),
+            };
         }
-        for need in moved {
-            if let Some(choice) = before[need] {
-                self.put(need, choice);
-            }
-        }
+        self.moves.truncate(mark);
+    }
+
+    /// Forgets how to go back.
+    pub(super) fn settle(&mut self) {
+        self.moves.clear();
     }
 
     /// The cheapest way to meet a need now, `None` where leaving it unmet is.

@@ -5,9 +5,11 @@
 //! it takes the jobs that are best there, and those that it had are placed anew by chains.
 
 use super::bound::Bound;
-use super::chain::Chains;
+use super::chain::{Chains, Reach};
 use super::problem::{Assignment, Problem};
 use super::search::State;
+use super::work::Work;
+use std::collections::BTreeSet;
 
 /// Rounds over all needs and all visits, at most.
 const ROUNDS: usize = 12;
@@ -18,29 +20,20 @@ pub(super) fn improve(
     begin: Assignment,
     order: &[Vec<usize>],
     bound: &Bound,
+    work: &mut Work,
 ) -> Assignment {
     let mut teams = Teams {
-        chains: Chains::new(order, &bound.worth),
+        chains: Chains::new(problem, order, &bound.worth, work),
         state: State::new(problem, begin),
         of_visit: problem.by_visit(),
         bound,
         order,
     };
     for _ in 0..ROUNDS {
-        let mut moved = 0;
-        loop {
-            let before = moved;
-            for need in 0..problem.unmet.len() {
-                moved += usize::from(teams.chains.improve(&mut teams.state, need));
-            }
-            if moved == before {
-                break;
-            }
-        }
-        for visit in 0..problem.visits.len() {
-            moved += usize::from(teams.send_one_more(visit));
-        }
-        if moved == 0 {
+        while teams.chains_from_all(Reach::Near) {}
+        let far = teams.chains_from_all(Reach::Far);
+        let sent = teams.send_to_all();
+        if !far && !sent {
             break;
         }
     }
@@ -56,16 +49,48 @@ struct Teams<'a> {
 }
 
 impl Teams<'_> {
+    /// Whether any need found a cheaper place; none when no work is left.
+    fn chains_from_all(&mut self, reach: Reach) -> bool {
+        let mut moved = false;
+        let mut needs: Vec<usize> = (0..self.order.len()).collect();
+        if reach == Reach::Far {
+            needs.retain(|need| self.misfit(*need) > 0);
+            needs.sort_by_key(|need| (std::cmp::Reverse(self.misfit(*need)), *need));
+        }
+        for need in needs {
+            if self.chains.work.is_spent() {
+                return false;
+            }
+            moved |= self.chains.improve(&mut self.state, need, reach);
+            self.state.settle();
+        }
+        moved
+    }
+
+    /// Whether any visit was sent one more team; none when no work is left.
+    fn send_to_all(&mut self) -> bool {
+        let mut sent = false;
+        for visit in 0..self.of_visit.len() {
+            if self.chains.work.is_spent() {
+                return false;
+            }
+            sent |= self.send_one_more(visit);
+            self.state.settle();
+        }
+        sent
+    }
+
     fn send_one_more(&mut self, visit: usize) -> bool {
         let problem = self.state.problem;
         let day = problem.visits[visit].firm_day;
+        let wishes = self.wishes(visit);
         if self.state.sent[day] < problem.teams[day] {
-            return self.send(visit, &[]);
+            return self.send(visit, &wishes, &[]);
         }
         let others = self.state.visits_of[day].clone();
         others.into_iter().any(|other| {
             let called_away = self.last_load(other);
-            other != visit && !called_away.is_empty() && self.send(visit, &called_away)
+            other != visit && !called_away.is_empty() && self.send(visit, &wishes, &called_away)
         })
     }
 
@@ -75,27 +100,30 @@ impl Teams<'_> {
         if jobs == 0 {
             return Vec::new();
         }
-        let misfit = |need: &usize| {
-            let reduced = self.state.chosen[*need].map(|choice| self.bound.reduced[choice]);
-            (reduced.unwrap_or(0), *need)
-        };
         let mut needs = self.state.at_visit[visit].clone();
-        needs.sort_by_key(misfit);
+        needs.sort_by_key(|need| (self.misfit(*need), *need));
         let load = (jobs - 1) % self.state.problem.visits[visit].jobs_a_team + 1;
         needs.split_off(needs.len() - load as usize)
     }
 
+    /// What a need's choice costs beyond the bound.
+    fn misfit(&self, need: usize) -> i64 {
+        self.state.chosen[need].map_or(self.bound.reduced_unmet[need], |choice| {
+            self.bound.reduced[choice]
+        })
+    }
+
     /// Sends a team to a visit and places anew what it had elsewhere, where all that is
     /// cheaper.
-    fn send(&mut self, visit: usize, called_away: &[usize]) -> bool {
+    fn send(&mut self, visit: usize, wishes: &[usize], called_away: &[usize]) -> bool {
         let problem = self.state.problem;
-        let before = self.state.chosen.clone();
-        let wishes = self.wishes(visit);
+        let mark = self.state.mark();
+        self.chains.work.spend(wishes.len() + called_away.len());
         let (mut cost, mut room) = (0, 0);
         for &need in called_away {
             cost -= self.state.take(need);
         }
-        for choice in wishes {
+        for &choice in wishes {
             let need = problem.choices[choice].need;
             if !called_away.contains(&need) {
                 room = room.max(self.chains.worth_of_place(&self.state, need));
@@ -110,14 +138,15 @@ impl Teams<'_> {
         if fits && self.place_anew(&waiting, cost, room) {
             return true;
         }
-        self.state.go_back(&before);
+        self.state.go_back(mark);
         false
     }
 
     /// The choices that gain most on a visit, as many as a team does there.
-    fn wishes(&self, visit: usize) -> Vec<usize> {
+    fn wishes(&mut self, visit: usize) -> Vec<usize> {
         let problem = self.state.problem;
         let mut gains: Vec<(i64, usize)> = Vec::new();
+        self.chains.work.spend(self.of_visit[visit].len());
         for &choice in &self.of_visit[visit] {
             let to = problem.choices[choice];
             let had = self.state.chosen[to.need].map(|had| problem.choices[had]);
@@ -127,17 +156,14 @@ impl Teams<'_> {
             }
         }
         gains.sort_unstable();
-        let mut needs = Vec::new();
-        let mut wishes: Vec<usize> = gains.into_iter().map(|(_, choice)| choice).collect();
+        let most = problem.visits[visit].jobs_a_team as usize;
         // Two choices of one need on a visit: the cheaper.
-        wishes.retain(|choice| {
-            let need = problem.choices[*choice].need;
-            let first = !needs.contains(&need);
-            needs.push(need);
-            first
-        });
-        wishes.truncate(problem.visits[visit].jobs_a_team as usize);
+        let mut needs = BTreeSet::new();
+        let wishes = gains.into_iter().map(|(_, choice)| choice);
         wishes
+            .filter(|choice| needs.insert(problem.choices[*choice].need))
+            .take(most)
+            .collect()
     }
 
     /// Places needs one after the other; whether `cost` with what they cost is less than
@@ -167,9 +193,10 @@ impl Teams<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solve::prices::Prices;
     use crate::solve::problem::made_up::problems;
     use crate::solve::search::greedy;
-    use crate::solve::{Choice, Visit, bound, prices};
+    use crate::solve::{Choice, Visit, bound};
     use proptest::prelude::*;
 
     #[test]
@@ -194,7 +221,8 @@ mod tests {
         };
         let begin = vec![Some(0), Some(1), None];
         let order = problem.by_need();
-        let found = improve(&problem, begin, &order, &bound::bound(&problem));
+        let bound = bound::add_up(&problem, &[5_000, 5_000, 9_000]);
+        let found = improve(&problem, begin, &order, &bound, &mut Work::new(10_000));
         assert_eq!(found, [Some(3), Some(4), Some(2)]);
     }
 
@@ -205,10 +233,14 @@ mod tests {
         fn what_is_found_is_feasible_and_no_dearer_than_the_beginning(problem in problems()) {
             let order = problem.by_need();
             let nothing = vec![None; problem.unmet.len()];
-            for begin in [nothing.clone(), greedy(&problem, nothing, &order)] {
+            let mut work = Work::new(1_000_000);
+            for begin in [nothing.clone(), greedy(&problem, nothing, &order, &mut work)] {
                 let before = problem.cost(&begin).unwrap();
-                for bound in [bound::bound(&problem), prices::bound(&problem, before)] {
-                    let found = improve(&problem, begin.clone(), &order, &bound);
+                let mut prices = Prices::new(&problem);
+                for steps in [0, 10, 300] {
+                    prices.improve(before, steps, &mut work);
+                    let bound = prices.bound();
+                    let found = improve(&problem, begin.clone(), &order, &bound, &mut work);
                     let after = problem.cost(&found);
                     prop_assert!(after.is_some_and(|after| after <= before), "{after:?} {before}");
                     prop_assert!(after.is_some_and(|after| after >= bound.cost));

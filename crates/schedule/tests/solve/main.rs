@@ -4,7 +4,7 @@
 mod brute_force;
 mod flow;
 
-use binnacle_schedule::solve::{Choice, Problem, Visit, solve};
+use binnacle_schedule::solve::{Choice, Problem, Visit, solve, solve_within};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -56,9 +56,70 @@ proptest! {
     }
 
     #[test]
+    fn with_little_work_the_answer_is_feasible_and_the_bound_below_all(
+        problem in problems(3),
+        most_work in 0..4000_u64,
+    ) {
+        let solved = solve_within(&problem, most_work);
+        let least = brute_force::least_cost(&problem);
+        prop_assert_eq!(problem.cost(&solved.assignment), Some(solved.cost));
+        prop_assert!(solved.bound <= least && least <= solved.cost);
+        prop_assert_eq!(&solved, &solve_within(&problem, most_work));
+        // Each of three phases ends with the step in which its part is spent.
+        prop_assert!(solved.work <= most_work + 10_000, "{}", solved.work);
+    }
+
+    #[test]
     fn the_same_problem_has_the_same_answer(problem in problems(3)) {
         prop_assert_eq!(solve(&problem), solve(&problem));
     }
+}
+
+/// Four times as many ships as their teams can do, each with ten places to go.
+fn crowded() -> Problem {
+    let ways = (0..600_u32).flat_map(|ship| (0..10_u32).map(move |way| (ship, way)));
+    Problem {
+        unmet: (0..600).map(|ship| 40_000 + 7 * (ship % 90)).collect(),
+        choices: ways
+            .map(|(ship, way)| Choice {
+                need: ship as usize,
+                visit: ((ship * 7 + way * way * 13 + ship * way) % 60) as usize,
+                cost: i64::from((ship * 31 + way * 17) % 3_000),
+            })
+            .collect(),
+        visits: (0..60_u32)
+            .map(|visit| Visit {
+                firm_day: visit as usize / 2,
+                travel: i64::from(100 * (visit % 9)),
+                jobs_a_team: 1 + visit % 2,
+            })
+            .collect(),
+        teams: (0..30).map(|day| 3 + day % 4).collect(),
+    }
+}
+
+#[test]
+fn a_crowded_problem_takes_no_more_work_than_it_may() {
+    let problem = crowded();
+    for most_work in [0, 1_000_000, 30_000_000] {
+        let solved = solve_within(&problem, most_work);
+        assert_eq!(problem.cost(&solved.assignment), Some(solved.cost));
+        assert!(solved.bound <= solved.cost);
+        // The last relaxation or search may pass the limit.
+        assert!(
+            solved.work <= most_work + 20_000_000,
+            "{most_work}: {}",
+            solved.work
+        );
+    }
+}
+
+#[test]
+fn more_work_finds_what_little_work_does_not() {
+    let problem = crowded();
+    let (little, more) = (solve_within(&problem, 0), solve(&problem));
+    assert!(more.cost < little.cost && more.bound > little.bound);
+    assert!((more.cost - more.bound) * 100 < more.cost, "{more:?}");
 }
 
 #[test]

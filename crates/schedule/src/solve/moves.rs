@@ -1,0 +1,45 @@
+//! A chain's moves, made together or not at all.
+
+use super::search::State;
+
+/// Makes a chain's moves; none of them where they are not possible together at less than
+/// the limit, for a link may have changed since the chain went on from it.
+pub(super) fn carry_out(
+    state: &mut State<'_>,
+    need: usize,
+    moves: &[(usize, Option<usize>)],
+    limit: i64,
+) -> Option<i64> {
+    // A need that is in it twice goes only once.
+    let twice = |at: usize| moves[..at].iter().any(|(need, _)| *need == moves[at].0);
+    if (0..moves.len()).any(twice) {
+        return None;
+    }
+    let mark = state.mark();
+    let mut cost = 0;
+    for (moved, _) in moves {
+        if *moved != need {
+            cost -= state.take(*moved);
+        }
+    }
+    for (moved, choice) in moves {
+        cost += match choice {
+            Some(choice) => state.put(*moved, *choice),
+            None => state.problem.unmet[*moved],
+        };
+    }
+    if moves.is_empty() {
+        cost = state.problem.unmet[need];
+    }
+    let fits = moves.iter().all(|(_, choice)| {
+        choice.is_none_or(|choice| {
+            let day = state.problem.visits[state.problem.choices[choice].visit].firm_day;
+            state.sent[day] <= state.problem.teams[day]
+        })
+    });
+    if fits && cost < limit {
+        return Some(cost);
+    }
+    state.go_back(mark);
+    None
+}
