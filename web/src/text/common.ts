@@ -129,6 +129,7 @@ export const document = {
 /** What the pages are called that the bar on top leads to. */
 export const pages = {
   label: 'Pages',
+  fleet: 'Fleet',
   alerts: 'Alerts',
   unacknowledged: ' alerts that nobody has acknowledged',
   schedule: 'Schedule',
