@@ -11,6 +11,7 @@ export const alerts = {
   acknowledged: (who: string, when: string) => `Acknowledged by ${who}, ${when}`,
   cleared: (who: string | null, when: string) =>
     who === null ? `Over since ${when}` : `Cleared by ${who}, ${when}`,
+  ordered: (port: string, on: string) => `Adjustment ordered: ${port}, ${on}`,
   acknowledge: 'Acknowledge',
   note: 'Note',
   clear: 'Clear',
