@@ -282,6 +282,38 @@ fn what_a_calendar_does_not_say_is_refused_with_its_line() {
 }
 
 #[test]
+fn an_event_may_say_how_long_it_lasts_instead_of_when_it_ends() {
+    let start = "DTSTART;TZID=Europe/Madrid:20270701T060000";
+    let read = |lasts: &str| ics::read(&calendar(start, lasts, "LOCATION:NLRTM"), "v", now());
+    let etd = read("DURATION:P1DT12H").unwrap().calls[0].call.etd;
+    assert_eq!(etd.to_string(), "2027-07-02T16:00:00Z");
+    let said = |lasts: &str| read(lasts).unwrap_err().to_string();
+    assert!(said("DURATION:-P1D").starts_with("line 21: DURATION: \"-P1D\" is not a duration"));
+    assert!(said("DURATION:P4294967295W").contains("of a year at most"));
+    assert!(said("DURATION:PT0S").starts_with("line 21: DURATION: "));
+}
+
+#[test]
+fn a_time_zone_of_more_offsets_than_any_in_use_is_refused() {
+    let offset =
+        "BEGIN:STANDARD\r\nDTSTART:19000101T000000\r\nTZOFFSETTO:+0100\r\nEND:STANDARD\r\n";
+    let of = |offsets: usize| {
+        let zone = format!(
+            "BEGIN:VTIMEZONE\r\nTZID:Z\r\n{}END:VTIMEZONE\r\n",
+            offset.repeat(offsets)
+        );
+        ics::read(
+            &format!("BEGIN:VCALENDAR\r\n{zone}END:VCALENDAR\r\n"),
+            "v",
+            now(),
+        )
+    };
+    assert!(of(200).is_ok());
+    let error = of(201).unwrap_err().to_string();
+    assert!(error.contains("more than 200 offsets"), "{error}");
+}
+
+#[test]
 fn a_cancelled_event_is_no_call() {
     let text = calendar(
         "DTSTART:20270701T060000Z",

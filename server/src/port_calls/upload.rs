@@ -12,7 +12,7 @@ use crate::http::{Id, Json, Params, file, file_name};
 use crate::ids::{CallId, VesselId};
 use crate::time::Time;
 use crate::vessels;
-use crate::work_orders::calls_move;
+use crate::work_orders::{calls_come, calls_move};
 use axum::body::Body;
 use axum::extract::State;
 use axum::response::Response;
@@ -81,7 +81,8 @@ async fn upload_fleet_csv(
 ) -> Result<Json<Uploaded>> {
     let bytes = whole(body).await?;
     let now: Time = app.clock.now().into();
-    let rows = csv::read(&bytes[..], None, Instant(now.0))?;
+    let read = move || csv::read(&bytes[..], None, Instant(now.0));
+    let rows = tokio::task::spawn_blocking(read).await??;
     let fleet = vessels::names(&app.db, writer.operator).await?;
     let found = by_vessel(rows.calls, &fleet, now)?;
     take(&app, writer, found, Source::Csv, &how, rows.over).await
@@ -109,7 +110,9 @@ async fn upload_csv(
     let row = vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let bytes = whole(body).await?;
     let now: Time = app.clock.now().into();
-    let rows = csv::read(&bytes[..], Some(&vessel.to_string()), Instant(now.0))?;
+    let of = vessel.to_string();
+    let read = move || csv::read(&bytes[..], Some(&of), Instant(now.0));
+    let rows = tokio::task::spawn_blocking(read).await??;
     let mut found = by_vessel(rows.calls, &[(vessel, row.name, row.imo_number)], now)?;
     found.entry(vessel).or_default();
     take(&app, writer, found, Source::Csv, &how, rows.over).await
@@ -117,8 +120,8 @@ async fn upload_csv(
 
 /// Send a calendar of a vessel's port calls
 ///
-/// iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND`
-/// its ETA and ETD, and its port the UN/LOCODE of `X-UNLOCODE`, that or the name in
+/// iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND` or
+/// `DURATION` its ETA and ETD, and its port the UN/LOCODE of `X-UNLOCODE`, that or the name in
 /// `LOCATION`, or without either the UN/LOCODE behind "at" in `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
 #[utoipa::path(post, path = "/vessels/{id}/port-calls.ics", tag = "adjusting",
     params(("id" = VesselId, Path), How),
@@ -142,7 +145,9 @@ async fn upload_ics(
         detail: "is not UTF-8 text".to_owned(),
     })?;
     let now: Time = app.clock.now().into();
-    let calendar = ics::read(&text, &vessel.to_string(), Instant(now.0))?;
+    let of = vessel.to_string();
+    let read = move || ics::read(&text, &of, Instant(now.0));
+    let calendar = tokio::task::spawn_blocking(read).await??;
     let mut hers = OfVessel {
         cancelled: calendar.cancelled,
         ..OfVessel::default()
@@ -201,6 +206,10 @@ async fn take(
         for (row, why) in withdrawn {
             store::withdraw(&mut tx, row, Some(why), &author).await?;
         }
+        let is = new.iter().map(|(id, call)| (*id, *call));
+        let is = is.chain(amended.iter().map(|(row, call)| (row.id, call)));
+        let is: Vec<_> = is.map(|(id, call)| (id, moving::alongside(call))).collect();
+        told.extend(calls_come(&mut tx, vessel, &is, &author.name, now).await?);
     }
     commit(app, tx, &changed, told, now).await?;
     Ok(Json(done))

@@ -2084,8 +2084,8 @@ export interface paths {
         put?: never;
         /**
          * Send a calendar of a vessel's port calls
-         * @description iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND`
-         *     its ETA and ETD, and its port the UN/LOCODE of `X-UNLOCODE`, that or the name in
+         * @description iCalendar (RFC 5545). A `VEVENT` is a call: `UID` its reference, `DTSTART` and `DTEND` or
+         *     `DURATION` its ETA and ETD, and its port the UN/LOCODE of `X-UNLOCODE`, that or the name in
          *     `LOCATION`, or without either the UN/LOCODE behind "at" in `SUMMARY`. A cancelled event withdraws its call; events that are over are passed by.
          */
         post: operations["upload_ics"];

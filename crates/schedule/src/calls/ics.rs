@@ -8,6 +8,7 @@
 //! UTC, or a `VTIMEZONE` of one offset or of yearly rules; floating times, whole days and
 //! repeating events are refused with their line.
 
+mod duration;
 mod line;
 mod place;
 mod zone;
@@ -117,8 +118,15 @@ fn read_event(
     let needed = |name: &str| {
         find(name).ok_or_else(|| FileError::new(begins, name, "is missing in the event"))
     };
-    let (eta, etd) = (needed("DTSTART")?, needed("DTEND")?);
-    let (arrives, leaves) = (instant(eta, zones)?, instant(etd, zones)?);
+    let eta = needed("DTSTART")?;
+    let arrives = instant(eta, zones)?;
+    let (etd, leaves) = match find("DURATION") {
+        Some(line) if find("DTEND").is_none() => (line, arrives.plus_hours(duration::hours(line)?)),
+        _ => {
+            let end = needed("DTEND")?;
+            (end, instant(end, zones)?)
+        }
+    };
     if arrives < leaves && leaves <= now {
         return Ok(Event::Over);
     }
@@ -159,11 +167,11 @@ fn instant(line: &Line, zones: &BTreeMap<String, Zone>) -> Result<Instant, FileE
             line.value
         ))
     })?;
-    let zone = match line.parameter("TZID") {
-        _ if utc => Zone::fixed(0),
+    let offset_s = match line.parameter("TZID") {
+        _ if utc => 0,
         Some(name) => match zones.get(name) {
-            Some(zone) => zone.clone(),
-            None if ["UTC", "Etc/UTC", "GMT", "Etc/GMT"].contains(&name) => Zone::fixed(0),
+            Some(zone) => zone.offset_s(naive),
+            None if ["UTC", "Etc/UTC", "GMT", "Etc/GMT"].contains(&name) => 0,
             None => {
                 return Err(wrong(format!(
                     "time zone {name:?} has no VTIMEZONE in the file"
@@ -177,6 +185,6 @@ fn instant(line: &Line, zones: &BTreeMap<String, Zone>) -> Result<Instant, FileE
             )));
         }
     };
-    let utc = naive - chrono::Duration::seconds(zone.offset_s(naive));
+    let utc = naive - chrono::Duration::seconds(offset_s);
     Ok(Instant::from(Utc.from_utc_datetime(&utc).fixed_offset()))
 }

@@ -9,6 +9,10 @@ use crate::calls::csv::FileError;
 use chrono::{Datelike, Days, NaiveDate, NaiveDateTime, Weekday};
 use std::collections::BTreeMap;
 
+/// The most offsets of one zone: those in use have two, and far fewer with all their past.
+/// Each time of the file is held against every one of them.
+const MOST_OFFSETS: usize = 200;
+
 /// A zone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Zone {
@@ -26,17 +30,6 @@ struct Observance {
 }
 
 impl Zone {
-    pub(super) fn fixed(offset_s: i64) -> Zone {
-        let begins = NaiveDateTime::MIN;
-        Zone {
-            observed: vec![Observance {
-                begins,
-                offset_s,
-                yearly: None,
-            }],
-        }
-    }
-
     /// Seconds ahead of UTC at a local time: those of the observance that began last.
     pub(super) fn offset_s(&self, local: NaiveDateTime) -> i64 {
         let last = self
@@ -106,6 +99,10 @@ pub(super) fn zones(lines: &[Line]) -> Result<BTreeMap<String, Zone>, FileError>
                     ));
                 };
                 let yearly = rule.map(yearly).transpose()?;
+                if observed.len() == MOST_OFFSETS {
+                    let what = format!("more than {MOST_OFFSETS} offsets in one time zone");
+                    return Err(FileError::new(line.number, &line.value, what));
+                }
                 observed.push(Observance {
                     begins,
                     offset_s,
