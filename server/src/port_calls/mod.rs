@@ -32,7 +32,7 @@ use crate::idempotency::{self, Key};
 use crate::ids::{CallId, OperatorId, VesselId};
 use crate::time::Time;
 use crate::vessels;
-use crate::work_orders::calls_move;
+use crate::work_orders::{calls_come, calls_move};
 use axum::extract::State;
 use axum::http::StatusCode;
 use binnacle_schedule::calls::overlap;
@@ -117,7 +117,8 @@ async fn enter_port_call(
     let request = idempotency::request_hash(&format!("port call of {vessel}"), &new)?;
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let now = app.clock.now().into();
-    let call = new.checked(now)?;
+    let is_named = new.reference.is_some();
+    let mut call = new.checked(now)?;
     let wanted = CallId::new();
     let mut tx = app.db.begin().await?;
     let known = store::lock(&mut tx, writer.operator, vessel).await?;
@@ -125,11 +126,16 @@ async fn enter_port_call(
         .once(&mut tx, writer.operator, &request, wanted.0, now)
         .await?;
     if made == wanted.0 {
+        if !is_named {
+            call.reference = free_name(&known, call.reference);
+        }
         must_be_new(&known, &call)?;
         must_fit(&known, None, &call)?;
         let author = Author::of(&mut tx, writer.user, now).await?;
         store::insert(&mut tx, vessel, wanted, &call, Source::Api, &author).await?;
-        commit(&app, tx, &[vessel], Vec::new(), now).await?;
+        let came = [(wanted, moving::alongside(&call))];
+        let told = calls_come(&mut tx, vessel, &came, &author.name, now).await?;
+        commit(&app, tx, &[vessel], told, now).await?;
     }
     let shown = shown(&app, writer.operator, vessel, CallId(made)).await?;
     Ok((StatusCode::CREATED, Json(shown)))
@@ -186,8 +192,10 @@ async fn amend_port_call(
     must_fit(&known, Some(id), &amended)?;
     let author = Author::of(&mut tx, writer.user, now).await?;
     let moving = moving::amended(current, &amended)?;
-    let told = calls_move(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
+    let mut told = calls_move(&mut tx, vessel, moving.as_slice(), &author.name, now).await?;
     store::revise(&mut tx, current, &amended, Source::Api, &author).await?;
+    let is = [(id, moving::alongside(&amended))];
+    told.extend(calls_come(&mut tx, vessel, &is, &author.name, now).await?);
     commit(&app, tx, &[vessel], told, now).await?;
     Ok(Json(shown(&app, writer.operator, vessel, id).await?))
 }
@@ -249,9 +257,24 @@ async fn commit(
     Ok(())
 }
 
+/// A name that no withdrawn call has: she may well come to that port then after all.
+fn free_name(known: &[Row], name: String) -> String {
+    let is_gone = |name: &str| {
+        let mut gone = known.iter().filter(|row| row.withdrawn_at.is_some());
+        gone.any(|row| row.reference == name)
+    };
+    let again = (2..).map(|n| format!("{name} ({n})"));
+    let mut names = std::iter::once(name.clone()).chain(again);
+    names.find(|name| !is_gone(name)).unwrap_or(name)
+}
+
 fn must_be_new(known: &[Row], call: &Content) -> Result<()> {
     match known.iter().find(|row| row.reference == call.reference) {
         None => Ok(()),
+        Some(there) if there.withdrawn_at.is_some() => Err(Error::WrongState(format!(
+            "there was a call of reference {:?}, which is withdrawn: give this one another",
+            call.reference
+        ))),
         Some(there) => Err(Error::WrongState(format!(
             "there is a call of reference {:?} already, {}: amend that",
             call.reference, there.id

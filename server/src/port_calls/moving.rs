@@ -85,6 +85,7 @@ fn becomes<'a>(
     found.map(|at| free.remove(at))
 }
 
-fn alongside(call: &Content) -> Alongside {
+/// Where and when a call has her alongside.
+pub(super) fn alongside(call: &Content) -> Alongside {
     Alongside::new(call.port, call.eta, call.etd)
 }

@@ -20,6 +20,7 @@ use crate::time::Time;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_schedule::input::{self, Declined, Input, JobState, Vessel};
 use binnacle_schedule::time::Instant;
+pub(super) use firms::NO_TERMS;
 use firms::{book, declined, firms_of};
 use former::Former;
 use sha2::{Digest, Sha256};
@@ -71,7 +72,7 @@ pub(super) async fn gather(
     let beside = names.take_orders(&orders, &ahead, &planned_with);
     let aside: Result<Vec<Aside>> = beside
         .iter()
-        .filter_map(|(order, _)| order.aside(&ahead).transpose())
+        .filter_map(|(order, _)| order.aside(&ahead, &left_out).transpose())
         .collect();
     let busy: BTreeSet<CompassId> = beside.iter().map(|(order, _)| order.compass_id).collect();
     let today = as_of.0.to_chrono().date_naive();

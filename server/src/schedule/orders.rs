@@ -4,6 +4,8 @@
 //! plan, at the call that it was offered for; one that is being done, or is offered to
 //! nobody, is beside the plan.
 
+use super::gather::NO_TERMS;
+use super::plan::LeftOut;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::Result;
 use crate::firms::port_meant;
@@ -42,6 +44,16 @@ pub(super) struct Aside {
     pub(super) day: NaiveDate,
     /// Why it does not fit any more, where that is known.
     pub(super) unfit: Option<String>,
+}
+
+/// Why a firm can do nothing by the terms that were said of it, if so.
+fn useless(firm: FirmId, left_out: &[LeftOut]) -> Option<String> {
+    let mut told = left_out.iter().filter(|one| one.why != NO_TERMS);
+    let one = told.find(|one| one.firm_id == firm)?;
+    Some(format!(
+        "by its terms the firm is of no use now ({})",
+        one.why
+    ))
 }
 
 /// A fleet's orders that are under way; each once.
@@ -158,7 +170,7 @@ impl Order {
     }
 
     /// As an order beside the plan; none where no firm has it, or its work has begun.
-    pub(super) fn aside(&self, ahead: &[Call]) -> Result<Option<Aside>> {
+    pub(super) fn aside(&self, ahead: &[Call], left_out: &[LeftOut]) -> Result<Option<Aside>> {
         let (Some(JobState::Confirmed), Some(firm_id)) = (self.job_state(), self.firm_id) else {
             return Ok(None);
         };
@@ -166,7 +178,9 @@ impl Order {
         let row = ahead.iter().find(|row| Some(row.id) == call);
         let is_known = ahead.iter().any(|row| row.vessel_id == self.vessel_id);
         let unfit = match row {
-            Some(row) => self.unfit(&row.alongside()?),
+            Some(row) => self
+                .unfit(&row.alongside()?)
+                .or_else(|| useless(firm_id, left_out)),
             None if call.is_some() => Some("its port call is cancelled or over".to_owned()),
             None => is_known.then(|| "no port call is known at its port and time".to_owned()),
         };

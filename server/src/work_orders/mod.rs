@@ -16,6 +16,7 @@ mod answers;
 mod asked;
 mod at_berth;
 mod basis;
+mod came;
 mod change;
 mod completed;
 pub mod completion;
@@ -50,6 +51,7 @@ mod verification;
 mod view;
 mod whereabouts;
 
+pub use came::calls_come;
 pub use completed::{AtSea, CompletedOrder, completed, foretold_from};
 pub use deadlines::{lapse, watch};
 pub use done::{Done, Span, done};

@@ -131,7 +131,7 @@ impl Alongside {
         }
     }
 
-    fn in_words(&self) -> String {
+    pub(super) fn in_words(&self) -> String {
         let zone_h = zone_h(&self.port);
         let (eta, etd) = (both(self.eta, zone_h), both(self.etd, zone_h));
         format!("from {eta} to {etd}")
@@ -171,12 +171,12 @@ fn both(at: Time, zone_h: i32) -> String {
 
 /// An order that may be done at a call.
 #[derive(sqlx::FromRow)]
-struct Affected {
-    id: OrderId,
-    planned_at: Time,
+pub(super) struct Affected {
+    pub(super) id: OrderId,
+    pub(super) planned_at: Time,
     call_id: Option<CallId>,
     /// Whether it is at no call that stands.
-    is_adrift: bool,
+    pub(super) is_adrift: bool,
 }
 
 /// Tells of calls of one vessel that are about to move or to be withdrawn, whose row is
@@ -194,30 +194,8 @@ pub async fn calls_move(
     if moving.is_empty() {
         return Ok(Vec::new());
     }
-    // Who agrees to another time meanwhile waits, or is waited for.
-    execute!(
-        &mut *tx,
-        "UPDATE work_orders SET state = state
-         WHERE vessel_id = $1
-           AND state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')",
-        vessel
-    )?;
-    let orders = rows!(
-        in &mut *tx,
-        Affected,
-        "SELECT o.id, o.planned_at, l.call_id,
-                CASE WHEN c.id IS NULL OR c.withdrawn_at IS NOT NULL THEN TRUE ELSE FALSE END
-                    AS is_adrift
-         FROM work_orders o
-         LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
-         LEFT JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
-         WHERE o.vessel_id = $1
-           AND o.state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')
-         ORDER BY o.id",
-        vessel
-    )?;
     let mut told = Vec::new();
-    for order in orders {
+    for order in under_way(tx, vessel).await? {
         let at = |one: &&Moving| {
             let is_then = one.was.eta <= order.planned_at && order.planned_at <= one.was.etd;
             order.call_id == Some(one.call_id) || order.is_adrift && is_then
@@ -230,7 +208,34 @@ pub async fn calls_move(
     Ok(told)
 }
 
-async fn tell(
+/// The orders of a vessel that may be done at a call, none of which changes until the
+/// transaction ends.
+pub(super) async fn under_way(tx: &mut Tx, vessel: VesselId) -> Result<Vec<Affected>> {
+    // Who agrees to another time meanwhile waits, or is waited for.
+    execute!(
+        &mut *tx,
+        "UPDATE work_orders SET state = state
+         WHERE vessel_id = $1
+           AND state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')",
+        vessel
+    )?;
+    Ok(rows!(
+        in &mut *tx,
+        Affected,
+        "SELECT o.id, o.planned_at, l.call_id,
+                CASE WHEN c.id IS NULL OR c.withdrawn_at IS NOT NULL THEN TRUE ELSE FALSE END
+                    AS is_adrift
+         FROM work_orders o
+         LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
+         LEFT JOIN port_calls c ON c.vessel_id = l.vessel_id AND c.id = l.call_id
+         WHERE o.vessel_id = $1
+           AND o.state IN ('offered', 'proposed', 'accepted', 'on_board', 'measured', 'adjusting')
+         ORDER BY o.id",
+        vessel
+    )?)
+}
+
+pub(super) async fn tell(
     tx: &mut Tx,
     vessel: VesselId,
     order: OrderId,
@@ -292,6 +297,13 @@ impl CallChange {
                 is.port,
                 is.in_words()
             ),
+            Some(is) if *is == self.was => {
+                format!(
+                    "The port call at {} is there again, {}.",
+                    is.port,
+                    is.in_words()
+                )
+            }
             Some(is) => format!(
                 "The port call at {} has moved: it was {}, and is {}.",
                 is.port,

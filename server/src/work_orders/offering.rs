@@ -357,6 +357,9 @@ pub(super) async fn firm_says(change: &mut Change<'_>, firm: FirmId, says: FirmS
     // A firm may think better of its own proposal.
     let takes_back = matches!(says, FirmSays::No(_) | FirmSays::Instead(_))
         && offer.state == OfferState::Proposed;
+    if change.whole.summary.state == State::Cancelled {
+        return wrong("the order is cancelled");
+    }
     if offer.state != OfferState::Open && !gives_back && !takes_back {
         return wrong(offer.state.why_not());
     }

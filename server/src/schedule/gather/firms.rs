@@ -13,6 +13,9 @@ use binnacle_schedule::input::{Declined, Firm, Taken};
 use std::collections::BTreeSet;
 use uuid::Uuid;
 
+/// Why a firm is left out whose terms nobody has said: it may have work all the same.
+pub(in crate::schedule) const NO_TERMS: &str = "nobody has said on what terms it works";
+
 /// The firms to plan with, and those that cannot be planned with.
 pub(super) async fn firms_of(
     app: &App,
@@ -32,7 +35,7 @@ pub(super) async fn firms_of(
                 firm_name,
                 why: problems
                     .and_then(<[String]>::first)
-                    .map_or("nobody has said on what terms it works", String::as_str)
+                    .map_or(NO_TERMS, String::as_str)
                     .to_owned(),
             }),
         }

@@ -24,8 +24,10 @@ on_both!(
     a_question_that_is_not_answered_leaves_what_was_agreed,
     a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks,
     a_call_withdrawn_after_acceptance_is_told_and_done_at_another,
+    a_call_entered_anew_has_the_agreed_job_again,
     what_nobody_is_asked_for_moves_in_silence,
     an_agreed_job_stays_at_risk_when_its_firm_is_left_out,
+    an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk,
     an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known,
 );
 
@@ -350,6 +352,57 @@ async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(shore: Sh
     shore.finish().await;
 }
 
+async fn a_call_entered_anew_has_the_agreed_job_again(shore: Shore) {
+    let agreed = Agreed::new(&shore).await;
+    let withdrawn = format!("{}/withdraw", agreed.call);
+    agreed.ada.post(&withdrawn, &json!({})).await.good();
+    assert_eq!(agreed.seen().await["call_fit"], "no_call");
+    // One at another port, or at another time, is none of the job's.
+    enter(&agreed.ada, &agreed.nao, "NLRTM", 18).await;
+    assert_eq!(agreed.seen().await["call_fit"], "no_call");
+    let call = enter(&agreed.ada, &agreed.nao, "NLRTM", 14).await;
+    let order = agreed.seen().await;
+    assert_eq!(order["call_fit"], "fits");
+    assert_eq!(order["call_change"]["call_id"], call["id"]);
+    let last = messages(&agreed.rosa, &agreed.order).await.pop().unwrap();
+    let last = last["text"].as_str().unwrap();
+    assert!(
+        last.contains("The port call at NLRTM is there again"),
+        "{last}"
+    );
+    assert!(last.ends_with("still lies in it."), "{last}");
+    let plan = solve(&agreed.ada).await;
+    assert_eq!(plan["jobs"][0]["state"], "confirmed", "{plan}");
+    assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
+    // So it is in a file that withdraws a call, and in a later one that has it again.
+    let file = async |text: &str| {
+        let path = format!("{}.csv?replace=true", port_calls::path(&agreed.nao));
+        let request = agreed
+            .ada
+            .request(Method::POST, &path)
+            .body(text.to_owned());
+        Answer::of(request.header("content-type", "text/csv"))
+            .await
+            .good()
+    };
+    agreed
+        .ada
+        .post(
+            &format!(
+                "{}/{}/withdraw",
+                port_calls::path(&agreed.nao),
+                call["id"].as_str().unwrap()
+            ),
+            &json!({}),
+        )
+        .await
+        .good();
+    assert_eq!(agreed.seen().await["call_fit"], "no_call");
+    file("id,port,eta,etd\nx,NLRTM,2026-12-14T06:00:00Z,2026-12-15T18:00:00Z\n").await;
+    assert_eq!(agreed.seen().await["call_fit"], "fits");
+    shore.finish().await;
+}
+
 async fn what_nobody_is_asked_for_moves_in_silence(shore: Shore) {
     let agreed = Agreed::new(&shore).await;
     let other = enter(&agreed.ada, &agreed.nao, "BEANR", 20).await;
@@ -405,6 +458,26 @@ async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(shore: Shore) {
         .good();
     solve(ada).await;
     assert_eq!(alerts(ada).await, [] as [Value; 0]);
+    shore.finish().await;
+}
+
+async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(shore: Shore) {
+    let agreed = Agreed::new(&shore).await;
+    let path = format!("/firms/{}/terms", agreed.firm);
+    let mut none = terms();
+    none["teams"] = json!(0);
+    put(&agreed.ada, &path, &none).await.good();
+    solve(&agreed.ada).await;
+    let told = alerts(&agreed.ada).await;
+    assert_eq!(told.len(), 1, "{told:?}");
+    let summary = told[0]["summary"].as_str().unwrap();
+    assert!(
+        summary.contains("a firm without teams does nothing"),
+        "{summary}"
+    );
+    put(&agreed.ada, &path, &terms()).await.good();
+    solve(&agreed.ada).await;
+    assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
     shore.finish().await;
 }
 

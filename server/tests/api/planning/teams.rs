@@ -223,7 +223,7 @@ async fn an_order_is_for_a_port_and_a_time_that_can_be(shore: Shore) {
         assert_eq!(ask("NLRTM", at).await.status, 422, "{at}");
     }
     // Two days to answer would be longer than there is.
-    let order = ask("NLRTM", "2026-11-21T17:00:00Z").await.good();
+    let order = ask("BEANR", "2026-11-21T17:00:00Z").await.good();
     assert_eq!(order["answer_by"], "2026-11-21T17:00:00Z");
     let path = format!("/work-orders/{}", order["id"].as_str().unwrap());
     let why = json!({ "text": "not this day" });

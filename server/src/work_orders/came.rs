@@ -1,0 +1,62 @@
+//! A port call that is entered where an order waits for one: its own was withdrawn, or none
+//! was known.
+//!
+//! What always holds: an order comes to a call of its own port only, and only where its time
+//! lies in it; who was told that its call is gone is told that there is one again.
+
+use super::moved::{self, Alongside, CallFit, Moving};
+use super::store;
+use crate::db::Tx;
+use crate::error::Result;
+use crate::events::Event;
+use crate::firms::port_meant;
+use crate::ids::{CallId, VesselId};
+use crate::schedule;
+use crate::time::Time;
+
+/// Brings orders without a call to new calls of a vessel, whose row is held; the live events,
+/// to be published after the commit.
+///
+/// # Errors
+/// When the database cannot be written.
+pub async fn calls_come(
+    tx: &mut Tx,
+    vessel: VesselId,
+    new: &[(CallId, Alongside)],
+    by: &str,
+    now: Time,
+) -> Result<Vec<Event>> {
+    let mut told = Vec::new();
+    if new.is_empty() {
+        return Ok(told);
+    }
+    for order in moved::under_way(tx, vessel).await? {
+        if !order.is_adrift {
+            continue;
+        }
+        let whole = store::lock(tx, vessel, order.id).await?;
+        let standing = whole.standing();
+        let meant = || port_meant(&whole.summary.port).map(|port| port.code.to_string());
+        let Some(port) = standing.port.clone().or_else(meant) else {
+            continue;
+        };
+        let lies_in = |call: &Alongside| {
+            let fit = call.fit(&port, order.planned_at);
+            matches!(fit, CallFit::Fits | CallFit::OtherHour)
+        };
+        let Some((id, is)) = new.iter().find(|(_, call)| lies_in(call)) else {
+            continue;
+        };
+        schedule::link(tx, vessel, order.id, *id).await?;
+        if let Some(gone) = standing.call {
+            let moving = Moving {
+                call_id: gone.call_id,
+                then_id: *id,
+                was: gone.is.unwrap_or(gone.was),
+                is: Some(is.clone()),
+            };
+            told.extend(moved::tell(tx, vessel, order.id, &moving, by, now).await?);
+        }
+    }
+    Ok(told)
+}
