@@ -11,6 +11,7 @@ use super::{Terms, store};
 use crate::db::{Db, Tx, execute, rows};
 use crate::error::{Error, Result};
 use crate::ids::{FirmId, OperatorId, OrderId, VesselId};
+use crate::needs;
 use crate::time::Time;
 use binnacle_schedule::ports::{self, Port, PortCode};
 use binnacle_schedule::time::Instant;
@@ -188,15 +189,24 @@ pub async fn must_have_room(
     let mine = said
         .iter()
         .find(|(operator, _)| *operator == visit.operator);
-    // When it works is the operator's word of the firm, which may know better itself.
+    // When and for whom it works is the operator's word of the firm, which may know better
+    // itself.
     if told == Told::Operator
         && let Some((_, terms)) = mine
-        && let Some(why) = terms.closed_at(visit.at, port_meant(visit.port))
     {
-        return Err(Error::WrongState(format!(
-            "by the terms that you have said, {firm_name} {why}: choose another time, or \
-             change the terms"
-        )));
+        let wrong = |why: String, instead: &str| {
+            Err(Error::WrongState(format!(
+                "by the terms that you have said, {firm_name} {why}: choose another {instead}, or \
+                 change the terms"
+            )))
+        };
+        if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
+            return wrong(why, "time");
+        }
+        let (flag, licence) = needs::asked_of_adjusters(tx, visit.vessel).await?;
+        if let Some(why) = terms.not_accepted(flag, licence.as_deref()) {
+            return wrong(why, "firm");
+        }
     }
     let that_day = day(visit.port, visit.at);
     let there = (place(visit.port), visit.vessel);

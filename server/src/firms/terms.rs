@@ -279,6 +279,20 @@ impl Terms {
             .then(|| format!("works from {opens} to {closes} on {day}"))
     }
 
+    /// Why the firm may not adjust a vessel of a flag, where that is known, whose operator
+    /// asks for a licence.
+    pub(super) fn not_accepted(&self, flag: Option<Flag>, licence: Option<&str>) -> Option<String> {
+        if let Some(flag) = flag
+            && !self.firm("", None).is_accepted_by(Some(flag))
+        {
+            return Some(format!("is not accepted by flag {}", flag.letters()));
+        }
+        let licence = licence.filter(|asked| !self.licences.iter().any(|held| held == asked))?;
+        Some(format!(
+            "does not hold the licence that she asks for, {licence}"
+        ))
+    }
+
     /// Why the schedule leaves the firm out.
     pub fn problems(&self) -> Vec<String> {
         let error = input::firm_is_sound(&self.firm("", None)).err();

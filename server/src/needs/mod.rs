@@ -14,6 +14,7 @@ mod since;
 pub use facts::Facts;
 pub use load::of_fleet;
 pub use need::Need;
+pub use particulars::asked_of_adjusters;
 pub use schema::UrgencySchema;
 
 use crate::access::Reader;

@@ -151,6 +151,30 @@ async fn find(db: &Db, vessel: VesselId) -> Result<Particulars> {
     )?)
 }
 
+/// A vessel's flag, and the licence that her operator asks an adjuster to hold.
+///
+/// # Errors
+/// When the database fails.
+pub async fn asked_of_adjusters(
+    tx: &mut Tx,
+    vessel: VesselId,
+) -> Result<(Option<Flag>, Option<String>)> {
+    let found = row!(
+        in tx,
+        (Option<String>, Option<String>),
+        "SELECT v.flag, p.particulars FROM vessels v
+         LEFT JOIN vessel_particulars p ON p.vessel_id = v.id
+         WHERE v.id = $1 ORDER BY v.id",
+        vessel
+    )?;
+    let (flag, particulars) = found.unwrap_or_default();
+    let said: Particulars = match particulars {
+        Some(text) => serde_json::from_str(&text)?,
+        None => Particulars::default(),
+    };
+    Ok((said.ship(flag.as_deref()).flag, said.licence))
+}
+
 async fn put(
     tx: &mut Tx,
     vessel: VesselId,

@@ -134,7 +134,14 @@ async fn change_password(
     let company = user.operator_name.as_ref().or(user.firm_name.as_ref());
     let about = [&user.email, &user.name, company.unwrap_or(&user.name)];
     password::check("new", &change.new, &about.map(String::as_str))?;
+    let is_the_same = change.new == change.current;
     super::prove(&app, user, &from, change.current).await?;
+    if is_the_same {
+        return Err(Error::Invalid {
+            field: "new",
+            detail: "is the password that you have".to_owned(),
+        });
+    }
     let hash = password::hash(password::place(&app).await?, change.new).await?;
     let mut tx = app.db.begin().await?;
     store::set_password(&mut tx, user.user_id, &hash).await?;

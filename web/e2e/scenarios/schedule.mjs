@@ -4,6 +4,7 @@ import { findings } from '../axe.mjs';
 import {
   atAnyHour,
   fitsItsWidth,
+  limit,
   notSignedIn,
   phone,
   signIn,
@@ -45,11 +46,15 @@ async function firmsHaveTerms(page, more = {}) {
   }
 }
 
-/** What rules ask about her, and that she was adjusted so that she is due in forty days. */
+/**
+ * What rules ask about her, that her deviation is within her limit, and that she was adjusted
+ * so that she is due in forty days.
+ */
 async function due(page, vessel) {
   const path = `/api/v1/vessels/${vessel.id}`;
   const known = { flag_state: 'NO', gross_tonnage: 24000, trade: 'bulk', deviation_record: 'kept' };
   await good(page.request.put(`${path}/particulars`, { ...written, data: known }));
+  await limit(page, vessel.id, { deviation_deg: 45 });
   const before = new Date(Date.now() + 40 * dayMs);
   before.setUTCFullYear(before.getUTCFullYear() - 2);
   const adjusted = { kind: 'adjustment', from: before.toISOString() };

@@ -19,7 +19,7 @@ impl fmt::Display for Citation {
 impl fmt::Display for EventKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            EventKind::Installation => "the compass's installation",
+            EventKind::Installation => "the compass's installation or move",
             EventKind::DryDocking => "dry-docking",
             EventKind::StructuralChange => "a structural change",
             EventKind::ElectricalChange => "an electrical change",

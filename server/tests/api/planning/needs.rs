@@ -13,6 +13,7 @@ on_both!(
     what_is_known_of_a_vessel_gives_her_time,
     the_first_due_comes_first_on_every_page,
     work_on_the_ship_and_a_transit_bring_a_need_forward,
+    a_compass_that_was_moved_is_due_like_a_new_one,
     what_is_planned_has_not_happened,
     deviation_over_its_limit_becomes_overdue,
     predicted_deviation_at_a_port_ahead_brings_a_need_forward,
@@ -117,6 +118,17 @@ async fn work_on_the_ship_and_a_transit_bring_a_need_forward(shore: Shore) {
     let before_transit = need(&ada, &nao).await;
     assert_eq!(before_transit["due_on"], "2026-12-05");
     assert_eq!(before_transit["causes"][0]["kind"], "transit");
+    shore.finish().await;
+}
+
+async fn a_compass_that_was_moved_is_due_like_a_new_one(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let moved = json!({ "kind": "compass_moved", "from": "2026-11-05T00:00:00Z" });
+    ada.post(&path(&nao, "/logbook"), &moved).await.good();
+    let after = need(&ada, &nao).await;
+    assert_eq!(after["due_on"], "2026-12-05", "{after}");
+    assert_eq!(after["causes"][0]["kind"], "event");
     shore.finish().await;
 }
 

@@ -10,6 +10,8 @@ on_both!(
     a_planned_job_is_offered_and_agreed_and_stays_in_the_plan,
     an_eta_moved_past_the_due_date_is_told_and_planned_anew,
     a_firm_that_said_no_is_not_planned_again,
+    no_firm_is_asked_that_may_not_adjust_her,
+    an_order_is_for_a_call_where_calls_at_its_port_are_known,
     a_no_holds_when_its_order_is_cancelled,
     an_order_that_is_cancelled_is_in_nobodys_way,
     an_offer_is_of_the_plan_that_was_looked_at,
@@ -268,5 +270,69 @@ async fn an_agreed_job_that_fits_nowhere_names_its_order(shore: Shore) {
     let id = order.rsplit('/').next().unwrap();
     assert_eq!(plan["unscheduled"][0]["orders"], json!([id]));
     assert_eq!(alerts(ada).await.len(), 1);
+    shore.finish().await;
+}
+
+async fn no_firm_is_asked_that_may_not_adjust_her(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    let (firm_id, _) = firm(&shore, &ada, "rosa").await;
+    let ask = async || {
+        let order = direct(&nao, "Rotterdam (NLRTM)", "2026-12-15T08:00:00Z", &firm_id);
+        ada.post("/work-orders", &order).await
+    };
+    let firms = format!("/firms/{firm_id}/terms");
+    let mut some = terms();
+    some["flags"] = json!(["PA"]);
+    put(&ada, &firms, &some).await.good();
+    let refused = ask().await;
+    assert_eq!(refused.problem(), "wrong-state");
+    assert!(
+        refused.text.contains("rosa is not accepted by flag NO"),
+        "{refused:?}"
+    );
+    some["flags"] = json!(["PA", "NO"]);
+    put(&ada, &firms, &some).await.good();
+    let particulars = format!("/vessels/{}/particulars", nao["id"].as_str().unwrap());
+    let asked = json!({ "flag_state": "NO", "licence": "NO-7" });
+    put(&ada, &particulars, &asked).await.good();
+    let refused = ask().await;
+    assert!(
+        refused
+            .text
+            .contains("does not hold the licence that she asks for, NO-7"),
+        "{refused:?}"
+    );
+    some["licences"] = json!(["NO-7"]);
+    put(&ada, &firms, &some).await.good();
+    ask().await.good();
+    shore.finish().await;
+}
+
+async fn an_order_is_for_a_call_where_calls_at_its_port_are_known(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 14).await;
+    let (firm_id, rosa) = firm(&shore, &ada, "rosa").await;
+    let order = |at: &str| direct(&nao, "NLRTM", at, &firm_id);
+    let other = ada
+        .post("/work-orders", &order("2026-12-18T08:00:00Z"))
+        .await;
+    assert_eq!(other.problem(), "invalid");
+    let said = "she is at Rotterdam (NLRTM) from 2026-12-14 06:00 UTC";
+    assert!(other.text.contains(said), "{other:?}");
+    let made = ada
+        .post("/work-orders", &order("2026-12-15T08:00:00Z"))
+        .await
+        .good();
+    let order = format!("/work-orders/{}", made["id"].as_str().unwrap());
+    // Nor is another day proposed on which she is not there.
+    let later = json!({ "terms": { "planned_at": "2026-12-18T08:00:00Z" } });
+    let other = rosa.post(&format!("{order}/propose"), &later).await;
+    assert_eq!(other.problem(), "invalid");
+    let earlier = json!({ "terms": { "planned_at": "2026-12-14T08:00:00Z" } });
+    rosa.post(&format!("{order}/propose"), &earlier)
+        .await
+        .good();
     shore.finish().await;
 }
