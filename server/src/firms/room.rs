@@ -153,6 +153,24 @@ pub async fn bookings(db: &Db, firm: FirmId, from: Time) -> Result<Vec<Booking>>
     )?)
 }
 
+/// Refuses a visit at a time at which a firm is closed, or to a ship that it may not adjust.
+async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_>) -> Result<()> {
+    let wrong = |why: String, instead: &str| {
+        Err(Error::WrongState(format!(
+            "by the terms that you have said, {firm_name} {why}: choose another {instead}, or \
+             change the terms"
+        )))
+    };
+    if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
+        return wrong(why, "time");
+    }
+    let (flag, licence) = needs::asked_of_adjusters(tx, visit.vessel).await?;
+    match terms.not_accepted(flag, licence.as_deref()) {
+        Some(why) => wrong(why, "firm"),
+        None => Ok(()),
+    }
+}
+
 /// Refuses a visit for which a firm has no team left, or by its terms does not work.
 ///
 /// # Errors
@@ -194,19 +212,7 @@ pub async fn must_have_room(
     if told == Told::Operator
         && let Some((_, terms)) = mine
     {
-        let wrong = |why: String, instead: &str| {
-            Err(Error::WrongState(format!(
-                "by the terms that you have said, {firm_name} {why}: choose another {instead}, or \
-                 change the terms"
-            )))
-        };
-        if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
-            return wrong(why, "time");
-        }
-        let (flag, licence) = needs::asked_of_adjusters(tx, visit.vessel).await?;
-        if let Some(why) = terms.not_accepted(flag, licence.as_deref()) {
-            return wrong(why, "firm");
-        }
+        must_suit(tx, firm_name, terms, visit).await?;
     }
     let that_day = day(visit.port, visit.at);
     let there = (place(visit.port), visit.vessel);

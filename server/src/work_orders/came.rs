@@ -4,13 +4,13 @@
 //! What always holds: an order comes to a call of its own port only, and only where its time
 //! lies in it; who was told that its call is gone is told that there is one again.
 
-use super::moved::{self, Alongside, CallFit, Moving};
+use super::moved::{self, Alongside, CallChange, CallFit, Moving};
 use super::store;
 use crate::db::Tx;
 use crate::error::Result;
 use crate::events::Event;
 use crate::firms::port_meant;
-use crate::ids::{CallId, VesselId};
+use crate::ids::{CallId, OrderId, VesselId};
 use crate::schedule;
 use crate::time::Time;
 
@@ -34,10 +34,7 @@ pub async fn calls_come(
         if !order.is_adrift {
             continue;
         }
-        let whole = store::lock(tx, vessel, order.id).await?;
-        let standing = whole.standing();
-        let meant = || port_meant(&whole.summary.port).map(|port| port.code.to_string());
-        let Some(port) = standing.port.clone().or_else(meant) else {
+        let Some((port, gone)) = waits(tx, vessel, order.id).await? else {
             continue;
         };
         let lies_in = |call: &Alongside| {
@@ -48,7 +45,7 @@ pub async fn calls_come(
             continue;
         };
         schedule::link(tx, vessel, order.id, *id).await?;
-        if let Some(gone) = standing.call {
+        if let Some(gone) = gone {
             let moving = Moving {
                 call_id: gone.call_id,
                 then_id: *id,
@@ -59,4 +56,18 @@ pub async fn calls_come(
         }
     }
     Ok(told)
+}
+
+/// The port that an order is for, where its words mean one, and what became of the call that
+/// it had.
+async fn waits(
+    tx: &mut Tx,
+    vessel: VesselId,
+    order: OrderId,
+) -> Result<Option<(String, Option<CallChange>)>> {
+    let whole = store::lock(tx, vessel, order).await?;
+    let standing = whole.standing();
+    let meant = || port_meant(&whole.summary.port).map(|port| port.code.to_string());
+    let port = standing.port.or_else(meant);
+    Ok(port.map(|port| (port, standing.call)))
 }
