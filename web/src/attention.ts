@@ -17,6 +17,7 @@ import { grade } from './science/curve';
 
 /** When a vessel's compass is to be adjusted next, the first of hers. */
 export interface Due {
+  compass: string;
   on: string;
   urgency: Urgency;
   reason: string;
@@ -47,7 +48,7 @@ export function withDues(
   );
   const known = new Map<string, Pick<FleetLine, 'due' | 'unoffered' | 'inHand'>>();
   for (const { vessel_id, compass_id, due_on: on, urgency, reason } of needs) {
-    const due = { on, urgency, reason };
+    const due = { compass: compass_id, on, urgency, reason };
     const job = jobs.get(compass_id);
     const hers = known.get(vessel_id) ?? {};
     known.set(vessel_id, hers);
@@ -84,7 +85,7 @@ export type Reason =
       known: boolean;
       more: number;
     }
-  | { kind: 'due'; urgency: Urgency; on: string; day: string | null; why: string }
+  | { kind: 'due'; compass: string; urgency: Urgency; on: string; day: string | null; why: string }
   | { kind: 'deviation'; port: string | null };
 
 /** Why she needs someone, the most pressing first; nothing where she does not. */

@@ -111,7 +111,7 @@ export const fleet = {
       await page.getByRole('combobox', { name: /^Show/ }).selectOption('attention');
       const due = needs.filter({ hasText: 'Overdue' }).getByRole('link', { name: 'not scheduled' });
       await due.first().click();
-      await page.waitForURL(/\/schedule$/);
+      await page.waitForURL(/\/schedule#[0-9a-f-]{36}$/);
     },
   },
 

@@ -138,6 +138,15 @@ export const schedule = {
       await page.getByTestId('timeline').getByRole('button', { name: hit.name }).waitFor();
       await fitsItsWidth(page);
       await shoot('schedule', { fullPage: true });
+
+      // From her own page the way leads to the job that is proposed for her.
+      await page.goto(`/vessels/${hit.id}`);
+      await page
+        .getByTestId('needs')
+        .getByRole('link', { name: /^Proposed: .* Rotterdam/ })
+        .click();
+      await page.locator('#job').getByRole('heading', { name: hit.name }).waitFor();
+      await page.waitForFunction(() => document.activeElement?.closest('#job'));
     },
   },
 

@@ -1,6 +1,12 @@
 import { render } from 'svelte/server';
 import { expect, test } from 'vitest';
-import type { AdjustmentNeed, Alert, FleetVessel, WorkOrderSummary } from '../api/types';
+import type {
+  AdjustmentNeed,
+  Alert,
+  FleetVessel,
+  SchedulePlan,
+  WorkOrderSummary,
+} from '../api/types';
 import NeedsPanel from './NeedsPanel.svelte';
 import { words } from './testing';
 
@@ -42,6 +48,33 @@ test('what she needs is told with the ways there: alerts, what is due, her next 
   expect(rendered.body).toContain('href="/alerts#x"');
   expect(rendered.body).toContain('href="/work-orders/open"');
   expect(rendered.body).not.toContain('href="/work-orders/done"');
+});
+
+test('what is proposed for her is told where it is due, or that nothing could be', () => {
+  const of = { compasses: [{ compass_id: 'c' }] };
+  const job = {
+    ...of,
+    ...{ day: '2026-11-28', port_name: 'Callao', firm_name: 'Maas Compass', state: 'proposed' },
+  };
+  const shown = (plan: object, orders: WorkOrderSummary[] = []) =>
+    render(NeedsPanel, {
+      props: {
+        alerts: [],
+        needs: [{ ...need('2026-12-01', 'urgent'), compass_id: 'c' }],
+        glance: undefined,
+        orders,
+        plan: plan as SchedulePlan,
+      },
+    });
+  const proposed = shown({ jobs: [job], unscheduled: [] });
+  expect(words(proposed)).toContain('Proposed: 28 Nov 2026, Callao, Maas Compass');
+  expect(proposed.body).toContain('href="/schedule#c"');
+  const nowhere = shown({ jobs: [], unscheduled: [of] });
+  expect(words(nowhere)).toContain('Not scheduled: why');
+  expect(words(shown({ jobs: [], unscheduled: [] }))).toContain('Schedule');
+  // An order that is under way is further on than any proposal.
+  const ordered = shown({ jobs: [job], unscheduled: [] }, [order('open', 'agreed')]);
+  expect(words(ordered)).not.toContain('Proposed');
 });
 
 test('nothing is claimed of what has not come yet', () => {

@@ -1,6 +1,13 @@
 /** A plan as people look at it: a row for each vessel, what changed, what it costs. */
 
-import type { AdjustmentNeed, PlanChange, PlannedJob, PortCall, SchedulePlan } from '../api/types';
+import type {
+  AdjustmentNeed,
+  PlanChange,
+  PlannedJob,
+  PortCall,
+  SchedulePlan,
+  UnscheduledNeed,
+} from '../api/types';
 import * as text from '../text';
 
 /** A vessel of the schedule: when she is in port, what is planned and what is due. */
@@ -10,8 +17,8 @@ export interface Row {
   calls: PortCall[];
   jobs: PlannedJob[];
   needs: AdjustmentNeed[];
-  /** Whether a need of hers that falls into the time shown is not met, or only late. */
-  unmet: boolean;
+  /** Whether the plan meets her needs: one of them not at all, one only late, or all in time. */
+  met: 'not' | 'late' | 'in time';
 }
 
 const urgencies = ['overdue', 'urgent', 'soon', 'routine'] as const;
@@ -27,17 +34,22 @@ export function rowsOf(
     const known = rows.get(item.vessel_id);
     if (known) return known;
     const { vessel_id: vesselId, vessel_name: vesselName } = item;
-    const row: Row = { vesselId, vesselName, calls: [], jobs: [], needs: [], unmet: false };
+    const row: Row = { vesselId, vesselName, calls: [], jobs: [], needs: [], met: 'in time' };
     rows.set(vesselId, row);
     return row;
   };
   for (const call of calls) of(call).calls.push(call);
   for (const need of needs) of(need).needs.push(need);
-  for (const job of plan?.jobs ?? []) of(job).jobs.push(job);
-  for (const unmet of plan?.unscheduled ?? []) of(unmet).unmet = true;
+  for (const job of plan?.jobs ?? []) {
+    const row = of(job);
+    row.jobs.push(job);
+    if (job.late_days > 0) row.met = 'late';
+  }
+  for (const need of plan?.unscheduled ?? []) if (!need.planned_late) of(need).met = 'not';
+  const order = ['not', 'late', 'in time'];
   return [...rows.values()].sort(
     (a, b) =>
-      Number(b.unmet) - Number(a.unmet) ||
+      order.indexOf(a.met) - order.indexOf(b.met) ||
       first(a) - first(b) ||
       a.vesselName.localeCompare(b.vesselName, 'en'),
   );
@@ -56,6 +68,20 @@ export function unmetBy(plan: SchedulePlan): { unscheduled: number; late: number
     unscheduled: plan.unscheduled.filter((need) => !need.planned_late).length,
     late: plan.jobs.filter((job) => job.late_days > 0).length,
   };
+}
+
+/** Where the plan has put a compass: in a job, or nowhere with the reasons. */
+export interface Planned {
+  job?: PlannedJob | undefined;
+  unmet?: UnscheduledNeed | undefined;
+}
+
+/** What the plan says of a compass; nothing where it has no need of it. */
+export function plannedFor(plan: SchedulePlan | null | undefined, compass: string): Planned {
+  const hers = ({ compasses }: PlannedJob | UnscheduledNeed) =>
+    compasses.some(({ compass_id }) => compass_id === compass);
+  const job = plan?.jobs.find(hers);
+  return { job, unmet: job ? undefined : plan?.unscheduled.find(hers) };
 }
 
 /** How much the most pressing of some needs presses. */

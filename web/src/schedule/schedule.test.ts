@@ -3,7 +3,7 @@ import type { AdjustmentNeed, PlannedJob, PortCall, SchedulePlan } from '../api/
 import { atX, shown, spanFrom, ticks, xOf } from './axis';
 import { daysWith, inMonth, keyedDay, weeksOf } from './month';
 import * as text from '../text';
-import { callAt, daysOf, instantOf, realChanges, rowsOf, unmetBy } from './plan';
+import { callAt, daysOf, instantOf, plannedFor, realChanges, rowsOf, unmetBy } from './plan';
 
 const dayMs = 86_400_000;
 
@@ -87,7 +87,22 @@ describe('the vessels of a plan', () => {
   test('come in the order in which someone must think of them', () => {
     const rows = rowsOf(plan, needs, calls);
     expect(rows.map((row) => row.vesselName)).toEqual(['Nowhere', 'Early', 'Due', 'Late', 'Calls']);
-    expect(rows.map((row) => row.unmet)).toEqual([true, false, false, false, false]);
+    expect(rows.map((row) => row.met)).toEqual(['not', ...Array<string>(4).fill('in time')]);
+  });
+
+  test('that the plan has late are said to be late, not left out', () => {
+    const late = {
+      jobs: [{ ...job('Late', '2026-12-20'), late_days: 3 }, job('Early', '2026-12-01')],
+      unscheduled: [
+        { ...vessel('Late'), planned_late: true },
+        { ...vessel('Nowhere'), planned_late: false },
+      ],
+    } as unknown as SchedulePlan;
+    expect(rowsOf(late, [], []).map(({ vesselName, met }) => [vesselName, met])).toEqual([
+      ['Nowhere', 'not'],
+      ['Late', 'late'],
+      ['Early', 'in time'],
+    ]);
   });
 
   test('are there without a plan', () => {
@@ -96,6 +111,22 @@ describe('the vessels of a plan', () => {
       'Calls',
       'Late',
     ]);
+  });
+});
+
+describe('what is planned for a compass', () => {
+  const of = (...ids: string[]) => ({ compasses: ids.map((compass_id) => ({ compass_id })) });
+  const plan = {
+    jobs: [{ ...of('a', 'b'), day: '2026-12-01' }],
+    unscheduled: [of('b'), of('c')],
+  } as unknown as SchedulePlan;
+
+  test('is its job, also where it is late, or why it has none', () => {
+    expect(plannedFor(plan, 'b').job?.day).toBe('2026-12-01');
+    expect(plannedFor(plan, 'b').unmet).toBeUndefined();
+    expect(plannedFor(plan, 'c')).toEqual({ job: undefined, unmet: plan.unscheduled[1] });
+    expect(plannedFor(plan, 'd')).toEqual({ job: undefined, unmet: undefined });
+    expect(plannedFor(null, 'a')).toEqual({ job: undefined, unmet: undefined });
   });
 });
 

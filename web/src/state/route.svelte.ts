@@ -56,6 +56,8 @@ export const alertPath = (id: string): string => `${alertsPath}#${id}`;
 export const mailPath = '/mail';
 export const webhooksPath = '/webhooks';
 export const schedulePath = '/schedule';
+/** What is planned for a compass, or why nothing is. */
+export const plannedPath = (compass: string): string => `${schedulePath}#${compass}`;
 export const firmsPath = '/firms';
 export const reportsPath = '/reports';
 export const notificationsPath = '/notifications';

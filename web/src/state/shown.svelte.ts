@@ -19,6 +19,7 @@ import {
 } from '../api/client';
 import { gathered, live } from '../api/live.svelte';
 import { findOrder, listOrders } from '../api/orders';
+import { findSchedule } from '../api/schedule';
 import type {
   AdjustmentNeed,
   AgentStream,
@@ -28,6 +29,7 @@ import type {
   ModelVersion,
   PortCall,
   SamplePicture,
+  SchedulePlan,
   Timeline,
   Vessel,
   WorkOrder,
@@ -52,6 +54,8 @@ export class ShownVessel {
   needs = new Resource<AdjustmentNeed[]>();
   glance = new Resource<FleetVessel | undefined>();
   orders = new Resource<WorkOrderSummary[]>();
+  /** What is planned for the whole fleet; nothing before the first plan. */
+  plan = new Resource<SchedulePlan | null>();
   model = new Resource<ModelVersion>();
   picture = new Resource<SamplePicture>();
   coverage = new Resource<Coverage>();
@@ -88,6 +92,7 @@ export class ShownVessel {
   loadVessel = () => this.vessel.load(() => vesselAsked(this.id));
   loadNeeds = () => this.needs.load(() => needsAsked(this.id));
   loadOrders = () => this.orders.load(async () => inOrder(await listOrders(this.id)));
+  loadPlan = () => this.plan.load(async () => (await findSchedule()).plan ?? null);
   loadModel = async () => {
     await this.model.load(() => findModel(this.id, this.compass));
     await this.#loadForetelling();
@@ -110,6 +115,8 @@ export class ShownVessel {
     this.#loadScience();
     void this.loadAgents();
     void this.loadLogbook();
+    // Only what is due is planned.
+    if (this.needs.value?.length) void this.loadPlan();
   };
 
   /** Keeps it up to date until the function it returns is called. */
@@ -129,6 +136,7 @@ export class ShownVessel {
       if (['logbook', 'port_call'].includes(news.kind)) void this.#loadHappened();
       if (news.kind === 'work_order' || news.kind === 'all') {
         void this.loadOrders();
+        void this.loadPlan();
         void this.#loadForetelling();
       }
       // An order's steps change nothing else here.

@@ -8,6 +8,10 @@ export const needs = {
   due: 'Next adjustment due',
   noDue: 'nothing is due',
   toSchedule: 'Schedule',
+  /** What the schedule has for a compass that is due. */
+  proposed: (day: string, port: string, firm: string) => `Proposed: ${day}, ${port}, ${firm}`,
+  inHand: (day: string, port: string, firm: string) => `In hand: ${day}, ${port}, ${firm}`,
+  notScheduled: 'Not scheduled: why',
   call: 'Next port call',
   noCall: 'none is known',
   worstThere: (angle: string, on: string) => `up to ${angle} there, on ${on}`,

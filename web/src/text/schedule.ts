@@ -48,7 +48,7 @@ export const schedule = {
     job: (vessel: string, day: string, port: string, firm: string, state: string) =>
       `${vessel}, ${day} at ${port} by ${firm}, ${state}`,
     dueOn: (compass: string, day: string) => `${compass} is due by ${day}`,
-    unmet: 'not scheduled',
+    met: { not: 'not scheduled', late: 'late' },
     notInPort: 'She is not in port then: a job belongs into a port call.',
     legend: {
       call: 'in port',
@@ -214,7 +214,7 @@ export const schedule = {
     version: 'Plan',
     made: 'Made',
     jobs: 'Jobs',
-    unmet: 'Not scheduled',
+    unmet: 'Not met in time',
     moved: 'Moved',
     paid: 'Fees and travel',
     cost: 'Cost by weights',

@@ -20,7 +20,7 @@ export const settings = {
     lead: 'How times are written where a ship is or calls. Her clocks follow the nautical zone of her longitude, then or, on alerts, now; legal time ashore may differ by an hour or two. Where she was is not always known: then it is UTC, as everything else is.',
     label: 'Times are written in',
     names: { utc: 'UTC', ship: 'Ship’s time', both: 'Both' },
-    example: (time: string) => `Now, where ships are two hours ahead: ${time}`,
+    example: (time: string) => `Now, where ships are two hours ahead: ${time}.`,
     kept: 'Kept in this browser.',
   },
 
@@ -66,6 +66,8 @@ export const settings = {
     by: (provider: string) => `by ${provider}`,
     end: 'End',
     endOthers: 'End all others',
+    agent: (browser: string, system: string | undefined) =>
+      system === undefined ? browser : `${browser} on ${system}`,
     unknown: 'a browser',
   },
 
