@@ -16,6 +16,7 @@ mod causes;
 mod jams;
 mod large;
 mod quiet;
+mod references;
 mod returns;
 mod steps;
 
@@ -79,6 +80,9 @@ fn main() {
     }
     if wanted("lightning") {
         returns::lightning(ships);
+    }
+    if wanted("references") {
+        references::references(ships);
     }
     if wanted("ramps") {
         causes::ramps(ships);

@@ -45,6 +45,12 @@ pub(crate) fn quiet(ships: u64) {
                     .iter()
                     .any(|h| h.what == Name::GyroFault && near(h, c))
         });
+        for c in references.clone() {
+            println!(
+                "  seed {seed} a fault from {} to {:?} {:?}",
+                c.from, c.ended, c.evidence
+            );
+        }
         let compass = analysis.changes.iter();
         let compass = compass.filter(|c| c.cause == Cause::CompassFault && c.confirmed);
         let passing = |c: &&Change| {

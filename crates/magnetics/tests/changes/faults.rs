@@ -278,3 +278,52 @@ fn that_a_ship_on_one_course_is_not_watched_is_said() {
     assert!(said(&one), "{} samples", one.len());
     assert!(!said(&log.samples));
 }
+
+/// By two or three degrees, with the gyro and the ship's own past against it.
+#[test]
+fn a_reference_off_for_good_is_told_and_bends_no_model() {
+    for (seed, gyro_deg, satellite_deg) in [
+        (60, 0.0, -3.0),
+        (61, 0.0, -2.0),
+        (62, 0.0, 2.0),
+        (61, 0.0, 3.0),
+        (60, 3.0, 0.0),
+        (62, -2.0, 0.0),
+    ] {
+        let mut plan = calm(Event::Nothing);
+        plan.days = 90.0;
+        plan.faults.gyro_constant_deg = 0.2;
+        let mut log = sail_log(seed, &plan);
+        let start = log.start;
+        let is_past = |s: &Sample| s.time.seconds_since(start) > 30.0 * 86_400.0;
+        for sample in log.samples.iter_mut().filter(|s| is_past(s)) {
+            sample.gyro = sample.gyro.map(|gyro| turned(gyro, gyro_deg));
+            sample.satellite = sample.satellite.map(|s| turned(s, satellite_deg));
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        assert!(of_the_ship(&analysis).is_empty(), "seed {seed}");
+        let mut told = certain(&analysis);
+        told.retain(|c| c.cause == Cause::ReferenceFault);
+        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        assert_eq!(told[0].ended, None, "seed {seed}");
+        let failed = if satellite_deg == 0.0 {
+            "the gyro had failed"
+        } else {
+            "the satellite compass had failed"
+        };
+        let said = |line: &String| line.contains(failed);
+        assert!(told[0].evidence.iter().any(said), "seed {seed}: {told:?}");
+        let place = analysis.last_place.unwrap();
+        let model = analysis.current_epoch().unwrap().model.as_ref().unwrap();
+        let held = (0..36).filter(|k| {
+            let shown_deg = 10.0 * f64::from(*k);
+            let (h, z) = (place.h_nt, place.z_nt);
+            let true_deg = true_deviation(&log.truth, shown_deg, h, z);
+            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(true_deg - told_deg).abs() < 1.96 * se_deg
+        });
+        let held = held.count();
+        assert!(held >= 33, "seed {seed}: {held} of 36");
+    }
+}

@@ -171,15 +171,12 @@ pub(super) fn find(
             What::Burst if event.confirmed || event.last.is_none() => {
                 Some(SampleReason::Disturbance)
             }
-            What::Reference if event.confirmed => teller
-                .one_reference()
-                .then_some(SampleReason::ReferenceFailed),
+            What::Reference if event.confirmed => Some(SampleReason::ReferenceFailed),
             _ => None,
         };
         if let Some(reason) = spoilt {
-            let last = teller.last_spoilt(index);
-            for &place in &places[event.first..=last] {
-                let of = &mut readings[place].diagnostic.reason;
+            for row in teller.spoilt(index) {
+                let of = &mut readings[places[row]].diagnostic.reason;
                 *of = of.or(Some(reason));
             }
         }

@@ -25,6 +25,8 @@ const CREEPS_S: f64 = 45.0 * 86_400.0;
 const CREEPS_FOR_S: f64 = 86_400.0;
 const SUDDEN_S: f64 = 3.0 * 3600.0;
 const SAME_WAY: f64 = 0.7;
+/// Within this it shows which of two references failed, or that neither did.
+const OPEN_S: f64 = 14.0 * 86_400.0;
 /// What is less likely than this makes no band wider.
 const SELDOM: f64 = 0.02;
 
@@ -84,6 +86,18 @@ impl Teller<'_> {
                 .find(|later| self.is_mended(later))
                 .map_or(last, |later| later.first.saturating_sub(1).max(event.first)),
         }
+    }
+
+    /// The rows that an event spoilt: of a fault of one of two references those with both,
+    /// as long as days must show which it is.
+    pub(super) fn spoilt(&self, index: usize) -> impl Iterator<Item = usize> {
+        let event = &self.events[index];
+        let is_open = event.what == What::Reference && !self.one_reference();
+        let begun = self.time(event.first);
+        (event.first..=self.last_spoilt(index)).filter(move |&row| {
+            let has_both = self.observations[row].gyro_less_satellite_deg.is_some();
+            !is_open || (has_both && self.time(row).seconds_since(begun) < OPEN_S)
+        })
     }
 
     fn rows_of_burst(&self, index: usize) -> &[Observation] {

@@ -81,17 +81,7 @@ impl ReferenceCheck {
         one_constant_sd_deg: f64,
     ) -> ReferenceCheck {
         let all: Vec<f64> = differences.collect();
-        let mut check = ReferenceCheck {
-            pairs: all.len() as u64,
-            offset_deg: None,
-            failed_beyond_deg: FAILED_DEG.1,
-            constant_sd_deg: one_constant_sd_deg,
-            gyro_dropped: 0,
-            satellite_dropped: 0,
-        };
-        if all.len() < NEEDED_PAIRS {
-            return check;
-        }
+        let pairs = all.len() as u64;
         let sound: Vec<f64> = all
             .iter()
             .copied()
@@ -103,11 +93,30 @@ impl ReferenceCheck {
         } else {
             all
         };
-        let offset = median(telling.clone());
-        let spread = median(telling.iter().map(|d| (d - offset).abs()).collect());
+        ReferenceCheck {
+            pairs,
+            ..ReferenceCheck::of_sound(&telling, one_constant_sd_deg)
+        }
+    }
+
+    /// From differences of references of which neither had failed for long, degrees.
+    pub(super) fn of_sound(sound: &[f64], one_constant_sd_deg: f64) -> ReferenceCheck {
+        let mut check = ReferenceCheck {
+            pairs: sound.len() as u64,
+            offset_deg: None,
+            failed_beyond_deg: FAILED_DEG.1,
+            constant_sd_deg: one_constant_sd_deg,
+            gyro_dropped: 0,
+            satellite_dropped: 0,
+        };
+        if sound.len() < NEEDED_PAIRS {
+            return check;
+        }
+        let Some((offset, spread)) = median(sound.to_vec()).zip(robust_sd(sound)) else {
+            return check;
+        };
         check.offset_deg = Some(offset);
-        check.failed_beyond_deg =
-            (FAILED_SD * spread / MEDIAN_TO_SD).clamp(FAILED_DEG.0, FAILED_DEG.1);
+        check.failed_beyond_deg = (FAILED_SD * spread).clamp(FAILED_DEG.0, FAILED_DEG.1);
         // The mean of two is better than one, but no better than their quarrel.
         let variance = (one_constant_sd_deg.powi(2) / 2.0).max(offset.powi(2) / 4.0);
         check.constant_sd_deg = variance.sqrt();
@@ -174,8 +183,19 @@ impl ReferenceCheck {
     }
 }
 
-/// Of at least one number.
-fn median(mut numbers: Vec<f64>) -> f64 {
+/// None of no numbers.
+pub(super) fn median(mut numbers: Vec<f64>) -> Option<f64> {
     let middle = numbers.len() / 2;
-    *numbers.select_nth_unstable_by(middle, f64::total_cmp).1
+    if numbers.is_empty() {
+        return None;
+    }
+    Some(*numbers.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// The standard deviation of a Gaussian of whose numbers as many are as near to the median;
+/// none of no numbers.
+pub(super) fn robust_sd(numbers: &[f64]) -> Option<f64> {
+    let middle = median(numbers.to_vec())?;
+    let off = numbers.iter().map(|x| (x - middle).abs());
+    Some(median(off.collect())? / MEDIAN_TO_SD)
 }

@@ -3,13 +3,14 @@
 //!
 //! What always holds: a difference between the two references never depends on
 //! the ship's magnetism, so that it is never put down to the magnetic compass.
-//! A lasting one is halved between them, so that the reference does not jump when
+//! The usual one is halved between them, so that the reference does not jump when
 //! one drops out, and stands in the standard deviation of the reference's
-//! constant. A passing one is a failure: the magnetic compass, by a model of all
-//! other readings, tells which has failed, and that one is dropped; where it
-//! cannot tell, both are.
+//! constant. Any other is a failure, be it of an hour or for good: the magnetic
+//! compass, by a model of other readings, tells which has failed, and that one is
+//! dropped; where it cannot tell, both are.
 
 mod check;
+mod parted;
 mod speed_error;
 mod stuck;
 mod vote;
@@ -22,6 +23,7 @@ use super::{FitError, Observation};
 use crate::angle::{CompassHeading, TrueHeading, Variation};
 use crate::position::Position;
 use crate::time::Timestamp;
+use std::ops::Range;
 
 /// Two references that differ so much throughout are no reference.
 const LASTING_LIMIT_DEG: f64 = 6.0;
@@ -100,10 +102,7 @@ pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Re
             readings: stuck as u64,
         });
     }
-    let mut check = ReferenceCheck::new(
-        differences(readings, &trust).map(|(_, difference)| difference),
-        one_constant_sd_deg,
-    );
+    let (mut check, stretches) = compare(readings, &order, &trust, one_constant_sd_deg);
     if let Some(offset_deg) = check.offset_deg
         && offset_deg.abs() > LASTING_LIMIT_DEG
     {
@@ -112,6 +111,7 @@ pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Re
             allowed_deg: LASTING_LIMIT_DEG,
         });
     }
+    vote::settle_stretches(readings, &order, &check, &stretches, &mut trust);
     vote::settle(readings, &order, &check, &mut trust);
     check.count_dropped(readings, &trust);
     let observations = readings
@@ -123,6 +123,34 @@ pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Re
         observations,
         check,
     })
+}
+
+/// How the two compare, and the readings of each stretch of days over which they stand
+/// otherwise.
+fn compare(
+    readings: &[HeadingReading],
+    order: &[usize],
+    trust: &[Trust],
+    one_constant_sd_deg: f64,
+) -> (ReferenceCheck, Vec<Vec<usize>>) {
+    let both = Trust {
+        gyro: true,
+        satellite: true,
+    };
+    let believed = order.iter().copied().filter(|&i| trust[i] == both);
+    let pairs = parted::pairs(readings, believed).unwrap_or_default();
+    let Some(parted) = parted::part(&pairs) else {
+        let all = differences(readings, trust).map(|(_, difference)| difference);
+        return (ReferenceCheck::new(all, one_constant_sd_deg), Vec::new());
+    };
+    let sound = parted.sound(&pairs).map(|pair| pair.difference_deg);
+    let sound: Vec<f64> = sound.collect();
+    let check = ReferenceCheck {
+        pairs: pairs.len() as u64,
+        ..ReferenceCheck::of_sound(&sound, one_constant_sd_deg)
+    };
+    let places = |stretch: &Range<usize>| pairs[stretch.clone()].iter().map(|p| p.index).collect();
+    (check, parted.stretches.iter().map(places).collect())
 }
 
 /// Index and gyro less satellite compass of every reading with both.

@@ -92,6 +92,59 @@ fn a_gyro_that_failed_for_most_of_the_time_is_dropped_all_the_same() {
     assert_eq!(referred.check.satellite_dropped, 0);
 }
 
+/// By so little that no reading alone shows it, and for far longer than they stood as usual.
+#[test]
+fn a_reference_that_is_off_for_good_never_becomes_the_usual_one() {
+    for off_deg in [-3.0, -2.0, 2.0, 3.0] {
+        let since = |i: u32| if i >= 1000 { off_deg } else { 0.0 };
+        let gyro = refer(&readings(5000, |i| (wobble(i) + since(i), 0.0)), 0.5).unwrap();
+        assert_eq!(
+            (gyro.check.gyro_dropped, gyro.check.satellite_dropped),
+            (4000, 0)
+        );
+        let satellite = refer(&readings(5000, |i| (wobble(i), since(i))), 0.5).unwrap();
+        let dropped = (
+            satellite.check.gyro_dropped,
+            satellite.check.satellite_dropped,
+        );
+        assert_eq!(dropped, (0, 4000), "{off_deg}");
+        for referred in [gyro, satellite] {
+            assert!(referred.observations.iter().all(Option::is_some));
+            assert!(referred.check.offset_deg.unwrap().abs() < 0.2);
+            assert!(referred.check.constant_sd_deg < 0.4);
+        }
+    }
+}
+
+/// The fault was there from the first day, and was mended.
+#[test]
+fn references_that_stand_together_at_last_do_so_as_usual() {
+    let before = |i: u32| if i < 1000 { 4.0 } else { 0.0 };
+    let referred = refer(&readings(5000, |i| (wobble(i), before(i))), 0.5).unwrap();
+    assert_eq!(referred.check.satellite_dropped, 1000);
+    assert_eq!(referred.check.gyro_dropped, 0);
+    assert!(referred.check.offset_deg.unwrap().abs() < 0.2);
+}
+
+#[test]
+fn a_reference_that_is_itself_again_is_believed_again() {
+    let while_off = |i: u32| if (1500..3500).contains(&i) { 2.0 } else { 0.0 };
+    let referred = refer(&readings(5000, |i| (wobble(i), while_off(i))), 0.5).unwrap();
+    assert_eq!(referred.check.satellite_dropped, 2000);
+    assert_eq!(referred.check.gyro_dropped, 0);
+}
+
+/// Half a degree a day is no step, and adds up.
+#[test]
+fn a_gyro_that_creeps_away_is_left_out() {
+    let creeps = |i: u32| f64::from(i.saturating_sub(2000)) / 288.0;
+    let referred = refer(&readings(5000, |i| (wobble(i) + creeps(i), 0.0)), 0.5).unwrap();
+    assert_eq!(referred.check.satellite_dropped, 0);
+    // From where it was a degree off.
+    let dropped = referred.check.gyro_dropped;
+    assert!((2500..2900).contains(&dropped), "{dropped}");
+}
+
 #[test]
 fn when_the_compass_cannot_tell_neither_is_believed() {
     // Either is 3° off, to either side.

@@ -1,15 +1,23 @@
 //! Which of two references has failed: the magnetic compass has the third vote.
 
+use super::check::median;
 use super::{HeadingReading, ReferenceCheck, Trust, differences, observe};
 use crate::angle::wrap_180;
 use crate::deviation::Coefficients;
 use crate::fit::{Observation, RobustFit, RobustOptions, fit_robust};
 use crate::ship::EarthField;
+use crate::time::Timestamp;
 
 /// Failures closer in time than this are one.
 const SPELL_S: f64 = 6.0 * 3600.0;
 /// The failed reference must be so many times further off than the sound one.
 const FURTHER: f64 = 2.0;
+/// The same over days, in which what passes evens out.
+const FURTHER_FOR_LONG: f64 = 1.5;
+/// What went astray for days is judged by the ship of so long before, or after.
+const NEARBY_S: f64 = 30.0 * 86_400.0;
+/// And by so much of it: the ship herself does not stay as she was.
+const JUDGED_S: f64 = 15.0 * 86_400.0;
 /// More observations than this tell the third vote no better.
 const ENOUGH: usize = 2000;
 
@@ -49,6 +57,89 @@ pub(super) fn settle(
     }
 }
 
+/// Takes trust from the reference that went astray in each of these stretches of days.
+pub(super) fn settle_stretches(
+    readings: &[HeadingReading],
+    order: &[usize],
+    check: &ReferenceCheck,
+    stretches: &[Vec<usize>],
+    trust: &mut [Trust],
+) {
+    let mut is_apart = vec![false; readings.len()];
+    for &index in stretches.iter().flatten() {
+        is_apart[index] = true;
+    }
+    let sound: Vec<usize> = order.iter().copied().filter(|&i| !is_apart[i]).collect();
+    for stretch in stretches {
+        let verdict = nearby(readings, stretch, &sound)
+            .find_map(|places| {
+                let every = places.len().div_ceil(ENOUGH).max(1);
+                let near = places.iter().step_by(every);
+                let near = near.filter_map(|&i| observe(&readings[i], trust[i], check));
+                fit_robust(&near.collect::<Vec<_>>(), &RobustOptions::default()).ok()
+            })
+            .map_or(NEITHER, |third| {
+                judge_stretch(readings, stretch, check, &third)
+            });
+        for &index in stretch {
+            trust[index] = verdict;
+        }
+    }
+}
+
+/// Sound readings, in order of time, by whose model a stretch may be judged: those of weeks
+/// before, of weeks after, and all.
+fn nearby<'a>(
+    readings: &[HeadingReading],
+    stretch: &[usize],
+    sound: &'a [usize],
+) -> impl Iterator<Item = &'a [usize]> + use<'a> {
+    let time = |place: usize| readings[place].time;
+    let ends = stretch.first().zip(stretch.last());
+    let [before, after] = match ends.map(|(&first, &last)| (time(first), time(last))) {
+        Some((Some(first), Some(last))) => {
+            let since = |from: Timestamp| sound.partition_point(|&i| time(i) < Some(from));
+            [
+                since(first.plus_seconds(-NEARBY_S))..since(first),
+                since(last)..since(last.plus_seconds(NEARBY_S)),
+            ]
+        }
+        _ => [0..0, 0..0],
+    };
+    [&sound[before], &sound[after], sound].into_iter()
+}
+
+/// Believes the reference that stayed as it was beside the compass, as the stretch began.
+fn judge_stretch(
+    readings: &[HeadingReading],
+    stretch: &[usize],
+    check: &ReferenceCheck,
+    third: &RobustFit,
+) -> Trust {
+    let begun = stretch.first().and_then(|&i| readings[i].time);
+    let is_early = |reading: &&HeadingReading| match (begun, reading.time) {
+        (Some(begun), Some(time)) => time.seconds_since(begun) < JUDGED_S,
+        _ => true,
+    };
+    let mut off = (Vec::new(), Vec::new());
+    for reading in stretch.iter().map(|&i| &readings[i]).filter(is_early) {
+        let Some(by_compass) = heading_by_compass(reading, third) else {
+            continue;
+        };
+        if let (Some(gyro), Some(satellite)) = check.centred(reading.gyro, reading.satellite) {
+            off.0.push(wrap_180(gyro.degrees() - by_compass));
+            off.1.push(wrap_180(satellite.degrees() - by_compass));
+        }
+    }
+    let (Some(gyro), Some(satellite)) = (median(off.0), median(off.1)) else {
+        return NEITHER;
+    };
+    Trust {
+        gyro: gyro.abs() * FURTHER_FOR_LONG < satellite.abs(),
+        satellite: satellite.abs() * FURTHER_FOR_LONG < gyro.abs(),
+    }
+}
+
 const NEITHER: Trust = Trust {
     gyro: false,
     satellite: false,
@@ -71,7 +162,7 @@ fn judge(
             off.1.push(wrap_180(satellite.degrees() - by_compass).abs());
         }
     }
-    let (Some(gyro), Some(satellite)) = (middle(off.0), middle(off.1)) else {
+    let (Some(gyro), Some(satellite)) = (median(off.0), median(off.1)) else {
         return NEITHER;
     };
     Trust {
@@ -90,9 +181,4 @@ fn heading_by_compass(reading: &HeadingReading, third: &RobustFit) -> Option<f64
     let deviation = coefficients.deviation_at_compass_rad(reading.compass.radians())?;
     let magnetic = reading.compass.degrees() + deviation.to_degrees() + third.model.constant_deg;
     Some(magnetic + reading.variation.degrees_east())
-}
-
-fn middle(mut sizes: Vec<f64>) -> Option<f64> {
-    sizes.sort_by(f64::total_cmp);
-    sizes.get(sizes.len() / 2).copied()
 }
