@@ -169,3 +169,9 @@ test('a count beyond what there is room for says that it is more', () => {
   expect(format.atMost(99, 99)).toBe('99');
   expect(format.atMost(1033, 99)).toBe('99+');
 });
+
+test('a figure is written as it was typed, with a true minus', () => {
+  expect(format.typed(-17.43)).toBe('−17.43');
+  expect(format.typed(22.05)).toBe('22.05');
+  expect(format.typed(0)).toBe('0');
+});

@@ -211,6 +211,9 @@ export function sentence(clause: string, at?: (instant: string) => string): stri
   return ended.charAt(0).toUpperCase() + ended.slice(1);
 }
 
+/** A figure as it was typed, with a true minus sign: `−17.43`. */
+export const typed = (value: number): string => String(value).replace(/^-/, '−');
+
 /** A count with thin spaces between thousands: `12 480`. */
 export function count(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return unknown;

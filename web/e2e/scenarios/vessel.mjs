@@ -100,6 +100,41 @@ export const vessel = {
     },
   },
 
+  'each part of her page is one step away, on a phone and by keys': {
+    viewport: phone,
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await openVessel(page);
+      const contents = page.getByRole('navigation', { name: 'On this page' });
+      const links = await contents.getByRole('link').all();
+      for (const link of links) {
+        const id = (await link.getAttribute('href')).slice(1);
+        await page.locator(`section#${id}`).waitFor({ state: 'attached' });
+      }
+      assert.ok(links.length >= 14, `${links.length} parts`);
+      await page.locator('#deviation').evaluate((part) => (part.dataset.same = 'yes'));
+      const seen = (id) =>
+        page.waitForFunction((id) => {
+          const { bottom } = document
+            .querySelector('nav[aria-label="On this page"]')
+            .getBoundingClientRect();
+          const { top } = document.getElementById(id).getBoundingClientRect();
+          return top >= bottom && top < innerHeight / 2;
+        }, id);
+      await contents.getByRole('link', { name: 'Logbook' }).click();
+      await seen('logbook');
+      // It is still at hand there, and the page is the one that was there.
+      await contents.getByRole('link', { name: 'Changes' }).focus();
+      await page.keyboard.press('Enter');
+      await seen('changes');
+      await page.goBack();
+      await seen('logbook');
+      assert.equal(await page.locator('#deviation').getAttribute('data-same'), 'yes');
+      await fitsItsWidth(page);
+    },
+  },
+
   'the deviation is shown for another place': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {
@@ -219,7 +254,7 @@ export const vessel = {
       await position.getByText(zone === 0 ? /UTC$/ : /UTC \(.*UTC[+−]\d+\)$/).waitFor();
       await page.goto('/settings');
       await page.getByText('Ship’s time', { exact: true }).click();
-      await page.getByText(/two hours ahead: .*, \d\d:\d\d UTC\+2 /).waitFor();
+      await page.getByText(/two hours ahead: .*, \d\d:\d\d UTC\+2\. /).waitFor();
       await page.goto(`/vessels/${id}`);
       await position.getByText(zone === 0 ? /\d UTC$/ : /\d UTC[+−]\d+$/).waitFor();
     },

@@ -93,7 +93,9 @@ class RouteState {
   /** Follows the address bar, and takes over clicks on links within the dashboard. */
   start(): () => void {
     const read = () => {
-      this.current = parseRoute(location.pathname);
+      const named = parseRoute(location.pathname);
+      // A link within a page leads nowhere else: the page stays as it is.
+      if (JSON.stringify(named) !== JSON.stringify(this.current)) this.current = named;
     };
     const click = (event: MouseEvent) => {
       if (event.defaultPrevented || event.button !== 0) return;

@@ -119,6 +119,12 @@ export const order = {
     steps: 'Steps',
     standTitle: 'How the correctors will stand',
     notes: 'To know',
+    then: (heading: string, within: string) => `The compass then reads ${heading} ${within}.`,
+    /** The server's note, with the quantities of a ship's magnetism by name. */
+    noteWords: (note: string) =>
+      note
+        .replace(/\bchi13\b/g, 'what the vertical field induces fore and aft')
+        .replace(/\bbx\b/g, 'her permanent fore-and-aft magnetism'),
     none: 'There is no plan yet.',
   },
   berthCheck: {

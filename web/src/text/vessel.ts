@@ -20,6 +20,26 @@ export const vessel = {
     'Ordinary sailing brings them in: the agent keeps every stretch in which the ship holds a steady heading at speed, away from the berth.',
 };
 
+export const vesselPartsLabel = 'On this page';
+/** The parts of her page, short, by their ids. */
+export const vesselParts = {
+  deviation: 'Deviation',
+  trust: 'Trust',
+  residuals: 'Residuals',
+  changes: 'Changes',
+  card: 'Card',
+  orders: 'Adjustment',
+  binnacle: 'Binnacle',
+  particulars: 'Particulars',
+  limits: 'Limits',
+  book: 'Deviation book',
+  logbook: 'Logbook',
+  coverage: 'Coverage',
+  parameters: 'Magnetism',
+  coefficients: 'Coefficients',
+  agents: 'On board',
+};
+
 export const agents = {
   title: 'On board',
   lead: 'Each installation of the agent reports one compass as one stream.',
