@@ -1,7 +1,16 @@
 import { describe, expect, it } from 'vitest';
 import type { AdjustmentNeed, FleetVessel, PlannedJob, SchedulePlan } from './api/types';
 import { pressing, reasonsOf, withDues, worstAhead } from './attention';
-import { arranged, fromSearch, quality, sortedBy, toSearch, usual, withNews } from './fleet';
+import {
+  arranged,
+  fromSearch,
+  longestSilentFirst,
+  quality,
+  sortedBy,
+  toSearch,
+  usual,
+  withNews,
+} from './fleet';
 import { savedViews, saveViews, withView } from './views';
 
 const now = new Date('2026-11-22T06:00:00Z');
@@ -245,4 +254,20 @@ describe('who needs someone', () => {
     );
     expect(line && reasonsOf(line)).toMatchObject([{ kind: 'due', urgency: 'urgent', day: null }]);
   });
+});
+
+it('puts who never sent anything first, then who has been silent longest', () => {
+  const sent = (name: string, last_upload_at: string | null) => ({ name, last_upload_at });
+  const vessels = [
+    sent('Lately', '2026-11-23T10:00:00Z'),
+    sent('Never B', null),
+    sent('Silent', '2026-11-01T10:00:00+02:00'),
+    sent('Never A', null),
+  ];
+  expect(longestSilentFirst(vessels).map(({ name }) => name)).toEqual([
+    'Never A',
+    'Never B',
+    'Silent',
+    'Lately',
+  ]);
 });

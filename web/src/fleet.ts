@@ -159,3 +159,13 @@ export function withNews(
   if (!fleet.some((vessel) => vessel.id === id)) return [...fleet, news];
   return fleet.map((vessel) => (vessel.id === id ? news : vessel));
 }
+
+/** Who never sent anything comes first, then who has been silent longest. */
+export const longestSilentFirst = <V extends { name: string; last_upload_at: string | null }>(
+  vessels: readonly V[],
+): V[] =>
+  [...vessels].sort(
+    (a, b) =>
+      Date.parse(a.last_upload_at ?? '1970-01-01') - Date.parse(b.last_upload_at ?? '1970-01-01') ||
+      a.name.localeCompare(b.name, 'en'),
+  );

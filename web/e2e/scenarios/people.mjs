@@ -145,7 +145,14 @@ export const people = {
       await signIn(page, settings);
       const vessel = await struck(page);
       await page.goto('/settings/agents');
-      await page.getByLabel('Vessel').selectOption(vessel.id);
+      const uploads = page.getByTestId('uploads');
+      await uploads
+        .getByText(/ago$|just now/)
+        .first()
+        .waitFor();
+      await fitsItsWidth(page);
+      await uploads.getByRole('button', { name: vessel.name }).click();
+      assert.equal(await page.getByLabel('Vessel').inputValue(), vessel.id);
       await page.getByRole('button', { name: 'Make a code' }).click();
       const code = await page.getByTestId('enrolment-code').innerText();
       const command = await page.locator('pre code').innerText();

@@ -148,6 +148,10 @@ export const settings = {
     choose: 'Choose…',
     enrol: 'Enrol an agent',
     installed: 'Installed',
+    uploads: 'What comes from on board',
+    uploadsLead: 'The vessel that has been silent longest is first; open one for her agents.',
+    lastUpload: 'Last upload',
+    compasses: 'Compasses',
     noVessels: 'There is no vessel yet: enter one on the fleet’s page.',
   },
 
