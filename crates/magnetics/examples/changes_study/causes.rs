@@ -1,7 +1,10 @@
 //! What each kind of happening is taken for.
 
 use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, sail_log};
-use crate::{HOUR_S, alarms, each, planned, run, seeds, share, telling, variety, was_withdrawn};
+use crate::voyages::lorden::nats_while_laden;
+use crate::{
+    DAY_S, HOUR_S, alarms, each, planned, run, seeds, share, telling, variety, was_withdrawn,
+};
 use binnacle_magnetics::analyse::Analysis;
 use binnacle_magnetics::change::{Cause, Change, Elsewhere, in_fleet};
 use binnacle_magnetics::time::Timestamp;
@@ -24,25 +27,89 @@ fn print(name: &str, counts: &Counts) {
 /// Lightning, cargo and faults of the gyro.
 pub(crate) fn causes(ships: u64) {
     let kinds = [
-        (Name::Lightning, Event::Lightning(4000.0)),
-        (Name::Cargo, Event::Cargo),
-        (Name::GyroFault, Event::GyroFault(4.0)),
+        (
+            Name::Lightning,
+            Event::Lightning(4000.0),
+            Cause::LightningOrShock,
+        ),
+        (Name::Cargo, Event::Cargo, Cause::MagneticCargo),
+        (
+            Name::GyroFault,
+            Event::GyroFault(4.0),
+            Cause::ReferenceFault,
+        ),
     ];
     println!("taken for:");
-    for (name, event) in kinds {
+    for (name, event, cause) in kinds {
         let found = each(seeds(300_000, ships), |seed| {
             let mut plan = Plan::of(event, variety(seed));
             plan.gyro_faults = 0.0;
             let log = sail_log(seed, &plan);
             let happened = planned(&log, name)?;
             let analysis = run(&log.samples);
-            Some(name_of(telling(&analysis, &happened)))
+            let told = telling(&analysis, &happened);
+            if told.is_none_or(|c| c.cause != cause) {
+                print_wrong(seed, &log, &analysis, &happened);
+            }
+            Some(name_of(told))
         });
         let mut counts = Counts::new();
         for called in found.into_iter().flatten() {
             *counts.entry(called).or_default() += 1;
         }
         print(&format!("{name:?}"), &counts);
+    }
+}
+
+/// What was said of a happening that was not named rightly, and when she lay in port around it.
+fn print_wrong(seed: u64, log: &Log, analysis: &Analysis, happened: &Happened) {
+    let hours = |at: Timestamp| at.seconds_since(happened.from) / HOUR_S;
+    println!(
+        "  seed {seed}: {} to {:?} h",
+        happened.from,
+        happened.to.map(hours)
+    );
+    println!(
+        "    by the samples with cargo {:.1?} nats at most",
+        nats_while_laden(log)
+    );
+    let gaps = log.samples.windows(2);
+    let gaps = gaps.filter(|leg| leg[1].time.seconds_since(leg[0].time) > 2.5 * HOUR_S);
+    let near = gaps.filter(|leg| {
+        let from_s = leg[0].time.seconds_since(happened.from);
+        (-10.0 * DAY_S..30.0 * DAY_S).contains(&from_s)
+    });
+    for leg in near {
+        println!(
+            "    no samples from {:.1} to {:.1} h",
+            hours(leg[0].time),
+            hours(leg[1].time)
+        );
+    }
+    for h in &log.happened {
+        if (-48.0..960.0).contains(&hours(h.from)) {
+            println!(
+                "    {:?} {:.1} to {:?} h",
+                h.what,
+                hours(h.from),
+                h.to.map(hours)
+            );
+        }
+    }
+    for c in &analysis.changes {
+        if c.detected_at >= happened.from && hours(c.from) < 40.0 * 24.0 {
+            println!(
+                "    at {:.1} h ({:.1} to {:.1}), told {:.1} h, confirmed {}, until {:?}: {:?} {:?}",
+                hours(c.from),
+                hours(c.from_earliest),
+                hours(c.from_latest),
+                hours(c.detected_at),
+                c.confirmed,
+                c.ended.map(hours),
+                c.causes,
+                c.evidence
+            );
+        }
     }
 }
 

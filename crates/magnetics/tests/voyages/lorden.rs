@@ -99,6 +99,25 @@ pub(crate) fn nats_of_discharge(log: &Log) -> Option<f64> {
     told.last().copied()
 }
 
+/// The information of the rows with cargo on board for the ship with it, against the ship
+/// without it, nats: with less than the logarithm of the rows between two false alarms, no
+/// detector can find it.
+pub(crate) fn nats_while_laden(log: &Log) -> Option<f64> {
+    let changed = log.changed?;
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo)?;
+    let begin = cargo.from.plus_seconds(-RUN_UP_S);
+    let place = |time: Timestamp| log.samples.partition_point(|s| s.time < time);
+    let until = cargo.to.map_or(log.samples.len(), place);
+    let rows = rows(
+        &log.samples[place(begin)..until],
+        log.start,
+        cargo.from,
+        &changed,
+    );
+    let told = information(&rows, &log.turns, &log.sizes, Readings::USUAL);
+    told.last().copied()
+}
+
 fn rows(
     samples: &[Sample],
     start: Timestamp,
