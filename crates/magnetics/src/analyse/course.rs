@@ -193,6 +193,9 @@ impl Course {
         if let Some(probability) = zero_moved.filter(|_| until.is_none()) {
             self.allow_for_zero(probability, readings, reference);
         }
+        if let Some(misled) = found.misled.as_ref().filter(|_| until.is_none()) {
+            self.allow_for_misled(misled);
+        }
         if let Some(variance_nt2) = found.open_nt2.filter(|_| until.is_none()) {
             self.allow_for_step(variance_nt2);
         }

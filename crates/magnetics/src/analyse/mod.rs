@@ -6,6 +6,7 @@
 //! without a reason; and a set of samples that does not carry a model yields a
 //! refusal that says what is missing.
 
+mod alongside;
 mod cargo;
 mod changes;
 mod course;
@@ -29,6 +30,7 @@ use crate::model::Model;
 use crate::position::Position;
 use crate::sample::Sample;
 use crate::time::Timestamp;
+use alongside::{berths, mark_alongside};
 use cargo::notices;
 use changes::merge_faults;
 use course::Course;
@@ -39,7 +41,7 @@ use stuck::mark_stuck;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-23";
+pub const ESTIMATOR: &str = "state-space-24";
 
 /// Said where nothing can be watched for.
 const UNWATCHED: &str = "so far too little is known of the ship to tell a change of her \
@@ -169,7 +171,7 @@ pub enum SampleReason {
     FieldTooWeak,
     /// Taken with magnetic cargo on board.
     MagneticCargo,
-    /// Taken alongside.
+    /// Taken alongside: by the logbook, or lying still on one heading.
     Berth,
     /// Taken in a magnetic storm, over a local anomaly, or near other iron.
     Disturbance,
@@ -187,6 +189,7 @@ pub fn analyse(
 ) -> Analysis {
     let mut readings = readings(samples, logbook, settings);
     let mut course = Course::after(mark_stuck(&mut readings));
+    let stays = mark_alongside(&mut readings);
     let mut begun = None;
     for epoch in epochs(logbook) {
         let from = begun.or(epoch.from);
@@ -201,6 +204,7 @@ pub fn analyse(
         mut changes,
         ..
     } = course;
+    berths(&stays, &readings, &epochs, &mut changes);
     changes.sort_by_key(|change| (change.from, change.detected_at));
     merge_faults(&mut changes, &epochs);
     let with_deviation = readings

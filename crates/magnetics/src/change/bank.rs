@@ -38,6 +38,10 @@ const FORGOTTEN_NATS: f64 = 0.75;
 const COLD_NATS: f64 = 2.0;
 const COLD_AFTER: usize = 48;
 
+/// A step is likelier beforehand at a port call, where cargo is loaded, than within any hour
+/// at sea, by this, nats.
+const IN_PORT_NATS: f64 = 4.0;
+
 /// What may have happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
@@ -101,6 +105,8 @@ pub(super) struct Spawn {
     astray_deg: f64,
     /// Whether the reference's copy is to be upset by the next reading.
     is_fresh: bool,
+    /// By how much its step is likelier beforehand than one at sea.
+    beforehand_nats: f64,
 }
 
 impl Spawn {
@@ -216,7 +222,7 @@ impl Bank {
         at: usize,
         now: &Filter,
         noise: &Noise,
-        earlier: Option<Earlier<'_>>,
+        (earlier, in_port): (Option<Earlier<'_>>, bool),
     ) {
         self.thin(at, now);
         self.rest(at, now);
@@ -228,8 +234,14 @@ impl Bank {
             age_s: 0.0,
             astray_deg: 0.0,
             is_fresh: false,
+            beforehand_nats: if in_port { IN_PORT_NATS } else { 0.0 },
         };
-        spawn.copies[Kind::Step as usize] = Some(Box::new(upset(now, Kind::Step)));
+        let mut step = upset(now, Kind::Step);
+        if in_port {
+            step.log_likelihood +=
+                std::env::var("PORT").map_or(IN_PORT_NATS, |x| x.parse().unwrap());
+        }
+        spawn.copies[Kind::Step as usize] = Some(Box::new(step));
         if self.are_rivals_awake {
             spawn.wake(earlier);
             let astray = self.likeliest(&PASSING, now);
@@ -324,6 +336,14 @@ impl Bank {
                 Some(Lead { nats, kind, spawn })
             })
             .max_by(|a, b| a.nats.total_cmp(&b.nats))
+    }
+
+    /// By how much what leads was likelier beforehand than the same at another time.
+    pub(super) fn beforehand_nats(&self, lead: Lead) -> f64 {
+        match lead.kind {
+            Kind::Step => self.spawns[lead.spawn].beforehand_nats,
+            _ => 0.0,
+        }
     }
 
     pub(super) fn are_rivals_awake(&self) -> bool {

@@ -29,9 +29,12 @@ pub(crate) struct Circumstances {
     pub(crate) over_step: f64,
     /// By how much a zero that moved is likelier than a step, nats, where that is open.
     pub(crate) zero_over_step: Option<f64>,
-    /// How long a burst lasted, or has lasted yet, and whether it is over.
+    /// How long a burst lasted, or has lasted yet.
     pub(crate) burst_s: Option<f64>,
+    /// Whether a burst, or a reference's fault, is over.
     pub(crate) is_over: bool,
+    /// Whether it came with a berth at which samples were taken, and went with it if it is over.
+    pub(crate) alongside: bool,
     /// How far a burst led the compass astray, degrees where H is 24 µT.
     pub(crate) astray_deg: Option<f64>,
     /// Whether there was no second reference.
@@ -95,6 +98,12 @@ const STORM_DEG: f64 = 5.0;
 const ANOMALY_DEG: f64 = 6.0;
 const FAULT_DEG: f64 = 10.0;
 
+/// How likely a compass's zero that moved is to be put right, beside a reference that is.
+const ZERO_PUT_RIGHT: f64 = 0.1;
+
+/// How likely the sun, or a place at sea, begins and ends with a stay alongside.
+const WITH_A_STAY: f64 = 0.02;
+
 /// What contradicts what the search decided weighs so much less.
 const AGAINST: f64 = 0.02;
 
@@ -140,35 +149,44 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
     };
     let of_reference = 0.5 * (reference - most).exp() + swings;
     weights.push((Cause::ReferenceFault, of_reference));
+    if what == What::Reference && known.one_reference {
+        // The same on every heading: which of the two was moved, nothing tells but its end.
+        let share = if known.is_over { ZERO_PUT_RIGHT } else { 1.0 };
+        weights.push((Cause::Alignment, share * of_reference));
+    }
     // What is not over is no shorter than it has been.
     let long = match known.burst_s {
         Some(seconds) if seconds > LONG_S => 1.0,
         Some(_) if known.is_over => 0.0,
         _ => 0.5,
     };
+    let elsewhere = if known.alongside { WITH_A_STAY } else { 1.0 };
     weights.push((
         Cause::MagneticStorm,
-        6.0 * passing * in_storm * (0.1 + 0.8 * long),
+        6.0 * passing * in_storm * (0.1 + 0.8 * long) * elsewhere,
     ));
     weights.push((
         Cause::LocalAnomaly,
-        3.0 * passing * over_anomaly * (0.9 - 0.8 * long),
+        3.0 * passing * over_anomaly * (0.9 - 0.8 * long) * elsewhere,
     ));
-    let alongside = if known.at_port == Some(true) {
-        1.0
-    } else {
-        0.01
+    let at_berth = match known.at_port {
+        // It lasts as long as she lies there.
+        _ if known.alongside => 1.0,
+        Some(true) => 0.9 - 0.8 * long,
+        _ => 0.01 * (0.9 - 0.8 * long),
     };
-    weights.push((
-        Cause::BerthSteel,
-        3.0 * passing * alongside * over_anomaly * (0.9 - 0.8 * long),
-    ));
+    weights.push((Cause::BerthSteel, 3.0 * passing * over_anomaly * at_berth));
     for (cause, weight) in &mut weights {
         if known.reported.contains(cause) {
             *weight *= REPORTED;
         }
     }
-    let agrees = |cause: Cause| agrees(what, cause, known.one_reference);
+    // In port she may be another since, as long as she has not sailed.
+    let may_be_hers = known.alongside && !known.is_over;
+    let agrees = |cause: Cause| {
+        let is_hers = matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair);
+        agrees(what, cause, known.one_reference) || (may_be_hers && is_hers)
+    };
     let is_of_the_ship = matches!(what, What::Return(_)) || what.is_lasting();
     let agreeing = weights.iter().filter(|(cause, _)| agrees(*cause));
     let most = agreeing
@@ -228,7 +246,9 @@ fn agrees(what: What, cause: Cause, one_reference: bool) -> bool {
         What::Step | What::Return(_) => cause.is_the_ships(),
         What::Alignment => cause == Cause::Alignment,
         What::Drift => cause == Cause::Drift,
-        What::Reference => cause == Cause::ReferenceFault,
+        What::Reference => {
+            cause == Cause::ReferenceFault || (one_reference && cause == Cause::Alignment)
+        }
         What::Burst => !cause.is_the_ships() && (one_reference || cause != Cause::ReferenceFault),
     }
 }

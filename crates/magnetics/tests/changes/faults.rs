@@ -107,6 +107,56 @@ fn zero_moved(seed: u64, moved_deg: f64) -> (Log, usize) {
 }
 
 #[test]
+fn by_one_reference_a_zero_that_moved_may_be_either_and_the_band_holds_both() {
+    for seed in 60..64 {
+        let moved_deg = 5.0;
+        let mut plan = calm(Event::Nothing);
+        plan.faults.satellite = false;
+        let mut log = sail_log(seed, &plan);
+        let is_past = |s: &Sample| day(&log, s) > 25.0;
+        let moved = log.samples.iter().position(is_past).unwrap();
+        for sample in &mut log.samples[moved..] {
+            let compass = sample.compass.degrees() + moved_deg;
+            sample.compass = CompassHeading::new(compass).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = certain(&analysis);
+        let fault = told.iter().find(|c| c.cause == Cause::ReferenceFault);
+        let fault = fault.unwrap_or_else(|| panic!("seed {seed}: {told:?}"));
+        let share = |cause: Cause| {
+            let of = fault.causes.iter().find(|c| c.cause == cause);
+            of.map_or(0.0, |c| c.probability)
+        };
+        let [zero, reference] = [Cause::Alignment, Cause::ReferenceFault].map(share);
+        assert!(zero > 0.4 && reference > 0.4, "seed {seed}: {fault:?}");
+        assert!(
+            fault
+                .evidence
+                .iter()
+                .any(|line| line.contains("no other reference"))
+        );
+        let place = analysis.last_place.unwrap();
+        let model = analysis.current_epoch().unwrap().model.as_ref().unwrap();
+        let held = |shown_deg: f64, moved_deg: f64| {
+            let (h, z) = (place.h_nt, place.z_nt);
+            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
+            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(sound_deg - moved_deg - told_deg).abs() <= 1.96 * se_deg
+        };
+        let headings = || (0..36).map(|k| 10.0 * f64::from(k));
+        assert!(
+            headings().filter(|deg| held(*deg, moved_deg)).count() > 30,
+            "seed {seed}"
+        );
+        assert!(
+            headings().filter(|deg| held(*deg, 0.0)).count() > 30,
+            "seed {seed}"
+        );
+    }
+}
+
+#[test]
 fn a_zero_that_moved_by_much_is_told_once() {
     for (seed, moved_deg) in [
         (60, 8.0),

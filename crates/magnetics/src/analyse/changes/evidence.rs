@@ -11,6 +11,9 @@ const TOLD_DEG: f64 = 0.1;
 /// Said of a disturbance that other ships may speak for.
 const FAINT: &str = "too faint to be certain by this ship alone";
 
+/// Said of what one reference alone cannot tell.
+const EITHER: &str = "compass or reference: there is no other reference to tell which";
+
 /// Said of a disturbance that is over.
 pub(super) const LASTED: &str = "it lasted ";
 /// Said of a change that was none.
@@ -89,8 +92,11 @@ pub(super) fn evidence(
             format!("it was astray by {degrees:.0} degrees, which few storms and anomalies come to")
         });
         if known.one_reference {
-            told.push("compass or reference: there is no other reference to tell which".to_owned());
+            told.push(EITHER.to_owned());
         }
+    }
+    if event.what == What::Reference && known.one_reference && !known.is_over {
+        told.push(EITHER.to_owned());
     }
     if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
         told.push(format!("{LASTED}{:.1} hours", seconds / 3600.0));

@@ -33,6 +33,8 @@ pub(super) struct Found {
     pub(super) perhaps: Option<Ended>,
     /// A change that may have begun at a port call, and has not been told.
     pub(super) unnoticed: Option<Begun>,
+    /// A zero that may have moved in place of the only reference's.
+    pub(super) misled: Option<Misled>,
     /// What a step that is not certain may have done to bx and by, variance in nT².
     pub(super) open_nt2: Option<f64>,
     /// Whether a change would have been noticed.
@@ -76,6 +78,13 @@ pub(super) struct Begun {
     pub(super) probability: f64,
 }
 
+/// A compass whose zero may have moved, by so much, degrees, with that variance.
+pub(super) struct Misled {
+    pub(super) moved_deg: f64,
+    pub(super) variance: f64,
+    pub(super) probability: f64,
+}
+
 /// The beginning of an epoch that a change made.
 pub(super) struct Boundary {
     pub(super) at: Timestamp,
@@ -104,6 +113,7 @@ pub(super) fn find(
         boundaries: Vec::new(),
         perhaps: None,
         unnoticed: None,
+        misled: None,
         open_nt2: None,
         is_watched: true,
     };
@@ -182,6 +192,7 @@ pub(super) fn find(
         }
         found.changes.push(change);
     }
+    found.misled = teller.misled(&found.changes, &place_of);
     found.open_nt2 = told.open_nt2;
     found.unnoticed = told
         .unnoticed

@@ -1,14 +1,15 @@
 //! Puts events into words and dates.
 
 use super::evidence::evidence;
-use super::{Begun, Ended, cause_of, size};
+use super::{Begun, Ended, Misled, cause_of, size};
 use crate::analyse::logbook::LogbookEntry;
+use crate::angle::wrap_180;
 use crate::change::{
-    Cause, Change, Circumstances, Event, Perhaps, SAILED_SINCE, Unnoticed, What, at_port, causes,
-    rows_since,
+    Cause, Change, Circumstances, Event, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port,
+    causes, rows_since,
 };
 use crate::fit::Observation;
-use crate::ship::EarthField;
+use crate::ship::{EarthField, PARAMETERS};
 use crate::time::Timestamp;
 
 /// People write down when they noticed, not when it happened; cargo is not on board
@@ -139,7 +140,8 @@ impl Teller<'_> {
                 let last = self.time(self.last_spoilt(index));
                 last.seconds_since(self.time(event.first))
             }),
-            is_over: event.last.is_some(),
+            is_over: event.last.is_some() || (event.what == What::Reference && back.is_some()),
+            alongside: false,
             astray_deg: astray.as_ref().map(|astray| astray.usual_deg),
             one_reference: self.one_reference(),
             creeps: self.creeps(index),
@@ -224,6 +226,31 @@ impl Teller<'_> {
         (unnoticed.probability > SELDOM).then(|| Begun {
             at: self.date(unnoticed.first),
             probability: unnoticed.probability,
+        })
+    }
+
+    /// What the compass shows if it was its zero that moved, where the only reference seems to
+    /// err and nothing tells which it was: the fault that goes on.
+    pub(super) fn misled(&self, changes: &[Change], place_of: &[Option<usize>]) -> Option<Misled> {
+        if !self.one_reference() {
+            return None;
+        }
+        let is_fault = |event: &Event| event.what == What::Reference && event.confirmed;
+        let index = self.events.iter().rposition(is_fault)?;
+        if self.events[index + 1..]
+            .iter()
+            .any(|later| self.is_mended(later))
+        {
+            return None;
+        }
+        let event = &self.events[index];
+        let change = &changes[place_of.get(index).copied().flatten()?];
+        let zero = change.causes.iter().find(|c| c.cause == Cause::Alignment)?;
+        let constant = |of: &Snapshot| of.covariance[PARAMETERS][PARAMETERS].max(0.0);
+        Some(Misled {
+            moved_deg: wrap_180(event.after.constant_deg - event.before.constant_deg),
+            variance: constant(&event.after),
+            probability: zero.probability,
         })
     }
 

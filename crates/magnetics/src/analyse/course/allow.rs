@@ -3,11 +3,12 @@
 //! What always holds: only the last epoch's model is made wider, and nothing is told by it.
 
 use super::{Course, Epoch};
-use crate::analyse::changes::{Begun, Ended};
+use crate::analyse::changes::{Begun, Ended, Misled};
 use crate::analyse::either::either;
 use crate::analyse::epoch::{Reference, empty_epoch};
 use crate::analyse::reading::Reading;
 use crate::change::{Cause, Change};
+use crate::ship::PARAMETERS;
 
 impl Course {
     /// Widens the last epoch's model where the ship may be again as she was in the
@@ -83,6 +84,25 @@ impl Course {
             .and_then(|(now, moved)| either(now, &moved, probability));
         last.model = open.or(last.model);
         self.push(last, own);
+    }
+
+    /// Widens the last epoch's model where it may have been the compass's zero that moved, and
+    /// not the only reference's.
+    pub(super) fn allow_for_misled(&mut self, misled: &Misled) {
+        let Some(model) = self.epochs.last_mut().and_then(|last| last.model.as_mut()) else {
+            return;
+        };
+        let mut moved = model.clone();
+        moved.parameters_over_lambda = moved
+            .parameters_over_lambda
+            .by_turned_compass(-misled.moved_deg.to_radians());
+        moved.constant_deg += misled.moved_deg;
+        if let Some(covariance) = &mut moved.covariance {
+            covariance[PARAMETERS][PARAMETERS] += misled.variance;
+        }
+        if let Some(open) = either(model, &moved, misled.probability) {
+            *model = open;
+        }
     }
 
     /// Widens the last epoch's model where the ship may have been struck hard just now.

@@ -202,9 +202,11 @@ impl Search<'_> {
         let step = leads[Kind::Step as usize];
         // A large step would explain the first hour of a storm, too.
         let is_usual = step.is_some_and(|lead| lead.kind == Kind::Step);
-        if over_burst <= STEP_AT_LEAST
+        // What is likelier beforehand must be as clear from the rows.
+        let beforehand = step.map_or(0.0, |lead| self.bank.beforehand_nats(lead));
+        if over_burst - beforehand <= STEP_AT_LEAST
             || (over_burst <= STEP_NATS + self.unlearnt_nats(k) + self.creeping_nats(k)
-                && !(is_usual && lead > LARGE_NATS))
+                && !(is_usual && lead - beforehand > LARGE_NATS))
         {
             return false;
         }

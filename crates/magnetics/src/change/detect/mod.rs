@@ -169,7 +169,8 @@ impl<'a> Search<'a> {
         let m = self.next(k);
         if is_due || (k >= FIRST_PASSING && self.is_astray(k, &m)) {
             let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
-            self.bank.spawn(k, &self.null, &self.noise, earlier);
+            let known = (earlier, self.is_call(k));
+            self.bank.spawn(k, &self.null, &self.noise, known);
             self.spawned = k;
         }
         if self.is_call(k) || self.is_said_discharged(k) {
