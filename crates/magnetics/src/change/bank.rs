@@ -237,10 +237,7 @@ impl Bank {
             beforehand_nats: if in_port { IN_PORT_NATS } else { 0.0 },
         };
         let mut step = upset(now, Kind::Step);
-        if in_port {
-            step.log_likelihood +=
-                std::env::var("PORT").map_or(IN_PORT_NATS, |x| x.parse().unwrap());
-        }
+        step.log_likelihood += spawn.beforehand_nats;
         spawn.copies[Kind::Step as usize] = Some(Box::new(step));
         if self.are_rivals_awake {
             spawn.wake(earlier);

@@ -17,6 +17,10 @@ const LONG_S: f64 = 3.0 * 3600.0;
 const SLOW_S: f64 = 20.0 * 86_400.0;
 
 /// What is known of a change beside its size.
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "each is a circumstance of its own"
+)]
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Circumstances {
     /// Leads by kind, nats.

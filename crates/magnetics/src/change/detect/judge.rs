@@ -94,7 +94,8 @@ impl Search<'_> {
         let over_burst = lasting - burst;
         // One reference on one heading cannot tell a fault of its own from a change
         // of the ship.
-        let is_clear = lasting - other.max(0.0) > CLEAR_NATS || self.has_both(k);
+        let clear = lasting - self.beforehand_nats(kind, &leads) - other.max(0.0);
+        let is_clear = clear > CLEAR_NATS || self.has_both(k);
         let is_told = is_clear
             && match kind {
                 Kind::Reference => {
@@ -198,12 +199,17 @@ impl Search<'_> {
         leads[kind as usize].is_some_and(|lead| k + 1 >= self.bank.spawns[lead.spawn].at + rows)
     }
 
+    /// By how much what leads was likelier beforehand than at another time.
+    fn beforehand_nats(&self, kind: Kind, leads: &Leads) -> f64 {
+        leads[kind as usize].map_or(0.0, |lead| self.bank.beforehand_nats(lead))
+    }
+
     pub(super) fn is_step(&self, k: usize, lead: f64, over_burst: f64, leads: &Leads) -> bool {
         let step = leads[Kind::Step as usize];
         // A large step would explain the first hour of a storm, too.
         let is_usual = step.is_some_and(|lead| lead.kind == Kind::Step);
         // What is likelier beforehand must be as clear from the rows.
-        let beforehand = step.map_or(0.0, |lead| self.bank.beforehand_nats(lead));
+        let beforehand = self.beforehand_nats(Kind::Step, leads);
         if over_burst - beforehand <= STEP_AT_LEAST
             || (over_burst <= STEP_NATS + self.unlearnt_nats(k) + self.creeping_nats(k)
                 && !(is_usual && lead - beforehand > LARGE_NATS))
