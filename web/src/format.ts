@@ -4,6 +4,8 @@
  * Pure functions; what is unknown is a dash, never a zero.
  */
 
+import { aheadMs, type Zone } from './zone';
+
 export const unknown = '–';
 
 /** East-positive angle as `3.4° W`; what rounds to zero has no side. */
@@ -104,30 +106,33 @@ export function clock(value: string | Date | null | undefined): string {
   return `${date.toISOString().slice(11, 16)} UTC`;
 }
 
-/** How far ship's time is from UTC: `UTC+2`. */
-export function zone(hoursAhead: number): string {
-  if (hoursAhead === 0) return 'UTC';
-  return `UTC${hoursAhead < 0 ? '−' : '+'}${Math.abs(hoursAhead)}`;
+/** How far clocks are from UTC: `UTC+2`, `UTC+5:30`. */
+export function ahead(ms: number): string {
+  const minutes = Math.round(Math.abs(ms) / 60_000);
+  if (minutes === 0) return 'UTC';
+  const beside = minutes % 60 === 0 ? '' : `:${String(minutes % 60).padStart(2, '0')}`;
+  return `UTC${ms < 0 ? '−' : '+'}${Math.floor(minutes / 60)}${beside}`;
 }
 
-/** By which clocks an instant is written where the ship's are known. */
+/** By which clocks an instant is written where those of the place are known. */
 export type Clocks = 'utc' | 'ship' | 'both';
 
 /**
- * An instant where the ship's clocks are `hoursAhead` of UTC: `14 Nov 2026, 08:30 UTC`,
+ * An instant where clocks keep a zone, as two hours ahead of UTC: `14 Nov 2026, 08:30 UTC`,
  * `14 Nov 2026, 10:30 UTC+2`, or both, with the day where it is another one there:
  * `14 Nov 2026, 23:30 UTC (15 Nov, 01:30 UTC+2)`.
  */
 export function atSea(
   value: string | Date | null | undefined,
-  hoursAhead: number | undefined,
+  zone: Zone | undefined,
   clocks: Clocks,
 ): string {
   const date = toDate(value);
   if (!date) return unknown;
-  if (!hoursAhead || clocks === 'utc') return time(date);
-  const there = new Date(date.getTime() + hoursAhead * 3_600_000);
-  const hour = `${there.toISOString().slice(11, 16)} ${zone(hoursAhead)}`;
+  const aheadBy = zone === undefined ? 0 : aheadMs(zone, date.getTime());
+  if (!aheadBy || clocks === 'utc') return time(date);
+  const there = new Date(date.getTime() + aheadBy);
+  const hour = `${there.toISOString().slice(11, 16)} ${ahead(aheadBy)}`;
   if (clocks === 'ship') return `${day(there)}, ${hour}`;
   const on = `${there.getUTCDate()} ${months[there.getUTCMonth()] ?? ''}, `;
   return `${time(date)} (${day(there) === day(date) ? '' : on}${hour})`;

@@ -70,7 +70,7 @@ fn fleet([vessels, calls, firms]: [u64; 3], seed: u64, ports: u64, days: u64) ->
         );
         let due = now
             .plus_hours(24.0 * random.random_range(5.0..days as f64))
-            .date(0);
+            .utc_date();
         push(
             "needs",
             json!({"id": format!("n{vessel}"), "vessel": id, "due": due}),

@@ -4,6 +4,7 @@
 //! input gives the same schedule. In reading order:
 
 pub mod time;
+pub mod zone;
 
 pub mod ports;
 pub mod rules;

@@ -3,8 +3,9 @@
 //! What always holds: an [`Instant`] was written with its time zone, and an [`Eur`] is
 //! not negative. Money is counted in cents.
 
+use crate::zone::Zone;
 use binnacle_magnetics::time::{Timestamp, TimestampError};
-use chrono::{DateTime, FixedOffset, NaiveDate, NaiveTime};
+use chrono::{DateTime, FixedOffset, NaiveDate, NaiveTime, TimeDelta};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -32,23 +33,31 @@ impl Instant {
         Instant(self.0.plus_seconds(hours * 3600.0))
     }
 
-    /// The date of a zone so many hours ahead of UTC.
-    pub fn date(self, zone_h: i32) -> NaiveDate {
-        self.plus_hours(f64::from(zone_h))
-            .0
-            .to_chrono()
-            .date_naive()
+    /// The date that it is in a zone.
+    pub fn date(self, zone: Zone) -> NaiveDate {
+        zone.local(self).date()
     }
 
-    /// An hour of a day in a zone so many hours ahead of UTC.
-    #[allow(
-        clippy::missing_panics_doc,
-        reason = "days come of instants, whose years have four digits"
-    )]
-    pub fn at(day: NaiveDate, hour: f64, zone_h: i32) -> Instant {
-        let midnight = day.and_time(NaiveTime::MIN).and_utc().timestamp_micros();
-        let midnight = Timestamp::from_micros(midnight);
-        Instant(midnight.expect("a day of this calendar")).plus_hours(hour - f64::from(zone_h))
+    /// The date that it is in UTC.
+    pub fn utc_date(self) -> NaiveDate {
+        self.0.to_chrono().date_naive()
+    }
+
+    /// When clocks of a zone show an hour of a day, of 0 to 24: see [`Zone::instant`] for one
+    /// that they show twice, or skip.
+    pub fn at(day: NaiveDate, hour: f64, zone: Zone) -> Instant {
+        let since_midnight = TimeDelta::seconds((hour * 3600.0).round() as i64);
+        zone.instant(day.and_time(NaiveTime::MIN) + since_midnight)
+    }
+
+    /// The same instant as clocks of a zone show it, with their offset.
+    #[allow(clippy::missing_panics_doc, reason = "no zone is a day from UTC")]
+    pub fn there(self, zone: Zone) -> DateTime<FixedOffset> {
+        let ahead = i32::try_from(zone.ahead_s(self)).ok();
+        let ahead = ahead.and_then(FixedOffset::east_opt);
+        self.0
+            .to_chrono()
+            .with_timezone(&ahead.expect("no zone is a day from UTC"))
     }
 }
 
@@ -128,10 +137,14 @@ mod tests {
     #[test]
     fn a_date_is_that_of_the_zone() {
         let evening = Instant::parse("2026-12-01T20:00:00Z").unwrap();
-        assert_eq!(evening.date(7).to_string(), "2026-12-02");
-        assert_eq!(evening.date(-6).to_string(), "2026-12-01");
-        let morning = Instant::at(evening.date(7), 8.0, 7);
-        assert_eq!(morning.to_string(), "2026-12-02T01:00:00Z");
+        let [singapore, houston] =
+            ["Asia/Singapore", "America/Chicago"].map(|name| Zone::find(name).unwrap());
+        assert_eq!(evening.date(singapore).to_string(), "2026-12-02");
+        assert_eq!(evening.date(houston).to_string(), "2026-12-01");
+        let morning = Instant::at(evening.date(singapore), 8.0, singapore);
+        assert_eq!(morning.to_string(), "2026-12-02T00:00:00Z");
+        let there = evening.there(houston).to_rfc3339();
+        assert_eq!(there, "2026-12-01T14:00:00-06:00");
     }
 
     #[test]

@@ -15,10 +15,11 @@ use crate::needs;
 use crate::time::Time;
 use binnacle_schedule::ports::{self, Port, PortCode};
 use binnacle_schedule::time::Instant;
+use binnacle_schedule::zone::Zone;
 use chrono::NaiveDate;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A ship's day is within so many hours of any of its instants, in whatever zone.
+/// A port's day is within so many hours of any of its instants, in whatever zone.
 const AROUND_H: f64 = 40.0;
 
 /// An order that a firm is asked for, or has.
@@ -83,13 +84,13 @@ fn place(words: &str) -> String {
     port_meant(words).map_or_else(|| words.trim().to_lowercase(), |port| port.code.to_string())
 }
 
-/// The day of an instant in the ship's time of a port.
+/// The day of an instant in a port's time.
 fn day(words: &str, at: Time) -> NaiveDate {
-    Instant(at.0).date(port_meant(words).map_or(0, Port::zone_h))
+    Instant(at.0).date(port_meant(words).map_or_else(Zone::utc, |port| port.zone))
 }
 
 impl Booking {
-    /// The day, in ship's time.
+    /// The day, in the port's time.
     pub fn day(&self) -> NaiveDate {
         day(&self.port, self.planned_at)
     }

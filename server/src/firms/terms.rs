@@ -19,6 +19,7 @@ use binnacle_schedule::input::{self, ServedPort};
 use binnacle_schedule::ports::Port;
 use binnacle_schedule::rules::Flag;
 use binnacle_schedule::time::{Eur, Instant};
+use binnacle_schedule::zone::Zone;
 use chrono::{NaiveDate, Weekday};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -71,7 +72,7 @@ pub struct Terms {
     /// Days on which it does not work.
     #[serde(default)]
     pub closed: Vec<NaiveDate>,
-    /// The hour at which its day begins, ship's time; 8 if not said.
+    /// The hour at which its day begins, in the port's time; 8 if not said.
     #[serde(default = "eight")]
     #[schema(minimum = 0, maximum = 24)]
     pub first_hour: f64,
@@ -268,13 +269,13 @@ impl Terms {
 
     /// Why the firm does not work then, at a port; in UTC where that is not known.
     pub(super) fn closed_at(&self, at: Time, port: Option<&Port>) -> Option<String> {
-        let (at, zone_h) = (Instant(at.0), port.map_or(0, Port::zone_h));
-        let day = at.date(zone_h);
+        let (at, zone) = (Instant(at.0), port.map_or_else(Zone::utc, |port| port.zone));
+        let day = at.date(zone);
         if !self.firm("", None).works(day) {
             return Some(format!("does not work on {day}, a {}", day.format("%A")));
         }
         let [opens, closes] =
-            [self.first_hour, self.last_hour].map(|hour| Instant::at(day, hour, zone_h));
+            [self.first_hour, self.last_hour].map(|hour| Instant::at(day, hour, zone));
         (port.is_some() && !(opens <= at && at < closes))
             .then(|| format!("works from {opens} to {closes} on {day}"))
     }

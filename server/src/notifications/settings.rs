@@ -7,17 +7,12 @@ use super::kind::{Kind, Way};
 use crate::error::{Error, Result};
 use crate::session::Role;
 use crate::time::Time;
-use binnacle_magnetics::time::Timestamp;
-use chrono::{
-    DateTime, Datelike, Days, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, TimeZone, Utc,
-};
-use chrono_tz::Tz;
+use binnacle_schedule::time::Instant;
+use binnacle_schedule::zone::Zone;
+use chrono::{Datelike, Days, NaiveDate, NaiveDateTime, NaiveTime};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use utoipa::ToSchema;
-
-/// No clock is put forward by more.
-const LONGEST_GAP_MIN: i64 = 26 * 60;
 
 /// How a person wants to be told.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, ToSchema)]
@@ -30,7 +25,7 @@ const LONGEST_GAP_MIN: i64 = 26 * 60;
 }))]
 pub(super) struct Settings {
     /// The time zone by its IANA name; UTC if not said.
-    #[serde(default = "utc")]
+    #[serde(default = "Zone::utc")]
     #[schema(value_type = String, example = "Europe/Madrid")]
     pub(super) time_zone: Zone,
     /// How to tell of each kind; what is left out is told in the way that is usual.
@@ -45,11 +40,6 @@ pub(super) struct Settings {
     #[serde(default)]
     pub(super) digest: Digest,
 }
-
-/// A time zone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub(super) struct Zone(Tz);
 
 /// A time of day, to the minute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -101,10 +91,6 @@ pub(super) enum Weekday {
     Sunday,
 }
 
-fn utc() -> Zone {
-    Zone(Tz::UTC)
-}
-
 impl Default for Digest {
     fn default() -> Digest {
         let seven = NaiveTime::from_hms_opt(7, 0, 0).expect("seven is an hour");
@@ -117,26 +103,11 @@ impl Default for Digest {
 impl Default for Settings {
     fn default() -> Settings {
         Settings {
-            time_zone: utc(),
+            time_zone: Zone::utc(),
             ways: BTreeMap::new(),
             quiet_hours: None,
             digest: Digest::default(),
         }
-    }
-}
-
-impl TryFrom<String> for Zone {
-    type Error = String;
-
-    fn try_from(name: String) -> std::result::Result<Zone, String> {
-        let zone = name.parse().map(Zone);
-        zone.map_err(|_| format!("{name:?} is no time zone like Europe/Madrid"))
-    }
-}
-
-impl From<Zone> for String {
-    fn from(zone: Zone) -> String {
-        zone.0.name().to_owned()
     }
 }
 
@@ -227,22 +198,13 @@ impl Settings {
     }
 
     fn local(&self, at: Time) -> NaiveDateTime {
-        at.0.to_chrono()
-            .with_timezone(&self.time_zone.0)
-            .naive_local()
+        self.time_zone.local(Instant(at.0))
     }
 
     /// The instant at which a clock there shows a time: the first, where it does so twice;
     /// the first after it, where it never does.
     fn instant(&self, day: NaiveDate, at: TimeOfDay) -> Time {
-        let wanted = day.and_time(at.0);
-        let shown = (0..=LONGEST_GAP_MIN).find_map(|minutes| {
-            let clock = wanted + TimeDelta::minutes(minutes);
-            self.time_zone.0.from_local_datetime(&clock).earliest()
-        });
-        let utc: DateTime<Utc> = shown.map_or_else(|| wanted.and_utc(), |at| at.to_utc());
-        let at = Timestamp::from_micros(utc.timestamp_micros());
-        Time(at.expect("the years of notifications are far from the calendar's ends"))
+        Time(self.time_zone.instant(day.and_time(at.0)).0)
     }
 }
 
@@ -274,6 +236,7 @@ impl Digest {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use binnacle_magnetics::time::Timestamp;
     use serde_json::json;
 
     fn settings(value: serde_json::Value) -> Settings {

@@ -5,6 +5,7 @@ use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params};
 use binnacle_schedule::ports::{self, PortCode};
+use binnacle_schedule::zone::Zone;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
@@ -42,8 +43,9 @@ struct Port {
     lat: f64,
     /// Degrees east.
     lon: f64,
-    /// Hours that ship's time is ahead of UTC there, by its longitude.
-    zone_h: i32,
+    /// Its legal time, by the zone's name in the IANA time zone database.
+    #[schema(value_type = String, example = "Europe/Amsterdam")]
+    zone: Zone,
 }
 
 /// What was found.
@@ -74,7 +76,7 @@ async fn search_ports(_: PartyReader, Params(search): Params<Search>) -> Result<
             name: port.name,
             lat: port.position.lat_deg(),
             lon: port.position.lon_deg(),
-            zone_h: port.zone_h(),
+            zone: port.zone,
         });
     Ok(Json(PortList {
         items: items.collect(),

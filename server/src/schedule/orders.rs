@@ -16,6 +16,7 @@ use crate::work_orders::{Alongside, CallFit, State};
 use binnacle_schedule::input::JobState;
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::time::Instant;
+use binnacle_schedule::zone::Zone;
 use chrono::NaiveDate;
 
 /// An order that is under way.
@@ -214,10 +215,10 @@ impl Order {
         self.state == State::Cancelled
     }
 
-    /// The day that it is to be done on, in the ship's time of a port.
+    /// The day that it is to be done on, in a port's time.
     pub(super) fn day(&self, port: Option<&str>) -> NaiveDate {
         let port = port.and_then(|port| PortCode::parse(port).ok());
-        let zone_h = port.and_then(ports::find).map_or(0, ports::Port::zone_h);
-        Instant(self.planned_at.0).date(zone_h)
+        let zone = port.map_or_else(Zone::utc, ports::zone);
+        Instant(self.planned_at.0).date(zone)
     }
 }

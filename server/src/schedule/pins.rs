@@ -44,7 +44,7 @@ struct NewPin {
     call_id: CallId,
     /// By this firm.
     firm_id: FirmId,
-    /// On this day, ship's time.
+    /// On this day, in the port's time.
     day: NaiveDate,
     /// Why.
     #[schema(max_length = 200)]
@@ -110,8 +110,8 @@ async fn pin(
     let mut calls = calls.iter().filter(|call| call.vessel_id == vessel);
     let call = calls.find(|call| call.id == new.call_id);
     let call = call.ok_or(Error::NotFound("port call"))?.content()?;
-    let zone_h = ports::find(call.port).map_or(0, ports::Port::zone_h);
-    let days = Instant(call.eta.0).date(zone_h)..=Instant(call.etd.0).date(zone_h);
+    let zone = ports::zone(call.port);
+    let days = Instant(call.eta.0).date(zone)..=Instant(call.etd.0).date(zone);
     if !days.contains(&new.day) {
         return Err(Error::Invalid {
             field: "day",

@@ -104,7 +104,7 @@ pub struct Job {
     pub firm_id: FirmId,
     /// Its name.
     pub firm_name: String,
-    /// On which day, ship's time.
+    /// On which day, in the port's time.
     pub day: NaiveDate,
     /// From when she is alongside and the firm at work.
     pub from: Time,

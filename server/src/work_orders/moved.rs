@@ -17,11 +17,11 @@ use crate::time::Time;
 use binnacle_schedule::input::JOB_H;
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::time::Instant;
+use binnacle_schedule::zone::Zone;
+use chrono::{Days, SecondsFormat};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use uuid::Uuid;
-
-const DAY_H: f64 = 24.0;
 
 /// How an order's time lies in its port call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema, sqlx::Type)]
@@ -49,10 +49,10 @@ pub struct Alongside {
     pub eta: Time,
     /// When she is expected to leave.
     pub etd: Time,
-    /// The ETA in ship's time, the nautical zone of the port.
+    /// The ETA in the port's time.
     #[schema(example = "2026-12-08T07:00:00+01:00")]
     pub eta_local: String,
-    /// The ETD in ship's time.
+    /// The ETD in the port's time.
     #[schema(example = "2026-12-10T19:00:00+01:00")]
     pub etd_local: String,
 }
@@ -99,13 +99,13 @@ pub struct Moving {
 impl Alongside {
     /// At a port, from and to.
     pub fn new(port: PortCode, eta: Time, etd: Time) -> Alongside {
-        let zone_h = zone_h(&port.to_string());
+        let zone = ports::zone(port);
         Alongside {
             port: port.to_string(),
             eta,
             etd,
-            eta_local: local(eta, zone_h),
-            etd_local: local(etd, zone_h),
+            eta_local: local(eta, zone),
+            etd_local: local(etd, zone),
         }
     }
 
@@ -119,11 +119,10 @@ impl Alongside {
         if planned >= eta && etd.hours_since(planned) >= JOB_H {
             return CallFit::Fits;
         }
-        let zone_h = zone_h(port);
-        let begins = Instant::at(planned.date(zone_h), 0.0, zone_h);
-        let alongside_h = etd
-            .min(begins.plus_hours(DAY_H))
-            .hours_since(eta.max(begins));
+        let zone = zone_of(port);
+        let day = planned.date(zone);
+        let [begins, ends] = [day, day + Days::new(1)].map(|day| zone.midnight(day));
+        let alongside_h = etd.min(ends).hours_since(eta.max(begins));
         if alongside_h >= JOB_H {
             CallFit::OtherHour
         } else {
@@ -132,41 +131,27 @@ impl Alongside {
     }
 
     pub(super) fn in_words(&self) -> String {
-        let zone_h = zone_h(&self.port);
-        let (eta, etd) = (both(self.eta, zone_h), both(self.etd, zone_h));
+        let zone = zone_of(&self.port);
+        let (eta, etd) = (both(self.eta, zone), both(self.etd, zone));
         format!("from {eta} to {etd}")
     }
 }
 
-/// Hours that ship's time at a port is ahead of UTC.
-pub(super) fn zone_h(port: &str) -> i32 {
-    let port = PortCode::parse(port).ok();
-    port.and_then(ports::find).map_or(0, ports::Port::zone_h)
+/// A port's legal time.
+fn zone_of(port: &str) -> Zone {
+    PortCode::parse(port).map_or_else(|_| Zone::utc(), ports::zone)
 }
 
-fn offset(zone_h: i32) -> String {
-    format!(
-        "{}{:02}:00",
-        if zone_h < 0 { '-' } else { '+' },
-        zone_h.abs()
-    )
+fn local(at: Time, zone: Zone) -> String {
+    let there = Instant(at.0).there(zone);
+    there.to_rfc3339_opts(SecondsFormat::Secs, false)
 }
 
-fn in_zone(at: Time, zone_h: i32) -> String {
-    let there = Instant(at.0).plus_hours(f64::from(zone_h)).to_string();
-    there.chars().take(19).collect()
-}
-
-fn local(at: Time, zone_h: i32) -> String {
-    in_zone(at, zone_h) + &offset(zone_h)
-}
-
-/// In UTC and in ship's time.
-fn both(at: Time, zone_h: i32) -> String {
-    let there: String = in_zone(at, zone_h).chars().take(16).collect();
-    let there = there.replace('T', " ");
-    let offset = offset(zone_h);
-    format!("{} ({there} ship's time, UTC{offset})", at.to_the_minute())
+/// In UTC and in the port's time.
+fn both(at: Time, zone: Zone) -> String {
+    let there = Instant(at.0).there(zone).format("%Y-%m-%d %H:%M");
+    let offset = Instant(at.0).there(zone).format("%:z");
+    format!("{} ({there} port's time, UTC{offset})", at.to_the_minute())
 }
 
 /// An order that may be done at a call.
@@ -311,7 +296,7 @@ impl CallChange {
                 is.in_words()
             ),
         };
-        let agreed = both(planned_at, zone_h(&self.was.port));
+        let agreed = both(planned_at, zone_of(&self.was.port));
         let what = match self.fit {
             CallFit::Fits => format!("The job's time, {agreed}, still lies in it."),
             CallFit::OtherHour => format!(
@@ -360,7 +345,7 @@ mod tests {
     }
 
     #[test]
-    fn a_day_is_ships_time() {
+    fn a_day_is_the_ports() {
         // In Yokohama, nine hours ahead, the ninth begins at 15:00 UTC of the eighth.
         let port = PortCode::parse("JPYOK").unwrap();
         let call = Alongside::new(
@@ -376,10 +361,26 @@ mod tests {
     }
 
     #[test]
-    fn west_of_greenwich_ships_time_is_behind() {
+    fn west_of_greenwich_a_ports_time_is_behind() {
         let port = PortCode::parse("USNYC").unwrap();
         let at = time("2026-12-08T03:00:00Z");
         let call = Alongside::new(port, at, time("2026-12-09T00:00:00Z"));
         assert_eq!(call.eta_local, "2026-12-07T22:00:00-05:00");
+    }
+
+    #[test]
+    fn a_day_on_which_clocks_go_back_is_an_hour_longer() {
+        let port = PortCode::parse("ESVGO").unwrap();
+        // From 21:00 on, Vigo's time, which is 20:00 UTC in winter.
+        let (eta, etd) = (time("2026-10-25T20:00:00Z"), time("2026-10-26T20:00:00Z"));
+        let call = Alongside::new(port, eta, etd);
+        assert_eq!(call.eta_local, "2026-10-25T21:00:00+01:00");
+        let noon = time("2026-10-25T11:00:00Z");
+        assert_eq!(call.fit("ESVGO", noon), CallFit::OtherHour);
+        let later = Alongside::new(port, time("2026-10-25T20:01:00Z"), etd);
+        assert_eq!(later.fit("ESVGO", noon), CallFit::NeedsNewDay);
+        // In summer the same hour is 19:00 UTC.
+        let july = Alongside::new(port, time("2026-07-15T19:00:00Z"), etd);
+        assert_eq!(july.eta_local, "2026-07-15T21:00:00+02:00");
     }
 }

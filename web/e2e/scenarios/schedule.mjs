@@ -104,7 +104,7 @@ export const schedule = {
       await calls.getByRole('button', { name: 'Enter it' }).click();
       await calls.getByRole('alert').getByText('Choose a port').waitFor();
       await calls.getByLabel('Port', { exact: true }).fill('NLRTM');
-      await calls.getByText('Times are ship’s time there, UTC.').waitFor();
+      await calls.getByText('Times are the port’s, Europe/Amsterdam.').waitFor();
       await calls.getByLabel('Arrives').fill(iso(monday() + dayMs / 4).slice(0, 16));
       await calls.getByLabel('Leaves').fill(iso(monday() + 2.5 * dayMs).slice(0, 16));
       await calls.getByRole('button', { name: 'Enter it' }).click();

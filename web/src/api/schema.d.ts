@@ -4941,7 +4941,7 @@ export interface components {
             fee_eur: number;
             /**
              * Format: double
-             * @description The hour at which its day begins, ship's time; 8 if not said.
+             * @description The hour at which its day begins, in the port's time; 8 if not said.
              */
             first_hour?: number;
             /** @description Flags that accept its adjusters, ISO 3166; all, where it is empty. */
@@ -5981,7 +5981,7 @@ export interface components {
             compass_id: components["schemas"]["CompassId"];
             /**
              * Format: date
-             * @description On this day, ship's time.
+             * @description On this day, in the port's time.
              */
             day: string;
             /** @description By this firm. */
@@ -6770,7 +6770,7 @@ export interface components {
             compasses: components["schemas"]["PlannedCompass"][];
             /**
              * Format: date
-             * @description On which day, ship's time.
+             * @description On which day, in the port's time.
              */
             day: string;
             /**
@@ -6887,10 +6887,10 @@ export interface components {
              */
             name: string;
             /**
-             * Format: int32
-             * @description Hours that ship's time is ahead of UTC there, by its longitude.
+             * @description Its legal time, by the zone's name in the IANA time zone database.
+             * @example Europe/Amsterdam
              */
-            zone_h: number;
+            zone: string;
         };
         /** @description A vessel's call at a port. */
         PortCall: components["schemas"]["PortCallContent"] & {
@@ -8639,14 +8639,14 @@ export interface components {
             /** @description When she is expected alongside. */
             eta: components["schemas"]["Time"];
             /**
-             * @description The ETA in ship's time, the nautical zone of the port.
+             * @description The ETA in the port's time.
              * @example 2026-12-08T07:00:00+01:00
              */
             eta_local: string;
             /** @description When she is expected to leave. */
             etd: components["schemas"]["Time"];
             /**
-             * @description The ETD in ship's time.
+             * @description The ETD in the port's time.
              * @example 2026-12-10T19:00:00+01:00
              */
             etd_local: string;

@@ -7,7 +7,7 @@ const now = new Date('2026-12-01T00:00:00Z');
 const job: Job = {
   port: 'NLRTM',
   at: '2026-12-08T10:00:00Z',
-  zoneH: 0,
+  zone: 0,
   flag: 'PA',
   licence: null,
 };
@@ -50,19 +50,19 @@ describe('firms for a job', () => {
     expect(against({ lead_time_h: 240 })).toEqual(['Asks for 240 h of notice.']);
   });
 
-  test('work in ship’s time', () => {
-    expect(against({}, { zoneH: 9 })).toEqual(['Works from 08:00 to 18:00 ship’s time.']);
-    expect(against({ first_hour: 9.5 }, { zoneH: -1 })).toEqual([
-      'Works from 09:30 to 18:00 ship’s time.',
+  test('work in the port’s time', () => {
+    expect(against({}, { zone: 9 })).toEqual(['Works from 08:00 to 18:00 the port’s time.']);
+    expect(against({ first_hour: 9.5 }, { zone: -1 })).toEqual([
+      'Works from 09:30 to 18:00 the port’s time.',
     ]);
-    expect(against({}, { at: '2026-12-04T20:00:00Z', zoneH: 12 })).toEqual([
+    expect(against({}, { at: '2026-12-04T20:00:00Z', zone: 12 })).toEqual([
       'Does not work on a Saturday.',
     ]);
   });
 
-  test('are not judged by hours and days where ship’s time is not known', () => {
-    const night = { at: '2026-12-06T02:00:00Z', zoneH: undefined };
-    expect(against({ closed: ['2026-12-06'] }, { ...night, zoneH: 0 })).toHaveLength(3);
+  test('are not judged by hours and days where the port’s time is not known', () => {
+    const night = { at: '2026-12-06T02:00:00Z', zone: undefined };
+    expect(against({ closed: ['2026-12-06'] }, { ...night, zone: 0 })).toHaveLength(3);
     expect(against({ closed: ['2026-12-06'] }, night)).toEqual([]);
     expect(against({ lead_time_h: 240 }, night)).toEqual(['Asks for 240 h of notice.']);
   });

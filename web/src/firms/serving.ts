@@ -1,6 +1,7 @@
 /** Which firms can do a job, and what speaks against the others. Pure functions. */
 
 import type { FirmTerms, FirmWithTerms } from '../api/types';
+import { shownAt, type Zone } from '../zone';
 import { weekdays } from './terms';
 import * as text from '../text';
 
@@ -9,8 +10,8 @@ export interface Job {
   /** UN/LOCODE. */
   port: string | undefined;
   at: string | null;
-  /** Hours that ship's time is ahead of UTC there. */
-  zoneH: number | undefined;
+  /** The port's time; nothing where it is not known. */
+  zone: Zone | undefined;
   /** ISO 3166. */
   flag: string | null;
   /** A licence that the adjuster must hold. */
@@ -57,15 +58,15 @@ function against(terms: FirmTerms, job: Job, now: Date): string[] {
   if (job.flag !== null && flags?.length && !flags.includes(job.flag)) found.push(t.flag(job.flag));
   if (job.licence !== null && !licences?.includes(job.licence)) found.push(t.licence(job.licence));
   if (job.at === null) return found;
-  if (job.zoneH !== undefined) found.push(...againstHours(terms, job.at, job.zoneH));
+  if (job.zone !== undefined) found.push(...againstHours(terms, job.at, job.zone));
   const lead = terms.lead_time_h ?? 0;
   if (Date.parse(job.at) - now.getTime() < lead * hourMs) found.push(t.lead(lead));
   return found;
 }
 
-function againstHours(terms: FirmTerms, at: string, zoneH: number): string[] {
+function againstHours(terms: FirmTerms, at: string, zone: Zone): string[] {
   const t = text.newOrder.against;
-  const there = new Date(Date.parse(at) + zoneH * hourMs);
+  const there = shownAt(Date.parse(at), zone);
   const day = weekdays[(there.getUTCDay() + 6) % 7] ?? 'Mon';
   const hour = there.getUTCHours() + there.getUTCMinutes() / 60;
   const [first, last] = [terms.first_hour ?? 8, terms.last_hour ?? 18];

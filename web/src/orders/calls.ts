@@ -1,10 +1,11 @@
 /** The port calls that an order may be of. Pure functions. */
 
 import type { PortCall } from '../api/types';
+import { instantAt, shownAt, type Zone } from '../zone';
 
 const hourMs = 3_600_000;
 const dayMs = 24 * hourMs;
-/** Hours between which people work at a berth, ship's time. */
+/** Hours between which people work at a berth, the port's time. */
 const [firstHour, lastHour] = [8, 17];
 
 /** Her calls that are not over, the next one first. */
@@ -14,25 +15,24 @@ export const callsAhead = (calls: readonly PortCall[], now: Date): PortCall[] =>
     .sort((a, b) => Date.parse(a.eta) - Date.parse(b.eta));
 
 /**
- * When the work is best begun at a call, for a port so many hours ahead of UTC: at the first
+ * When the work is best begun at a call, by the clocks of its port: at the first
  * full hour of a working day alongside, or as soon as she is there where her stay has none or
  * the port's time is not known.
  */
 export function bestBegin(
   call: { eta: string; etd: string },
-  zoneH: number | undefined,
+  zone: Zone | undefined,
   now: Date,
 ): Date {
   const soonest = Math.ceil(Math.max(Date.parse(call.eta), now.getTime()) / hourMs) * hourMs;
-  if (zoneH === undefined) return new Date(soonest);
-  const midnight = Math.floor((soonest + zoneH * hourMs) / dayMs) * dayMs - zoneH * hourMs;
-  const hour = (soonest - midnight) / hourMs;
-  const wanted =
-    hour < firstHour
-      ? midnight + firstHour * hourMs
-      : hour < lastHour
-        ? soonest
-        : midnight + dayMs + firstHour * hourMs;
+  if (zone === undefined) return new Date(soonest);
+  const there = shownAt(soonest, zone);
+  const hour = there.getUTCHours() + there.getUTCMinutes() / 60;
+  const opens = (afterMs: number) => {
+    const day = new Date(there.getTime() + afterMs).toISOString().slice(0, 10);
+    return instantAt(`${day}T${String(firstHour).padStart(2, '0')}:00`, zone).getTime();
+  };
+  const wanted = hour < firstHour ? opens(0) : hour < lastHour ? soonest : opens(dayMs);
   return new Date(wanted < Date.parse(call.etd) ? wanted : soonest);
 }
 

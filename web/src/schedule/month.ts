@@ -5,7 +5,8 @@
  */
 
 import type { AdjustmentNeed, PlannedJob, PortCall } from '../api/types';
-import { shipsDay, type Row } from './plan';
+import { dayAt } from '../zone';
+import type { Row } from './plan';
 
 const dayMs = 86_400_000;
 
@@ -60,10 +61,7 @@ export function daysWith(rows: readonly Row[], from: string, to: string): Map<st
     for (const need of needs) on(need.due_on)?.dues.push(need);
     for (const job of jobs) on(job.day)?.jobs.push(job);
     for (const call of calls) {
-      const [arrives, leaves] = [
-        shipsDay(Date.parse(call.eta), 0),
-        shipsDay(Date.parse(call.etd), 0),
-      ];
+      const [arrives, leaves] = [dayAt(Date.parse(call.eta), 0), dayAt(Date.parse(call.etd), 0)];
       on(arrives)?.arriving.push(call);
       const first = arrives < from ? from : dayAfter(arrives, 1);
       for (let day = first; day <= leaves && day <= to; day = dayAfter(day, 1)) {

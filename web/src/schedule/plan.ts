@@ -9,6 +9,8 @@ import type {
   UnscheduledNeed,
 } from '../api/types';
 import * as text from '../text';
+import { dayAt, type Zone } from '../zone';
+import { dayAfter } from './month';
 
 /** A vessel of the schedule: when she is in port, what is planned and what is due. */
 export interface Row {
@@ -130,22 +132,16 @@ function movedBy(was: PlannedJob, job: PlannedJob): PlanChange {
 }
 
 const hourMs = 3_600_000;
-const dayMs = 24 * hourMs;
 
-/** The days of a call in ship's time, as `YYYY-MM-DD`, for a port so many hours ahead of UTC. */
-export function daysOf(call: { eta: string; etd: string }, zoneH: number): string[] {
+/** The days of a call in its port's time, as `YYYY-MM-DD`. */
+export function daysOf(call: { eta: string; etd: string }, zone: Zone): string[] {
   const days: string[] = [];
-  const last = shipsDay(Date.parse(call.etd), zoneH);
-  for (let at = Date.parse(call.eta); ; at += dayMs) {
-    const day = shipsDay(at, zoneH);
-    days.push(day < last ? day : last);
-    if (day >= last) return days;
+  const last = dayAt(Date.parse(call.etd), zone);
+  for (let day = dayAt(Date.parse(call.eta), zone); day <= last; day = dayAfter(day, 1)) {
+    days.push(day);
   }
+  return days;
 }
-
-/** The day that it is on board at an instant. */
-export const shipsDay = (atMs: number, zoneH: number): string =>
-  new Date(atMs + zoneH * hourMs).toISOString().slice(0, 10);
 
 /** The call in which an instant lies; with `slackH` it may lie so far beside one. */
 export function callAt<C extends { eta: string; etd: string }>(
@@ -157,7 +153,3 @@ export function callAt<C extends { eta: string; etd: string }>(
   const near = calls.filter((call) => off(call) <= slackH * hourMs);
   return near.sort((a, b) => off(a) - off(b))[0];
 }
-
-/** An instant that was written in ship's time, as `2026-12-08T06:00`. */
-export const instantOf = (written: string, zoneH: number): string =>
-  new Date(Date.parse(`${written}Z`) - zoneH * hourMs).toISOString();

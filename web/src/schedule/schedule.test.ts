@@ -3,27 +3,25 @@ import type { AdjustmentNeed, PlannedJob, PortCall, SchedulePlan } from '../api/
 import { atX, shown, spanFrom, ticks, xOf } from './axis';
 import { daysWith, inMonth, keyedDay, weeksOf } from './month';
 import * as text from '../text';
-import { callAt, daysOf, instantOf, plannedFor, realChanges, rowsOf, unmetBy } from './plan';
+import { callAt, daysOf, plannedFor, realChanges, rowsOf, unmetBy } from './plan';
 
 const dayMs = 86_400_000;
 
 describe('the days of a call', () => {
   const call = { eta: '2026-12-08T20:00:00Z', etd: '2026-12-10T02:00:00Z' };
 
-  test('are ship’s days, not UTC’s', () => {
+  test('are the port’s days, not UTC’s', () => {
     expect(daysOf(call, 0)).toEqual(['2026-12-08', '2026-12-09', '2026-12-10']);
     expect(daysOf(call, 9)).toEqual(['2026-12-09', '2026-12-10']);
     expect(daysOf(call, -5)).toEqual(['2026-12-08', '2026-12-09']);
+    expect(daysOf(call, 'Pacific/Apia')).toEqual(['2026-12-09', '2026-12-10']);
+    const july = { eta: '2026-07-15T20:00:00Z', etd: '2026-07-15T22:30:00Z' };
+    expect(daysOf(july, 'Europe/Madrid')).toEqual(['2026-07-15', '2026-07-16']);
   });
 
   test('are one where she comes and goes on the same day', () => {
     const short = { eta: '2026-12-08T01:00:00Z', etd: '2026-12-08T05:00:00Z' };
     expect(daysOf(short, 1)).toEqual(['2026-12-08']);
-  });
-
-  test('written in ship’s time are an instant', () => {
-    expect(instantOf('2026-12-08T06:00', 9)).toBe('2026-12-07T21:00:00.000Z');
-    expect(instantOf('2026-12-08T06:00', -4)).toBe('2026-12-08T10:00:00.000Z');
   });
 });
 

@@ -1,4 +1,4 @@
-/** What is known of ports by their UN/LOCODE: their names, and ship's time there. */
+/** What is known of ports by their UN/LOCODE: their names, and legal time there. */
 
 import { SvelteMap } from 'svelte/reactivity';
 import { searchPorts } from '../api/schedule';

@@ -1,10 +1,11 @@
 /**
  * Times where a ship is: in UTC, by her clocks, or both, as the reader chose. Her clocks are
- * the nautical zone of her longitude at sea, and the port's in port.
+ * the nautical zone of her longitude at sea, and the port's legal time in port.
  */
 
 import { atSea, zoneOf, type Clocks } from '../format';
 import type { Where } from '../whereabouts';
+import type { Zone } from '../zone';
 import { ports } from './ports.svelte';
 
 export const clockChoices: Clocks[] = ['utc', 'ship', 'both'];
@@ -30,10 +31,10 @@ class TimesState {
   /** The day alone, by the first of those clocks. */
   day = (value: string | Date, where: Where): string => this.at(value, where).replace(/,.*/, '');
 
-  #zoneAt(where: Where): number | undefined {
+  #zoneAt(where: Where): Zone | undefined {
     if (!where) return undefined;
     if ('lon' in where) return zoneOf(where.lon);
-    return this.clocks === 'utc' ? undefined : ports.find(where.port)?.zone_h;
+    return this.clocks === 'utc' ? undefined : ports.find(where.port)?.zone;
   }
 }
 

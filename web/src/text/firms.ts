@@ -17,7 +17,7 @@ export const firms = {
   teamsOf: (teams: number, jobs: number) =>
     `${teams} on a working day, ${jobs} ${jobs === 1 ? 'job' : 'jobs'} each`,
   hours: 'Works',
-  hoursOf: (days: string, from: string, to: string) => `${days}, ${from} to ${to} ship’s time`,
+  hoursOf: (days: string, from: string, to: string) => `${days}, ${from} to ${to}, the port’s time`,
   noDays: 'no days',
   closed: (days: string) => `closed on ${days}`,
   lead_: 'Lead time',
@@ -38,7 +38,7 @@ export const firms = {
     extra: 'Each further compass, €',
     teams: 'Teams',
     jobs: 'Jobs a team does on a day',
-    first: 'Begins at, ship’s time',
+    first: 'Begins at, the port’s time',
     last: 'Ends at',
     lead: 'Lead time, hours',
     days: 'Working days',

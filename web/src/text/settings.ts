@@ -17,7 +17,7 @@ export const settings = {
 
   clocks: {
     title: 'Times',
-    lead: 'How times are written where a ship is or calls. Her clocks follow the nautical zone of her longitude, then or, on alerts, now; legal time ashore may differ by an hour or two. Where she was is not always known: then it is UTC, as everything else is.',
+    lead: 'How times are written where a ship is or calls. At sea her clocks follow the nautical zone of her longitude, then or, on alerts, now; in port they show the port’s legal time. Where she was is not always known: then it is UTC, as everything else is.',
     label: 'Times are written in',
     names: { utc: 'UTC', ship: 'Ship’s time', both: 'Both' },
     example: (time: string) => `Now, where ships are two hours ahead: ${time}.`,

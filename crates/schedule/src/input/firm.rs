@@ -38,7 +38,7 @@ pub struct Firm {
     /// Days on which it does not work.
     #[serde(default)]
     pub closed: Vec<NaiveDate>,
-    /// The hour at which its day begins, ship's time.
+    /// The hour at which its day begins, in the port's time.
     #[serde(default = "eight")]
     pub first_hour: f64,
     /// The hour at which its day ends.
@@ -58,7 +58,7 @@ pub struct Firm {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Taken {
-    /// The day, ship's time.
+    /// The day, in the port's time.
     pub day: NaiveDate,
     /// How many.
     pub teams: u32,

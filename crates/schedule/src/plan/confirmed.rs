@@ -83,10 +83,12 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
     }
     match quote::quote(input, job, call, firm, day) {
         // Late as it is, it remains one of the job's options.
-        Ok(quote) if quote.late_days > 0 && !job.is_overdue(input.now.date(0)) => Standing::Loose {
-            cause: format!("{day} is after the due date, {}", job.due()),
-            only_late: true,
-        },
+        Ok(quote) if quote.late_days > 0 && !job.is_overdue(input.now.utc_date()) => {
+            Standing::Loose {
+                cause: format!("{day} is after the due date, {}", job.due()),
+                only_late: true,
+            }
+        }
         Ok(quote) => Standing::Stands {
             call,
             firm: at,

@@ -58,7 +58,7 @@ impl Job<'_> {
 /// The jobs of the horizon, the first due first, and the needs that are due later.
 pub(super) fn jobs(checked: &Checked) -> (Vec<Job<'_>>, Vec<DueNeed>) {
     let input = checked.get();
-    let today = input.now.date(0);
+    let today = input.now.utc_date();
     let ends = today + Days::new(input.horizon_days.into());
     let mut former: BTreeMap<&str, &FormerJob> = BTreeMap::new();
     for job in &input.former {

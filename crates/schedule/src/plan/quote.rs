@@ -57,11 +57,11 @@ pub(super) fn port_of(call: &PortCall) -> &'static Port {
     ports::find(call.port).expect("the ports of a checked input are in the table")
 }
 
-/// The days of a call, from today on, in ship's time.
+/// The days of a call, from today on, in the port's time.
 pub(super) fn days(call: &PortCall, now: Instant) -> impl Iterator<Item = NaiveDate> + use<> {
-    let zone_h = port_of(call).zone_h();
-    let first = call.eta.date(zone_h).max(now.date(zone_h));
-    let last = call.etd.date(zone_h);
+    let zone = port_of(call).zone;
+    let first = call.eta.date(zone).max(now.date(zone));
+    let last = call.etd.date(zone);
     std::iter::successors(Some(first), |day| day.checked_add_days(Days::new(1)))
         .take_while(move |day| *day <= last)
 }
@@ -74,15 +74,15 @@ pub(super) fn quote(
     firm: &Firm,
     day: NaiveDate,
 ) -> Result<Quote, Vec<Obstacle>> {
-    let zone_h = port_of(call).zone_h();
+    let zone = port_of(call).zone;
     let weights = &input.weights;
-    let today = input.now.date(zone_h);
+    let today = input.now.date(zone);
     let confirmed = job.was(&call.id, &firm.id, day)
         && job
             .former
             .is_some_and(|former| former.state == JobState::Confirmed);
-    let opens = Instant::at(day, firm.first_hour, zone_h);
-    let closes = Instant::at(day, firm.last_hour, zone_h);
+    let opens = Instant::at(day, firm.first_hour, zone);
+    let closes = Instant::at(day, firm.last_hour, zone);
     // Whom the firm has confirmed to, it has been asked by in time.
     let ready = if confirmed {
         input.now
@@ -154,7 +154,7 @@ pub(super) fn quote(
 /// against it, so that no plan gets cheaper by what becomes impossible.
 pub(super) fn waits_at_most(input: &Input, job: &Job<'_>) -> i64 {
     let (weights, urgency) = (&input.weights, job.urgency());
-    let today = input.now.date(0);
+    let today = input.now.utc_date();
     let ends = today + Days::new(input.horizon_days.into());
     let days = |from: NaiveDate, to: NaiveDate| (to - from).num_days().clamp(0, MOST_DAYS);
     let early = match urgency {

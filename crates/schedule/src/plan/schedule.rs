@@ -46,7 +46,7 @@ pub struct PlannedJob {
     pub port_name: &'static str,
     /// By which firm.
     pub firm: String,
-    /// On which day, ship's time.
+    /// On which day, in the port's time.
     pub day: NaiveDate,
     /// From when the ship is alongside and the firm at work.
     pub from: Instant,

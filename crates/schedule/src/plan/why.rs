@@ -29,7 +29,7 @@ pub(super) fn unscheduled(
             .or_default()
             .push(jobs[way.job].vessel.called());
     }
-    let overdue = |job: &Job<'_>| job.is_overdue(input.now.date(0));
+    let overdue = |job: &Job<'_>| job.is_overdue(input.now.utc_date());
     let open = jobs.iter().zip(made).filter(|(job, way)| match way {
         None => true,
         Some(way) => way.quote.late_days > 0 && !overdue(job),
@@ -64,7 +64,7 @@ struct Found {
 
 /// That a call somewhere would help. No ship makes one by the day that it is, or before.
 fn called_in_time(input: &Input, job: &Job<'_>, place: &str) -> String {
-    let today = input.now.date(0);
+    let today = input.now.utc_date();
     if job.due() <= today || job.is_overdue(today) {
         format!("as soon as she can call at {place}")
     } else {
@@ -102,8 +102,8 @@ impl Found {
             .calls
             .iter()
             .filter(|call| {
-                call.eta.date(quote::port_of(call).zone_h()) <= job.due()
-                    || job.is_overdue(input.now.date(0))
+                call.eta.date(quote::port_of(call).zone) <= job.due()
+                    || job.is_overdue(input.now.utc_date())
             })
             .copied()
             .collect();
@@ -158,7 +158,7 @@ impl Found {
                 call.port,
                 call.called()
             ));
-            let day = call.eta.date(port.zone_h());
+            let day = call.eta.date(port.zone);
             if day <= job.due() {
                 let help = format!("a firm at {} ({}) on {day}", port.name, call.port);
                 self.near.insert((2, day, help));

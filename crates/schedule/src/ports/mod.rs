@@ -3,12 +3,15 @@
 //! `data/ports.csv` is made by `scripts/ports.py` from UNECE's code list (its issue
 //! 2023-1; function 1, port), as it is published for everyone's use; where UNECE gives
 //! no position, from the list "sea-ports" 0.0.9 (MIT licence, © marchah). Positions are
-//! rounded to a hundredth of a degree: good for the day's date and for distances, not
-//! for navigation. `data/places.csv` is made by `scripts/places.py` from the same list.
+//! rounded to a hundredth of a degree: good for distances, not for navigation, and a few are
+//! far off in UNECE's list. Zones are by country and subdivision, from zone.tab of the IANA
+//! time zone database 2026f (public domain). `data/places.csv` is made by `scripts/places.py`
+//! from the same list.
 //!
 //! What always holds: a [`PortCode`] is two capital letters and three capital letters or
 //! digits; the table is sorted by it and names each once.
 
+use crate::zone::Zone;
 use binnacle_magnetics::position::Position;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -35,6 +38,8 @@ pub struct Port {
     pub plain_name: &'static str,
     /// About where it is.
     pub position: Position,
+    /// Its legal time.
+    pub zone: Zone,
 }
 
 static PORTS: OnceLock<Vec<Port>> = OnceLock::new();
@@ -55,6 +60,11 @@ pub fn find(code: PortCode) -> Option<&'static Port> {
     let ports = all();
     let at = ports.binary_search_by_key(&code, |port| port.code).ok()?;
     Some(&ports[at])
+}
+
+/// The legal time at a port; UTC where the table has none of its code.
+pub fn zone(code: PortCode) -> Zone {
+    find(code).map_or_else(Zone::utc, |port| port.zone)
 }
 
 /// What is wrong with a code that no port of the table has, and the one that may be meant:
@@ -92,14 +102,6 @@ pub fn search(text: &str, most: usize) -> Vec<&'static Port> {
     first.append(&mut later);
     first.truncate(most);
     first
-}
-
-impl Port {
-    /// Hours that ship's time is ahead of UTC: the nautical zone of the longitude. Legal
-    /// time differs from it by an hour or two, which the hours of work allow for.
-    pub fn zone_h(&self) -> i32 {
-        (self.position.lon_deg() / 15.0).round() as i32
-    }
 }
 
 impl PortCode {
@@ -147,17 +149,19 @@ impl From<PortCode> for String {
 }
 
 /// A line of the table: code, name, the name without accents where it has some, degrees
-/// north, degrees east. Only names are quoted, and they have no quotes in them.
+/// north, degrees east, time zone. Only names are quoted, and they have no quotes in them.
 fn read(line: &'static str) -> Option<Port> {
     let (code, rest) = line.split_once(',')?;
     let (name, rest) = cell(rest)?;
     let (plain, rest) = cell(rest)?;
-    let (lat, lon) = rest.split_once(',')?;
+    let (lat, rest) = rest.split_once(',')?;
+    let (lon, zone) = rest.split_once(',')?;
     Some(Port {
         code: PortCode::parse(code).ok()?,
         name,
         plain_name: if plain.is_empty() { name } else { plain },
         position: Position::new(lat.parse().ok()?, lon.parse().ok()?).ok()?,
+        zone: Zone::find(zone).ok()?,
     })
 }
 
@@ -235,11 +239,5 @@ mod tests {
         assert!(found.iter().any(|port| port.code.to_string() == "PACTB"));
         assert_eq!(search("rotterdam", 1)[0].code.to_string(), "NLRTM");
         assert!(search("  ", 5).is_empty());
-    }
-
-    #[test]
-    fn ships_time_is_the_longitudes() {
-        let zone = |code: &str| find(PortCode::parse(code).unwrap()).unwrap().zone_h();
-        assert_eq!((zone("NLRTM"), zone("SGSIN"), zone("USHOU")), (0, 7, -6));
     }
 }

@@ -42,7 +42,7 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
     let (theirs, their_url) = Receiver::start().await;
     make(&agreed.ada, &our_url, &["order.call_moved"]).await;
     make(&agreed.rosa, &their_url, &["order.call_moved"]).await;
-    assert_eq!(agreed.seen().await["planned_at"], "2026-12-15T08:00:00Z");
+    assert_eq!(agreed.seen().await["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(agreed.seen().await["call_fit"], Value::Null);
     agreed
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
@@ -58,13 +58,13 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
         assert!(said.contains("a new day is needed"), "{said}");
     }
     // What was agreed stands, and says that it does not do.
-    assert_eq!(order["planned_at"], "2026-12-15T08:00:00Z");
+    assert_eq!(order["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(order["state"], "accepted");
     assert_eq!(order["call_fit"], "needs_new_day");
     let change = &order["call_change"];
     assert_eq!(change["was"]["eta"], "2026-12-14T06:00:00Z");
     assert_eq!(change["is"]["etd"], "2026-12-17T18:00:00Z");
-    assert_eq!(change["is"]["etd_local"], "2026-12-17T18:00:00+00:00");
+    assert_eq!(change["is"]["etd_local"], "2026-12-17T19:00:00+01:00");
     assert_eq!(change["by"], "ada@example.com");
     for person in [&agreed.ada, &agreed.rosa] {
         let list = person.get("/notifications?kind=call_moved").await.good();
@@ -72,7 +72,7 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
         assert_eq!(items.len(), 1, "{list}");
         let text = items[0]["text"].as_str().unwrap();
         for said in [
-            "from 2026-12-14 06:00 UTC (2026-12-14 06:00 ship's time, UTC+00:00)",
+            "from 2026-12-14 06:00 UTC (2026-12-14 07:00 port's time, UTC+01:00)",
             "and is from 2026-12-16 06:00 UTC",
             "agree on a new day",
         ] {
@@ -92,7 +92,7 @@ async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
         let body: Value = serde_json::from_str(&body).unwrap();
         let call = &body["entry"]["call"];
         assert_eq!(call["was"]["etd"], "2026-12-15T18:00:00Z");
-        assert_eq!(call["is"]["eta_local"], "2026-12-16T06:00:00+00:00");
+        assert_eq!(call["is"]["eta_local"], "2026-12-16T07:00:00+01:00");
         assert_eq!(body["work_order"]["call_fit"], "needs_new_day");
     }
     // She comes back to her day, but later on it, and then as she was.
@@ -163,14 +163,14 @@ async fn a_new_day_is_agreed_on_and_the_old_one_stands_until_then(shore: Shore) 
         .moves("2026-12-16T06:00:00Z", "2026-12-17T18:00:00Z")
         .await;
     let asked = agreed.retime("2026-12-17T08:00:00Z").await.good();
-    assert_eq!(asked["planned_at"], "2026-12-15T08:00:00Z");
+    assert_eq!(asked["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(asked["state"], "accepted");
     let new = &asked["offers"][0]["new_terms"]["planned_at"];
     assert_eq!(new, "2026-12-17T08:00:00Z");
     let last = told(&agreed.rosa).await.pop().unwrap();
     assert!(last.contains("another time is asked of you"), "{last}");
     let refused = agreed.answer(&agreed.rosa, "decline").await.good();
-    assert_eq!(refused["planned_at"], "2026-12-15T08:00:00Z");
+    assert_eq!(refused["planned_at"], "2026-12-15T07:00:00Z");
     assert_eq!(refused["state"], "accepted");
     assert_eq!(refused["call_fit"], "needs_new_day");
     let none = agreed.answer(&agreed.rosa, "accept").await;
@@ -250,7 +250,7 @@ async fn a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team(shore: Shore)
         .await;
     let gone = agreed.answer(&agreed.rosa, "accept").await;
     assert!(gone.text.contains("no call at NLRTM"), "{gone:?}");
-    assert_eq!(agreed.seen().await["planned_at"], "2026-12-15T08:00:00Z");
+    assert_eq!(agreed.seen().await["planned_at"], "2026-12-15T07:00:00Z");
     shore.finish().await;
 }
 
@@ -285,7 +285,7 @@ async fn a_question_that_is_not_answered_leaves_what_was_agreed(shore: Shore) {
     let order = agreed.seen().await;
     assert_eq!(order["state"], "accepted");
     assert_eq!(order["firm"], "rosa");
-    assert_eq!(order["planned_at"], "2026-12-15T08:00:00Z");
+    assert_eq!(order["planned_at"], "2026-12-15T07:00:00Z");
     // Whoever is asked for another time may still give the order back, or see it cancelled.
     agreed.retime("2026-12-14T08:00:00Z").await.good();
     let cancelled = json!({ "text": "sold" });

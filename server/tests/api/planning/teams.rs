@@ -43,7 +43,7 @@ async fn no_firm_is_asked_for_a_time_at_which_it_is_closed(shore: Shore) {
         ),
         (
             "2026-12-15T03:00:00Z",
-            "rosa works from 2026-12-15T08:00:00Z to 2026-12-15T18:00:00Z",
+            "rosa works from 2026-12-15T07:00:00Z to 2026-12-15T17:00:00Z",
         ),
     ] {
         let refused = retime(at).await;
@@ -223,8 +223,8 @@ async fn an_order_is_for_a_port_and_a_time_that_can_be(shore: Shore) {
         assert_eq!(ask("NLRTM", at).await.status, 422, "{at}");
     }
     // Two days to answer would be longer than there is.
-    let order = ask("BEANR", "2026-11-21T17:00:00Z").await.good();
-    assert_eq!(order["answer_by"], "2026-11-21T17:00:00Z");
+    let order = ask("BEANR", "2026-11-21T16:00:00Z").await.good();
+    assert_eq!(order["answer_by"], "2026-11-21T16:00:00Z");
     let path = format!("/work-orders/{}", order["id"].as_str().unwrap());
     let why = json!({ "text": "not this day" });
     ada.post(&format!("{path}/cancel"), &why).await.good();

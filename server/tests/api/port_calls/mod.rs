@@ -272,7 +272,7 @@ async fn ports_are_found_by_name_and_by_code(shore: Shore) {
     let ada = shore.admin("ada").await;
     let found = ada.get("/ports?q=rotterdam").await.good();
     assert_eq!(found["items"][0]["code"], "NLRTM");
-    assert_eq!(found["items"][0]["zone_h"], 0);
+    assert_eq!(found["items"][0]["zone"], "Europe/Amsterdam");
     let limited = ada.get("/ports?q=san&limit=3").await.good();
     assert_eq!(limited["items"].as_array().unwrap().len(), 3);
     let accented = ada.get("/ports?q=malaga").await.good();
