@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
-use binnacle_schedule::calls::{PortCall, csv, ics};
+use binnacle_schedule::calls::{FileErrors, MOST_NAMED, PortCall, csv, ics};
 use binnacle_schedule::time::Instant;
 use std::io::{BufReader, Read};
 
@@ -10,15 +10,24 @@ fn now() -> Instant {
     Instant::parse("2026-11-21T00:00:00Z").unwrap()
 }
 
+fn read_csv(text: &str) -> Result<csv::Rows, FileErrors> {
+    let mut faults = FileErrors::default();
+    match csv::read(text.as_bytes(), None, now(), &mut faults) {
+        Ok(rows) => faults.unless(rows),
+        Err(fault) => {
+            faults.push(fault);
+            Err(faults)
+        }
+    }
+}
+
 fn csv_calls(text: &str) -> Vec<PortCall> {
-    let read = csv::read(text.as_bytes(), None, now()).unwrap();
+    let read = read_csv(text).unwrap();
     read.calls.into_iter().map(|located| located.call).collect()
 }
 
 fn csv_complaint(text: &str) -> String {
-    csv::read(text.as_bytes(), None, now())
-        .unwrap_err()
-        .to_string()
+    read_csv(text).unwrap_err().to_string()
 }
 
 const HEADER: &str = "id,vessel,port,eta,etd,eta_uncertainty_h\n";
@@ -89,6 +98,37 @@ fn each_fault_of_a_csv_is_named_with_line_and_column() {
 }
 
 #[test]
+fn every_bad_row_of_a_csv_is_named() {
+    let good = "c,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
+    let said = csv_complaint(&format!(
+        "{HEADER}d,v,NLRTM,soon,2026-12-02T18:00:00Z,\n{good}e,v,XXXXX,2026-12-01T06:00:00Z,\
+         2026-12-02T18:00:00Z,\nf,v\n{good}"
+    ));
+    let lines: Vec<&str> = said.split("; line ").collect();
+    let begins = [
+        "line 2: eta: ",
+        "4: port: XXXXX",
+        "5: row: 2 fields",
+        "6: id: \"c\"",
+    ];
+    assert_eq!(lines.len(), begins.len(), "{said}");
+    for (line, begins) in lines.iter().zip(begins) {
+        assert!(line.starts_with(begins), "{said}");
+    }
+}
+
+#[test]
+fn of_many_bad_rows_the_first_are_named_and_the_others_counted() {
+    let bad = "c,v,NLRTM,soon,2026-12-02T18:00:00Z,\n";
+    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(MOST_NAMED + 3)));
+    assert_eq!(said.matches("line ").count(), MOST_NAMED);
+    assert!(said.contains("line 51: eta"), "{said}");
+    assert!(said.ends_with("; and 3 more"), "{said}");
+    let said = csv_complaint(&format!("{HEADER}{}", bad.repeat(csv::MOST_CALLS + 5)));
+    assert!(said.ends_with("; and 49951 more"), "{said}");
+}
+
+#[test]
 fn fifty_megabytes_without_a_line_end_are_refused_after_a_line() {
     let mut read = 0_usize;
     let endless = std::io::repeat(b'a').take(50_000_000);
@@ -96,7 +136,13 @@ fn fifty_megabytes_without_a_line_end_are_refused_after_a_line() {
         inner: endless,
         read: &mut read,
     };
-    let error = csv::read(BufReader::new(counted), None, now()).unwrap_err();
+    let error = csv::read(
+        BufReader::new(counted),
+        None,
+        now(),
+        &mut FileErrors::default(),
+    )
+    .unwrap_err();
     assert_eq!(error.detail, "is longer than 4096 bytes");
     assert!(read <= 16_384, "{read}");
 }
@@ -331,7 +377,7 @@ fn a_row_that_is_over_is_passed_by() {
     let over = "c,v,NLRTM,2026-11-01T06:00:00Z,2026-11-20T18:00:00Z,\n";
     let ahead = "d,v,NLRTM,2026-12-01T06:00:00Z,2026-12-02T18:00:00Z,\n";
     let text = format!("{HEADER}{over}{ahead}");
-    let read = csv::read(text.as_bytes(), None, now()).unwrap();
+    let read = read_csv(&text).unwrap();
     let calls: Vec<(usize, &str)> = read
         .calls
         .iter()

@@ -247,6 +247,7 @@ fn in_words(state: State) -> &'static str {
         State::Verified => "verified",
         State::Failed => "not confirmed at sea",
         State::Closed => "closed",
+        State::ClosedUnverified => "closed without verification",
         State::Cancelled => "cancelled",
     }
 }

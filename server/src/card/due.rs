@@ -7,7 +7,8 @@ use super::contents::NextDue;
 use crate::time::Time;
 use binnacle_magnetics::analyse::{LogbookEntry, LogbookKind};
 use binnacle_schedule::needs::{self, Event, Predicted, Terms, due};
-use binnacle_schedule::rules::{EventKind, Flag, shipped};
+use binnacle_schedule::rules::{EventKind, Flag, Limit, shipped};
+use binnacle_schedule::time::Instant;
 
 /// No state's letters (ISO 3166-1, 8.1.3). A schedule that knows no flag counts every
 /// flag's rules; a card that names a flag in words would then cite another state's.
@@ -25,6 +26,8 @@ pub(super) struct Facts<'a> {
     pub(super) at: Time,
     /// The greatest deviation on it, degrees.
     pub(super) worst_deviation_deg: f64,
+    /// The greatest that the vessel's own limits let stand, degrees.
+    pub(super) own_limit_deg: f64,
 }
 
 /// When it is due; none where no adjustment is on record.
@@ -40,12 +43,14 @@ pub(super) fn next_due(facts: &Facts<'_>) -> Option<NextDue> {
     let adjusted_at = facts.adjusted_at?;
     let compass = needs::Compass {
         adjusted_on: Some(adjusted_at.day().parse().ok()?),
+        adjusted_at: Some(Instant(adjusted_at.0)),
         events: facts.logbook.iter().filter_map(event).collect(),
         predicted: vec![Predicted {
             on: facts.at.day().parse().ok()?,
             place: None,
             worst_deviation_deg: facts.worst_deviation_deg.abs(),
         }],
+        deviation_limit_deg: Limit::try_from(facts.own_limit_deg).ok(),
         ..needs::Compass::default()
     };
     let today = facts.at.day().parse().ok()?;
@@ -75,8 +80,12 @@ fn event(entry: &LogbookEntry) -> Option<Event> {
         | LogbookKind::Berth
         | LogbookKind::Note => return None,
     };
-    let on = Time(entry.to.unwrap_or(entry.from)).day().parse().ok()?;
-    Some(Event { kind, on })
+    let at = entry.to.unwrap_or(entry.from);
+    Some(Event {
+        kind,
+        on: Time(at).day().parse().ok()?,
+        at: Some(Instant(at)),
+    })
 }
 
 #[cfg(test)]
@@ -95,6 +104,7 @@ mod tests {
             logbook: &[],
             at: time("2026-12-01T00:00:00Z"),
             worst_deviation_deg: -1.4,
+            own_limit_deg: 5.0,
         }
     }
 
@@ -133,6 +143,38 @@ mod tests {
         })
         .unwrap();
         assert_eq!(found.on, "2027-01-19", "{}", found.reason);
+    }
+
+    #[test]
+    fn a_deviation_over_the_vessels_own_limit_brings_it_forward() {
+        let own = |own_limit_deg| Facts {
+            worst_deviation_deg: -3.2,
+            own_limit_deg,
+            ..facts("ES")
+        };
+        let over = next_due(&own(3.0)).unwrap();
+        assert_eq!(over.on, "2026-12-15");
+        assert!(over.reason.contains("own limit of 3°"), "{}", over.reason);
+        assert_eq!(next_due(&own(4.0)).unwrap().on, "2028-11-21");
+    }
+
+    #[test]
+    fn work_on_the_day_of_an_adjustment_counts_if_it_came_after_it() {
+        let welded = |at: &str| -> LogbookEntry {
+            serde_json::from_value(serde_json::json!({ "kind": "welding", "from": at })).unwrap()
+        };
+        // Adjusted at 08:00.
+        for (at, due) in [
+            ("2026-11-21T07:00:00Z", "2028-11-21"),
+            ("2026-11-21T15:00:00Z", "2026-12-21"),
+        ] {
+            let logbook = [welded(at)];
+            let found = next_due(&Facts {
+                logbook: &logbook,
+                ..facts("ES")
+            });
+            assert_eq!(found.unwrap().on, due, "{at}");
+        }
     }
 
     #[test]

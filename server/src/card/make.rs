@@ -47,6 +47,8 @@ pub(super) struct Basis {
     pub(super) observed: [Observed; 24],
     /// The widest half of a band that makes a card, degrees.
     pub(super) limit_deg: f64,
+    /// The greatest deviation that the vessel's own limits let stand, degrees.
+    pub(super) own_limit_deg: f64,
     /// When the card is asked for.
     pub(super) now: Time,
 }
@@ -83,6 +85,7 @@ pub(super) fn make(basis: Basis) -> Result<Card, Refusal> {
         logbook: &basis.logbook,
         at,
         worst_deviation_deg: worst.deviation_deg,
+        own_limit_deg: basis.own_limit_deg,
     });
     Ok(Card {
         status: verified_by.map_or(Status::Predicted, |_| Status::Verified),

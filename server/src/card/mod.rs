@@ -213,6 +213,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             logbook,
             alerts,
             limit_deg: settings.alerts.band95_deg,
+            own_limit_deg: settings.alerts.deviation_deg,
             now,
         };
         make(basis).map_err(Error::NoCard)

@@ -7,6 +7,7 @@ pub use admin::{Admin, AdminCommand, Create, FleetRole, Person};
 use crate::tls::Certificate;
 use crate::webhooks::Reach;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use sha2::{Digest, Sha256};
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use uuid::Uuid;
@@ -103,6 +104,15 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_PROXIES", default_value_t = 0,
           value_parser = clap::value_parser!(u8).range(0..=8))]
     pub proxies: u8,
+    /// What a scraper of /metrics sends as its bearer token; without one only this machine
+    /// may read them
+    #[arg(
+        long,
+        env = "BINNACLE_METRICS_TOKEN",
+        hide_env_values = true,
+        value_parser = metrics_token
+    )]
+    pub metrics_token: Option<MetricsToken>,
     /// Days that the audit log is kept
     #[arg(long, env = "BINNACLE_AUDIT_DAYS", default_value_t = 1095,
           value_parser = clap::value_parser!(u32).range(1..=36_500))]
@@ -128,6 +138,37 @@ pub struct Serve {
     #[arg(long, env = "BINNACLE_LOG_JSON", default_value_t = false,
           num_args = 0..=1, default_missing_value = "true", action = clap::ArgAction::Set)]
     pub log_json: bool,
+}
+
+/// The secret of whoever may read the metrics.
+#[derive(Clone)]
+pub struct MetricsToken(String);
+
+/// Fewer characters may be guessed.
+const SHORTEST_TOKEN: usize = 20;
+
+fn metrics_token(text: &str) -> Result<MetricsToken, String> {
+    let is_sent_whole = text.bytes().all(|byte| byte.is_ascii_graphic());
+    if is_sent_whole && text.len() >= SHORTEST_TOKEN {
+        return Ok(MetricsToken(text.to_owned()));
+    }
+    Err(format!(
+        "has {SHORTEST_TOKEN} letters, digits and signs of ASCII at least, and no blanks"
+    ))
+}
+
+impl MetricsToken {
+    /// Whether that is it, found out in the same time whatever it is.
+    pub fn is(&self, given: &str) -> bool {
+        let [own, given] = [self.0.as_str(), given].map(|text| Sha256::digest(text.as_bytes()));
+        own == given
+    }
+}
+
+impl std::fmt::Debug for MetricsToken {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("MetricsToken(…)")
+    }
 }
 
 impl Serve {

@@ -17,6 +17,7 @@ use binnacle_magnetics::time::Timestamp;
 use binnacle_schedule::needs::{Change, Compass, Event, FailedVerification, Predicted, Ship};
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::rules::{EventKind, Limit};
+use binnacle_schedule::time::Instant;
 use chrono::NaiveDate;
 
 /// Degrees of heading between those on which the greatest deviation is looked for.
@@ -129,9 +130,11 @@ pub(super) fn compass(
     // What is planned has not happened.
     let begun = stored.work.iter().filter(|work| work.from <= now);
     let events = begun.filter_map(|work| {
+        let at = work.to.unwrap_or(work.from);
         Some(Event {
             kind: event(work.kind)?,
-            on: day(work.to.unwrap_or(work.from)),
+            on: day(at),
+            at: Some(Instant(at.0)),
         })
     });
     // By instants: she may be adjusted anew on the day of the verdict.
@@ -144,6 +147,7 @@ pub(super) fn compass(
         });
     let compass = Compass {
         adjusted_on: adjusted.map(day),
+        adjusted_at: adjusted.map(|at| Instant(at.0)),
         events: events.collect(),
         predicted: has_been.chain(ahead.iter().map(predicted)).collect(),
         deviation_limit_deg: Limit::try_from(stored.limits.deviation_deg).ok(),

@@ -210,7 +210,8 @@ async fn completed(db: &Db, operator: OperatorId) -> Result<BTreeMap<Of, Complet
         operator
     )?;
     let by = |(vessel, compass, at, state)| {
-        let awaits_verification = state == State::Adjusted;
+        // What is closed without a word from the sea is never more than foretold.
+        let awaits_verification = matches!(state, State::Adjusted | State::ClosedUnverified);
         let completed = Completed {
             at,
             awaits_verification,

@@ -1,9 +1,11 @@
 //! Health and metrics.
 
 use crate::app::App;
-use crate::error::Result;
+use crate::error::{Error, Problem, Result};
+use crate::peer::Origin;
 use axum::extract::{MatchedPath, Request, State};
-use axum::http::StatusCode;
+use axum::http::header::{AUTHORIZATION, FORWARDED};
+use axum::http::{HeaderMap, HeaderName, StatusCode};
 use axum::middleware::Next;
 use axum::response::Response;
 use metrics::{counter, histogram};
@@ -55,15 +57,41 @@ async fn readyz(State(app): State<App>) -> (StatusCode, &'static str) {
 }
 
 /// Metrics for Prometheus
-#[utoipa::path(get, path = "/metrics", tag = "operations", security(()),
-    responses((status = 200, body = String)))]
-async fn metrics_page(State(app): State<App>) -> Result<String> {
+///
+/// For who sends the token that the server was started with (`BINNACLE_METRICS_TOKEN`); where
+/// it was started without one, for programs on the same machine.
+#[utoipa::path(get, path = "/metrics", tag = "operations", security((), ("token" = [])),
+    responses((status = 200, body = String), (status = 401, body = Problem)))]
+async fn metrics_page(
+    State(app): State<App>,
+    origin: Origin,
+    headers: HeaderMap,
+) -> Result<String> {
+    if !may_read_metrics(&app, &origin, &headers) {
+        return Err(Error::Unauthenticated);
+    }
     let waiting = crate::analysis::count_jobs(&app.db).await?;
     for (state, jobs) in waiting {
         metrics::gauge!("binnacle_jobs", "state" => state).set(jobs as f64);
     }
     app.metrics.run_upkeep();
     Ok(app.metrics.render())
+}
+
+fn may_read_metrics(app: &App, origin: &Origin, headers: &HeaderMap) -> bool {
+    if let Some(token) = &app.config.metrics_token {
+        let sent = headers
+            .get(AUTHORIZATION)
+            .and_then(|sent| sent.to_str().ok());
+        let sent = sent.and_then(|sent| sent.strip_prefix("Bearer "));
+        return sent.is_some_and(|sent| token.is(sent));
+    }
+    // Who comes by way of a proxy that the server was not told of may be anybody.
+    let is_forwarded = [FORWARDED, HeaderName::from_static("x-forwarded-for")]
+        .iter()
+        .any(|name| headers.contains_key(name));
+    let is_here = origin.address.is_some_and(|address| address.is_loopback());
+    is_here && !is_forwarded
 }
 
 /// Counts and times every request by its route, never by its ids.

@@ -7,8 +7,7 @@ use crate::error::{Error, Result};
 use crate::ids::VesselId;
 use crate::time::Time;
 use axum::body::Body;
-use binnacle_schedule::calls::csv::FileError;
-use binnacle_schedule::calls::{Located, overlap};
+use binnacle_schedule::calls::{FileError, FileErrors, Located, overlaps};
 use futures_util::StreamExt;
 use std::collections::BTreeMap;
 
@@ -59,26 +58,34 @@ pub(super) struct OfVessel {
 
 impl OfVessel {
     /// Takes a call from a file.
-    pub(super) fn push(&mut self, located: Located, now: Time) -> Result<()> {
+    pub(super) fn push(
+        &mut self,
+        located: Located,
+        now: Time,
+        faults: &mut FileErrors,
+    ) -> Result<()> {
         let line = located.line;
-        let content = Content::from_file(located.call).checked(now);
-        let content = content.map_err(|error| match error {
-            Error::Invalid { field, detail } => at_line(line, field, &detail),
-            other => other,
-        })?;
-        self.calls.push((line, content));
+        match Content::from_file(located.call).checked(now) {
+            Ok(content) => self.calls.push((line, content)),
+            Err(Error::Invalid { field, detail }) => {
+                faults.push(FileError::new(line, field, detail));
+            }
+            Err(other) => return Err(other),
+        }
         Ok(())
     }
 
     /// Holds the file against what is known. What came from such a file before, is not
-    /// over and is not in this one is withdrawn if the file replaces it.
-    pub(super) fn against(
+    /// over and is not in this one is withdrawn if the file replaces it. Calls that
+    /// overlap go into `faults`.
+    pub(super) fn against<'a>(
         self,
-        known: &[Row],
+        known: &'a [Row],
         source: Source,
         replaces: bool,
         now: Time,
-    ) -> Result<Taken<'_>> {
+        faults: &mut FileErrors,
+    ) -> Result<Taken<'a>> {
         let lines: BTreeMap<String, usize> = self
             .calls
             .iter()
@@ -112,30 +119,30 @@ impl OfVessel {
                 Some(row) => taken.amended.push((row, call)),
             }
         }
-        match overlap(&calls) {
-            None => Ok(taken),
-            Some((later, earlier)) => {
-                let in_file = |at: usize| lines.get(&calls[at].id).copied();
-                let (own, other) = match in_file(later) {
-                    Some(_) => (later, earlier),
-                    None => (earlier, later),
-                };
-                let other = &calls[other];
-                let what = format!(
-                    "overlaps call {:?} of the same vessel, from {} to {}",
-                    other.id, other.eta, other.etd
-                );
-                Err(at_line(in_file(own).unwrap_or(1), "eta", &what))
-            }
+        for (later, earlier) in overlaps(&calls) {
+            let in_file = |at: usize| lines.get(&calls[at].id).copied();
+            let (own, other) = match in_file(later) {
+                Some(_) => (later, earlier),
+                None => (earlier, later),
+            };
+            let other = &calls[other];
+            let what = format!(
+                "overlaps call {:?} of the same vessel, from {} to {}",
+                other.id, other.eta, other.etd
+            );
+            faults.push(FileError::new(in_file(own).unwrap_or(1), "eta", what));
         }
+        Ok(taken)
     }
 }
 
-/// Rows of a file by the vessel that each names: by her id, her IMO number or her name.
+/// Rows of a file by the vessel that each names: by her id, her IMO number or her name. What is
+/// wrong with a row goes into `faults`.
 pub(super) fn by_vessel(
     calls: Vec<Located>,
     fleet: &[(VesselId, String, Option<String>)],
     now: Time,
+    faults: &mut FileErrors,
 ) -> Result<BTreeMap<VesselId, OfVessel>> {
     let mut named: BTreeMap<String, Vec<VesselId>> = BTreeMap::new();
     for (id, name, imo_number) in fleet {
@@ -156,35 +163,38 @@ pub(super) fn by_vessel(
             Some([vessel]) => *vessel,
             Some(_) => {
                 let what = format!("{name:?} are several vessels; write the IMO number or the id");
-                return Err(at_line(line, "vessel", &what));
+                faults.push(FileError::new(line, "vessel", what));
+                continue;
             }
             None => {
-                return Err(at_line(
-                    line,
-                    "vessel",
-                    &format!("there is no vessel {name:?}"),
-                ));
+                let what = format!("there is no vessel {name:?}");
+                faults.push(FileError::new(line, "vessel", what));
+                continue;
             }
         };
         // One vessel may be named in two ways.
         if let Some(first) = seen.insert((vessel, located.call.id.clone()), line) {
             let what = format!("{:?} stands on line {first} already", located.call.id);
-            return Err(at_line(line, "id", &what));
+            faults.push(FileError::new(line, "id", what));
+            continue;
         }
-        found.entry(vessel).or_default().push(located, now)?;
+        let hers = found.entry(vessel).or_default();
+        hers.push(located, now, faults)?;
     }
     Ok(found)
 }
 
-fn at_line(line: usize, field: &str, detail: &str) -> Error {
-    Error::Invalid {
-        field: "file",
-        detail: format!("line {line}: {field}: {detail}"),
+impl From<FileErrors> for Error {
+    fn from(faults: FileErrors) -> Error {
+        Error::Invalid {
+            field: "file",
+            detail: faults.to_string(),
+        }
     }
 }
 
 impl From<FileError> for Error {
-    fn from(error: FileError) -> Error {
-        at_line(error.line, &error.field, &error.detail)
+    fn from(fault: FileError) -> Error {
+        FileErrors::from(fault).into()
     }
 }

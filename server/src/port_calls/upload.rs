@@ -16,7 +16,7 @@ use crate::work_orders::{calls_come, calls_move};
 use axum::body::Body;
 use axum::extract::State;
 use axum::response::Response;
-use binnacle_schedule::calls::{csv, ics};
+use binnacle_schedule::calls::{FileErrors, csv, ics};
 use binnacle_schedule::time::Instant;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -71,8 +71,8 @@ struct Uploaded {
         example = "vessel,id,port,eta,etd\n9074729,c1,NLRTM,2026-12-08T06:00:00Z,2026-12-10T18:00:00Z\n"),
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 413, body = Problem),
-              (status = 422, description = "Something is wrong; the detail names the line and \
-                             the column", body = Problem)))]
+              (status = 422, description = "Something is wrong; the detail names the lines and \
+                             their columns, the first fifty of them", body = Problem)))]
 async fn upload_fleet_csv(
     State(app): State<App>,
     writer: Writer,
@@ -81,11 +81,10 @@ async fn upload_fleet_csv(
 ) -> Result<Json<Uploaded>> {
     let bytes = whole(body).await?;
     let now: Time = app.clock.now().into();
-    let read = move || csv::read(&bytes[..], None, Instant(now.0));
-    let rows = tokio::task::spawn_blocking(read).await??;
+    let (rows, mut faults) = read_csv(bytes, None, now).await?;
     let fleet = vessels::names(&app.db, writer.operator).await?;
-    let found = by_vessel(rows.calls, &fleet, now)?;
-    take(&app, writer, found, Source::Csv, &how, rows.over).await
+    let found = by_vessel(rows.calls, &fleet, now, &mut faults)?;
+    take(&app, writer, (found, faults), Source::Csv, &how, rows.over).await
 }
 
 /// Send a file of a vessel's port calls
@@ -98,8 +97,8 @@ async fn upload_fleet_csv(
     responses((status = 200, body = Uploaded), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
               (status = 413, body = Problem),
-              (status = 422, description = "Something is wrong; the detail names the line and \
-                             the column", body = Problem)))]
+              (status = 422, description = "Something is wrong; the detail names the lines and \
+                             their columns, the first fifty of them", body = Problem)))]
 async fn upload_csv(
     State(app): State<App>,
     writer: Writer,
@@ -111,11 +110,31 @@ async fn upload_csv(
     let bytes = whole(body).await?;
     let now: Time = app.clock.now().into();
     let of = vessel.to_string();
-    let read = move || csv::read(&bytes[..], Some(&of), Instant(now.0));
-    let rows = tokio::task::spawn_blocking(read).await??;
-    let mut found = by_vessel(rows.calls, &[(vessel, row.name, row.imo_number)], now)?;
+    let (rows, mut faults) = read_csv(bytes, Some(of), now).await?;
+    let her = [(vessel, row.name, row.imo_number)];
+    let mut found = by_vessel(rows.calls, &her, now, &mut faults)?;
     found.entry(vessel).or_default();
-    take(&app, writer, found, Source::Csv, &how, rows.over).await
+    take(&app, writer, (found, faults), Source::Csv, &how, rows.over).await
+}
+
+/// A file's rows, and what is wrong with others; `of` is the vessel of rows that name none.
+async fn read_csv(
+    bytes: Vec<u8>,
+    of: Option<String>,
+    now: Time,
+) -> Result<(csv::Rows, FileErrors)> {
+    let read = move || {
+        let mut faults = FileErrors::default();
+        let read = csv::read(&bytes[..], of.as_deref(), Instant(now.0), &mut faults);
+        match read {
+            Ok(rows) => Ok((rows, faults)),
+            Err(fault) => {
+                faults.push(fault);
+                Err(faults)
+            }
+        }
+    };
+    Ok(tokio::task::spawn_blocking(read).await??)
 }
 
 /// Send a calendar of a vessel's port calls
@@ -152,18 +171,27 @@ async fn upload_ics(
         cancelled: calendar.cancelled,
         ..OfVessel::default()
     };
+    let mut faults = FileErrors::default();
     for located in calendar.calls {
-        hers.push(located, now)?;
+        hers.push(located, now, &mut faults)?;
     }
     let found = BTreeMap::from([(vessel, hers)]);
-    take(&app, writer, found, Source::Icalendar, &how, calendar.over).await
+    take(
+        &app,
+        writer,
+        (found, faults),
+        Source::Icalendar,
+        &how,
+        calendar.over,
+    )
+    .await
 }
 
-/// Takes a file whole, or nothing of it.
+/// Takes a file whole, or nothing of it where anything is wrong.
 async fn take(
     app: &App,
     writer: Writer,
-    found: BTreeMap<VesselId, OfVessel>,
+    (found, mut faults): (BTreeMap<VesselId, OfVessel>, FileErrors),
     source: Source,
     how: &How,
     over: usize,
@@ -180,7 +208,11 @@ async fn take(
     // In the order of their ids: two files at once wait for one another only one way.
     for (vessel, hers) in found {
         let known = store::lock(&mut tx, writer.operator, vessel).await?;
-        let taken = hers.against(&known, source, replaces, now)?;
+        let taken = hers.against(&known, source, replaces, now, &mut faults)?;
+        // Nothing of it is kept; what else is wrong is still to be told.
+        if !faults.is_empty() {
+            continue;
+        }
         let new: Vec<_> = taken.new.iter().map(|call| (CallId::new(), call)).collect();
         let moving = moving::taken(&taken, &new)?;
         let Taken {
@@ -211,6 +243,7 @@ async fn take(
         let is: Vec<_> = is.map(|(id, call)| (id, moving::alongside(call))).collect();
         told.extend(calls_come(&mut tx, vessel, &is, &author.name, now).await?);
     }
+    faults.unless(())?;
     commit(app, tx, &changed, told, now).await?;
     Ok(Json(done))
 }

@@ -95,7 +95,8 @@ async fn under_way(db: &Db, operator: OperatorId) -> Result<BTreeMap<CompassId, 
          FROM work_orders o
          JOIN vessels v ON v.id = o.vessel_id
          WHERE v.operator_id = $1
-           AND o.state NOT IN ('adjusted', 'verified', 'failed', 'closed', 'cancelled')
+           AND o.state NOT IN ('adjusted', 'verified', 'failed', 'closed',
+                             'closed_unverified', 'cancelled')
          ORDER BY o.compass_id, o.id",
         operator
     )?;

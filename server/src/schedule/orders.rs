@@ -69,7 +69,8 @@ pub(super) async fn under_way(db: &Db, operator: OperatorId) -> Result<Vec<Order
                AND f.state IN ('open', 'proposed', 'accepted')
          LEFT JOIN schedule_orders l ON l.vessel_id = o.vessel_id AND l.order_id = o.id
          WHERE v.operator_id = $1
-           AND o.state NOT IN ('adjusted', 'verified', 'failed', 'closed', 'cancelled')
+           AND o.state NOT IN ('adjusted', 'verified', 'failed', 'closed',
+                             'closed_unverified', 'cancelled')
          ORDER BY o.vessel_id, o.id, f.firm_id",
         operator
     )?;

@@ -391,30 +391,60 @@ async fn leave_as_it_stands(change: &mut change::Change<'_>) -> Result<()> {
     completion::write_logbook(change, crate::ids::EntryId::new(), now, &port).await
 }
 
+/// How an order is closed.
+#[derive(Clone, Debug, Serialize, Deserialize, ToSchema)]
+#[serde(deny_unknown_fields)]
+#[schema(as = OrderClosing, example = json!({ "text": "Papers are filed." }))]
+struct Closing {
+    /// Why, in words.
+    #[schema(min_length = 1, max_length = 200)]
+    text: String,
+    /// Close it though no headings at sea have spoken, as of a ship that sends no more. What
+    /// was foretold stays foretold.
+    #[serde(default)]
+    without_verification: bool,
+}
+
 /// Close a work order
+///
+/// When headings at sea have spoken. One that no headings will be sent for is closed
+/// `without_verification`: it is `closed_unverified` then, its card stays predicted, and nothing
+/// says that it was verified.
 #[utoipa::path(post, path = "/work-orders/{id}/close", tag = "adjusting",
-    params(("id" = OrderId, Path), Key), request_body = Remark,
+    params(("id" = OrderId, Path), Key), request_body = Closing,
     responses((status = 200, body = Order), (status = 401, body = Problem),
               (status = 403, body = Problem), (status = 404, body = Problem),
-              (status = 409, description = "Not before headings at sea have spoken", body = Problem),
+              (status = 409, description = "Not before headings at sea have spoken, but for one \
+                             that was adjusted `without_verification`", body = Problem),
               (status = 422, body = Problem)))]
 async fn close_work_order(
     Shared(app): Shared<App>,
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
-    Valid(remark): Valid<Remark>,
+    Valid(closing): Valid<Closing>,
 ) -> Result<Json<Order>> {
-    let said = said(&remark)?;
-    let request = request(&app, writer, id, key, "closing", &remark)?;
+    let text = text("text", &closing.text)?;
+    let request = request(&app, writer, id, key, "closing", &closing)?;
     let (whole, done) = request.look().await?;
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
-    let allowed = [State::Verified, State::Failed];
-    whole.must_be(&allowed, "it is closed when headings at sea have spoken")?;
+    let unverified = closing.without_verification && whole.summary.state == State::Adjusted;
+    if !unverified {
+        let allowed = [State::Verified, State::Failed];
+        whole.must_be(
+            &allowed,
+            "it is closed when headings at sea have spoken, or once adjusted without_verification",
+        )?;
+    }
     if let Some(mut change) = request.begin(&whole).await? {
-        change.append(Content::Closed(said)).await?;
+        let text = if unverified {
+            format!("closed without verification: {text}")
+        } else {
+            text
+        };
+        change.append(Content::Closed(Said { text })).await?;
         change.commit().await?;
     }
     shown(&app, writer.operator, id).await

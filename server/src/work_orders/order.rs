@@ -60,6 +60,8 @@ pub enum State {
     Failed,
     /// Done with.
     Closed,
+    /// Done with, though no headings at sea have spoken for or against it.
+    ClosedUnverified,
     /// Not to be done, or no further.
     Cancelled,
 }
@@ -82,7 +84,10 @@ impl State {
 
     /// Whether nothing is to be done any more.
     pub fn is_over(self) -> bool {
-        matches!(self, State::Closed | State::Cancelled)
+        matches!(
+            self,
+            State::Closed | State::ClosedUnverified | State::Cancelled
+        )
     }
 }
 

@@ -232,7 +232,12 @@ impl Standing {
                 };
                 self.verified = Some(verified.as_ref().clone());
             }
-            Content::Closed(_) => self.state = State::Closed,
+            Content::Closed(_) => {
+                self.state = match self.state {
+                    State::Adjusted => State::ClosedUnverified,
+                    _ => State::Closed,
+                };
+            }
             Content::Cancelled(_) => self.state = State::Cancelled,
         }
     }

@@ -47,6 +47,38 @@ async fn the_operations_routes_tell_how_the_server_is() {
 }
 
 #[tokio::test]
+async fn metrics_are_read_on_the_same_machine_or_with_their_token() {
+    let read = async |shore: &Shore, header: (&str, &str)| {
+        let asked = shore.http.get(format!("{}/metrics", shore.url));
+        Answer::of(asked.header(header.0, header.1)).await.status
+    };
+    let shore = Shore::start(Engine::Sqlite).await;
+    assert_eq!(read(&shore, ("accept", "text/plain")).await, 200);
+    // Whom a proxy that the server was not told of lets in may be anybody.
+    for by in ["x-forwarded-for", "forwarded"] {
+        assert_eq!(read(&shore, (by, "127.0.0.1")).await, 401, "{by}");
+    }
+    shore.finish().await;
+    let proxied = Shore::start_with(Engine::Sqlite, &["--proxies", "1"]).await;
+    assert_eq!(read(&proxied, ("x-forwarded-for", "192.0.2.7")).await, 401);
+    proxied.finish().await;
+
+    let token = "a-token-of-the-scraper";
+    let shore = Shore::start_with(Engine::Sqlite, &["--metrics-token", token]).await;
+    for (sent, status) in [
+        (format!("Bearer {token}"), 200),
+        (format!("Bearer {token}s"), 401),
+        (token.to_owned(), 401),
+        (String::new(), 401),
+    ] {
+        let answered = read(&shore, ("authorization", &sent)).await;
+        assert_eq!(answered, status, "{sent}");
+    }
+    assert_eq!(read(&shore, ("accept", "text/plain")).await, 401);
+    shore.finish().await;
+}
+
+#[tokio::test]
 async fn an_agents_answer_carries_no_header_that_it_does_not_need() {
     let shore = Shore::start(Engine::Sqlite).await;
     let ada = shore.admin("ada").await;

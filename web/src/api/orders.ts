@@ -67,7 +67,19 @@ export const cancelOrder = (id: string, text: string, key: string) =>
 
 export const closeOrder = (id: string, text: string, key: string) =>
   answer(
-    client.POST('/api/v1/work-orders/{id}/close', { params: toPath(id, key), body: { text } }),
+    client.POST('/api/v1/work-orders/{id}/close', {
+      params: toPath(id, key),
+      body: { text, without_verification: false },
+    }),
+  );
+
+/** Closes an order that was adjusted, though no headings at sea have spoken. */
+export const closeUnverified = (id: string, text: string, key: string) =>
+  answer(
+    client.POST('/api/v1/work-orders/{id}/close', {
+      params: toPath(id, key),
+      body: { text, without_verification: true },
+    }),
   );
 
 /** The binnacle of an order's compass, for a firm that is asked or has it; `null` where none was entered. */

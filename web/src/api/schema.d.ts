@@ -2469,7 +2469,12 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Close a work order */
+        /**
+         * Close a work order
+         * @description When headings at sea have spoken. One that no headings will be sent for is closed
+         *     `without_verification`: it is `closed_unverified` then, its card stays predicted, and nothing
+         *     says that it was verified.
+         */
         post: operations["close_work_order"];
         delete?: never;
         options?: never;
@@ -2990,7 +2995,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Metrics for Prometheus */
+        /**
+         * Metrics for Prometheus
+         * @description For who sends the token that the server was started with (`BINNACLE_METRICS_TOKEN`); where
+         *     it was started without one, for programs on the same machine.
+         */
         get: operations["metrics_page"];
         put?: never;
         post?: never;
@@ -6386,6 +6395,21 @@ export interface components {
             next: string | null;
         };
         /**
+         * @description How an order is closed.
+         * @example {
+         *       "text": "Papers are filed."
+         *     }
+         */
+        OrderClosing: {
+            /** @description Why, in words. */
+            text: string;
+            /**
+             * @description Close it though no headings at sea have spoken, as of a ship that sends no more. What
+             *     was foretold stays foretold.
+             */
+            without_verification?: boolean;
+        };
+        /**
          * Format: uuid
          * @description An order to adjust a compass.
          */
@@ -8728,7 +8752,7 @@ export interface components {
          * @description How far an order has come.
          * @enum {string}
          */
-        WorkOrderState: "planned" | "offered" | "proposed" | "declined" | "accepted" | "on_board" | "measured" | "adjusting" | "adjusted" | "verified" | "failed" | "closed" | "cancelled";
+        WorkOrderState: "planned" | "offered" | "proposed" | "declined" | "accepted" | "on_board" | "measured" | "adjusting" | "adjusted" | "verified" | "failed" | "closed" | "closed_unverified" | "cancelled";
         /** @description An order in a line. */
         WorkOrderSummary: {
             /** @description The number of their licence. */
@@ -12380,7 +12404,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something is wrong; the detail names the line and the column */
+            /** @description Something is wrong; the detail names the lines and their columns, the first fifty of them */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -17545,7 +17569,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Something is wrong; the detail names the line and the column */
+            /** @description Something is wrong; the detail names the lines and their columns, the first fifty of them */
             422: {
                 headers: {
                     [name: string]: unknown;
@@ -19403,7 +19427,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["OrderRemark"];
+                "application/json": components["schemas"]["OrderClosing"];
             };
         };
         responses: {
@@ -19452,7 +19476,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Not before headings at sea have spoken */
+            /** @description Not before headings at sea have spoken, but for one that was adjusted `without_verification` */
             409: {
                 headers: {
                     [name: string]: unknown;
@@ -21715,6 +21739,15 @@ export interface operations {
                 };
                 content: {
                     "text/plain": string;
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
                 };
             };
         };

@@ -4,7 +4,7 @@ import type { WorkOrderCallFit, WorkOrderState, WorkOrderSummary } from '../api/
 import * as text from '../text';
 
 /** States in which nothing is left to be done. */
-const done = ['closed', 'cancelled'];
+const done = ['closed', 'closed_unverified', 'cancelled'];
 /** States before anything was done at the berth. */
 const beforeBerth = ['planned', 'offered', 'proposed', 'declined', 'accepted', 'on_board'];
 /** States before the work at the binnacle is finished. */
@@ -19,6 +19,7 @@ export const isAtBinnacle = (state: string): boolean => atBinnacle.includes(stat
 export const mayBeCancelled = (state: string): boolean => isUnderWay(state);
 export const mayBeOffered = (state: string): boolean => state === 'planned' || state === 'declined';
 export const mayBeClosed = (state: string): boolean => state === 'verified' || state === 'failed';
+export const mayBeClosedUnverified = (state: string): boolean => state === 'adjusted';
 
 /** A state's name; one that is new here is shown as the server calls it. */
 export function stateName(state: string): string {

@@ -37,6 +37,7 @@ export const orders = {
     verified: 'Verified at sea',
     failed: 'Not confirmed at sea',
     closed: 'Closed',
+    closed_unverified: 'Closed without verification',
     cancelled: 'Cancelled',
   } as Record<string, string>,
   next: {
@@ -54,6 +55,8 @@ export const orders = {
     failed:
       'A heading at sea does not agree with the prediction. Do not use the predicted card; have the ship swung or adjusted again.',
     closed: 'Done with.',
+    closed_unverified:
+      'Done with, though no headings at sea have spoken: what was foretold stays a prediction.',
     cancelled: 'Was not done, or no further.',
   } as Record<string, string>,
 };
@@ -218,6 +221,10 @@ export const order = {
     close: 'Close the order…',
     closeReason: 'What is to be said of it',
     closeConfirm: 'Close the order',
+    closeUnverified: 'Close it without verification…',
+    closeUnverifiedReason: 'Why no headings at sea will come',
+    closeUnverifiedHelp:
+      'For a ship that sends no more. Nothing will say that the adjustment was verified; its card stays predicted.',
     missing: 'Say something of it.',
   },
 };

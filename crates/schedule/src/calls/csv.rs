@@ -7,9 +7,10 @@
 //! with a comma in figures then. Calls that are over are no calls, and told.
 //!
 //! What always holds: memory is bounded by a line and by the calls that were read,
-//! however large the file; what is wrong is said with its line and column; what is
+//! however large the file; all that is wrong is said with its line and column; what is
 //! written opens in a spreadsheet without being taken for a formula, and reads back.
 
+use super::faults::{FileError, FileErrors};
 use super::{Located, PortCall};
 use crate::ports::{self, PortCode};
 use crate::time::Instant;
@@ -20,28 +21,6 @@ use std::io::{BufRead, Read, Write};
 const LONGEST_LINE: u64 = 4096;
 /// No file has more calls.
 pub const MOST_CALLS: usize = 50_000;
-
-/// What is wrong with a file, and where.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {field}: {detail}")]
-pub struct FileError {
-    /// The line, from 1.
-    pub line: usize,
-    /// The column or property at fault.
-    pub field: String,
-    /// What is wrong with it.
-    pub detail: String,
-}
-
-impl FileError {
-    pub(super) fn new(line: usize, field: &str, detail: impl Into<String>) -> FileError {
-        FileError {
-            line,
-            field: field.to_owned(),
-            detail: detail.into(),
-        }
-    }
-}
 
 const COLUMNS: [&str; 9] = [
     "id",
@@ -64,49 +43,67 @@ pub struct Rows {
     pub over: usize,
 }
 
-/// Reads a file's calls; `vessel` is the ship of rows that name none.
+/// Reads a file's calls; `vessel` is the ship of rows that name none. Every row is looked at,
+/// and what is wrong with any goes into `faults`, beside what others find wrong with the file.
 ///
 /// # Errors
-/// [`FileError`] with the first thing that is wrong: nothing is kept of a bad file.
-pub fn read(mut file: impl BufRead, vessel: Option<&str>, now: Instant) -> Result<Rows, FileError> {
+/// [`FileError`] where nothing can be said of what follows: the first line names no columns, a
+/// line is no text or too long, or there are too many rows.
+pub fn read(
+    mut file: impl BufRead,
+    vessel: Option<&str>,
+    now: Instant,
+    faults: &mut FileErrors,
+) -> Result<Rows, FileError> {
     let (mut header, mut rows, mut line) = (None, Rows::default(), 0);
-    let mut separator = ',';
+    let (mut separator, mut taken) = (',', 0);
     let mut ids = BTreeMap::new();
     while let Some(text) = next_line(&mut file, line + 1)? {
         line += 1;
         if text.trim().is_empty() {
             continue;
         }
-        if header.is_none() {
-            separator = separator_of(&text, line)?;
-        }
-        let cells = cells(&text, separator, line)?;
         let Some(header) = &header else {
-            header = Some(columns(cells, line)?);
+            separator = separator_of(&text, line)?;
+            header = Some(columns(cells(&text, separator, line)?, line)?);
             continue;
         };
-        if rows.calls.len() == MOST_CALLS {
+        if taken == MOST_CALLS {
             return Err(FileError::new(
                 line,
                 "row",
                 format!("more than {MOST_CALLS} calls"),
             ));
         }
-        let call = row(header, &cells, separator, vessel, line)?;
-        if call.eta < call.etd && call.etd <= now {
-            rows.over += 1;
-            continue;
+        let read = cells(&text, separator, line)
+            .and_then(|cells| row(header, &cells, separator, vessel, line))
+            .and_then(|call| current(call, now, line))
+            .and_then(|call| match call {
+                Some(call) => must_be_new(&mut ids, &call, line).map(|()| Some(call)),
+                None => Ok(None),
+            });
+        // Those that are over are passed by, however many.
+        taken += usize::from(!matches!(read, Ok(None)));
+        match read {
+            Ok(Some(call)) => rows.calls.push(Located { line, call }),
+            Ok(None) => rows.over += 1,
+            Err(fault) => faults.push(fault),
         }
-        call.checked(now)
-            .and_then(|()| call.must_be_near(now))
-            .map_err(|error| FileError::new(line, error.field, error.detail))?;
-        must_be_new(&mut ids, &call, line)?;
-        rows.calls.push(Located { line, call });
     }
     if header.is_none() {
         return Err(FileError::new(1, "row", "the file is empty"));
     }
     Ok(rows)
+}
+
+/// A call that may be one; none of one that is over.
+fn current(call: PortCall, now: Instant, line: usize) -> Result<Option<PortCall>, FileError> {
+    if call.eta < call.etd && call.etd <= now {
+        return Ok(None);
+    }
+    let checked = call.checked(now).and_then(|()| call.must_be_near(now));
+    checked.map_err(|error| FileError::new(line, error.field, error.detail))?;
+    Ok(Some(call))
 }
 
 /// Whether this is the first call of its ship that has its id.

@@ -13,7 +13,8 @@ mod line;
 mod place;
 mod zone;
 
-use super::csv::{FileError, MOST_CALLS, must_be_new};
+use super::FileError;
+use super::csv::{MOST_CALLS, must_be_new};
 use super::{Located, PortCall};
 use crate::time::Instant;
 use chrono::{NaiveDateTime, TimeZone, Utc};

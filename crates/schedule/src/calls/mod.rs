@@ -6,9 +6,11 @@
 
 mod berth;
 pub mod csv;
+mod faults;
 pub mod ics;
 
 pub use berth::{BerthHeading, HeadingSource, Observed, berth_heading};
+pub use faults::{FileError, FileErrors, MOST_NAMED};
 
 use crate::ports::PortCode;
 use crate::time::Instant;
@@ -149,13 +151,18 @@ impl PortCall {
 /// The first two calls of one ship that overlap, by their places: the one that begins
 /// later, and the one that has not ended then.
 pub fn overlap(calls: &[PortCall]) -> Option<(usize, usize)> {
+    overlaps(calls).into_iter().next()
+}
+
+/// All calls of one ship that begin before the one before has ended, with that one.
+pub fn overlaps(calls: &[PortCall]) -> Vec<(usize, usize)> {
     let mut order: Vec<usize> = (0..calls.len()).collect();
     order.sort_by_key(|at| (&calls[*at].vessel, calls[*at].eta, *at));
     let pairs = order.windows(2).map(|pair| (pair[1], pair[0]));
-    let mut overlapping = pairs.filter(|(next, first)| {
+    let overlapping = pairs.filter(|(next, first)| {
         calls[*next].vessel == calls[*first].vessel && calls[*next].eta < calls[*first].etd
     });
-    overlapping.next()
+    overlapping.collect()
 }
 
 /// The chance that a normal error of this size is below a margin; at no error at all,

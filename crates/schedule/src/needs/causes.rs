@@ -136,12 +136,15 @@ fn binds(applies: &Applies, ship: &Ship) -> bool {
 
 type Found = (CauseKind, NaiveDate, String);
 
+/// By instants where both are known, else by days: what an adjustment of the same day was for
+/// is over by it.
 fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
-    let adjusted = compass.adjusted_on.unwrap_or(NaiveDate::MIN);
-    compass
-        .events
-        .iter()
-        .filter(move |event| event.on > adjusted)
+    let day = compass.adjusted_on.unwrap_or(NaiveDate::MIN);
+    let is_since = move |event: &&Event| match (event.at, compass.adjusted_at) {
+        (Some(event), Some(adjusted)) => event > adjusted,
+        _ => event.on > day,
+    };
+    compass.events.iter().filter(is_since)
 }
 
 /// The first day on which the prediction is over a limit, or since which the deviation has

@@ -7,6 +7,7 @@
 mod causes;
 
 use crate::rules::{Canal, DeviationRecord, EventKind, Flag, Limit, Rule, Trade};
+use crate::time::Instant;
 use chrono::{Days, NaiveDate};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +49,9 @@ pub struct Compass {
     /// The day of the last adjustment; none where none is on record.
     #[serde(default)]
     pub adjusted_on: Option<NaiveDate>,
+    /// The instant of the last adjustment, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adjusted_at: Option<Instant>,
     /// What befell ship and compass; what came before the last adjustment is over.
     #[serde(default)]
     pub events: Vec<Event>,
@@ -78,6 +82,10 @@ pub struct Event {
     pub kind: EventKind,
     /// When, or when it is to end.
     pub on: NaiveDate,
+    /// The instant of that, where it is known: what came after an adjustment of the same day
+    /// is told from what came before it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<Instant>,
 }
 
 /// A prediction.

@@ -185,6 +185,23 @@ async fn a_csv_of_the_fleet_names_vessels_by_number_name_or_id(shore: Shore) {
     );
     let nobody = send(&ada, "/port-calls.csv", rows(["Nao", "Niña"])).await;
     assert!(nobody.text.contains("line 3: vessel: there is no vessel"));
+    // Whatever is wrong with a row, every other is looked at.
+    let more = format!(
+        "{}Nao,c,NLRTM,soon,2026-12-20T00:00:00Z,\nNao,{}",
+        rows(["Niña", "Santa"]),
+        row("b", "BEANR", 9)
+    );
+    let wrong = send(&ada, "/port-calls.csv", more).await.json();
+    let wrong = wrong["detail"].as_str().unwrap();
+    for said in [
+        "line 2: vessel",
+        "line 3: vessel",
+        "line 4: eta",
+        "line 5: eta: overlaps",
+    ] {
+        assert!(wrong.contains(said), "{wrong}");
+    }
+    assert_eq!(listed(&ada, &path(&nao)).await, ["NLRTM 08"]);
     ada.create_vessel("Nao").await;
     let which = send(&ada, "/port-calls.csv", rows(["Nao", id])).await;
     assert!(which.text.contains("several vessels; write the IMO number"));

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 on_both!(
     a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_epoch,
     an_adjustment_that_failed_at_sea_leaves_its_card_predicted,
+    an_order_closed_without_verification_leaves_its_card_predicted,
     a_card_right_after_an_adjustment_bears_no_alert_from_before_it,
 );
 
@@ -144,6 +145,47 @@ async fn a_card_is_verified_when_headings_at_sea_agree_until_a_change_ends_the_e
     job.send(&shore, 4, &since, 7.0).await;
     job.is_said_everywhere("predicted").await;
     assert_eq!(job.card().await["verified"], Value::Null);
+    shore.finish().await;
+}
+
+/// A ship that sends no more: her order ends, and nothing says that it was verified.
+async fn an_order_closed_without_verification_leaves_its_card_predicted(shore: Shore) {
+    let mut job = Job::begin(&shore).await;
+    let ship = foretold(&job.complete().await);
+    let early = job.post("/close", &json!({ "text": "filed" })).await;
+    assert!(early.text.contains("without_verification"), "{early:?}");
+    assert_eq!(early.problem(), "wrong-state");
+    let why = json!({ "text": "sold for scrap", "without_verification": true });
+    let closed = job.post("/close", &why).await.good();
+    assert_eq!(closed["state"], "closed_unverified");
+    assert_eq!(closed["standing"], "predicted, not a certificate");
+    assert_eq!(closed["verification"], Value::Null);
+    job.is_said_everywhere("predicted").await;
+    let card = job.card().await;
+    assert_eq!(card["next_due"], Value::Null, "{card}");
+    let log = job.person.get(&job.path("/entries")).await.good();
+    let said = "closed without verification: sold for scrap";
+    assert!(log.to_string().contains(said), "{log}");
+    let audit = job.person.get("/audit").await.good();
+    let is_told = |line: &Value| line["route"] == "/api/v1/work-orders/{id}/close";
+    let lines = audit["items"].as_array().unwrap();
+    assert!(lines.iter().any(is_told), "{audit}");
+    let report = job.person.get("/reports/fleet").await.good();
+    let jobs = report["jobs"].to_string();
+    assert!(jobs.contains("\"closed_unverified\""), "{report}");
+    // Neither what she sends after all nor a second closing changes it.
+    let sent = job.sail(&shore, &ship, 2, 6.0).await;
+    assert_eq!(sent["state"], "closed_unverified");
+    assert_eq!(sent["verification"], Value::Null);
+    job.is_said_everywhere("predicted").await;
+    let again = job.post("/close", &json!({ "text": "again" })).await;
+    assert_eq!(again.problem(), "wrong-state");
+    let needs = job.person.get("/needs").await.good();
+    let reason = needs["items"][0]["reason"].as_str().unwrap();
+    assert!(
+        reason.starts_with("adjusted, not yet verified at sea"),
+        "{reason}"
+    );
     shore.finish().await;
 }
 

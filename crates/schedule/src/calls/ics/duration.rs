@@ -1,7 +1,7 @@
 //! How long an event lasts, where its end is not given (RFC 5545, section 3.3.6).
 
 use super::line::Line;
-use crate::calls::csv::FileError;
+use crate::calls::FileError;
 
 /// Hours of `P2DT12H`, `PT90M`, `P1W` and their like.
 ///

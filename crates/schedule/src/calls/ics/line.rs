@@ -1,6 +1,6 @@
 //! The lines of a calendar: unfolded, with name, parameters and value.
 
-use crate::calls::csv::FileError;
+use crate::calls::FileError;
 
 /// No line is longer when unfolded, in bytes.
 const LONGEST: usize = 16_384;

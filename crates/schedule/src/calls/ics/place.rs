@@ -7,7 +7,7 @@
 //! is refused.
 
 use super::line::Line;
-use crate::calls::csv::FileError;
+use crate::calls::FileError;
 use crate::ports::{self, Port, PortCode};
 
 /// What stands between the parts of a place.

@@ -5,7 +5,7 @@
 //! is refused, rather than an hour be wrong.
 
 use super::line::Line;
-use crate::calls::csv::FileError;
+use crate::calls::FileError;
 use chrono::{Datelike, Days, NaiveDate, NaiveDateTime, Weekday};
 use std::collections::BTreeMap;
 
