@@ -11,7 +11,7 @@ fn main() -> Result<ExitCode> {
         .install_default()
         .map_err(|_| anyhow!("another TLS provider is installed"))?;
     match Cli::parse().command {
-        Command::Serve(serve) => command::serve(serve),
+        Command::Serve(serve) => command::serve(*serve),
         Command::Migrate(database) => command::migrate(&database),
         Command::Admin(admin) => command::admin(admin),
         Command::Bursts(arguments) => command::bursts(&arguments),

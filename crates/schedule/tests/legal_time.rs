@@ -1,5 +1,7 @@
 //! Ports keep legal time: known days and hours, and the nights on which clocks change.
 
+#![allow(clippy::unwrap_used)] // helpers of tests
+
 use binnacle_schedule::ports::{self, Port, PortCode};
 use binnacle_schedule::time::Instant;
 use binnacle_schedule::zone::Zone;

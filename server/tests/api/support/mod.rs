@@ -196,7 +196,7 @@ fn config(url: &str, settings: &[&str]) -> Serve {
     let Command::Serve(serve) = Cli::parse_from(all).command else {
         unreachable!("serve was asked for");
     };
-    serve
+    *serve
 }
 
 /// There is one recorder in a process.
