@@ -7,9 +7,11 @@
 //! input gives the same schedule.
 
 mod confirmed;
+mod help;
 mod jobs;
 mod moves;
 mod quote;
+mod room;
 mod schedule;
 mod why;
 
@@ -69,7 +71,7 @@ pub fn plan(checked: &Checked) -> Schedule {
         proven_optimal: gap == 0,
         paid_eur: (paid * 100.0).round() / 100.0,
         jobs: planned,
-        unscheduled: why::unscheduled(input, &jobs, &made),
+        unscheduled: why::unscheduled(input, &jobs, &made, &options.problem.unmet),
         changes: moves::changes(input, &jobs, &standing, &options, &made),
         later: later
             .into_iter()

@@ -1,45 +1,46 @@
 //! Why a job could not be scheduled in time, and what would have helped.
 //!
-//! What would help is what stands alone: a firm's day against which there is one thing
-//! only, or nothing but that others have its teams.
+//! What always holds: each line of what would help is enough by itself, as far as this job is
+//! concerned: what several things stand against is told with all of them, and what nothing can
+//! help any more, as the hours of a day that are over, is not told. There is always one.
 
 use super::Way;
+use super::help::{Help, Lacking};
 use super::jobs::Job;
 use super::quote::{self, Obstacle};
+use super::room::Room;
 use super::schedule::Unscheduled;
 use crate::calls::PortCall;
 use crate::input::{Firm, Input};
 use chrono::NaiveDate;
-use std::collections::{BTreeMap, BTreeSet};
 
 /// Lines of either list.
 const MOST: usize = 8;
 
-/// All jobs that are not in the plan, or there after their due date.
+/// All jobs that are not in the plan, or there after their due date; `unmet` is what each
+/// costs undone, in cents.
 pub(super) fn unscheduled(
     input: &Input,
     jobs: &[Job<'_>],
     made: &[Option<&Way<'_>>],
+    unmet: &[i64],
 ) -> Vec<Unscheduled> {
-    let mut taken: BTreeMap<(&str, NaiveDate), Vec<&str>> = BTreeMap::new();
-    for way in made.iter().flatten() {
-        let firm = input.firms[way.firm].id.as_str();
-        taken
-            .entry((firm, way.day))
-            .or_default()
-            .push(jobs[way.job].vessel.called());
-    }
-    let overdue = |job: &Job<'_>| job.is_overdue(input.now.utc_date());
-    let open = jobs.iter().zip(made).filter(|(job, way)| match way {
+    let room = Room::of(input, jobs, made);
+    let open = jobs.iter().zip(made).zip(unmet);
+    let open = open.filter(|((job, way), _)| match way {
         None => true,
-        Some(way) => way.quote.late_days > 0 && !overdue(job),
+        Some(way) => way.quote.late_days > 0 && !job.is_overdue(input.now.utc_date()),
     });
-    open.map(|(job, way)| {
-        let mut found = Found::default();
+    open.map(|((job, way), unmet)| {
+        let mut found = Found {
+            help: Help::new(input, job, &room, way.is_some()),
+            because: Vec::new(),
+            unmet: *unmet,
+        };
         if let Some(way) = way {
-            found.late(job, way);
+            found.late(way);
         }
-        found.look(input, job, &taken);
+        found.look();
         Unscheduled {
             needs: job.ids(),
             vessel: job.vessel.id.clone(),
@@ -47,67 +48,35 @@ pub(super) fn unscheduled(
             urgency: job.urgency(),
             reason: job.needs[0].reason.clone(),
             planned_late: way.is_some(),
-            would_help: found.help(),
+            would_help: found.help.lines(MOST),
             because: found.because,
         }
     })
     .collect()
 }
 
-#[derive(Default)]
-struct Found {
+struct Found<'a> {
+    help: Help<'a>,
     because: Vec<String>,
-    /// By how near each is: what is only a question of teams first.
-    near: BTreeSet<(u8, NaiveDate, String)>,
-    planned_late: bool,
+    unmet: i64,
 }
 
-/// That a call somewhere would help. No ship makes one by the day that it is, or before.
-fn called_in_time(input: &Input, job: &Job<'_>, place: &str) -> String {
-    let today = input.now.utc_date();
-    if job.due() <= today || job.is_overdue(today) {
-        format!("as soon as she can call at {place}")
-    } else {
-        format!("a call by {} at {place}", job.due())
-    }
-}
-
-impl Found {
+impl Found<'_> {
     /// It is planned, and late.
-    fn late(&mut self, job: &Job<'_>, way: &Way<'_>) {
-        let (late, due, day) = (way.quote.late_days, job.due(), way.day);
+    fn late(&mut self, way: &Way<'_>) {
+        let (late, due) = (way.quote.late_days, self.help.job.due());
         let days = if late == 1 { "day" } else { "days" };
-        self.planned_late = true;
         self.say(format!("planned {late} {days} after the due date, {due}"));
-        self.extension(job, day);
+        self.help.extension(way.day);
     }
 
-    /// Who has set the due date may set another.
-    fn extension(&mut self, job: &Job<'_>, day: NaiveDate) {
-        let whose = match job.vessel.flag {
-            Some(flag) => format!("flag {}", flag.letters()),
-            None => "the flag".to_owned(),
-        };
-        let help = format!("an extension to {day}, asked of {whose} where its rules know one");
-        self.near.insert((4, day, help));
-    }
-
-    fn look(
-        &mut self,
-        input: &Input,
-        job: &Job<'_>,
-        taken: &BTreeMap<(&str, NaiveDate), Vec<&str>>,
-    ) {
-        let in_time: Vec<&PortCall> = job
-            .calls
-            .iter()
-            .filter(|call| {
-                call.eta.date(quote::port_of(call).zone) <= job.due()
-                    || job.is_overdue(input.now.utc_date())
-            })
-            .copied()
-            .collect();
-        if in_time.is_empty() {
+    fn look(&mut self) {
+        let job = self.help.job;
+        let overdue = job.is_overdue(self.help.input.now.utc_date());
+        let in_time =
+            |call: &&PortCall| overdue || call.eta.date(quote::port_of(call).zone) <= job.due();
+        let has_one = job.calls.iter().any(in_time);
+        if !has_one {
             self.say(match job.calls.first() {
                 None => "no port call is known".to_owned(),
                 Some(call) => format!(
@@ -117,38 +86,20 @@ impl Found {
                     quote::port_of(call).name
                 ),
             });
-            let served: BTreeSet<String> = input
-                .firms
-                .iter()
-                .filter(|firm| firm.is_accepted_by(job.vessel.flag))
-                .flat_map(|firm| firm.ports.iter().map(|served| served.port.to_string()))
-                .take(200)
-                .collect();
-            let ports: Vec<String> = served.into_iter().take(12).collect();
-            let help = if ports.is_empty() {
-                "a firm that the flag accepts: there is none".to_owned()
-            } else {
-                let ports = ports.join(", ");
-                called_in_time(input, job, &format!("a port that a firm serves: {ports}"))
-            };
-            self.near.insert((3, job.due(), help));
         }
         for call in &job.calls {
-            self.look_at_call(input, job, call, taken);
+            self.look_at_call(call);
+        }
+        if !has_one || self.help.is_empty() {
+            self.help.another_call();
         }
     }
 
-    fn look_at_call(
-        &mut self,
-        input: &Input,
-        job: &Job<'_>,
-        call: &PortCall,
-        taken: &BTreeMap<(&str, NaiveDate), Vec<&str>>,
-    ) {
-        let port = quote::port_of(call);
-        let serving: Vec<&Firm> = input
-            .firms
-            .iter()
+    fn look_at_call(&mut self, call: &PortCall) {
+        let (input, port) = (self.help.input, quote::port_of(call));
+        let mut serving = input.firms.iter();
+        let serving: Vec<&Firm> = serving
+            .by_ref()
             .filter(|firm| firm.travel(call.port).is_some())
             .collect();
         if serving.is_empty() {
@@ -158,133 +109,66 @@ impl Found {
                 call.port,
                 call.called()
             ));
-            let day = call.eta.date(port.zone);
-            if day <= job.due() {
-                let help = format!("a firm at {} ({}) on {day}", port.name, call.port);
-                self.near.insert((2, day, help));
-            }
+            self.help.a_firm_at(call);
         }
         for firm in serving {
-            // Of what is planned late, other late days would help nobody.
-            let (late, days) = (self.planned_late, quote::days(call, input.now));
-            for day in days.filter(|day| !late || *day <= job.due()) {
-                match quote::quote(input, job, call, firm, day) {
-                    Ok(_) => self.taken(firm, call, day, taken),
-                    Err(obstacles) => {
-                        let come = format!("{}: {} could come", port.name, firm.called());
-                        let in_time = called_in_time(input, job, &come);
-                        self.obstacles(job, call, firm, day, &obstacles, &in_time);
+            for day in quote::days(call, input.now) {
+                // Of what is planned late, other late days would help nobody.
+                if self.help.planned_late && day > self.help.job.due() {
+                    continue;
+                }
+                self.look_at_day(call, firm, day);
+            }
+        }
+    }
+
+    fn look_at_day(&mut self, call: &PortCall, firm: &Firm, day: NaiveDate) {
+        let (input, job) = (self.help.input, self.help.job);
+        match quote::quote(input, job, call, firm, day) {
+            Ok(quote) => {
+                let travel = super::travel(firm, call.port);
+                // What is done late anyway is done in time for less than it is worth.
+                let too_dear = if self.help.planned_late {
+                    self.help.too_dear(firm, call.port).unwrap_or(-1)
+                } else {
+                    quote.cost() + travel - self.unmet
+                };
+                self.nothing_but_others(firm, call, day, too_dear);
+            }
+            Err(obstacles) => {
+                let is_late_only = obstacles == [Obstacle::AfterDue];
+                for obstacle in &obstacles {
+                    if *obstacle != Obstacle::AfterDue || is_late_only {
+                        self.say(because(job, call, firm, day, *obstacle));
                     }
                 }
+                self.help.against(call, firm, day, &obstacles);
             }
         }
     }
 
     /// Nothing stands against it but other jobs, or its price.
-    fn taken(
-        &mut self,
-        firm: &Firm,
-        call: &PortCall,
-        day: NaiveDate,
-        taken: &BTreeMap<(&str, NaiveDate), Vec<&str>>,
-    ) {
+    fn nothing_but_others(&mut self, firm: &Firm, call: &PortCall, day: NaiveDate, too_dear: i64) {
         let (name, port) = (firm.called(), quote::port_of(call).name);
-        let Some(others) = taken.get(&(firm.id.as_str(), day)) else {
-            if firm.teams == 0 {
-                self.say(format!("{name} has no teams"));
-            } else if firm.teams_on(day) == 0 {
-                self.say(format!("{name}'s teams of {day} are booked"));
-                let help = format!("one more team of {name} on {day}, at {port}");
-                self.near.insert((0, day, help));
-            } else {
-                self.say(format!(
-                    "{name} at {port} on {day} costs more than leaving it undone"
-                ));
-            }
-            return;
-        };
-        self.say(format!(
-            "{name}'s teams of {day} go to {}",
-            others.join(", ")
-        ));
-        self.near.insert((
-            0,
-            day,
-            format!("one more team of {name} on {day}, at {port}"),
-        ));
-    }
-
-    fn obstacles(
-        &mut self,
-        job: &Job<'_>,
-        call: &PortCall,
-        firm: &Firm,
-        day: NaiveDate,
-        obstacles: &[Obstacle],
-        in_time: &str,
-    ) {
-        let (name, port, due) = (firm.called(), quote::port_of(call).name, job.due());
-        // What would help against days that are too late is about the due date.
-        let about = if obstacles.contains(&Obstacle::AfterDue) {
-            due
+        let teams = self.help.room.lacking(firm, call.port, day);
+        let others = self.help.room.others(firm, day);
+        self.say(if teams > 0 && !others.is_empty() {
+            format!("{name}'s teams of {day} go to {}", others.join(", "))
+        } else if firm.teams == 0 {
+            format!("{name} has no teams")
+        } else if teams > 0 {
+            format!("{name}'s teams of {day} are booked")
+        } else if too_dear >= 0 {
+            format!("{name} at {port} on {day} costs more than leaving it undone")
         } else {
-            day
-        };
-        let only = |help: String| (obstacles.len() == 1).then_some((1, about, help));
-        let licence = job.vessel.licence.as_deref().unwrap_or_default();
-        let flag = job.vessel.flag_in_words();
-        for obstacle in obstacles {
-            let (because, help) = match obstacle {
-                Obstacle::Flag => (
-                    format!("{flag} does not accept {name}, which serves {port}"),
-                    format!("{flag} accepting {name}, at {port} on {day}"),
-                ),
-                Obstacle::Licence => (
-                    format!("{name} at {port} lacks licence {licence}"),
-                    format!("{name} holding licence {licence}, at {port} on {day}"),
-                ),
-                Obstacle::NotWorking => (
-                    format!("{name} does not work on {}, {day}", day.format("%A")),
-                    format!("{name} working at {port} on {}, {day}", day.format("%A")),
-                ),
-                Obstacle::LeadTime => (
-                    format!(
-                        "{name} wants to be asked {} h ahead, too long for {day}",
-                        firm.lead_time_h
-                    ),
-                    format!(
-                        "{name}, or another firm, coming to {port} at shorter notice than {} h, \
-                         on {day}",
-                        firm.lead_time_h
-                    ),
-                ),
-                Obstacle::Stay => (
-                    format!(
-                        "call {} leaves {name} too few working hours on {day} at {port}",
-                        call.called()
-                    ),
-                    format!("a longer stay at {port} on {day}, for {name}"),
-                ),
-                Obstacle::AfterDue => (
-                    format!(
-                        "call {} at {port} on {day} is after the due date, {due}",
-                        call.called()
-                    ),
-                    in_time.to_owned(),
-                ),
-                Obstacle::Declined => (
-                    format!("{name} declined"),
-                    format!("{name} accepting after all, at {port} on {day}"),
-                ),
-            };
-            if *obstacle != Obstacle::AfterDue || obstacles.len() == 1 {
-                self.say(because);
-            }
-            self.near.extend(only(help));
-            if *obstacle == Obstacle::AfterDue && obstacles.len() == 1 {
-                self.extension(job, day);
-            }
+            format!("{name} at {port} on {day} was not found in the time of the search")
+        });
+        let mut lacking = Lacking::default();
+        lacking.teams(firm, port, day, teams);
+        if too_dear >= 0 {
+            lacking.price(firm, port, day, too_dear);
         }
+        self.help.add(0, day, lacking);
     }
 
     fn say(&mut self, because: String) {
@@ -292,12 +176,39 @@ impl Found {
             self.because.push(because);
         }
     }
+}
 
-    fn help(&self) -> Vec<String> {
-        self.near
-            .iter()
-            .map(|(_, _, help)| help.clone())
-            .take(MOST)
-            .collect()
+/// What an obstacle is, in words.
+fn because(
+    job: &Job<'_>,
+    call: &PortCall,
+    firm: &Firm,
+    day: NaiveDate,
+    obstacle: Obstacle,
+) -> String {
+    let (name, port) = (firm.called(), quote::port_of(call).name);
+    match obstacle {
+        Obstacle::Flag => {
+            let flag = job.vessel.flag_in_words();
+            format!("{flag} does not accept {name}, which serves {port}")
+        }
+        Obstacle::Licence => {
+            let licence = job.vessel.licence.as_deref().unwrap_or_default();
+            format!("{name} at {port} lacks licence {licence}")
+        }
+        Obstacle::NotWorking => format!("{name} does not work on {}, {day}", day.format("%A")),
+        Obstacle::LeadTime => {
+            let lead_time_h = firm.lead_time_h;
+            format!("{name} wants to be asked {lead_time_h} h ahead, too long for {day}")
+        }
+        Obstacle::Stay => {
+            let call = call.called();
+            format!("call {call} leaves {name} too few working hours on {day} at {port}")
+        }
+        Obstacle::AfterDue => {
+            let (call, due) = (call.called(), job.due());
+            format!("call {call} at {port} on {day} is after the due date, {due}")
+        }
+        Obstacle::Declined => format!("{name} declined"),
     }
 }

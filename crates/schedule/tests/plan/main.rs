@@ -5,6 +5,7 @@
 mod confirmed;
 mod documented;
 mod explained;
+mod helpful;
 
 use binnacle_schedule::input::read;
 use binnacle_schedule::plan::{Schedule, plan};

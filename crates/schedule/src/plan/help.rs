@@ -1,0 +1,390 @@
+//! What would let a job be scheduled: the things that are lacking, together where one of them
+//! is not enough.
+//!
+//! What always holds: a line that is told names everything that its way lacks.
+
+use super::jobs::Job;
+use super::quote::{self, Obstacle};
+use super::room::Room;
+use crate::calls::PortCall;
+use crate::input::{Firm, Input};
+use crate::ports::{self, PortCode};
+use crate::time::{Eur, Instant};
+use chrono::{Days, NaiveDate};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// So many days ahead somebody is looked for who could come.
+const DAYS_AHEAD: u64 = 90;
+/// Ports that are named as served.
+const MOST_PORTS: usize = 12;
+/// The hours of a firm that nobody knows yet.
+const USUAL_HOURS: (f64, f64) = (8.0, 18.0);
+
+/// All that one way lacks.
+#[derive(Default)]
+pub(super) struct Lacking(Vec<String>);
+
+impl Lacking {
+    pub(super) fn teams(&mut self, firm: &Firm, port: &str, day: NaiveDate, teams: u32) {
+        let name = firm.called();
+        match teams {
+            0 => {}
+            1 => self
+                .0
+                .push(format!("one more team of {name} on {day}, at {port}")),
+            _ => self
+                .0
+                .push(format!("{teams} more teams of {name} on {day}, at {port}")),
+        }
+    }
+
+    /// Cents by which fee and travel are too high.
+    pub(super) fn price(&mut self, firm: &Firm, port: &str, day: NaiveDate, too_dear: i64) {
+        let euros = too_dear.div_euclid(100) + 1;
+        let name = firm.called();
+        self.0.push(format!(
+            "{name} coming to {port} on {day} for {euros} euros less"
+        ));
+    }
+}
+
+/// What would help one job.
+pub(super) struct Help<'a> {
+    pub(super) input: &'a Input,
+    pub(super) job: &'a Job<'a>,
+    pub(super) room: &'a Room<'a>,
+    pub(super) planned_late: bool,
+    /// By how many things it takes, of which kind they are, and how soon it would be.
+    near: BTreeSet<(usize, u8, NaiveDate, String)>,
+}
+
+impl<'a> Help<'a> {
+    pub(super) fn new(
+        input: &'a Input,
+        job: &'a Job<'a>,
+        room: &'a Room<'a>,
+        planned_late: bool,
+    ) -> Help<'a> {
+        Help {
+            input,
+            job,
+            room,
+            planned_late,
+            near: BTreeSet::new(),
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.near.is_empty()
+    }
+
+    pub(super) fn lines(&self, most: usize) -> Vec<String> {
+        // Of what takes several things nobody wants to hear where one is enough.
+        let least = self.near.first().map_or(0, |(things, ..)| *things);
+        let lines = self.near.iter().filter(|(things, ..)| *things == least);
+        lines.take(most).map(|(.., line)| line.clone()).collect()
+    }
+
+    pub(super) fn add(&mut self, kind: u8, day: NaiveDate, Lacking(lacking): Lacking) {
+        let things = lacking.len();
+        if things > 0 {
+            self.near.insert((things, kind, day, lacking.join(" and ")));
+        }
+    }
+
+    /// Who has set the due date may set another.
+    pub(super) fn extension(&mut self, day: NaiveDate) {
+        let help = self.extension_to(day);
+        self.add(4, day, Lacking(vec![help]));
+    }
+
+    fn extension_to(&self, day: NaiveDate) -> String {
+        let whose = match self.job.vessel.flag {
+            Some(flag) => format!("flag {}", flag.letters()),
+            None => "the flag".to_owned(),
+        };
+        format!("an extension to {day}, asked of {whose} where its rules know one")
+    }
+
+    /// Whether a job on that day would do, as far as the due date goes.
+    fn may_be_on(&self, day: NaiveDate) -> bool {
+        let late_days = (day - self.job.due()).num_days();
+        let in_cap = |most: u32| late_days <= i64::from(most);
+        late_days <= 0
+            || self.job.is_overdue(self.input.now.utc_date())
+            || !self.planned_late && self.input.weights.late_days.is_none_or(in_cap)
+    }
+
+    /// What stands against a firm's day of a call.
+    pub(super) fn against(
+        &mut self,
+        call: &PortCall,
+        firm: &Firm,
+        day: NaiveDate,
+        obstacles: &[Obstacle],
+    ) {
+        if obstacles == [Obstacle::AfterDue] {
+            self.earlier(firm, call.port);
+        }
+        let Some(mut lacking) = self.lacking_of_firm(firm, call, day, obstacles) else {
+            return;
+        };
+        let port = quote::port_of(call).name;
+        lacking.teams(firm, port, day, self.room.lacking(firm, call.port, day));
+        if let Some(too_dear) = self.too_dear(firm, call.port) {
+            lacking.price(firm, port, day, too_dear);
+        }
+        let (mut kind, mut about) = (1, day);
+        if obstacles.contains(&Obstacle::AfterDue) {
+            lacking.0.push(self.extension_to(day));
+            // What would help against days that are too late is about the due date.
+            (kind, about) = (4, self.job.due().max(day));
+        }
+        self.add(kind, about, lacking);
+    }
+
+    /// None where nothing helps: the hours of that day are over.
+    fn lacking_of_firm(
+        &self,
+        firm: &Firm,
+        call: &PortCall,
+        day: NaiveDate,
+        obstacles: &[Obstacle],
+    ) -> Option<Lacking> {
+        let port = quote::port_of(call);
+        let (name, at) = (firm.called(), port.name);
+        let mut lacking =
+            Lacking(self.lacking_of_terms(firm, obstacles, &format!("at {at} on {day}")));
+        if obstacles.contains(&Obstacle::NotWorking) {
+            let weekday = day.format("%A");
+            lacking
+                .0
+                .push(format!("{name} working at {at} on {weekday}, {day}"));
+        }
+        let (now, job_h) = (self.input.now, self.input.weights.job_h);
+        let hours = [firm.first_hour, firm.last_hour];
+        let [opens, closes] = hours.map(|hour| Instant::at(day, hour, port.zone));
+        let is_short = obstacles.contains(&Obstacle::Stay);
+        let (from, to) = if is_short {
+            lacking
+                .0
+                .push(format!("a longer stay at {at} on {day}, for {name}"));
+            (opens, closes)
+        } else {
+            (opens.max(call.eta), closes.min(call.etd))
+        };
+        if firm.last_hour - firm.first_hour < job_h {
+            return None;
+        }
+        let notice_h = (to.hours_since(now) - job_h).floor();
+        if to.hours_since(from.max(now)) < job_h || notice_h < 0.0 {
+            return None;
+        }
+        if firm.lead_time_h > notice_h {
+            lacking.0.push(format!(
+                "{name} coming to {at} at {notice_h} h notice, on {day}"
+            ));
+        }
+        Some(lacking)
+    }
+
+    /// What a firm lacks wherever she is.
+    fn lacking_of_terms(&self, firm: &Firm, obstacles: &[Obstacle], there: &str) -> Vec<String> {
+        let name = firm.called();
+        let mut lacking = Vec::new();
+        if obstacles.contains(&Obstacle::Flag) {
+            let flag = self.job.vessel.flag_in_words();
+            lacking.push(format!("{flag} accepting {name}, {there}"));
+        }
+        if obstacles.contains(&Obstacle::Licence) {
+            let licence = self.job.vessel.licence.as_deref().unwrap_or_default();
+            lacking.push(format!("{name} holding licence {licence}, {there}"));
+        }
+        if obstacles.contains(&Obstacle::Declined) {
+            lacking.push(format!("{name} accepting after all, {there}"));
+        }
+        lacking
+    }
+
+    /// Cents by which a firm is dearer than leaving the job undone may be; none where it is
+    /// worth its price on any day.
+    pub(super) fn too_dear(&self, firm: &Firm, port: PortCode) -> Option<i64> {
+        let more = self.job.needs.iter().skip(1);
+        let extra: i64 = more.map(|_| firm.extra_compass_eur.cents()).sum();
+        let price = firm.fee_eur.cents() + extra + firm.travel(port).map_or(0, Eur::cents);
+        let worth = self.input.weights.unmet_eur.of(self.job.urgency()).cents();
+        (price >= worth).then_some(price - worth)
+    }
+
+    /// Somebody at a port that nobody serves.
+    pub(super) fn a_firm_at(&mut self, call: &PortCall) {
+        let (port, now) = (quote::port_of(call), self.input.now);
+        let long_enough = |day: &NaiveDate| {
+            let [opens, closes] =
+                [USUAL_HOURS.0, USUAL_HOURS.1].map(|hour| Instant::at(*day, hour, port.zone));
+            let (from, to) = (opens.max(call.eta).max(now), closes.min(call.etd));
+            to.hours_since(from) >= self.input.weights.job_h
+        };
+        let Some(day) = quote::days(call, now).find(long_enough) else {
+            return;
+        };
+        if self.planned_late && day > self.job.due() {
+            return;
+        }
+        let mut lacking = Lacking(vec![format!(
+            "a firm at {} ({}) on {day}",
+            port.name, call.port
+        )]);
+        if !self.may_be_on(day) {
+            lacking.0.push(self.extension_to(day));
+        }
+        self.add(2, day, lacking);
+    }
+
+    /// The first day on which a firm could come to a port, if she called there and it lacked
+    /// nothing that its terms say.
+    fn first_day(&self, firm: &Firm, port: PortCode) -> Option<NaiveDate> {
+        let zone = ports::zone(port);
+        let (now, job_h) = (self.input.now, self.input.weights.job_h);
+        let ready = now.plus_hours(firm.lead_time_h);
+        let today = now.date(zone);
+        let mut days = (0..DAYS_AHEAD).filter_map(|ahead| today.checked_add_days(Days::new(ahead)));
+        days.find(|day| {
+            let hours = [firm.first_hour, firm.last_hour];
+            let [opens, closes] = hours.map(|hour| Instant::at(*day, hour, zone));
+            firm.works(*day)
+                && closes.hours_since(opens.max(ready)) >= job_h
+                && self.room.lacking(firm, port, *day) == 0
+        })
+    }
+
+    /// What stands against a firm wherever and whenever she calls.
+    fn never(&self, firm: &Firm) -> Vec<Obstacle> {
+        let mut never = Vec::new();
+        if !firm.is_accepted_by(self.job.vessel.flag) {
+            never.push(Obstacle::Flag);
+        }
+        let licence = self.job.vessel.licence.as_ref();
+        if licence.is_some_and(|asked| !firm.licences.contains(asked)) {
+            never.push(Obstacle::Licence);
+        }
+        let has_declined = self.input.declined.iter().any(|declined| {
+            declined.firm == firm.id
+                && declined.call.is_none()
+                && self.job.needs.iter().any(|need| need.id == declined.need)
+        });
+        if has_declined {
+            never.push(Obstacle::Declined);
+        }
+        never
+    }
+
+    /// A call in time where a firm could have come late.
+    fn earlier(&mut self, firm: &Firm, port: PortCode) {
+        let able = self.never(firm).is_empty() && self.too_dear(firm, port).is_none();
+        let Some(day) = self.first_day(firm, port).filter(|_| able) else {
+            return;
+        };
+        let (name, at) = (
+            firm.called(),
+            ports::find(port).map_or("", |port| port.name),
+        );
+        let mut lacking = Lacking(vec![self.called(day, &format!("{at}: {name} could come"))]);
+        if !self.may_be_on(day) {
+            lacking.0.push(self.extension_to(day));
+        }
+        self.add(1, self.job.due(), lacking);
+    }
+
+    /// That a call somewhere would help, where a firm could come first on a day. No ship makes
+    /// one by a day that it is, or before.
+    fn called(&self, first: NaiveDate, place: &str) -> String {
+        let (today, due) = (self.input.now.utc_date(), self.job.due());
+        if due <= today || self.job.is_overdue(today) || first > due {
+            format!("as soon as she can call at {place}")
+        } else {
+            format!("a call by {due} at {place}")
+        }
+    }
+
+    /// A call at any port that a firm serves.
+    pub(super) fn another_call(&mut self) {
+        let due = self.job.due();
+        let (mut in_time, mut later) = (BTreeSet::new(), BTreeMap::new());
+        for firm in &self.input.firms {
+            if !self.never(firm).is_empty() {
+                continue;
+            }
+            for served in &firm.ports {
+                let port = served.port;
+                let Some(day) = self.first_day(firm, port) else {
+                    continue;
+                };
+                if self.too_dear(firm, port).is_some() {
+                    continue;
+                }
+                if day <= due || self.job.is_overdue(self.input.now.utc_date()) {
+                    in_time.insert(port);
+                } else {
+                    let first = later.entry(port).or_insert(day);
+                    *first = day.min(*first);
+                }
+            }
+        }
+        let named = |ports: &BTreeSet<PortCode>| {
+            let ports = ports.iter().take(MOST_PORTS).map(ToString::to_string);
+            format!(
+                "a port that a firm serves: {}",
+                ports.collect::<Vec<_>>().join(", ")
+            )
+        };
+        if !in_time.is_empty() {
+            let help = self.called(due, &named(&in_time));
+            self.add(3, due, Lacking(vec![help]));
+        } else if let Some(first) = later.values().min().copied() {
+            let soonest = later.iter().filter(|(_, day)| **day == first);
+            let soonest = soonest.map(|(port, _)| *port).collect();
+            let mut lacking = Lacking(vec![self.called(first, &named(&soonest))]);
+            if !self.may_be_on(first) {
+                lacking.0.push(self.extension_to(first));
+            }
+            // What is planned late already would be no earlier.
+            if !self.planned_late || !self.may_be_on(first) {
+                self.add(3, due, lacking);
+            }
+        } else {
+            self.somebody();
+        }
+    }
+
+    /// No firm could come anywhere: what the first of them lack, or another firm.
+    fn somebody(&mut self) {
+        for firm in &self.input.firms {
+            let never = self.never(firm);
+            let Some(served) = firm.ports.first() else {
+                continue;
+            };
+            let Some(day) = self
+                .first_day(firm, served.port)
+                .filter(|_| !never.is_empty())
+            else {
+                continue;
+            };
+            let at = ports::find(served.port).map_or("", |port| port.name);
+            let mut lacking = Lacking(self.lacking_of_terms(firm, &never, &format!("at {at}")));
+            if let Some(too_dear) = self.too_dear(firm, served.port) {
+                lacking.price(firm, at, day, too_dear);
+            }
+            lacking.0.push(self.called(day, at));
+            if !self.may_be_on(day) {
+                lacking.0.push(self.extension_to(day));
+            }
+            self.add(3, self.job.due(), lacking);
+        }
+        if self.is_empty() {
+            let help =
+                "another firm that may adjust her, at a port where she calls for a working day";
+            self.add(5, self.job.due(), Lacking(vec![help.to_owned()]));
+        }
+    }
+}
