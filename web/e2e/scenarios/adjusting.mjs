@@ -134,7 +134,7 @@ export const adjusting = {
       // Her call tells where and when; who can do it there comes first.
       await page.getByRole('radio', { name: /^Valletta \(MTMLA\)/ }).check();
       assert.equal(await page.getByLabel('Berth (optional)').inputValue(), 'A5');
-      await page.getByText(/^On board: .* UTC\+1$/).waitFor();
+      await page.getByText(/^There: .* UTC\+1$/).waitFor();
       const can = page.getByRole('group', { name: 'Who adjusts' });
       await can.getByText('2 firms cannot do it there and then: why').waitFor();
       await can.getByText('Maas Compass: No terms are said.').waitFor();
