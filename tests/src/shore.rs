@@ -16,6 +16,8 @@ use tokio::time::timeout;
 
 const EMAIL: &str = "captain@test.example";
 const PASSWORD: &str = "correct-horse-battery";
+/// The server may stand at another host's address: its metrics are not for whoever is near.
+const METRICS_TOKEN: &str = "scraper-of-these-tests";
 /// A start migrates the database; machines may be busy.
 const START: Duration = Duration::from_mins(1);
 
@@ -133,6 +135,7 @@ impl Shore {
             .args(["serve", "--listen", listen])
             .env("BINNACLE_DATABASE_URL", self.database.url())
             .env("BINNACLE_ANALYSIS_DELAY_S", "0")
+            .env("BINNACLE_METRICS_TOKEN", METRICS_TOKEN)
             .stdout(Stdio::piped());
         if let Some(tls) = &self.tls {
             command.arg("--tls-cert").arg(&tls.chain);
@@ -187,7 +190,13 @@ impl Shore {
     /// When the server does not say.
     pub async fn jobs(&self) -> Result<u64> {
         let metrics = self.http.get(format!("{}/metrics", self.url));
-        let metrics = metrics.send().await?.error_for_status()?.text().await?;
+        let metrics = metrics
+            .bearer_auth(METRICS_TOKEN)
+            .send()
+            .await?
+            .error_for_status()?
+            .text()
+            .await?;
         let waiting = metrics
             .lines()
             .filter(|line| line.starts_with("binnacle_jobs{"))
