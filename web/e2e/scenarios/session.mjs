@@ -39,6 +39,26 @@ export const session = {
     },
   },
 
+  'who goes from page to page is asked for, and told what happens, once': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.goto('/');
+      await page.getByRole('heading', { name: 'Fleet', level: 1 }).waitFor();
+      await page.getByText('Live', { exact: true }).waitFor();
+      const asked = [];
+      page.on('request', (request) => asked.push(new URL(request.url()).pathname));
+      for (const name of ['Schedule', 'Reports', 'Alerts', 'Fleet']) {
+        await page.getByRole('banner').getByRole('link', { name }).click();
+        await page.getByRole('heading', { name, level: 1 }).waitFor();
+      }
+      await page.waitForLoadState('networkidle');
+      const again = asked.filter((path) => /\/(me|events|alerts|notifications)$/.test(path));
+      // The page of the alerts asks for those that were cleared lately.
+      assert.deepEqual(again, ['/api/v1/alerts']);
+    },
+  },
+
   'an address of nobody shows nothing': {
     allowedErrors: [notSignedIn, /status of 404 .*\/api\/v1\/vessels\//],
     async run({ page, settings }) {
