@@ -2,11 +2,11 @@
 //! across the needle on them, and no more.
 
 use crate::voyages::fleet::{Event, Name, Plan, START, sail_log};
-use crate::voyages::{predicted, true_deviation};
+use crate::voyages::{Variety, predicted, true_deviation};
 use crate::{HOUR_S, began, calm, is_sound, of_the_ship, run};
 use binnacle_magnetics::analyse::Analysis;
 use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::change::Cause;
+use binnacle_magnetics::change::{Cause, Change};
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 
@@ -149,4 +149,33 @@ fn what_one_course_does_not_show_of_a_strike_is_open() {
     }
     assert!(on_one_course > 12, "{on_one_course}");
     assert!(10 * open >= 9 * on_one_course, "{open} of {on_one_course}");
+}
+
+/// The reading in which the first two are struck is of neither ship, and on her next course
+/// the first reading after it would be another strike; on the first two courses of the others
+/// the strike does what a zero that moved would do.
+#[test]
+fn a_strike_is_told_once_whatever_courses_come_after_it() {
+    let ships = [
+        (381_005, Variety::Poor),
+        (381_019, Variety::Medium),
+        (381_046, Variety::Medium),
+        (382_153, Variety::Medium),
+    ];
+    for (seed, variety) in ships {
+        let plan = Plan {
+            gyro_faults: 0.0,
+            ..Plan::of(Event::Lightning(4000.0), variety)
+        };
+        let log = sail_log(seed, &plan);
+        let struck = began(&log, Name::Lightning);
+        let until = log
+            .samples
+            .partition_point(|s| s.time.seconds_since(struck) < 6.0 * DAY_S);
+        let analysis = run(&log.samples[..until]);
+        let since = |c: &&Change| c.detected_at > struck;
+        let told: Vec<_> = of_the_ship(&analysis).into_iter().filter(since).collect();
+        assert_eq!(told.len(), 1, "{seed}: {told:?}");
+        assert_eq!(told[0].cause, Cause::LightningOrShock, "{seed}");
+    }
 }

@@ -37,6 +37,11 @@ impl Search<'_> {
                 return self.come_back(k, lead, back, leads);
             }
         }
+        if kind == Kind::Step
+            && let Some((event, filter)) = self.same_step(k, &dated)
+        {
+            return self.step_is(k, event, filter);
+        }
         let before = self.bank.spawns[dated.from].origin().clone();
         let calm = at_before(dated.kind, &before, &dated.filter.unknowns());
         let before = self.run(before, dated.at_spawn..dated.first, &calm);

@@ -5,6 +5,7 @@
 //! decides what it tells; every event lies between two rows; the search ends.
 
 mod adopt;
+mod anew;
 mod borne_out;
 mod burst;
 mod date;

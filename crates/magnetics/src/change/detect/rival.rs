@@ -5,11 +5,13 @@
 //! first; what explains the rows since far better takes its place, once, and it stays
 //! one change.
 
+use super::anew::ANEW_NATS;
 use super::date::Dated;
 use super::event::{Event, snapshot, take_out};
 use super::unsettled::Unsettled;
 use super::{Leads, Search, What};
 use crate::change::bank::Kind;
+use crate::change::calls::Base;
 use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
 use crate::change::upset::misaligned;
 
@@ -66,25 +68,30 @@ impl Search<'_> {
 
     /// The zero moved when the step is dated.
     fn misaligned(&self, k: usize, dated: &Dated, before: &Filter) -> Rival {
-        let mut filter = before.clone();
-        // So often, for the rows are to be linearised at where it ends.
-        for _ in 0..ZERO_ROUNDS {
-            let at = filter.unknowns();
-            let moved_deg = filter.mean[CONSTANT_STATE] - before.mean[CONSTANT_STATE];
-            let next = self.measure(dated.first, &at);
-            let size_deg = before.astray_deg(&next).max(ZERO_DEG);
-            let moved = misaligned(before, moved_deg, size_deg);
-            filter = self.run(moved, dated.first..k + 1, &at);
-        }
         Rival {
             what: What::Alignment,
             event: self.events.len() - 1,
             drift: 0.0,
             first: dated.first,
             between: dated.between,
-            filter,
+            filter: self.zero_moved(k, before, dated.first),
             before: before.clone(),
         }
+    }
+
+    /// The filter with the zero having moved before row `first`, having read all rows until `k`.
+    fn zero_moved(&self, k: usize, before: &Filter, first: usize) -> Filter {
+        let mut filter = before.clone();
+        // So often, for the rows are to be linearised at where it ends.
+        for _ in 0..ZERO_ROUNDS {
+            let at = filter.unknowns();
+            let moved_deg = filter.mean[CONSTANT_STATE] - before.mean[CONSTANT_STATE];
+            let next = self.measure(first, &at);
+            let size_deg = before.astray_deg(&next).max(ZERO_DEG);
+            let moved = misaligned(before, moved_deg, size_deg);
+            filter = self.run(moved, first..k + 1, &at);
+        }
+        filter
     }
 
     /// The ship has drifted since the likeliest of the times that the bank keeps.
@@ -183,13 +190,34 @@ impl Search<'_> {
         {
             return false;
         }
+        if self.rivals[place].what == What::Alignment {
+            let rival = &self.rivals[place];
+            let mut step = self.step_anew(k, &rival.before, rival.first);
+            let zero = self.zero_moved(k, &rival.before, rival.first);
+            let trails = zero.log_likelihood - step.log_likelihood;
+            if trails < ANEW_NATS {
+                // What was gained meanwhile by being told of a burst, it has gained, too.
+                step.log_likelihood = rival.filter.log_likelihood - trails;
+                self.step_is(k, of, step);
+                return true;
+            }
+        }
         let rival = self.rivals.swap_remove(place);
         self.rivals.clear();
         self.calls.forget(of);
         self.forget_later_steps(of);
         let event = &mut self.events[of];
+        let was = Rival {
+            what: event.what,
+            event: of,
+            drift: 0.0,
+            first: event.first,
+            between: event.between,
+            filter: self.null.clone(),
+            before: rival.before.clone(),
+        };
         event.what = rival.what;
-        event.over_step = nats;
+        event.over_step = if rival.what == What::Step { 0.0 } else { nats };
         event.before = snapshot(&rival.before);
         event.after = snapshot(&rival.filter);
         (event.first, event.between) = (rival.first, rival.between);
@@ -197,9 +225,35 @@ impl Search<'_> {
             What::Drift => Unsettled::creeping(k, rival.drift),
             _ => Unsettled::default(),
         };
-        self.misaligned = (rival.what == What::Alignment).then_some((of, rival.before));
+        self.misaligned = None;
+        // Two courses may tell of either what the next one does not.
+        let mut rivals = Vec::new();
+        match rival.what {
+            What::Alignment => {
+                rivals.push(was);
+                self.misaligned = Some((of, rival.before));
+            }
+            What::Step => self.step_after_all(&rival),
+            _ => {}
+        }
         self.take_over(k, rival.filter, rival.first);
+        self.rivals = rivals;
         true
+    }
+
+    /// What had been taken for a zero that moved was a step.
+    fn step_after_all(&mut self, step: &Rival) {
+        let at_port = self.began_in_port(step.event);
+        if !at_port {
+            self.unsettled = Unsettled::after(step.first, &step.before, &step.filter);
+        }
+        self.calls.step(Base {
+            event: step.event,
+            filter: step.before.clone(),
+            at_port,
+            latest: self.observations[step.between.1].time,
+            calls: 0,
+        });
     }
 
     /// By how much it is likelier that the zero moved than that the ship did, for each step of
@@ -226,7 +280,7 @@ impl Search<'_> {
     }
 
     /// What had been taken for further steps was the same.
-    fn forget_later_steps(&mut self, of: usize) {
+    pub(super) fn forget_later_steps(&mut self, of: usize) {
         let is_gone = |place: usize, event: &Event| match event.what {
             What::Step => place > of,
             What::Return(step) => step >= of && self.events[step].what == What::Step,

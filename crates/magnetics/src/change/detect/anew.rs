@@ -1,0 +1,82 @@
+//! A step that has been told, read anew when what follows does not fit it.
+//!
+//! What always holds: it stays one change of the same date; what is read anew is no less
+//! likely than what would take its place, but for little.
+//!
+//! On one course rows show what a step did across the needle, and hardly what it did along it.
+//! A filter that took the little it saw of the latter for more than it was cannot follow when
+//! she turns: that speaks against the filter and not against the step.
+
+use super::date::Dated;
+use super::event::snapshot;
+use super::{Search, What};
+use crate::change::bank::Kind;
+use crate::change::filter::Filter;
+use crate::change::large::relinearised;
+use crate::change::upset::upset;
+
+/// The step is kept where nothing else is likelier by more, nats.
+pub(super) const ANEW_NATS: f64 = 8.0;
+/// Another step within so many rows may be the same.
+const SAME_ROWS: usize = 432;
+/// So often are all rows linearised at where the last round ended.
+const ROUNDS: usize = 3;
+
+impl Search<'_> {
+    /// The filter with a step before row `first`, or in it, having read all rows until `k`.
+    /// The reading in which it happened is of neither ship.
+    pub(super) fn step_anew(&self, k: usize, before: &Filter, first: usize) -> Filter {
+        let mut likeliest = self.step_read(k, before, first, Kind::Step);
+        let after = (first + 1).min(k);
+        let within = self.run(before.clone(), first..after, &before.unknowns());
+        for (before, first, kind) in [
+            (before, first, Kind::Large),
+            (&within, after, Kind::Step),
+            (&within, after, Kind::Large),
+        ] {
+            let read = self.step_read(k, before, first, kind);
+            if read.log_likelihood > likeliest.log_likelihood {
+                likeliest = read;
+            }
+        }
+        likeliest
+    }
+
+    fn step_read(&self, k: usize, before: &Filter, first: usize, kind: Kind) -> Filter {
+        let mut filter = upset(before, kind);
+        for row in first..=k {
+            let m = relinearised(&filter, &self.noise, |at| self.measure(row, at));
+            filter.take(&m, &self.noise, None);
+        }
+        for _ in 0..ROUNDS {
+            let at = filter.unknowns();
+            filter = self.run(upset(before, kind), first..k + 1, &at);
+        }
+        filter
+    }
+
+    /// The step before this one, and its filter, where that one alone explains the rows.
+    pub(super) fn same_step(&self, k: usize, dated: &Dated) -> Option<(usize, Filter)> {
+        let base = self.calls.bases.last()?;
+        let event = self.events.get(base.event)?;
+        let later = &self.events[base.event + 1..];
+        let is_last = later.iter().all(|event| event.what == What::Burst);
+        if !is_last || !self.is_standing_step(base.event) || k > event.first + SAME_ROWS {
+            return None;
+        }
+        let filter = self.step_anew(k, &base.filter, event.first);
+        let enough = dated.filter.log_likelihood - ANEW_NATS;
+        (filter.log_likelihood > enough).then_some((base.event, filter))
+    }
+
+    /// The step is what `filter` says, and what was told after it was the same.
+    pub(super) fn step_is(&mut self, k: usize, of: usize, filter: Filter) {
+        self.forget_later_steps(of);
+        let event = &mut self.events[of];
+        event.after = snapshot(&filter);
+        let first = event.first;
+        let (rivals, doubt) = (std::mem::take(&mut self.rivals), self.doubt.take());
+        self.take_over(k, filter, first);
+        (self.rivals, self.doubt) = (rivals, doubt);
+    }
+}
