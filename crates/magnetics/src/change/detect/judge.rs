@@ -19,7 +19,7 @@ const ONE_REFERENCE_SHARE: f64 = 0.3;
 const ONE_REFERENCE_NATS: f64 = 30.0;
 /// A reference's step must be likelier by this than a burst, and have lasted for so
 /// many rows: one wild reading is no fault.
-const REFERENCE_NATS: f64 = 12.0;
+const REFERENCE_NATS: f64 = 13.5;
 const REFERENCE_ROWS: usize = 3;
 /// So must a return to what was before, away from port.
 const RETURN_AT_SEA_NATS: f64 = 14.0;
@@ -47,7 +47,7 @@ const LATELY: usize = 36;
 const MENDED_NATS: f64 = 8.0;
 const MENDED_BELOW: f64 = 3.0;
 /// A burst must be likelier by this than nothing, and by this than a change.
-const BURST_NATS: f64 = 12.5;
+const BURST_NATS: f64 = 14.0;
 pub(super) const BURST_OVER_STEP: f64 = 3.0;
 /// In the first weeks, when the sizes of noise are of few days, either must be likelier
 /// by so much more.
