@@ -80,13 +80,6 @@ impl From<Instant> for String {
     }
 }
 
-impl From<DateTime<FixedOffset>> for Instant {
-    fn from(time: DateTime<FixedOffset>) -> Instant {
-        let micros = Timestamp::from_micros(time.timestamp_micros());
-        Instant(micros.expect("four-digit years were read"))
-    }
-}
-
 /// A sum of money, 0 to 1 000 000 euros; euros in JSON, cents inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(try_from = "f64", into = "f64")]

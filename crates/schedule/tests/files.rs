@@ -232,6 +232,23 @@ fn a_calendars_times_are_taken_in_their_zone_summer_and_winter() {
     );
 }
 
+#[test]
+fn a_time_outside_the_calendars_years_is_refused_with_its_line() {
+    for start in [
+        "DTSTART:00000101T000000Z",
+        "DTSTART;TZID=Europe/Madrid:00010101T003000",
+        "DTSTART:99991231T235960Z",
+    ] {
+        let text = calendar(start, END, "LOCATION:ESBIO");
+        let error = ics::read(&text, "v", now()).unwrap_err();
+        assert_eq!(error.field, "DTSTART");
+        assert!(
+            error.detail.contains("outside the years 1 to 9999"),
+            "{error}"
+        );
+    }
+}
+
 /// The port of a call of which a calendar says `more`, or what is wrong.
 fn port_of(more: &str) -> Result<String, String> {
     let text = calendar("DTSTART:20270701T060000Z", END, more);

@@ -17,7 +17,8 @@ use super::FileError;
 use super::csv::{MOST_CALLS, must_be_new};
 use super::{Located, PortCall};
 use crate::time::Instant;
-use chrono::{NaiveDateTime, TimeZone, Utc};
+use binnacle_magnetics::time::Timestamp;
+use chrono::NaiveDateTime;
 use line::{Line, lines};
 use std::collections::BTreeMap;
 use zone::Zone;
@@ -186,6 +187,11 @@ fn instant(line: &Line, zones: &BTreeMap<String, Zone>) -> Result<Instant, FileE
             )));
         }
     };
-    let utc = naive - chrono::Duration::seconds(offset_s);
-    Ok(Instant::from(Utc.from_utc_datetime(&utc).fixed_offset()))
+    // A year of four digits may be a fifth one's, or none's, in another zone.
+    let utc = naive.checked_sub_signed(chrono::Duration::seconds(offset_s));
+    let micros = utc.map(|utc| utc.and_utc().timestamp_micros());
+    let micros = micros.and_then(|micros| Timestamp::from_micros(micros).ok());
+    micros
+        .map(Instant)
+        .ok_or_else(|| wrong(format!("{:?} lies outside the years 1 to 9999", line.value)))
 }
