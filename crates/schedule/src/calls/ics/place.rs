@@ -9,6 +9,8 @@
 use super::line::Line;
 use crate::calls::FileError;
 use crate::ports::{self, Port, PortCode};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 /// What stands between the parts of a place.
 const BETWEEN: [char; 12] = [',', ';', '(', ')', '[', ']', '/', '|', ':', '\n', '–', '—'];
@@ -42,7 +44,7 @@ fn of_location(text: &str, summary: &str) -> Result<PortCode, String> {
     }
     let alone = parts(text).filter_map(alone);
     let codes = distinct(alone.chain(beside_their_names(text)));
-    match (&codes[..], &named[..]) {
+    match (&codes[..], named) {
         ([code], []) => Ok(*code),
         ([code], named) if named.iter().any(|port| is_called(*code, port)) => Ok(*code),
         ([code], [port, ..]) => Err(format!(
@@ -149,11 +151,24 @@ fn beside_their_names(text: &str) -> impl Iterator<Item = PortCode> {
 }
 
 /// Ports of exactly this name.
-fn named(name: &str) -> Vec<&'static Port> {
-    let name = name.trim().to_lowercase();
-    let is_so =
-        |port: &&Port| port.name.to_lowercase() == name || port.plain_name.to_lowercase() == name;
-    ports::all().iter().filter(is_so).collect()
+fn named(name: &str) -> &'static [&'static Port] {
+    // A calendar has thousands of places, and the table thousands of ports.
+    static NAMED: OnceLock<BTreeMap<String, Vec<&'static Port>>> = OnceLock::new();
+    let named = NAMED.get_or_init(|| {
+        let mut named: BTreeMap<String, Vec<&'static Port>> = BTreeMap::new();
+        for port in ports::all() {
+            let names: BTreeSet<String> = [port.name, port.plain_name]
+                .map(str::to_lowercase)
+                .into_iter()
+                .collect();
+            for name in names {
+                named.entry(name).or_default().push(port);
+            }
+        }
+        named
+    });
+    let found = named.get(&name.trim().to_lowercase());
+    found.map_or(&[], Vec::as_slice)
 }
 
 /// Whether the port of a code may be called as another is: Georgetown is also Georgetown,
