@@ -77,17 +77,17 @@ pub(super) fn quote(
     let zone = port_of(call).zone;
     let weights = &input.weights;
     let today = input.now.date(zone);
-    let confirmed = job.was(&call.id, &firm.id, day)
-        && job
-            .former
-            .is_some_and(|former| former.state == JobState::Confirmed);
+    let former = job
+        .former
+        .filter(|_| job.was(&call.id, &firm.id, day))
+        .map(|former| former.state);
+    let confirmed = former == Some(JobState::Confirmed);
     let opens = Instant::at(day, firm.first_hour, zone);
     let closes = Instant::at(day, firm.last_hour, zone);
-    // Whom the firm has confirmed to, it has been asked by in time.
-    let ready = if confirmed {
-        input.now
-    } else {
-        input.now.plus_hours(firm.lead_time_h)
+    // A firm that is asked, or has said yes, was asked in time.
+    let ready = match former {
+        Some(JobState::Offered | JobState::Confirmed) => input.now,
+        Some(JobState::Proposed) | None => input.now.plus_hours(firm.lead_time_h),
     };
     let begins = opens.max(ready);
     let (from, to) = (begins.max(call.eta), closes.min(call.etd));

@@ -46,6 +46,23 @@ fn a_proposed_job_moves_when_that_saves_more_than_moving_costs() {
 }
 
 #[test]
+fn a_firm_that_is_asked_already_is_not_to_be_asked_so_long_ahead_again() {
+    let found = |state: &str| {
+        let mut input = input(state);
+        // Of three weeks twelve days are left: it was asked before they began.
+        input["firms"][0]["lead_time_h"] = json!(21 * 24);
+        input["firms"].as_array_mut().unwrap().truncate(1);
+        input["port_calls"].as_array_mut().unwrap().truncate(1);
+        schedule(input).changes[0].what
+    };
+    for state in ["offered", "confirmed"] {
+        assert_eq!(found(state), ChangeKind::Kept, "{state}");
+    }
+    // What is only proposed would have to be asked for now.
+    assert_eq!(found("proposed"), ChangeKind::Dropped);
+}
+
+#[test]
 fn a_call_that_is_cancelled_is_a_cause() {
     let mut input = input("confirmed");
     input["port_calls"].as_array_mut().unwrap().remove(0);
