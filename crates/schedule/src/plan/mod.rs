@@ -62,7 +62,10 @@ pub fn plan(checked: &Checked) -> Schedule {
         .map(|choice| choice.map(|choice| &options.all[choice]))
         .collect();
     let planned = planned(input, &jobs, &made);
-    let paid: f64 = planned.iter().map(|job| job.fee_eur + job.travel_eur).sum();
+    // A sum of none would be less than nothing by its sign.
+    let paid = planned
+        .iter()
+        .fold(0.0, |paid: f64, job| paid + job.fee_eur + job.travel_eur);
     let gap = solved.cost - solved.bound;
     Schedule {
         cost_eur: euros(solved.cost),

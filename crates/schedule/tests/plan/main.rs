@@ -62,6 +62,15 @@ fn the_cheaper_of_two_firms_goes() {
 }
 
 #[test]
+fn a_plan_of_nothing_pays_no_less_than_nothing() {
+    let found = schedule(json!({
+        "vessels": [vessel("v")], "needs": [need("n", "v", "2026-12-20")],
+        "port_calls": [], "firms": [],
+    }));
+    assert!(found.paid_eur.is_sign_positive(), "{}", found.paid_eur);
+}
+
+#[test]
 fn one_team_takes_one_ship_a_day_and_the_weekend_is_free() {
     let found = schedule(json!({
         "vessels": [vessel("v"), vessel("w"), vessel("x")],
