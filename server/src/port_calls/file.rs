@@ -9,7 +9,7 @@ use crate::time::Time;
 use axum::body::Body;
 use binnacle_schedule::calls::{FileError, FileErrors, Located, overlaps};
 use futures_util::StreamExt;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// No file is larger, in bytes.
 pub(super) const MAX_BYTES: usize = 8 * 1024 * 1024;
@@ -53,7 +53,7 @@ pub(super) struct Taken<'a> {
 #[derive(Default)]
 pub(super) struct OfVessel {
     pub(super) calls: Vec<(usize, Content)>,
-    pub(super) cancelled: Vec<String>,
+    pub(super) cancelled: BTreeSet<String>,
 }
 
 impl OfVessel {
@@ -98,6 +98,10 @@ impl OfVessel {
             let is_left_out = replaces && row.source == source && row.etd > now;
             is_left_out.then_some("not in the file any more")
         };
+        let named: BTreeMap<&str, &Row> = known
+            .iter()
+            .map(|row| (row.reference.as_str(), row))
+            .collect();
         let mut taken = Taken::default();
         let mut calls = Vec::new();
         for row in known.iter().filter(|row| row.withdrawn_at.is_none()) {
@@ -111,7 +115,7 @@ impl OfVessel {
         }
         for (_, call) in self.calls {
             calls.push(call.of(&call.reference, ""));
-            match known.iter().find(|row| row.reference == call.reference) {
+            match named.get(call.reference.as_str()).copied() {
                 None => taken.new.push(call),
                 Some(row) if row.withdrawn_at.is_none() && row.content()? == call => {
                     taken.unchanged += 1;

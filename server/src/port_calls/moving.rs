@@ -6,6 +6,7 @@ use super::store::Row;
 use crate::error::Result;
 use crate::ids::CallId;
 use crate::work_orders::{Alongside, Moving};
+use std::collections::BTreeMap;
 
 /// A call without a name of its own that comes anew with a file is taken for the one that
 /// is in the file no more where their ETAs are so close.
@@ -38,18 +39,25 @@ pub(super) fn withdrawn(row: &Row) -> Result<Moving> {
 /// What a file moves; its new calls have these ids.
 pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec<Moving>> {
     let mut all = Vec::new();
-    let mut free: Vec<&(CallId, &Content)> = new.iter().collect();
-    free.sort_by(|(_, one), (_, other)| one.eta.0.seconds_since(other.eta.0).total_cmp(&0.0));
     for (row, call) in &taken.amended {
         all.extend(amended(row, call)?);
     }
+    let mut at_port: BTreeMap<String, AtPort<'_>> = BTreeMap::new();
+    let mut in_order: Vec<&(CallId, &Content)> = new.iter().collect();
+    in_order.sort_by_key(|(_, call)| call.eta);
+    for one in in_order {
+        let port = at_port.entry(one.1.port.to_string()).or_default();
+        port.came.push((one, false));
+    }
+    for (row, _) in &taken.withdrawn {
+        if let Some(port) = at_port.get_mut(&row.port) {
+            port.gone += 1;
+        }
+    }
     for (row, _) in &taken.withdrawn {
         let moving = withdrawn(row)?;
-        let gone = taken.withdrawn.iter();
-        let gone = gone.filter(|(gone, _)| gone.port == row.port);
-        let came = new.iter().filter(|(_, call)| is_at(row, call));
-        let becomes = becomes(row, &mut free, gone.count() == came.count());
-        all.push(match becomes {
+        let port = at_port.get_mut(&row.port);
+        all.push(match port.and_then(|port| port.becomes(row)) {
             Some((then_id, call)) => Moving {
                 then_id: *then_id,
                 is: Some(alongside(call)),
@@ -61,28 +69,34 @@ pub(super) fn taken(taken: &Taken<'_>, new: &[(CallId, &Content)]) -> Result<Vec
     Ok(all)
 }
 
-fn is_at(row: &Row, call: &Content) -> bool {
-    call.port.to_string() == row.port
+/// What a file does to the calls at one port.
+#[derive(Default)]
+struct AtPort<'a> {
+    /// How many are gone.
+    gone: usize,
+    /// Its new calls, in the order of time, and whether each is what one that is gone has become.
+    came: Vec<(&'a (CallId, &'a Content), bool)>,
 }
 
-/// Which of the new calls, in the order of time, one that is gone has become, each for one
-/// only: the next where as many came as went, else the nearest.
-fn becomes<'a>(
-    row: &Row,
-    free: &mut Vec<&'a (CallId, &'a Content)>,
-    in_order: bool,
-) -> Option<&'a (CallId, &'a Content)> {
-    let apart_h = |call: &Content| (call.eta.0.seconds_since(row.eta.0) / 3600.0).abs();
-    let mut could_be = (0..free.len()).filter(|at| {
-        let call = free[*at].1;
-        is_at(row, call) && apart_h(call) <= SAME_CALL_H
-    });
-    let found = if in_order {
-        could_be.next()
-    } else {
-        could_be.min_by(|one, other| apart_h(free[*one].1).total_cmp(&apart_h(free[*other].1)))
-    };
-    found.map(|at| free.remove(at))
+impl<'a> AtPort<'a> {
+    /// Which of the new calls one that is gone has become, each for one only: the next where
+    /// as many came as went, else the nearest.
+    fn becomes(&mut self, row: &Row) -> Option<&'a (CallId, &'a Content)> {
+        let after_h = |one: &(CallId, &Content)| one.1.eta.0.seconds_since(row.eta.0) / 3600.0;
+        let came = &self.came;
+        let first = came.partition_point(|(one, _)| after_h(one) < -SAME_CALL_H);
+        let end = came.partition_point(|(one, _)| after_h(one) <= SAME_CALL_H);
+        let mut could_be = (first..end).filter(|at| !came[*at].1);
+        let found = if self.gone == came.len() {
+            could_be.next()
+        } else {
+            let apart_h = |at: &usize| after_h(came[*at].0).abs();
+            could_be.min_by(|one, other| apart_h(one).total_cmp(&apart_h(other)))
+        };
+        let (one, is_taken) = &mut self.came[found?];
+        *is_taken = true;
+        Some(one)
+    }
 }
 
 /// Where and when a call has her alongside.

@@ -168,7 +168,7 @@ async fn upload_ics(
     let read = move || ics::read(&text, &of, Instant(now.0));
     let calendar = tokio::task::spawn_blocking(read).await??;
     let mut hers = OfVessel {
-        cancelled: calendar.cancelled,
+        cancelled: calendar.cancelled.into_iter().collect(),
         ..OfVessel::default()
     };
     let mut faults = FileErrors::default();
