@@ -2,9 +2,9 @@
 //!
 //! What always holds: a receiver's deliveries are numbered in the order in which
 //! their transactions commit, and of each work order's, and of those of none, only the
-//! first that waits is due. One worker at a time has it, the one that holds its lease. Webhooks are always taken before mail
-//! recipients, and each in the order of their ids, so that no two transactions wait
-//! for each other.
+//! first that waits is due. One worker at a time has it, the one that holds its lease, and no
+//! other calls upon the same receiver. Webhooks are always taken before mail recipients, and
+//! each in the order of their ids, so that no two transactions wait for each other.
 
 use super::delivery::{Channel, DeliveryState, Message};
 use crate::db::{Db, Result, Tx, execute, row, rows};
@@ -15,6 +15,9 @@ use uuid::Uuid;
 
 /// How long a try may take before another worker may try: longer than any does.
 const LEASE_S: f64 = 90.0;
+/// So many of a tenant's receivers are called upon at once: those who are slow to answer keep
+/// nobody else's waiting.
+const MOST_OF_TENANT: i64 = 2;
 const FIRST_RETRY_S: f64 = 10.0;
 const LONGEST_RETRY_S: f64 = 3600.0;
 /// What could not be delivered for so long is given up.
@@ -79,17 +82,23 @@ pub async fn queue(tx: &mut Tx, receiver: Uuid, message: &Message, now: Time) ->
 macro_rules! claim_sql {
     ($lock:literal) => {
         concat!(
-            "UPDATE deliveries SET attempts = attempts + 1, lease_until = $2
+            "WITH busy AS (
+                 SELECT u.receiver_id, t.operator_id, t.firm_id FROM deliveries u
+                 JOIN receivers t ON t.id = u.receiver_id AND t.channel = $3
+                 WHERE u.state = 'pending' AND u.lease_until > $1)
+             UPDATE deliveries SET attempts = attempts + 1, lease_until = $2
              WHERE (receiver_id, number) = (
                  SELECT d.receiver_id, d.number FROM deliveries d
                  JOIN receivers r ON r.id = d.receiver_id AND r.enabled AND r.channel = $3
                  WHERE d.state = 'pending' AND d.next_attempt_at <= $1
-                   AND (d.lease_until IS NULL OR d.lease_until <= $1)
                    AND NOT EXISTS (
                        SELECT 1 FROM deliveries e
                        WHERE e.receiver_id = d.receiver_id AND e.state = 'pending'
                          AND e.order_id IS NOT DISTINCT FROM d.order_id
                          AND e.number < d.number)
+                   AND NOT EXISTS (SELECT 1 FROM busy b WHERE b.receiver_id = d.receiver_id)
+                   AND (SELECT COUNT(*) FROM busy b
+                        WHERE b.operator_id = r.operator_id OR b.firm_id = r.firm_id) < $4
                  ORDER BY d.next_attempt_at, d.receiver_id
                  LIMIT 1",
             $lock,
@@ -104,19 +113,26 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
     let due = rows!(
         db,
         (i64,),
-        "SELECT d.number FROM deliveries d
+        "WITH busy AS (
+             SELECT u.receiver_id, t.operator_id, t.firm_id FROM deliveries u
+             JOIN receivers t ON t.id = u.receiver_id AND t.channel = $2
+             WHERE u.state = 'pending' AND u.lease_until > $1)
+         SELECT d.number FROM deliveries d
          JOIN receivers r ON r.id = d.receiver_id AND r.enabled AND r.channel = $2
          WHERE d.state = 'pending' AND d.next_attempt_at <= $1
-           AND (d.lease_until IS NULL OR d.lease_until <= $1)
            AND NOT EXISTS (
                SELECT 1 FROM deliveries e
                WHERE e.receiver_id = d.receiver_id AND e.state = 'pending'
                  AND e.order_id IS NOT DISTINCT FROM d.order_id
                  AND e.number < d.number)
+           AND NOT EXISTS (SELECT 1 FROM busy b WHERE b.receiver_id = d.receiver_id)
+           AND (SELECT COUNT(*) FROM busy b
+                WHERE b.operator_id = r.operator_id OR b.firm_id = r.firm_id) < $3
          ORDER BY d.next_attempt_at
          LIMIT 1",
         now,
-        channel
+        channel,
+        MOST_OF_TENANT
     )?;
     if due.is_empty() {
         return Ok(None);
@@ -129,6 +145,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
                 .bind(now)
                 .bind(lease_until)
                 .bind(channel)
+                .bind(MOST_OF_TENANT)
                 .fetch_optional(&mut **tx)
                 .await?
         }
@@ -138,6 +155,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
                 .bind(now)
                 .bind(lease_until)
                 .bind(channel)
+                .bind(MOST_OF_TENANT)
                 .fetch_optional(&mut **tx)
                 .await?
         }

@@ -50,6 +50,7 @@ mod secrets;
 mod sessions;
 mod ship_alerts;
 mod sign_in_provider;
+mod slow_receivers;
 mod tenants;
 mod tls;
 mod webhooks;
