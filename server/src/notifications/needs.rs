@@ -18,15 +18,20 @@ use binnacle_schedule::needs::{CauseKind, Urgency};
 use chrono::NaiveDate;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use tracing::error;
 
 /// Predictions move a due date by a few days each time: that is no news.
 const BROUGHT_FORWARD_DAYS: i64 = 7;
 
-/// Looks through all fleets; how many needs were told of.
+/// Looks through all fleets; how many needs were told of. One that cannot be looked through
+/// holds up no other.
 pub async fn look(app: &App) -> Result<usize> {
     let mut told = 0;
     for operator in operators::all(&app.db).await? {
-        told += look_at(app, operator).await?;
+        match look_at(app, operator).await {
+            Ok(more) => told += more,
+            Err(error) => error!(?error, %operator, "a fleet's needs cannot be looked for"),
+        }
     }
     Ok(told)
 }

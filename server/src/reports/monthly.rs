@@ -60,7 +60,11 @@ pub async fn look(app: &App) -> Result<usize> {
     )?;
     let mut made = 0;
     for (operator,) in due {
-        made += usize::from(make(app, operator, month, ended).await?);
+        match make(app, operator, month, ended).await {
+            Ok(is_new) => made += usize::from(is_new),
+            // It is tried again at the next look, and holds up no other operator's.
+            Err(error) => error!(?error, %operator, "a monthly report cannot be made"),
+        }
     }
     Ok(made)
 }

@@ -29,16 +29,21 @@ pub async fn watch(app: App) {
     }
 }
 
-/// Has offers and proposals lapse whose answers are overdue; how many orders went on.
+/// Has offers and proposals lapse whose answers are overdue; how many orders went on. One
+/// that cannot go on holds up no other.
 pub async fn lapse(app: &App) -> Result<usize> {
     let mut went_on = 0;
     loop {
         let overdue = store::overdue(&app.db, app.clock.now().into(), AT_A_TIME).await?;
         let found = overdue.len();
+        let before = went_on;
         for (vessel, order) in overdue {
-            went_on += usize::from(lapse_of(app, vessel, order).await?);
+            match lapse_of(app, vessel, order).await {
+                Ok(is_new) => went_on += usize::from(is_new),
+                Err(error) => error!(?error, %order, "an overdue answer cannot lapse"),
+            }
         }
-        if found < AT_A_TIME as usize {
+        if found < AT_A_TIME as usize || went_on == before {
             return Ok(went_on);
         }
     }

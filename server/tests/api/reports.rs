@@ -15,6 +15,7 @@ on_both!(
     a_job_is_reckoned_against_a_swing,
     the_files_say_what_the_report_says,
     the_report_of_a_month_goes_once_to_those_who_were_on_the_list,
+    a_report_that_cannot_be_made_holds_up_no_other_operators,
     a_job_that_was_sent_after_its_month_is_in_the_next_report,
     settings_and_times_that_make_no_sense_are_refused,
     another_operators_fleet_is_in_no_report,
@@ -220,6 +221,22 @@ async fn the_report_of_a_month_goes_once_to_those_who_were_on_the_list(shore: Sh
     assert!(due.contains("Nao,Standard compass,2026-12-20"), "{due}");
     assert_eq!(read["files"].as_object().unwrap().len(), 4);
     other.db.close().await;
+    shore.finish().await;
+}
+
+async fn a_report_that_cannot_be_made_holds_up_no_other_operators(shore: Shore) {
+    let (ada, eve) = (shore.admin("ada").await, shore.admin("eve").await);
+    due_vessel(&ada, "Nao").await;
+    shore
+        .sql("UPDATE vessel_particulars SET particulars = '{'")
+        .await;
+    due_vessel(&eve, "Pinta").await;
+    let wanted = json!({ "monthly_to": ["chief@example.com"] });
+    for admin in [&ada, &eve] {
+        put(admin, "/reports/settings", &wanted).await.good();
+    }
+    shore.advance(10.0 * DAY_S);
+    assert_eq!(look(&shore.app).await.unwrap(), 1);
     shore.finish().await;
 }
 

@@ -11,6 +11,7 @@ on_both!(
     each_step_towards_the_due_date_is_told_once,
     a_due_date_that_is_brought_forward_is_told,
     two_servers_tell_of_a_need_once,
+    a_fleet_that_cannot_be_read_holds_up_no_other_fleets_needs,
 );
 
 const DAY_S: f64 = 86_400.0;
@@ -75,5 +76,20 @@ async fn two_servers_tell_of_a_need_once(shore: Shore) {
     assert_eq!(one.unwrap() + two.unwrap(), 1);
     assert_eq!(told(&ada).await.len(), 1);
     other.db.close().await;
+    shore.finish().await;
+}
+
+async fn a_fleet_that_cannot_be_read_holds_up_no_other_fleets_needs(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    due_vessel(&ada, "Nao").await;
+    shore
+        .sql("UPDATE vessel_particulars SET particulars = '{'")
+        .await;
+    // Entered after her, and looked through after her.
+    let eve = shore.admin("eve").await;
+    due_vessel(&eve, "Pinta").await;
+    assert_eq!(look(&shore.app).await.unwrap(), 1);
+    let soon = "Pinta: Standard compass to be adjusted soon, by 2026-12-20";
+    assert_eq!(told(&eve).await, [soon]);
     shore.finish().await;
 }

@@ -11,6 +11,7 @@ on_both!(
     an_acceptance_and_a_cancellation_at_once_leave_one_story,
     an_offer_lapses_once_however_many_look,
     an_answer_and_the_clock_at_once_leave_one_story,
+    an_order_that_cannot_be_read_holds_up_no_other_orders_clock,
 );
 
 async fn of_two_firms_that_accept_at_once_one_has_it(shore: Shore) {
@@ -90,5 +91,26 @@ async fn an_answer_and_the_clock_at_once_leave_one_story(shore: Shore) {
     assert_eq!(accepted.status, 200, "{accepted:?}");
     assert_eq!(lapsed.unwrap(), 0);
     assert_eq!(trade.offers().await, ["accepted", "waiting"]);
+    shore.finish().await;
+}
+
+async fn an_order_that_cannot_be_read_holds_up_no_other_orders_clock(shore: Shore) {
+    let trade = Trade::offered(&shore, 1).await;
+    shore
+        .sql("UPDATE work_order_entries SET line = '{' WHERE seq = 1")
+        .await;
+    // Asked after that one, and overdue after it.
+    shore.advance(1.0);
+    let other = trade.ada.create_vessel("Pinta").await;
+    let mut order = trade.new_order();
+    order["vessel_id"] = other["id"].clone();
+    order["compass_id"] = other["compasses"][0]["id"].clone();
+    order["offer"] = trade.offer();
+    let order = trade.ada.post("/work-orders", &order).await.good();
+    shore.advance(HOUR_S + 1.0);
+    assert_eq!(lapse(&shore.app).await.unwrap(), 1);
+    let path = format!("/work-orders/{}", order["id"].as_str().unwrap());
+    let seen = trade.ada.get(&path).await.good();
+    assert_eq!(seen["state"], "declined");
     shore.finish().await;
 }
