@@ -3,7 +3,7 @@
 use super::{Filter, Line, csv, store};
 use crate::access::Auditor;
 use crate::app::App;
-use crate::error::{Problem, Result};
+use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Page, Params, file, time};
 use crate::time::Time;
 use axum::body::{Body, Bytes};
@@ -89,6 +89,13 @@ pub(super) struct Wanted {
 
 impl Wanted {
     fn new(auditor: Auditor, filter: Filter) -> Result<Wanted> {
+        // PostgreSQL takes no NUL in a text, and no route has one.
+        if filter.route.iter().any(|route| route.contains('\0')) {
+            return Err(Error::Invalid {
+                field: "route",
+                detail: "has a control character".to_owned(),
+            });
+        }
         let from = time("from", filter.from.as_deref())?.map(Time);
         let to = time("to", filter.to.as_deref())?.map(Time);
         Ok(Wanted {

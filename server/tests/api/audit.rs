@@ -311,6 +311,10 @@ async fn it_is_searched_and_comes_in_pages_and_as_a_file(shore: Shore) {
     assert_eq!(lines(&ada, &nobodys).await.len(), 0);
     assert_eq!(ada.get("/audit?from=noon").await.problem(), "invalid");
     assert_eq!(ada.get("/audit?after=x").await.problem(), "bad-request");
+    for of in ["/audit", "/audit.csv"] {
+        let none = ada.get(&format!("{of}?route=%00")).await;
+        assert_eq!(none.problem(), "invalid", "{of}");
+    }
     let file = ada.get("/audit.csv?route=/api/v1/vessels").await;
     assert_eq!(file.headers["content-type"], "text/csv; charset=utf-8");
     assert_eq!(file.text.lines().count(), 4, "{}", file.text);
