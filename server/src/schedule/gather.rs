@@ -13,7 +13,7 @@ use super::plan::{LeftOut, Plan, UnderWay};
 use super::{pins, settings, store};
 use crate::app::App;
 use crate::error::Result;
-use crate::ids::{CompassId, OperatorId, OrderId, VesselId};
+use crate::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::needs::{self, Facts, Need};
 use crate::port_calls::{self, Earlier, heading};
 use crate::time::Time;
@@ -42,8 +42,8 @@ pub(super) struct Gathered {
     pub(super) left_out: Vec<LeftOut>,
     /// Orders that a firm has accepted and that are beside the plan.
     pub(super) aside: Vec<Aside>,
-    /// Orders whose teams are left to the plan, which has their jobs.
-    pub(super) held: BTreeSet<OrderId>,
+    /// Orders whose teams are left to the plan, which has their jobs with these firms.
+    pub(super) held: BTreeMap<OrderId, FirmId>,
     /// Whether there is any firm to plan with.
     pub(super) has_firms: bool,
     /// As the solver reads it.
@@ -134,7 +134,8 @@ pub(super) async fn gather(
     };
     let sha256 = sha256_hex(&serde_json::to_string(&input)?);
     // What follows from the plan made of it says nothing new either.
-    let held: BTreeSet<OrderId> = planned.difference(moved).copied().collect();
+    let mut held = planned;
+    held.retain(|order, _| !moved.contains(order));
     book(app, operator, as_of, &held, &mut input.firms).await?;
     all.add_proposed(former.as_ref());
     input.former = all.joined();

@@ -96,7 +96,7 @@ fn moved_away(schedule: &Schedule, gathered: &Gathered) -> Result<Vec<OrderId>> 
     }
     let agreed = gathered.names.agreed.iter();
     let moved = agreed
-        .filter(|(_, agreed)| gathered.held.contains(&agreed.order_id))
+        .filter(|(_, agreed)| gathered.held.contains_key(&agreed.order_id))
         .filter(|(compass, agreed)| planned.get(*compass) != Some(&(agreed.firm_id, agreed.day)));
     Ok(moved.map(|(_, agreed)| agreed.order_id).collect())
 }

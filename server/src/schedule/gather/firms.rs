@@ -10,7 +10,7 @@ use crate::schedule::orders::Order;
 use crate::schedule::plan::LeftOut;
 use crate::time::Time;
 use binnacle_schedule::input::{Declined, Firm, Taken};
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use uuid::Uuid;
 
 /// Why a firm is left out whose terms nobody has said: it may have work all the same.
@@ -43,13 +43,13 @@ pub(super) async fn firms_of(
     Ok((planned_with, left_out))
 }
 
-/// Takes out the teams that orders have which are no jobs of the plan: other operators', and
-/// this one's beside it.
+/// Takes out the teams that orders have which are no jobs of the plan with that firm: other
+/// operators', and this one's beside it or with several firms that are asked at once.
 pub(super) async fn book(
     app: &App,
     operator: OperatorId,
     as_of: Time,
-    planned: &BTreeSet<OrderId>,
+    planned: &BTreeMap<OrderId, FirmId>,
     firms: &mut [Firm],
 ) -> Result<()> {
     let from = Time(as_of.0.plus_seconds(-86_400.0));
@@ -58,7 +58,7 @@ pub(super) async fn book(
         let all = firms::bookings(&app.db, id, from).await?;
         let elsewhere = all.iter().filter(|one| {
             let counts = one.is_taken || one.operator_id == operator;
-            counts && !planned.contains(&one.order_id)
+            counts && planned.get(&one.order_id) != Some(&id)
         });
         let days = firms::teams_taken(elsewhere, firm.jobs_a_team_day).into_iter();
         firm.taken = days.map(|(day, teams)| Taken { day, teams }).collect();

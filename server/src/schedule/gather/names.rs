@@ -113,12 +113,12 @@ impl Names {
         named.collect()
     }
 
-    /// The orders that are jobs of the plan before.
-    pub(super) fn planned(&self, former: &Former) -> BTreeSet<OrderId> {
+    /// The orders that are jobs of the plan before, each with its firm.
+    pub(super) fn planned(&self, former: &Former) -> BTreeMap<OrderId, FirmId> {
         let agreed = self.agreed.iter();
         agreed
             .filter(|(compass, _)| former.taken.contains(compass))
-            .map(|(_, agreed)| agreed.order_id)
+            .map(|(_, agreed)| (agreed.order_id, agreed.firm_id))
             .collect()
     }
 

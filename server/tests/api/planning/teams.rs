@@ -12,6 +12,7 @@ on_both!(
     no_firm_is_asked_for_a_time_at_which_it_is_closed,
     no_firm_is_offered_more_ships_than_it_has_teams,
     a_team_that_an_order_still_holds_is_planned_for_no_other_ship,
+    a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_then,
     a_firm_is_booked_once_by_all_operators_together,
     an_order_is_for_a_port_and_a_time_that_can_be,
 );
@@ -91,6 +92,31 @@ async fn no_firm_is_offered_more_ships_than_it_has_teams(shore: Shore) {
     let mut statuses = [one.status, other.status];
     statuses.sort_unstable();
     assert_eq!(statuses, [201, 409], "{one:?} {other:?}");
+    shore.finish().await;
+}
+
+async fn a_firm_that_is_asked_at_once_with_others_is_planned_for_no_other_ship_then(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let (nao, pinta) = (
+        due_vessel(&ada, "Nao").await,
+        due_vessel(&ada, "Pinta").await,
+    );
+    let mut that_day = port_calls::call("NLRTM", 15);
+    that_day["etd"] = json!("2026-12-15T20:00:00Z");
+    for vessel in [&nao, &pinta] {
+        ada.post(&port_calls::path(vessel), &that_day).await.good();
+    }
+    let (rosa, _) = firm(&shore, &ada, "rosa").await;
+    let (juan, _) = firm(&shore, &ada, "juan").await;
+    let mut order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &rosa);
+    order["offer"] = json!({ "firms": [rosa, juan], "at_once": true });
+    ada.post("/work-orders", &order).await.good();
+    // Each of the two may say yes, and has one team.
+    let plan = solve(&ada).await;
+    assert_eq!(plan["jobs"].as_array().unwrap().len(), 1, "{plan}");
+    assert_eq!(plan["jobs"][0]["state"], "offered");
+    let because = plan["unscheduled"][0]["because"].to_string();
+    assert!(because.contains("are booked"), "{because}");
     shore.finish().await;
 }
 
