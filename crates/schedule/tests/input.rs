@@ -187,3 +187,33 @@ fn half_a_file_is_refused() {
     assert!(read(&format!("{text} more")).is_err());
     assert!(read("").is_err());
 }
+
+#[test]
+fn an_input_with_more_ways_than_memory_has_room_for_is_refused_at_once() {
+    let ids = |letter: &str, many: usize| -> Vec<String> {
+        (0..many).map(|nth| format!("{letter}{nth}")).collect()
+    };
+    let input = |vessels: usize| {
+        let vessels = ids("v", vessels);
+        let firms = ids("f", 300);
+        let each = |list: &[String], of: fn(&str) -> Value| -> Vec<Value> {
+            list.iter().map(|id| of(id)).collect()
+        };
+        json!({
+            "now": "2026-11-21T00:00:00Z",
+            "vessels": each(&vessels, |id| json!({"id": id})),
+            "needs": each(&vessels, |id| json!({"id": id, "vessel": id, "due": "2027-01-10"})),
+            "port_calls": each(&vessels, |id| json!({
+                "id": id, "vessel": id, "port": "NLRTM",
+                "eta": "2026-12-01T00:00:00Z", "etd": "2027-03-30T00:00:00Z"
+            })),
+            "firms": each(&firms, |id| json!({"id": id, "ports": [{"port": "NLRTM"}], "fee_eur": 1})),
+        })
+    };
+    let said = read(&input(84).to_string()).unwrap_err().to_string();
+    assert!(
+        said.starts_with("port_calls: 3024000 pairs of a need and a firm's day"),
+        "{said}"
+    );
+    assert!(read(&input(83).to_string()).is_ok());
+}

@@ -12,7 +12,7 @@ use super::orders::{self, Aside};
 use super::plan::{LeftOut, Plan, UnderWay};
 use super::{pins, settings, store};
 use crate::app::App;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::needs::{self, Facts, Need};
 use crate::port_calls::{self, Earlier, heading};
@@ -132,6 +132,8 @@ pub(super) async fn gather(
         weights: settings.weights,
         terms: settings.terms,
     };
+    input::must_fit(&input)
+        .map_err(|error| Error::WrongState(format!("this fleet cannot be planned: {error}")))?;
     let sha256 = sha256_hex(&serde_json::to_string(&input)?);
     // What follows from the plan made of it says nothing new either.
     let mut held = planned;

@@ -126,7 +126,7 @@ async fn current(app: &App, operator: OperatorId, plan: Option<Plan>) -> Result<
 #[utoipa::path(post, path = "/schedule/solve", tag = "adjusting",
     responses((status = 200, body = Current), (status = 401, body = Problem),
               (status = 403, body = Problem),
-              (status = 409, description = "Others make it at the same time", body = Problem)))]
+              (status = 409, description = "Others make it at the same time, or the fleet is too large", body = Problem)))]
 async fn solve_schedule(State(app): State<App>, writer: Writer) -> Result<Json<Current>> {
     let plan = solve::solve(&app, writer.operator).await?;
     current(&app, writer.operator, Some(plan)).await

@@ -13413,7 +13413,7 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
-            /** @description Others make it at the same time */
+            /** @description Others make it at the same time, or the fleet is too large */
             409: {
                 headers: {
                     [name: string]: unknown;

@@ -3,15 +3,57 @@
 use super::{Checked, Input, InputError, firm_is_sound};
 use crate::calls::overlap;
 use crate::ports;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// No list is longer.
 const MOST: usize = 50_000;
+/// The most ways to do all jobs, as [`ways`] counts them: each takes about 250 bytes and a
+/// microsecond before any is weighed against another.
+const MOST_WAYS: u64 = 3_000_000;
 
 type Result<T> = std::result::Result<T, InputError>;
 
+/// Looks whether an input is too large to be planned, whatever it says.
+///
+/// # Errors
+/// The first list that is too long, or how many ways there are to do all jobs.
+pub fn must_fit(input: &Input) -> Result<()> {
+    lists(input)?;
+    match ways(input) {
+        ways if ways > MOST_WAYS => Err(InputError::new(
+            "port_calls",
+            format!(
+                "{ways} pairs of a need and a firm's day in a call are more than {MOST_WAYS}: \
+                 plan for fewer ships, with fewer firms or with shorter calls"
+            ),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// How many ways there are to do all jobs at most: each need on each day of its ship's calls by
+/// each firm of the port.
+fn ways(input: &Input) -> u64 {
+    let (mut needs, mut firms) = (BTreeMap::new(), BTreeMap::new());
+    let of_needs = input.needs.iter().map(|need| &need.vessel);
+    for vessel in of_needs.chain(input.compasses.iter().map(|compass| &compass.vessel)) {
+        *needs.entry(vessel.as_str()).or_insert(0_u64) += 1;
+    }
+    for served in input.firms.iter().flat_map(|firm| &firm.ports) {
+        *firms.entry(served.port).or_insert(0_u64) += 1;
+    }
+    input.port_calls.iter().fold(0, |sum: u64, call| {
+        let days = (call.etd.utc_date() - call.eta.utc_date()).num_days() + 1;
+        let of = |known: Option<&u64>| known.copied().unwrap_or(0);
+        let days = u64::try_from(days).unwrap_or(0);
+        let ways = days.saturating_mul(of(needs.get(call.vessel.as_str())));
+        sum.saturating_add(ways.saturating_mul(of(firms.get(&call.port))))
+    })
+}
+
 pub(super) fn check(input: Input) -> Result<Checked> {
     lists(&input)?;
+    settings(&input)?;
     let vessels = names(
         "vessels",
         input.vessels.iter().map(|vessel| vessel.id.as_str()),
@@ -42,6 +84,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
         input.port_calls.iter().map(|call| call.id.as_str()),
     )?;
     calls_of(&input, &vessels)?;
+    must_fit(&input)?;
     let firms = names("firms", input.firms.iter().map(|firm| firm.id.as_str()))?;
     for (at, firm) in input.firms.iter().enumerate() {
         firm_is_sound(firm).map_err(|error| {
@@ -107,6 +150,10 @@ fn lists(input: &Input) -> Result<()> {
             ));
         }
     }
+    Ok(())
+}
+
+fn settings(input: &Input) -> Result<()> {
     if !(1..=730).contains(&input.horizon_days) {
         let what = format!("{} is not within 1 to 730", input.horizon_days);
         return Err(InputError::new("horizon_days", what));

@@ -1,6 +1,6 @@
 //! What a schedule is made from, as JSON.
 //!
-//! What always holds: a [`Checked`] input hangs together: names are unique and what they
+//! What always holds: a [`Checked`] input is not too large and hangs together: names are unique and what they
 //! refer to is there, calls of a ship do not overlap and are not over, every firm has
 //! days on which it works. What is wrong is said with its JSON path.
 
@@ -10,6 +10,7 @@ mod read;
 mod sound;
 mod weights;
 
+pub use check::must_fit;
 pub use firm::{Firm, ServedPort, Taken};
 pub use read::{InputError, read};
 pub use sound::{FirmError, firm_is_sound};

@@ -5,6 +5,7 @@ use crate::on_both;
 use crate::port_calls;
 use crate::support::{Person, Shore};
 use binnacle_schedule::{input, plan};
+use binnacle_server::db::Db;
 use binnacle_server::schedule;
 use serde_json::{Value, json};
 
@@ -16,6 +17,7 @@ on_both!(
     a_plan_is_made_anew_each_day,
     an_operator_without_firms_gets_no_plan_by_itself,
     a_compass_with_an_order_under_way_is_beside_the_plan,
+    a_fleet_that_is_too_large_to_be_planned_is_told_so,
     settings_weigh_and_are_checked,
     schedules_are_an_operators_own,
 );
@@ -202,6 +204,43 @@ async fn a_compass_with_an_order_under_way_is_beside_the_plan(shore: Shore) {
         .await
         .good();
     assert_eq!(solve(&ada).await["jobs"].as_array().unwrap().len(), 1);
+    shore.finish().await;
+}
+
+/// Calls by the second, beside the one that there is; with a name for each.
+macro_rules! many_calls {
+    ($id:literal) => {
+        concat!(
+            "WITH RECURSIVE n (i) AS (SELECT CAST(1 AS BIGINT)
+                                      UNION ALL SELECT i + 1 FROM n WHERE i < 50000)
+             INSERT INTO port_calls (vessel_id, id, reference, port, eta, eta_uncertainty_h, etd,
+                                     etd_uncertainty_h, source, revision, created_at, created_by)
+             SELECT c.vessel_id, ",
+            $id,
+            ", 'n' || n.i, c.port, c.etd + n.i * 1000000, 0, c.etd + n.i * 1000000 + 500000, 0,
+                    'api', 1, c.created_at, c.created_by
+             FROM port_calls c, n"
+        )
+    };
+}
+
+async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    planned_firm(&shore, &ada, "Maas Compass").await;
+    let nao = due_vessel(&ada, "Nao").await;
+    enter(&ada, &nao, "NLRTM", 8).await;
+    shore
+        .sql(match &shore.app.db {
+            Db::Sqlite { .. } => many_calls!("randomblob(16)"),
+            Db::Postgres(_) => many_calls!("gen_random_uuid()"),
+        })
+        .await;
+    let said = "this fleet cannot be planned: port_calls: 50001 are more than 50000";
+    let refused = ada.post("/schedule/solve", &json!({})).await;
+    assert_eq!(refused.problem(), "wrong-state");
+    assert_eq!(refused.json()["detail"], said);
+    follow(&shore).await;
+    assert_eq!(current(&ada).await["problem"], said);
     shore.finish().await;
 }
 
