@@ -5,6 +5,7 @@ use crate::config::Serve;
 use crate::db::Db;
 use crate::events::Live;
 use crate::oidc::Provider;
+use crate::schedule::Turns;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
 use tokio::sync::{Notify, Semaphore};
@@ -25,8 +26,11 @@ pub struct App {
     pub work: Arc<Notify>,
     /// Passwords being hashed at once: each takes 19 MB and a core.
     pub hashing: Arc<Semaphore>,
-    /// Plans being made at once: each takes a core for a second or two.
+    /// Plans for correctors being made at once: each takes a core for a second or two, and an
+    /// adjuster at the berth waits for it.
     pub planning: Arc<Semaphore>,
+    /// Schedules being made, and those that wait: each takes a core for seconds.
+    pub schedules: Turns,
     /// Who else's word one may sign in by, as far as is known.
     pub provider: Arc<Provider>,
     /// Cancelled when the server is to stop.
@@ -46,6 +50,7 @@ impl App {
             work: Arc::new(Notify::new()),
             hashing: Arc::new(Semaphore::new(2)),
             planning: Arc::new(Semaphore::new(2)),
+            schedules: Turns::default(),
             provider: Arc::default(),
             stopping: CancellationToken::new(),
             metrics,

@@ -18,12 +18,14 @@ mod schema;
 mod settings;
 mod solve;
 mod store;
+mod turns;
 mod worker;
 
 pub use orders::{link, linked_port};
 pub use plan::Plan;
 pub use settings::terms;
 pub use store::ask;
+pub use turns::Turns;
 pub use worker::{run, step};
 
 use crate::access::{Reader, Writer};

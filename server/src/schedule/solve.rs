@@ -8,6 +8,7 @@ use super::gather::{Agreed, Gathered, Names, gather};
 use super::orders;
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
+use super::turns::Turn;
 use crate::alerts;
 use crate::app::App;
 use crate::error::{Error, Result};
@@ -21,6 +22,7 @@ use binnacle_schedule::ports;
 use metrics::histogram;
 use std::collections::{BTreeMap, BTreeSet};
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Instant;
 use tracing::info;
 use uuid::Uuid;
@@ -28,8 +30,22 @@ use uuid::Uuid;
 /// Who comes second so often gives up.
 const MOST_TRIES: usize = 5;
 
-/// Makes the operator's plan anew, or finds that nothing has changed.
+/// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
+/// meanwhile waits for their turn, and takes no place of other operators'.
 pub(super) async fn solve(app: &App, operator: OperatorId) -> Result<Plan> {
+    let turn = app.schedules.turn_of(operator).await;
+    solve_in_turn(app, operator, Arc::new(turn)).await
+}
+
+/// The same, unless somebody is at it.
+pub(super) async fn solve_unless_busy(app: &App, operator: OperatorId) -> Result<Option<Plan>> {
+    match app.schedules.free_turn_of(operator) {
+        Some(turn) => solve_in_turn(app, operator, Arc::new(turn)).await.map(Some),
+        None => Ok(None),
+    }
+}
+
+async fn solve_in_turn(app: &App, operator: OperatorId, turn: Arc<Turn>) -> Result<Plan> {
     for _ in 0..MOST_TRIES {
         let gathered = gather(app, operator, &BTreeSet::new()).await?;
         if let Some(former) = &gathered.former
@@ -40,7 +56,7 @@ pub(super) async fn solve(app: &App, operator: OperatorId) -> Result<Plan> {
             return Ok(former);
         }
         let begun = Instant::now();
-        let (schedule, gathered) = settled(app, operator, gathered).await?;
+        let (schedule, gathered) = settled(app, operator, gathered, &turn).await?;
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
         let plan = named(schedule, &gathered, app.clock.now().into(), took_s)?;
@@ -61,9 +77,10 @@ async fn settled(
     app: &App,
     operator: OperatorId,
     mut gathered: Gathered,
+    turn: &Arc<Turn>,
 ) -> Result<(Schedule, Gathered)> {
     let mut moved = BTreeSet::new();
-    let mut schedule = run(app, gathered.text.clone()).await?;
+    let mut schedule = run(app, gathered.text.clone(), turn).await?;
     loop {
         let more = moved_away(&schedule, &gathered)?;
         if more.is_empty() {
@@ -71,7 +88,7 @@ async fn settled(
         }
         moved.extend(more);
         gathered = gather(app, operator, &moved).await?;
-        let mut next = run(app, gathered.text.clone()).await?;
+        let mut next = run(app, gathered.text.clone(), turn).await?;
         // Why a job moved is what moved it first, not that its order is in its way now.
         for change in &mut next.changes {
             let mut known = schedule.changes.iter();
@@ -113,13 +130,14 @@ pub(super) async fn forget_asks(
     Ok(())
 }
 
-async fn run(app: &App, text: String) -> Result<Schedule> {
-    let place = app.planning.clone().acquire_owned().await;
-    let place = place.map_err(anyhow::Error::from)?;
+async fn run(app: &App, text: String, turn: &Arc<Turn>) -> Result<Schedule> {
+    let place = app.schedules.place().await?;
+    // A request that is given up leaves its plan at work: until that ends it has the turn.
+    let turn = Arc::clone(turn);
     let done = tokio::task::spawn_blocking(move || {
         let checked = read(&text).context("what was gathered does not hang together")?;
         let schedule = plan(&checked);
-        drop(place);
+        drop((place, turn));
         anyhow::Ok(schedule)
     });
     Ok(done.await??)

@@ -213,6 +213,19 @@ pub(super) async fn leave(
     Ok(())
 }
 
+/// Leaves it alone until a time, for somebody else is at it.
+pub(super) async fn put_off(db: &Db, operator: OperatorId, until: Time) -> Result<()> {
+    let mut tx = db.begin().await?;
+    execute!(
+        &mut tx,
+        "UPDATE schedule_runs SET lease_until = $2, attempts = 0 WHERE operator_id = $1",
+        operator,
+        until
+    )?;
+    tx.commit().await?;
+    Ok(())
+}
+
 /// An operator's versions, the newest first: version, when, and the plan.
 pub(super) async fn versions(
     db: &Db,

@@ -58,8 +58,12 @@ pub async fn step(app: &App) -> anyhow::Result<Option<OperatorId>> {
     let Some(attempts) = in_words(store::claim(&app.db, operator, now, until).await)? else {
         return Ok(None);
     };
-    let made = make(app, operator).await;
-    let failed = in_words(made).err().map(|error| format!("{error:#}"));
+    let made = in_words(make(app, operator).await);
+    if let Ok(Made::Elsewhere) = made {
+        in_words(store::put_off(&app.db, operator, Time(now.0.plus_seconds(WAIT_S))).await)?;
+        return Ok(Some(operator));
+    }
+    let failed = made.err().map(|error| format!("{error:#}"));
     let retry_s = FIRST_RETRY_S * 2_f64.powi(attempts.clamp(1, 6) as i32 - 1);
     let again = Time(app.clock.now().plus_seconds(retry_s));
     if let Some(error) = &failed {
@@ -70,13 +74,23 @@ pub async fn step(app: &App) -> anyhow::Result<Option<OperatorId>> {
     Ok(Some(operator))
 }
 
+/// What became of a schedule that was asked for.
+enum Made {
+    /// It was made, or there is no use for it.
+    Here,
+    /// Somebody is at it, and answers what asked, or leaves it to the next look.
+    Elsewhere,
+}
+
 /// Who plans with no firm has no use for a plan until it is asked for.
-async fn make(app: &App, operator: OperatorId) -> crate::error::Result<()> {
+async fn make(app: &App, operator: OperatorId) -> crate::error::Result<Made> {
     let gathered = gather(app, operator, &BTreeSet::new()).await?;
     if !gathered.has_firms && gathered.former.is_none() {
-        return solve::forget_asks(app, operator, &gathered).await;
+        solve::forget_asks(app, operator, &gathered).await?;
+        return Ok(Made::Here);
     }
-    solve::solve(app, operator).await.map(drop)
+    let made = solve::solve_unless_busy(app, operator).await?;
+    Ok(made.map_or(Made::Elsewhere, |_| Made::Here))
 }
 
 async fn ask_for_outdated(app: &App, now: Time) -> anyhow::Result<()> {
