@@ -1,13 +1,15 @@
 //! A compass that stands still while the ship turns: its card has jammed, or its
 //! sensor repeats itself.
 //!
-//! What always holds: a reference that is wild now and then turns no ship; readings of a
+//! What always holds: a reference that is wild now and then turns no ship, and a compass that
+//! went with her half of the way is free; she turns against magnetic north, for a ship that is
+//! steered by her compass keeps it where it is while the variation changes; readings of a
 //! steady course before the first turn are not held against the compass unless they are
 //! the same to the last.
 
 use super::SampleReason;
 use super::reading::Reading;
-use crate::angle::{TrueHeading, wrap_180};
+use crate::angle::{TrueHeading, Variation, wrap_180};
 use crate::change::{Cause, CauseProbability, Change};
 use crate::sample::Sample;
 use std::ops::Range;
@@ -26,6 +28,9 @@ const LEFT_READINGS: usize = 3;
 /// back makes two.
 const TURN_DEG: f64 = 5.0;
 const TURNS: usize = 3;
+/// A compass that turns by as much of what she does is free. On the heading where the ship
+/// makes it slowest a sound one turns by 1/(1 + B) of it: two thirds where B is 0.5.
+const FOLLOWS: f64 = 0.5;
 /// By how much more than from heading to heading a card is off that jammed in a turn.
 const ASKEW_DEG: f64 = 15.0;
 /// What a jammed card did not follow before such a turn.
@@ -161,34 +166,85 @@ fn standing(readings: &[Reading]) -> usize {
     left.unwrap_or(readings.len())
 }
 
-/// The first readings of the courses that the ship kept to, each another than the last.
+/// The first readings of the courses that the ship kept to, each another than the last by
+/// which the compass did not turn.
 fn courses(readings: &[Reading]) -> Vec<usize> {
     let mut begun: Vec<usize> = Vec::new();
     let mut since = 0;
     for k in 1..readings.len() {
-        if has_turned(&readings[since], &readings[k]) {
+        if has_turned(&readings[since..=since], &readings[k..=k]) {
             since = k;
         }
         let is_kept = k + 1 == since + COURSE_READINGS;
-        let last = begun.last();
-        if is_kept && last.is_none_or(|&last| has_turned(&readings[last], &readings[since])) {
+        let course = |first: usize| &readings[first..first + COURSE_READINGS];
+        let is_another = |last: &usize| {
+            let (last, next) = (course(*last), course(since));
+            has_turned(last, next) && !has_followed(last, next)
+        };
+        if is_kept && begun.last().is_none_or(is_another) {
             begun.push(since);
         }
     }
     begun
 }
 
-/// Whether every reference that was read both times says that the ship turned, and one
-/// was.
-fn has_turned(a: &Reading, b: &Reading) -> bool {
-    let turned = |of: fn(&Sample) -> Option<TrueHeading>| {
-        let (a, b) = of(a.sample()).zip(of(b.sample()))?;
-        Some(wrap_180(b.degrees() - a.degrees()).abs() > TURN_DEG)
+/// Whether every reference that was read all the time says that the ship turned between some
+/// readings and others, and to the same side, and one was.
+fn has_turned(from: &[Reading], to: &[Reading]) -> bool {
+    let mut turned = turned_deg(from, to);
+    let first = turned.next();
+    first.is_some_and(|first| {
+        let agrees = |deg: f64| deg * first.signum() > TURN_DEG;
+        agrees(first) && turned.all(agrees)
+    })
+}
+
+/// Whether the compass went with her, as any of them says.
+fn has_followed(from: &[Reading], to: &[Reading]) -> bool {
+    let compass_deg = apart(from, to, |a, b| {
+        Some(b.sample().compass.degrees() - a.sample().compass.degrees())
+    });
+    compass_deg.is_some_and(|compass_deg| {
+        let goes_with = |deg: f64| compass_deg * deg.signum() > FOLLOWS * deg.abs();
+        turned_deg(from, to).any(goes_with)
+    })
+}
+
+/// By how much she turned against magnetic north, by each reference that was read all the
+/// time, degrees.
+fn turned_deg(from: &[Reading], to: &[Reading]) -> impl Iterator<Item = f64> {
+    let references: [fn(&Sample) -> Option<TrueHeading>; 2] = [|s| s.gyro, |s| s.satellite];
+    let turned = references.map(|of| {
+        apart(from, to, |a, b| {
+            let (x, y) = of(a.sample()).zip(of(b.sample()))?;
+            Some(y.degrees() - x.degrees() - varied_deg(a, b))
+        })
+    });
+    turned.into_iter().flatten()
+}
+
+/// How far the middle ones of some readings and of others are apart by an angle between two,
+/// degrees: a wild one is no middle. None unless each has it.
+fn apart(
+    from: &[Reading],
+    to: &[Reading],
+    angle_deg: impl Fn(&Reading, &Reading) -> Option<f64>,
+) -> Option<f64> {
+    let first = from.first()?;
+    let middle = |of: &[Reading]| {
+        let angles = of.iter().map(|one| angle_deg(first, one).map(wrap_180));
+        let mut angles = angles.collect::<Option<Vec<f64>>>()?;
+        angles.sort_by(f64::total_cmp);
+        angles.get(angles.len() / 2).copied()
     };
-    match (turned(|s| s.gyro), turned(|s| s.satellite)) {
-        (Some(gyro), Some(satellite)) => gyro && satellite,
-        (one, other) => one.or(other) == Some(true),
-    }
+    Some(wrap_180(middle(to)? - middle(from)?))
+}
+
+/// By how much the variation is another; nothing where it is not known.
+fn varied_deg(a: &Reading, b: &Reading) -> f64 {
+    let degrees = Variation::degrees_east;
+    let both = a.variation.zip(b.variation);
+    both.map_or(0.0, |(a, b)| degrees(b) - degrees(a))
 }
 
 /// Whether the compass has left its reference by more in between.
@@ -198,22 +254,19 @@ fn has_parted(degrees: f64, a: &Reading, b: &Reading) -> bool {
         let reference = sample.satellite.or(sample.gyro)?.degrees();
         Some(reference - sample.compass.degrees())
     };
-    let parted = off(a).zip(off(b)).map(|(a, b)| wrap_180(b - a));
+    let parted = off(a).zip(off(b));
+    let parted = parted.map(|(x, y)| wrap_180(y - x - varied_deg(a, b)));
     parted.is_some_and(|parted| parted.abs() > degrees)
 }
 
-/// The later reading of each pair between which the ship turned.
+/// The second reading after each turn of the ship: a reference that is wild for one has turned
+/// back by then.
 fn turns(readings: &[Reading]) -> impl Iterator<Item = usize> {
-    let turned = |a: Option<TrueHeading>, b: Option<TrueHeading>| {
-        let turn = a.zip(b).map(|(a, b)| wrap_180(b.degrees() - a.degrees()));
-        turn.is_some_and(|turn| turn.abs() > TURN_DEG)
-    };
-    let pairs = readings.windows(2).enumerate();
-    pairs.filter_map(move |(k, pair)| {
-        let (a, b) = (pair[0].sample(), pair[1].sample());
-        let any = turned(a.gyro, b.gyro) || turned(a.satellite, b.satellite);
-        any.then_some(k + 1)
-    })
+    let turned = |k: usize| has_turned(&readings[k - 1..k], &readings[k..=k]);
+    let is_turn = move |k: usize| turned(k) && !turned(k + 1) && (k == 1 || !turned(k - 1));
+    (1..readings.len().saturating_sub(1))
+        .filter(move |&k| is_turn(k))
+        .map(|k| k + 1)
 }
 
 fn told(readings: &[Reading], found: &Stuck) -> Change {
@@ -251,5 +304,89 @@ fn told(readings: &[Reading], found: &Stuck) -> Change {
         deviation_change_deg: None,
         step: None,
         ended: (stuck.end < readings.len()).then_some(last),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analyse::AnalysisSettings;
+    use crate::analyse::reading::readings;
+    use crate::time::Timestamp;
+
+    /// Readings ten minutes apart of what compass, gyro and satellite compass show, at 47
+    /// degrees north and the longitude given.
+    fn shown(each: impl Iterator<Item = (f64, [f64; 3])>, has_satellite: bool) -> Vec<Reading> {
+        let start = Timestamp::parse("2026-06-01T00:00:00Z").unwrap();
+        let sample = |(k, (lon, [compass, gyro, satellite])): (usize, (f64, [f64; 3]))| {
+            let satellite = Some(satellite).filter(|_| has_satellite);
+            let sample = serde_json::json!({
+                "time": start.plus_seconds(600.0 * k as f64), "lat": 47.0, "lon": lon,
+                "compass_deg": compass, "gyro_deg": gyro, "satellite_deg": satellite,
+                "sog_kn": 14.0, "rate_of_turn_deg_min": 0.0, "spread_deg": 0.3, "windows": 60,
+            });
+            serde_json::from_value(sample).unwrap()
+        };
+        let samples: Vec<Sample> = each.enumerate().map(sample).collect();
+        readings(&samples, &[], &AnalysisSettings::default())
+    }
+
+    #[test]
+    fn a_compass_that_she_is_steered_by_stands_still_while_the_variation_changes() {
+        // Westward over the Atlantic for five days.
+        let steered = |compass_deg: f64| {
+            let at = |k: u32| (-10.0 - f64::from(k) / 24.0, [compass_deg; 3]);
+            let mut steered = shown((0..720).map(at), true);
+            for reading in &mut steered {
+                let true_deg = compass_deg + reading.variation.unwrap().degrees_east();
+                let sample = &mut reading.diagnostic.sample;
+                (sample.gyro, sample.satellite) =
+                    (TrueHeading::new(true_deg), TrueHeading::new(true_deg));
+            }
+            steered
+        };
+        let mut steered = steered(280.0);
+        let variation_deg = |k: usize| steered[k].variation.unwrap().degrees_east();
+        assert!((variation_deg(719) - variation_deg(0)).abs() > TURN_DEG);
+        assert_eq!(mark_stuck(&mut steered), []);
+    }
+
+    #[test]
+    fn a_ship_that_yaws_about_her_course_has_no_stuck_compass() {
+        let yaw_deg = |k: usize| match k {
+            0 => -2.0,
+            40 => 3.2,
+            41.. => 0.4,
+            _ => 0.0,
+        };
+        // The compass goes with her, but for the ship's magnetism.
+        let at = |k: usize| {
+            let yaw_deg = yaw_deg(k);
+            let compass_deg = 44.0 + if yaw_deg > 0.5 { 2.2 } else { 0.8 * yaw_deg };
+            (-10.0, [compass_deg, 52.0 + yaw_deg, 52.0 + yaw_deg])
+        };
+        assert_eq!(mark_stuck(&mut shown((0..60).map(at), true)), []);
+        // And one that has jammed is found by the same turn, if she keeps to it.
+        let jams = |k: usize| {
+            let yaw_deg = if k < 40 { 0.0 } else { 6.0 };
+            (-10.0, [44.0, 52.0 + yaw_deg, 52.0 + yaw_deg])
+        };
+        assert_eq!(mark_stuck(&mut shown((0..60).map(jams), true)).len(), 1);
+    }
+
+    #[test]
+    fn whole_degrees_on_a_steady_course_are_no_stuck_compass_though_a_reference_is_wild() {
+        for has_satellite in [false, true] {
+            let at = |k: usize| {
+                let wild_deg = if k % 11 == 5 { 12.0 } else { 0.0 };
+                (-10.0, [90.0, 85.0 + wild_deg, 85.0])
+            };
+            let mut steady = shown((0..120).map(at), has_satellite);
+            assert_eq!(mark_stuck(&mut steady), [], "{has_satellite}");
+            // But a sensor that repeats itself while she keeps to other courses is one.
+            let turns = |k: usize| (-10.0, [90.0, 85.0 + [0.0, 30.0][k / 5 % 2], 85.0]);
+            let mut turning = shown((0..40).map(turns), false);
+            assert_eq!(mark_stuck(&mut turning).len(), 1);
+        }
     }
 }
