@@ -242,6 +242,31 @@ fn a_change_inside_a_gap_is_dated_within_it() {
     assert!(found[0].from_earliest <= stepped && stepped <= found[0].from_latest);
 }
 
+/// What drifts does so on the way, too.
+#[test]
+fn a_change_inside_a_gap_of_days_is_no_drift_of_weeks() {
+    for seed in 1..13 {
+        let log = sail_log(seed, &calm(Event::Step(2500.0)));
+        let stepped = began(&log, Name::Step);
+        let outside = |s: &&Sample| {
+            !(-3.0 * 86_400.0..3.0 * 86_400.0).contains(&s.time.seconds_since(stepped))
+        };
+        let until = stepped.plus_seconds(5.0 * 86_400.0);
+        let before = log.samples.iter().take_while(|s| s.time < until);
+        let samples: Vec<Sample> = before.filter(outside).copied().collect();
+        let analysis = run(&samples);
+        is_sound(&analysis);
+        let found = of_the_ship(&analysis);
+        assert_eq!(found.len(), 1, "seed {seed}: {found:?}");
+        let late_s = found[0].from.seconds_since(stepped);
+        let is_there = late_s.abs() < 3.25 * 86_400.0;
+        assert!(
+            found[0].cause != Cause::Drift && is_there,
+            "seed {seed}: {found:?}"
+        );
+    }
+}
+
 #[test]
 fn entries_that_overlap_or_precede_the_first_sample_are_taken_as_they_come() {
     let log = sail_log(3, &calm(Event::Step(2000.0)));

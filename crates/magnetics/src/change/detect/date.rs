@@ -1,6 +1,6 @@
 //! When a change happened, to the row.
 
-use super::{Search, earlier};
+use super::{GAP_S, Search, earlier};
 use crate::change::bank::Kind;
 use crate::change::filter::{Filter, Measurement};
 use crate::change::upset::{misled, upset};
@@ -10,8 +10,11 @@ use crate::estimate::Unknowns;
 const DATES: usize = 40;
 /// Those less likely than the best by this or more are no date of it, nats.
 const DATE_NATS: f64 = 1.92;
+/// Usual time from row to row, seconds.
+const ROW_S: f64 = 600.0;
 
-/// A step is dated at one of the port calls within so many rows of its own, if that is less likely than the likeliest row by no more, nats.
+/// A step is dated at one of the port calls within so many rows of its own, if that is less
+/// likely than the likeliest row by no more, nats.
 const CALLS: usize = 3;
 const CALL_ROWS: usize = 144;
 const CALL_NATS: f64 = 8.0;
@@ -87,11 +90,9 @@ impl Search<'_> {
                 before = self.take(before, &calm[row - origin.at..until - origin.at]);
                 row = next;
             }
-            likely.extend(tried.iter().map(|(row, f)| (round, *row, f.log_likelihood)));
-            if let Some(found) = tried
-                .into_iter()
-                .max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))
-            {
+            let nats = |(row, f): &(usize, Filter)| f.log_likelihood + self.in_gap_nats(*row);
+            likely.extend(tried.iter().map(|one| (round, one.0, nats(one))));
+            if let Some(found) = tried.into_iter().max_by(|a, b| nats(a).total_cmp(&nats(b))) {
                 best = found;
             }
             at = best.1.unknowns();
@@ -123,6 +124,17 @@ impl Search<'_> {
             filter,
             from,
             at_spawn: origin.at,
+        }
+    }
+
+    /// By how much likelier beforehand it is that something happened in the gap before a row
+    /// than between two rows: the gap is as many times as long, nats.
+    fn in_gap_nats(&self, row: usize) -> f64 {
+        let seconds = self.seconds(row);
+        if seconds > GAP_S {
+            (seconds / ROW_S).ln()
+        } else {
+            0.0
         }
     }
 

@@ -51,6 +51,9 @@ const ASTRAY_SD: f64 = 3.0;
 const ASTRAY_ROWS: usize = 2;
 /// After a gap of this the next row is a time to be tried, whatever the count.
 const GAP_S: f64 = 2.0 * 3600.0;
+/// What drifts does so on the way: of a longer gap so much counts for what a supposed drift
+/// may have done in it, seconds, or any change in a gap would pass for one.
+const DRIFTS_UNSEEN_S: f64 = 12.0 * 3600.0;
 /// Before so many rows no change is told from learning; so many where the sizes of noise
 /// are known from before.
 const YOUNG: usize = 300;
@@ -242,7 +245,8 @@ impl<'a> Search<'a> {
     /// population units.
     fn measure_drifting(&self, k: usize, at: &Unknowns, drift: f64) -> Measurement {
         let unsettled = self.unsettled.variance(self.observations, k);
-        self.measured(k, at, unsettled.max(drift))
+        let seen = (DRIFTS_UNSEEN_S / self.seconds(k)).min(1.0);
+        self.measured(k, at, unsettled.max(seen * drift))
     }
 
     /// The same for a ship that drifts as ships do.
