@@ -37,8 +37,8 @@ pub(super) fn is_laden(epoch: &Epoch, own: &[Reading]) -> bool {
         && with_reason(Some(SampleReason::MagneticCargo)) > with_reason(None)
 }
 
-/// Takes in the readings of an epoch of the logbook that an entry without an end leaves out,
-/// if by now nothing has told them from those without cargo; when those entries began.
+/// Takes in the readings of an epoch of the logbook that an entry without an end so far leaves
+/// out, if by now nothing has told them from those without cargo; when those entries began.
 pub(super) fn take_idle(
     epoch: &Epoch,
     found: &Found,
@@ -49,7 +49,7 @@ pub(super) fn take_idle(
         return Vec::new();
     };
     let mut idle = Vec::new();
-    for entry in without_end(logbook) {
+    for entry in without_end(logbook, until) {
         let from = epoch.from.map_or(entry.from, |begun| begun.max(entry.from));
         let loaded = from.plus_seconds(-LOADED_BEFORE_S);
         let changed = found.boundaries.iter().any(|b| b.at > loaded);
@@ -76,7 +76,7 @@ pub(super) fn take_idle(
     idle
 }
 
-/// What people should know of entries of cargo that have no end.
+/// What people should know of entries of cargo that have no end so far.
 pub(super) fn notices(
     readings: &[Reading],
     logbook: &[LogbookEntry],
@@ -85,10 +85,14 @@ pub(super) fn notices(
     let Some(until) = readings.last().map(|r| r.sample().time) else {
         return Vec::new();
     };
-    let entries = without_end(logbook).filter(|entry| entry.from < until);
+    let entries = without_end(logbook, until).filter(|entry| entry.from < until);
     entries
         .filter_map(|entry| {
             let from = entry.from;
+            let end = match entry.to {
+                None => "no end of it".to_owned(),
+                Some(to) => format!("its end only after the last sample, on {to}"),
+            };
             let left_out = readings.iter().filter(|r| {
                 r.sample().time >= from && r.diagnostic.reason == Some(SampleReason::MagneticCargo)
             });
@@ -96,7 +100,7 @@ pub(super) fn notices(
             if course.idle.contains(&from) {
                 let days = until.seconds_since(from) / DAY_S;
                 return Some(format!(
-                    "the logbook has magnetic cargo on board since {from}, and no end of it. In \
+                    "the logbook has magnetic cargo on board since {from}, and {end}. In \
                      {days:.0} days nothing has set the samples apart from those before, so that \
                      they are taken for the ship as she is. If the cargo was discharged, give the \
                      entry its end"
@@ -105,7 +109,7 @@ pub(super) fn notices(
             (left_out > 0).then(|| {
                 format!(
                     "{left_out} samples are left out of the model, for the logbook has magnetic \
-                     cargo on board since {from}, and no end of it. If it was discharged, give \
+                     cargo on board since {from}, and {end}. If it was discharged, give \
                      the entry its end. If it is on board, the model is of the ship without it; \
                      when nothing sets the samples apart for {IDLE_DAYS:.0} days, they are taken \
                      again"
@@ -115,7 +119,11 @@ pub(super) fn notices(
         .collect()
 }
 
-fn without_end(logbook: &[LogbookEntry]) -> impl Iterator<Item = &LogbookEntry> {
+/// Entries of cargo that have no end, or none by `until`: a year mistaken would leave samples
+/// out for as long.
+fn without_end(logbook: &[LogbookEntry], until: Timestamp) -> impl Iterator<Item = &LogbookEntry> {
     let entries = logbook.iter();
-    entries.filter(|entry| entry.kind == LogbookKind::MagneticCargo && entry.to.is_none())
+    entries.filter(move |entry| {
+        entry.kind == LogbookKind::MagneticCargo && entry.to.is_none_or(|to| to > until)
+    })
 }

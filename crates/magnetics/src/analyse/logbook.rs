@@ -107,6 +107,14 @@ impl LogbookEntry {
         Ok(self)
     }
 
+    /// The entry as it stands at a time: what ends later goes on yet.
+    pub(super) fn as_of(&self, until: Timestamp) -> LogbookEntry {
+        LogbookEntry {
+            to: self.to.filter(|to| *to <= until),
+            ..self.clone()
+        }
+    }
+
     /// Why a sample tells nothing of the ship alone, by this entry.
     pub(super) fn excludes(&self, sample: &Sample) -> Option<SampleReason> {
         let reason = self.kind.excludes()?;

@@ -51,10 +51,11 @@ pub(super) fn readings(
     let mut sorted = samples.to_vec();
     sorted.sort_by(in_order);
     sorted.dedup_by(|a, b| in_order(a, b) == Ordering::Equal);
-    let excluding: Vec<&LogbookEntry> = logbook
-        .iter()
-        .filter(|entry| entry.kind.excludes().is_some())
-        .collect();
+    let excluding = logbook.iter().filter(|e| e.kind.excludes().is_some());
+    // An end yet to come, or of a year mistaken, is none.
+    let excluding: Vec<LogbookEntry> = sorted.last().map_or_else(Vec::new, |last| {
+        excluding.map(|entry| entry.as_of(last.time)).collect()
+    });
     let mut field = DailyField::new(settings.field_model);
     sorted
         .into_iter()

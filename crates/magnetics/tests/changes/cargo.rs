@@ -257,3 +257,34 @@ fn cargo_that_nobody_closed_is_said_to_leave_samples_out_and_after_weeks_leaves_
     let closed = analyse(&log.samples, &[], &AnalysisSettings::default());
     assert!(closed.notices.is_empty());
 }
+
+/// A year mistaken is no reason to leave out a year's samples without a word.
+#[test]
+fn an_end_after_the_last_sample_is_none_yet() {
+    let log = sail_log(11, &calm(Event::Nothing));
+    let day = |days: f64| log.start.plus_seconds(days * 86_400.0);
+    let run = |kind, until: f64| {
+        let samples = log.samples.partition_point(|s| s.time < day(until));
+        let logbook = [entry(kind, day(15.0), Some(day(395.0)))];
+        analyse(
+            &log.samples[..samples],
+            &logbook,
+            &AnalysisSettings::default(),
+        )
+    };
+    let left_out = |analysis: &Analysis| {
+        let told = analysis.samples.iter().filter_map(|s| s.reason);
+        let of_the_logbook = [SampleReason::MagneticCargo, SampleReason::Berth];
+        told.filter(|reason| of_the_logbook.contains(reason))
+            .count()
+    };
+    let soon = run(LogbookKind::MagneticCargo, 25.0);
+    assert!(left_out(&soon) > 300);
+    let told = &soon.notices;
+    assert!(told[0].contains("samples are left out"), "{told:?}");
+    assert!(told[0].contains("only after the last sample"), "{told:?}");
+    let late = run(LogbookKind::MagneticCargo, 44.0);
+    assert_eq!(left_out(&late), 0, "{:?}", late.notices);
+    // A ship under way has left her berth, whatever was written down.
+    assert_eq!(left_out(&run(LogbookKind::Berth, 44.0)), 0);
+}
