@@ -157,6 +157,37 @@ fn by_one_reference_a_zero_that_moved_may_be_either_and_the_band_holds_both() {
 }
 
 #[test]
+fn by_one_reference_a_zero_that_moved_twice_may_be_off_by_both() {
+    for seed in 60..64 {
+        let mut plan = calm(Event::Nothing);
+        plan.faults.satellite = false;
+        let mut log = sail_log(seed, &plan);
+        let moves = [(22.0, 5.0), (30.0, 6.0)];
+        let days: Vec<f64> = log.samples.iter().map(|s| day(&log, s)).collect();
+        for (sample, day) in log.samples.iter_mut().zip(days) {
+            let moved = moves.iter().filter(|(from, _)| day > *from);
+            let off_deg: f64 = moved.map(|(_, deg)| deg).sum();
+            sample.compass = CompassHeading::new(sample.compass.degrees() + off_deg).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let place = analysis.last_place.unwrap();
+        let Some(model) = &analysis.current_epoch().unwrap().model else {
+            continue;
+        };
+        let held = |shown_deg: f64, moved_deg: f64| {
+            let (h, z) = (place.h_nt, place.z_nt);
+            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
+            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(sound_deg - moved_deg - told_deg).abs() <= 1.96 * se_deg
+        };
+        let headings = (0..36).map(|k| 10.0 * f64::from(k));
+        let count = headings.filter(|deg| held(*deg, 11.0)).count();
+        assert!(count > 30, "seed {seed}: {count}, {:?}", certain(&analysis));
+    }
+}
+
+#[test]
 fn a_zero_that_moved_by_much_is_told_once() {
     for (seed, moved_deg) in [
         (60, 8.0),

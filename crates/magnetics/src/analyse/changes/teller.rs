@@ -247,8 +247,13 @@ impl Teller<'_> {
         let change = &changes[place_of.get(index).copied().flatten()?];
         let zero = change.causes.iter().find(|c| c.cause == Cause::Alignment)?;
         let constant = |of: &Snapshot| of.covariance[PARAMETERS][PARAMETERS].max(0.0);
+        // Told in several steps, it is one: since the last time that all was well.
+        let earlier = &self.events[..=index];
+        let well = earlier.iter().rposition(|event| self.is_mended(event));
+        let first = earlier[well.unwrap_or(0)..].iter().find(|e| is_fault(e));
+        let sound_deg = first.unwrap_or(event).before.constant_deg;
         Some(Misled {
-            moved_deg: wrap_180(event.after.constant_deg - event.before.constant_deg),
+            moved_deg: wrap_180(event.after.constant_deg - sound_deg),
             variance: constant(&event.after),
             probability: zero.probability,
         })
