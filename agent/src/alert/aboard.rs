@@ -86,6 +86,11 @@ fn advice(alert: &ShipAlert) -> &'static str {
             "The satellite compass bears out the compass: do not trust the gyro. Check the gyro \
              and its speed and latitude settings, take an azimuth, and steer by what it confirms."
         }
+        Suspect::Unknown if alert.gyro_departure_deg.is_none() => {
+            "Trust neither until one is proven: take an azimuth, and compare both with a steady \
+             course over ground. Check the satellite compass and its antennas. Report lightning, \
+             a shock or magnetic cargo."
+        }
         Suspect::Satellite | Suspect::Unknown => {
             "Steer by gyro, but trust neither until one is proven: take an azimuth, and check the \
              gyro and its repeaters. Report lightning, a shock or magnetic cargo."
@@ -140,6 +145,14 @@ mod tests {
         assert!(gyro.advice.contains("do not trust the gyro"));
         let compass = status(ShipAlertState::Open, Some(9.0), Some(9.2));
         assert!(compass.advice.starts_with("Steer by gyro"));
+    }
+
+    #[test]
+    fn nobody_is_sent_to_a_gyro_that_gave_nothing() {
+        let alone = status(ShipAlertState::Open, None, Some(-7.2));
+        assert!(alone.says.contains("compass and satellite compass are 7°"));
+        assert!(!alone.advice.contains("gyro"), "{}", alone.advice);
+        assert!(alone.advice.contains("take an azimuth"));
     }
 
     #[test]

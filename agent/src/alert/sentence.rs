@@ -50,13 +50,16 @@ fn body(aboard: Option<&Aboard>) -> String {
         .take(8)
         .filter(|c| *c != ':')
         .collect();
-    let (condition, text) = match aboard.alert.state {
-        ShipAlertState::Open => ('A', "COMPASS AND GYRO PARTED"),
-        ShipAlertState::Agree => ('V', "COMPASS AND GYRO AGREE"),
-        ShipAlertState::NotJudged => ('V', "COMPASS AND GYRO NOT JUDGED"),
+    let (condition, so) = match aboard.alert.state {
+        ShipAlertState::Open => ('A', "PARTED"),
+        ShipAlertState::Agree => ('V', "AGREE"),
+        ShipAlertState::NotJudged => ('V', "NOT JUDGED"),
     };
+    let reference = aboard.alert.reference().to_uppercase();
     let acknowledged = if aboard.acknowledged { 'A' } else { 'V' };
-    format!("{talker}ALR,{time}.00,{NUMBER},{condition},{acknowledged},{text}")
+    format!(
+        "{talker}ALR,{time}.00,{NUMBER},{condition},{acknowledged},COMPASS AND {reference} {so}"
+    )
 }
 
 #[cfg(test)]
@@ -118,6 +121,18 @@ mod tests {
         let over = aboard(ShipAlertState::Agree, true);
         let said = text(alarm.due(Some(&over), after(34)));
         assert!(said.contains(",001,V,A,COMPASS AND GYRO AGREE*"), "{said}");
+    }
+
+    #[test]
+    fn it_names_the_satellite_compass_where_there_is_no_gyro() {
+        for state in [ShipAlertState::Open, ShipAlertState::NotJudged] {
+            let mut open = aboard(state, false);
+            open.alert.gyro_departure_deg = None;
+            open.alert.satellite_departure_deg = Some(20.0);
+            let said = text(AlarmSentence::default().due(Some(&open), Instant::now()));
+            assert!(said.contains(",COMPASS AND SATELLITE COMPASS "), "{said}");
+            assert!(said.len() <= 82, "{said}");
+        }
     }
 
     #[test]

@@ -245,6 +245,12 @@ fn words(alert: &ShipAlert) -> (&'static str, &'static str) {
             "The satellite compass bears out the magnetic compass: have the gyro and its speed \
              and latitude settings checked, and an azimuth taken before it is steered by.",
         ),
+        Suspect::Unknown if alert.gyro_departure_deg.is_none() => (
+            both,
+            "Trust neither until an azimuth proves one: compare both with a steady course over \
+             ground, check the satellite compass and its antennas, and ask on board about \
+             lightning, a shock or magnetic cargo.",
+        ),
         Suspect::Satellite | Suspect::Unknown => (
             both,
             "Steer by gyro, but trust neither until an azimuth proves one: check the gyro, and \
@@ -296,6 +302,7 @@ mod tests {
                 .summary
                 .starts_with("Compass and satellite compass parted by 7°")
         );
+        assert!(!alone.advice.contains("gyro"), "{}", alone.advice);
         let gyro = said(Some(6.0), Some(0.3));
         assert_eq!(gyro.severity, Severity::Warning);
         assert!(gyro.advice.contains("have the gyro"));

@@ -19,7 +19,7 @@ pub async fn announce(
     for (recipient, least) in store::wishes(tx, operator).await? {
         for news in all {
             let is_news = note(tx, recipient, least, news).await?;
-            if is_news && !is_replaced(news, all) {
+            if is_news && !is_replaced(news, least, all) {
                 let message = Message {
                     id: news.id,
                     kind: news.kind,
@@ -33,14 +33,16 @@ pub async fn announce(
     Ok(())
 }
 
-/// Whether the letter of the next alert of the cause says more than that this one is
-/// over.
-fn is_replaced(news: &AlertNews, all: &[AlertNews]) -> bool {
+/// Whether a letter of the next alert of the cause goes to the same recipient: it says more
+/// than that this one is over.
+fn is_replaced(news: &AlertNews, least: Severity, all: &[AlertNews]) -> bool {
     let of = |alert: &Alert| (alert.compass_id, alert.cause);
-    news.kind == Kind::AlertCleared
-        && all
-            .iter()
-            .any(|other| other.kind == Kind::AlertRaised && of(&other.alert) == of(&news.alert))
+    let is_next = |other: &AlertNews| {
+        other.kind == Kind::AlertRaised
+            && other.alert.severity >= least
+            && of(&other.alert) == of(&news.alert)
+    };
+    news.kind == Kind::AlertCleared && all.iter().any(is_next)
 }
 
 /// Whether a recipient is told this, which is then noted.
@@ -66,5 +68,59 @@ async fn note(
             Ok(told.is_some())
         }
         _ => Ok(false),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::alerts::{Cause, Evidence, State};
+    use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
+    use binnacle_magnetics::time::Timestamp;
+
+    fn news(kind: Kind, compass: CompassId, severity: Severity) -> AlertNews {
+        let at = Time(Timestamp::parse("2026-11-21T07:00:00Z").unwrap());
+        AlertNews {
+            id: DeliveryId::new(),
+            kind,
+            alert: Alert {
+                id: AlertId::new(),
+                vessel_id: VesselId::new(),
+                vessel_name: "Nao".to_owned(),
+                compass_id: compass,
+                compass_name: "Standard compass".to_owned(),
+                cause: Cause::LightningOrShock,
+                severity,
+                state: State::Raised,
+                since: at,
+                summary: String::new(),
+                advice: String::new(),
+                evidence: Evidence(Vec::new()),
+                raised_at: at,
+                updated_at: at,
+                acknowledged_at: None,
+                acknowledged_by: None,
+                acknowledgement_note: None,
+                cleared_at: None,
+                cleared_by: None,
+                clearing_reason: None,
+            },
+        }
+    }
+
+    #[test]
+    fn an_end_is_told_where_the_alert_that_follows_it_is_not() {
+        let compass = CompassId::new();
+        let over = news(Kind::AlertCleared, compass, Severity::Critical);
+        let next = news(Kind::AlertRaised, compass, Severity::Notice);
+        let all = [over.clone(), next];
+        assert!(is_replaced(&over, Severity::Notice, &all));
+        assert!(!is_replaced(&over, Severity::Critical, &all));
+        let elsewhere = news(Kind::AlertRaised, CompassId::new(), Severity::Critical);
+        assert!(!is_replaced(
+            &over,
+            Severity::Notice,
+            &[over.clone(), elsewhere]
+        ));
     }
 }
