@@ -99,7 +99,7 @@ pub(super) fn evidence(
         told.push(EITHER.to_owned());
     }
     if let Some(seconds) = known.burst_s.filter(|_| known.is_over) {
-        told.push(format!("{LASTED}{:.1} hours", seconds / 3600.0));
+        told.push(lasted(seconds));
     }
     if !known.reported.is_empty() {
         told.push("the logbook has a report of that time".to_owned());
@@ -113,6 +113,15 @@ pub(super) fn evidence(
         (false, Some(_)) => told.push(FAINT.to_owned()),
     }
     told
+}
+
+/// How long what is over lasted: of a single sample it is not known.
+fn lasted(seconds: f64) -> String {
+    let hours = seconds / 3600.0;
+    if hours < 0.05 {
+        return format!("{LASTED}a few minutes");
+    }
+    format!("{LASTED}{hours:.1} hours")
 }
 
 /// How far a drift has gone.
@@ -142,7 +151,14 @@ fn likelier(nats: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::drifted;
+    use super::{drifted, lasted};
+
+    #[test]
+    fn what_one_sample_shows_is_not_told_as_no_hours() {
+        assert_eq!(lasted(0.0), "it lasted a few minutes");
+        assert_eq!(lasted(600.0), "it lasted 0.2 hours");
+        assert_eq!(lasted(19_000.0), "it lasted 5.3 hours");
+    }
 
     #[test]
     fn a_drift_that_has_come_back_is_not_told_as_one_of_no_degrees() {
