@@ -3,7 +3,8 @@
 import type { AuditLine } from './api/types';
 import * as text from './text';
 
-const t = text.audit;
+/** Read when it is needed: the texts may be in a file that is evaluated after this one. */
+const t = () => text.audit;
 const beginning = '/api/v1';
 
 /** What the form says; empty is any. */
@@ -51,13 +52,13 @@ export function auditCsvPath(choice: AuditChoice): string {
 export function deed(line: Pick<AuditLine, 'method' | 'route'>): string {
   const route = line.route.startsWith(beginning) ? line.route.slice(beginning.length) : line.route;
   const called = `${line.method} ${route}`.trim();
-  return Object.hasOwn(t.deeds, called) ? (t.deeds[called] ?? called) : called;
+  return Object.hasOwn(t().deeds, called) ? (t().deeds[called] ?? called) : called;
 }
 
 /** Every route that may be asked for, with what is done by it, in the order of the words. */
 export function routes(): { route: string; words: string }[] {
   const byRoute = new Map<string, string[]>();
-  for (const [called, words] of Object.entries(t.deeds)) {
+  for (const [called, words] of Object.entries(t().deeds)) {
     const route = called.slice(called.indexOf(' ') + 1);
     byRoute.set(route, [...(byRoute.get(route) ?? []), words]);
   }
@@ -67,17 +68,17 @@ export function routes(): { route: string; words: string }[] {
 
 export function actor(line: Pick<AuditLine, 'actor_kind' | 'actor_name'>): string {
   const { actor_kind: kind, actor_name: name } = line;
-  if (kind === 'command') return t.by.command;
-  if (kind === 'agent') return t.by.agent(name);
-  const person = name === '' ? t.unnamed : name;
-  return kind === 'token' ? t.by.token(person) : person;
+  if (kind === 'command') return t().by.command;
+  if (kind === 'agent') return t().by.agent(name);
+  const person = name === '' ? t().unnamed : name;
+  return kind === 'token' ? t().by.token(person) : person;
 }
 
 /** How it went; an answer that sends a browser elsewhere is one too. */
 export function result(status: number | null): string {
-  if (status === null) return t.notNoted;
-  if (status < 400) return t.done;
-  return status < 500 ? t.refused(status) : t.failed(status);
+  if (status === null) return t().notNoted;
+  if (status < 400) return t().done;
+  return status < 500 ? t().refused(status) : t().failed(status);
 }
 
 /** Whom one may choose: the company's people, and whoever else is in the lines. */

@@ -36,7 +36,8 @@ export interface Mark {
   grave: boolean;
 }
 
-const t = text.timeAxis;
+/** Read when it is needed: the texts may be in a file that is evaluated after this one. */
+const t = () => text.timeAxis;
 
 /** Everything that falls into the range, lane by lane and each in order of time. */
 export function marksIn(
@@ -69,8 +70,8 @@ function epochMarks({ epochs }: Timeline, range: Range): Mark[] {
     lane: 'epochs' as const,
     fromMs: epoch.from === null ? range.fromMs : Date.parse(epoch.from),
     toMs: epoch.to === null ? range.toMs : Date.parse(epoch.to),
-    title: t.epoch(index + 1),
-    when: epoch.from === null ? t.fromTheStart : t.since(day(epoch.from)),
+    title: t().epoch(index + 1),
+    when: epoch.from === null ? t().fromTheStart : t().since(day(epoch.from)),
     more:
       epoch.curve === null
         ? text.changes.epochNoModel
@@ -123,7 +124,7 @@ function callMark(call: PortCall, at: At): Mark {
     fromMs: Date.parse(call.eta),
     toMs: Date.parse(call.etd),
     title: call.port_name || call.port,
-    when: t.fromTo(at(call.eta, call.port), at(call.etd, call.port)),
+    when: t().fromTo(at(call.eta, call.port), at(call.etd, call.port)),
     more: '',
     at: '/schedule',
     grave: false,

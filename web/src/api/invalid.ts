@@ -5,7 +5,8 @@
 
 import * as text from '../text';
 
-const t = text.fields;
+/** Read when it is needed: the texts may be in a file that is evaluated after this one. */
+const t = () => text.fields;
 
 /** How the server begins when it could not read a body, and how it ends. */
 const unread = /^body: Failed to deserialize the JSON body into the target type: /;
@@ -20,22 +21,22 @@ export function invalidInWords(detail: string): string {
   const [, how, field] = /^(missing|unknown) field `(\w+)`/.exec(what) ?? [];
   if (field !== undefined) {
     const whole = label(path === '' ? field : `${path}.${field}`);
-    return t.refused(whole, how === 'missing' ? t.missing : t.unknown);
+    return t().refused(whole, how === 'missing' ? t().missing : t().unknown);
   }
   if (path === '') return said;
   const plain = inWords(what).replace(/\.$/, '');
   const isPredicate = /^(is|has|have|are|must|comes?|begins?|ends?|stands?|was|were) /.test(plain);
-  return (isPredicate ? t.refused : t.said)(label(path), plain);
+  return (isPredicate ? t().refused : t().said)(label(path), plain);
 }
 
 function inWords(what: string): string {
-  if (what.startsWith('unknown variant ')) return t.choice;
+  if (what.startsWith('unknown variant ')) return t().choice;
   const [, wanted] = /^invalid (?:type|value): .*, expected (.+)$/s.exec(what) ?? [];
   if (wanted === undefined) return what;
-  if (/^(u8|u16|u32|u64|usize)$/.test(wanted)) return t.whole;
-  if (/^(f32|f64|i\d+|a number)/.test(wanted)) return t.number;
-  if (/^a (borrowed )?string/.test(wanted)) return t.text;
-  if (wanted.startsWith('a boolean')) return t.yesOrNo;
+  if (/^(u8|u16|u32|u64|usize)$/.test(wanted)) return t().whole;
+  if (/^(f32|f64|i\d+|a number)/.test(wanted)) return t().number;
+  if (/^a (borrowed )?string/.test(wanted)) return t().text;
+  if (wanted.startsWith('a boolean')) return t().yesOrNo;
   return what;
 }
 
@@ -45,19 +46,19 @@ export function label(path: string): string {
     const [, name = one, indices = ''] = /^(\w+?)((?:\[\d+\])*)$/.exec(one) ?? [];
     const places = [...indices.matchAll(/\d+/g)].map(([digits]) => Number(digits) + 1);
     const whole = called(places.length > 0 ? singular(name) : name);
-    return places.reduce((so, place) => t.nth(so, place), whole);
+    return places.reduce((so, place) => t().nth(so, place), whole);
   });
   return parts.join(', ');
 }
 
 function called(name: string): string {
-  if (Object.hasOwn(t.labels, name)) return t.labels[name] ?? name;
+  if (Object.hasOwn(t().labels, name)) return t().labels[name] ?? name;
   const words = name.split('_');
   const unit = words.at(-1) ?? '';
-  const hasUnit = words.length > 1 && Object.hasOwn(t.units, unit);
+  const hasUnit = words.length > 1 && Object.hasOwn(t().units, unit);
   const said = (hasUnit ? words.slice(0, -1) : words).join(' ');
   const plain = said.charAt(0).toUpperCase() + said.slice(1);
-  return hasUnit ? `${plain} (${t.units[unit] ?? ''})` : plain;
+  return hasUnit ? `${plain} (${t().units[unit] ?? ''})` : plain;
 }
 
 function singular(name: string): string {

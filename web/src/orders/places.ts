@@ -10,7 +10,8 @@ export interface Written {
   red: string;
 }
 
-const t = text.berth.step;
+/** Read when it is needed: the texts may be in a file that is evaluated after this one. */
+const t = () => text.berth.step;
 
 export function written(
   place: CorrectorPlace | null,
@@ -21,46 +22,46 @@ export function written(
   switch (place.place) {
     case 'magnets':
       return {
-        where: t.hole(carrier(corrector, design), place.hole),
-        what: t.magnets(place.count, place.magnet),
-        red: t.red[place.red],
+        where: t().hole(carrier(corrector, design), place.hole),
+        what: t().magnets(place.count, place.magnet),
+        red: t().red[place.red],
       };
     case 'pair':
-      return { where: t.mark(String(place.mark_mm)), what: pair(place), red: '' };
+      return { where: t().mark(String(place.mark_mm)), what: pair(place), red: '' };
     case 'bar':
       return {
-        where: t.length(String(place.length_mm)),
-        what: t.side[place.side] + turned(place.slew_deg ?? 0),
+        where: t().length(String(place.length_mm)),
+        what: t().side[place.side] + turned(place.slew_deg ?? 0),
         red: '',
       };
     case 'bucket':
       return {
-        where: t.position(place.position),
-        what: t.magnets(place.count, design?.heeling?.magnet ?? ''),
-        red: t.red[place.red],
+        where: t().position(place.position),
+        what: t().magnets(place.count, design?.heeling?.magnet ?? ''),
+        red: t().red[place.red],
       };
   }
 }
 
 function pair({ size, slew_deg = 0 }: { size: string; slew_deg?: number }): string {
   if (slew_deg === 0) return size;
-  const way = slew_deg > 0 ? t.slewAft : t.slewForward;
-  return `${size}, ${t.slew(`${Math.abs(slew_deg)}°`, way)}`;
+  const way = slew_deg > 0 ? t().slewAft : t().slewForward;
+  return `${size}, ${t().slew(`${Math.abs(slew_deg)}°`, way)}`;
 }
 
 const turned = (slewDeg: number) => (slewDeg === 0 ? '' : `, ${slewDeg}°`);
 
 function carrier(corrector: PlanStep['corrector'], design?: BinnacleDesign): string {
   const rack = corrector === 'athwartship' ? design?.athwartship : design?.fore_and_aft;
-  return t.carriers[rack?.carrier ?? 'hole'] ?? '';
+  return t().carriers[rack?.carrier ?? 'hole'] ?? '';
 }
 
 /** What is moved, as people call it. */
 export function correctorName(step: PlanStep, design?: BinnacleDesign): string {
   const place = step.to ?? step.from;
-  if (place?.place !== 'pair') return t.corrector[step.corrector];
+  if (place?.place !== 'pair') return t().corrector[step.corrector];
   const size = design?.quadrantal?.sizes.find((one) => one.name === place.size);
-  return t.shapes[size?.shape ?? 'sphere'];
+  return t().shapes[size?.shape ?? 'sphere'];
 }
 
 /** How all correctors stand, a line each; what is not in use is not said. */
@@ -71,7 +72,7 @@ export function standing(
   const line = (corrector: PlanStep['corrector'], place: CorrectorPlace) => {
     const said = written(place, corrector, design);
     const parts = [said?.where, said?.what, said?.red].filter((part) => part);
-    return { corrector: t.corrector[corrector], words: parts.join(', ') };
+    return { corrector: t().corrector[corrector], words: parts.join(', ') };
   };
   const { fore_and_aft, athwartship, quadrantal, flinders, heeling } = setting;
   return [

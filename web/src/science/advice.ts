@@ -5,7 +5,8 @@ import { degrees, heading, plusMinus } from '../format';
 import * as text from '../text';
 import { magneticLatitude } from './coverage';
 
-const t = text.sailNext;
+/** Read when it is needed: the texts may be in a file that is evaluated after this one. */
+const t = () => text.sailNext;
 
 /** A range of headings or latitudes, and what a watch and three would do. */
 export interface Suggestion {
@@ -16,7 +17,7 @@ export interface Suggestion {
 export function headingSuggestions(advice: SailNext['here']): Suggestion[] {
   return advice.suggestions.map((suggestion) => {
     const [now, one, three] = widths(advice.band, suggestion.after_one, suggestion.after_three);
-    return { where: headingRange(suggestion), gain: t.gainHere(now, one, three) };
+    return { where: headingRange(suggestion), gain: t().gainHere(now, one, three) };
   });
 }
 
@@ -29,7 +30,7 @@ export function latitudeSuggestions(advice: NonNullable<SailNext['elsewhere']>):
         suggestion.magnetic_latitude_from_deg,
         suggestion.magnetic_latitude_to_deg,
       ),
-      gain: t.gainElsewhere(now, first, one, list([first, ...others]), three),
+      gain: t().gainElsewhere(now, first, one, list([first, ...others]), three),
     };
   });
 }
@@ -38,7 +39,7 @@ export function latitudeSuggestions(advice: NonNullable<SailNext['elsewhere']>):
 export function remains(advice: Advice, floorDeg: number): string {
   const [band, floor] = widths(advice.band, { rms_deg: floorDeg, worst_deg: floorDeg });
   const most = advice.narrows_at_most_deg;
-  return t.nothing(band, floor, degrees(most, most < 0.1 ? 2 : 1));
+  return t().nothing(band, floor, degrees(most, most < 0.1 ? 2 : 1));
 }
 
 /**
@@ -59,13 +60,13 @@ export function size(value: number, digits = 1): string {
 
 /** `Between 030° and 075°`; the whole circle is any heading. */
 export function headingRange(range: HeadingRange): string {
-  if (range.heading_to_deg - range.heading_from_deg === 360) return t.anyHeading;
-  return t.between(heading(range.heading_from_deg), heading(range.heading_to_deg));
+  if (range.heading_to_deg - range.heading_from_deg === 360) return t().anyHeading;
+  return t().between(heading(range.heading_from_deg), heading(range.heading_to_deg));
 }
 
 /** `Between 60° S and 20° N` */
 export function latitudeRange(fromDeg: number, toDeg: number): string {
-  return t.latitudes(magneticLatitude(fromDeg), magneticLatitude(toDeg));
+  return t().latitudes(magneticLatitude(fromDeg), magneticLatitude(toDeg));
 }
 
 /** The middles of the ranges to the nearest ten degrees, each once. */
@@ -77,5 +78,5 @@ function middles(ranges: HeadingRange[]): string[] {
 
 function list(words: string[]): string {
   if (words.length < 2) return words.join('');
-  return t.and(words.slice(0, -1).join(', '), words.at(-1) ?? '');
+  return t().and(words.slice(0, -1).join(', '), words.at(-1) ?? '');
 }

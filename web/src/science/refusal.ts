@@ -9,15 +9,16 @@ export interface RefusalWords {
   todo: string;
 }
 
-const t = text.refusal;
+/** Read when it is needed: the texts may be in a file that is evaluated after this one. */
+const t = () => text.refusal;
 
 /** What the logbook leaves out, by kind of entry; nothing where it leaves out nothing. */
 export function leftOutWords(leftOut: LeftOut | undefined): string | null {
   if (!leftOut) return null;
   const kinds = (['magnetic_cargo', 'berth'] as const)
     .filter((kind) => leftOut[kind] > 0)
-    .map((kind) => t.leftOutFor(count(leftOut[kind]), text.logbook.kinds[kind].toLowerCase()));
-  return kinds.length === 0 ? null : t.leftOut(kinds.join(', '));
+    .map((kind) => t().leftOutFor(count(leftOut[kind]), text.logbook.kinds[kind].toLowerCase()));
+  return kinds.length === 0 ? null : t().leftOut(kinds.join(', '));
 }
 
 /** None for a reason that a newer server knows and this page does not. */
@@ -25,17 +26,17 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
   switch (refusal.reason) {
     case 'too_few_samples':
       return {
-        missing: t.tooFewSamples(count(refusal.found), count(refusal.needed)),
-        todo: t.tooFewSamplesTodo,
+        missing: t().tooFewSamples(count(refusal.found), count(refusal.needed)),
+        todo: t().tooFewSamplesTodo,
       };
     case 'no_reference':
-      return { missing: t.noReference(count(refusal.readings)), todo: t.noReferenceTodo };
+      return { missing: t().noReference(count(refusal.readings)), todo: t().noReferenceTodo };
     case 'no_weight':
-      return { missing: t.noWeight(count(refusal.samples)), todo: t.noWeightTodo };
+      return { missing: t().noWeight(count(refusal.samples)), todo: t().noWeightTodo };
     case 'too_few_headings':
       return {
         missing: [
-          t.tooFewHeadings(
+          t().tooFewHeadings(
             refusal.found,
             refusal.needed,
             degrees(refusal.widest_gap_deg, 0),
@@ -43,37 +44,37 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
           ),
           ...missingRanges(refusal.missing_deg),
         ].join(' '),
-        todo: t.tooFewHeadingsTodo,
+        todo: t().tooFewHeadingsTodo,
       };
     case 'field_too_weak':
       return {
-        missing: t.fieldTooWeak(microtesla(refusal.strongest_nt), microtesla(refusal.needed_nt)),
-        todo: t.fieldTooWeakTodo,
+        missing: t().fieldTooWeak(microtesla(refusal.strongest_nt), microtesla(refusal.needed_nt)),
+        todo: t().fieldTooWeakTodo,
       };
     case 'ambiguous_headings':
       return {
-        missing: t.ambiguousHeadings(microtesla(refusal.h_nt)),
-        todo: t.ambiguousHeadingsTodo,
+        missing: t().ambiguousHeadings(microtesla(refusal.h_nt)),
+        todo: t().ambiguousHeadingsTodo,
       };
     case 'one_magnetic_latitude':
-      return { missing: t.oneMagneticLatitude, todo: t.oneMagneticLatitudeTodo };
+      return { missing: t().oneMagneticLatitude, todo: t().oneMagneticLatitudeTodo };
     case 'references_disagree':
       return {
-        missing: t.referencesDisagree(
+        missing: t().referencesDisagree(
           degrees(Math.abs(refusal.offset_deg)),
           degrees(refusal.allowed_deg, 0),
         ),
-        todo: t.referencesDisagreeTodo,
+        todo: t().referencesDisagreeTodo,
       };
     case 'reference_stuck':
-      return { missing: t.referenceStuck(count(refusal.readings)), todo: t.referenceStuckTodo };
+      return { missing: t().referenceStuck(count(refusal.readings)), todo: t().referenceStuckTodo };
     case 'contradictory':
       return {
-        missing: t.contradictory(degrees(refusal.residual_deg), degrees(refusal.allowed_deg, 0)),
-        todo: t.contradictoryTodo,
+        missing: t().contradictory(degrees(refusal.residual_deg), degrees(refusal.allowed_deg, 0)),
+        todo: t().contradictoryTodo,
       };
     case 'not_converged':
-      return { missing: t.notConverged, todo: t.notConvergedTodo };
+      return { missing: t().notConverged, todo: t().notConvergedTodo };
     default:
       return null;
   }
@@ -83,5 +84,5 @@ export function refusalWords(refusal: Refusal): RefusalWords | null {
 function missingRanges(ranges: number[][] | undefined): string[] {
   if (!ranges || ranges.length === 0) return [];
   const shown = ranges.map(([from = 0, to = 0]) => `${heading(from)} – ${heading(to % 360)}`);
-  return [t.missing(shown.join(', '))];
+  return [t().missing(shown.join(', '))];
 }

@@ -15,7 +15,8 @@ export interface Statement {
   meaning: string;
 }
 
-const t = text.trust;
+/** Read when it is needed: the texts may be in a file that is evaluated after this one. */
+const t = () => text.trust;
 
 /** The band at the place of a table; none where the model came without one. */
 export function here(rows: DeviationRow[]): Statement | null {
@@ -27,10 +28,10 @@ export function here(rows: DeviationRow[]): Statement | null {
   const widest = banded.reduce((a, b) => (b.band95_deg > a.band95_deg ? b : a), first);
   const narrowest = banded.reduce((a, b) => (b.band95_deg < a.band95_deg ? b : a), first);
   const [most, least] = [size(widest.band95_deg), size(narrowest.band95_deg)];
-  if (most === least) return { figure: most, meaning: t.hereEven };
+  if (most === least) return { figure: most, meaning: t().hereEven };
   return {
     figure: most,
-    meaning: t.here(heading(widest.compass_deg), least, heading(narrowest.compass_deg)),
+    meaning: t().here(heading(widest.compass_deg), least, heading(narrowest.compass_deg)),
   };
 }
 
@@ -42,12 +43,12 @@ export function elsewhere(waters: Waters[]): Statement | null {
   const good = goodRanges(waters);
   const limit = size(goodDeg, 0);
   const at = rangeWords(worst);
-  if (good.length === 0) return { figure, meaning: t.nowhereGood(limit, at) };
+  if (good.length === 0) return { figure, meaning: t().nowhereGood(limit, at) };
   const ranges = list(good.map(rangeWords));
   if (waters.every(({ widest }) => widest && widest.band95_deg <= goodDeg)) {
-    return { figure, meaning: t.everywhereGood(limit, ranges) };
+    return { figure, meaning: t().everywhereGood(limit, ranges) };
   }
-  return { figure, meaning: t.elsewhere(limit, ranges, figure, at) };
+  return { figure, meaning: t().elsewhere(limit, ranges, figure, at) };
 }
 
 /** What the samples are worth; none in a model that came without. */
@@ -56,7 +57,7 @@ export function worth(model: Model): Statement | null {
   const { effective_samples: effective } = model.quality;
   return {
     figure: count(effective),
-    meaning: t.worth(count(model.samples_used), count(effective)),
+    meaning: t().worth(count(model.samples_used), count(effective)),
   };
 }
 
@@ -70,48 +71,48 @@ export function sinceAdjustment({ verification }: Foretold): Statement {
 export function cautionWords(caution: Caution): string {
   switch (caution.caution) {
     case 'one_magnetic_latitude':
-      return t.oneMagneticLatitude;
+      return t().oneMagneticLatitude;
     case 'few_samples':
-      return t.fewSamples;
+      return t().fewSamples;
     case 'no_times':
-      return t.noTimes;
+      return t().noTimes;
     case 'large_residuals':
-      return t.largeResiduals(degrees(caution.residual_deg));
+      return t().largeResiduals(degrees(caution.residual_deg));
     case 'long_gap':
-      return t.longGap(count(Math.round(caution.days)), day(caution.last));
+      return t().longGap(count(Math.round(caution.days)), day(caution.last));
     case 'weak_field':
-      return t.weakField(microtesla(caution.h_nt));
+      return t().weakField(microtesla(caution.h_nt));
     default:
       // A newer server may know more than this page does.
-      return t.unknown;
+      return t().unknown;
   }
 }
 
 /** How gyro and satellite compass compare. */
 export function references(found: References): Statement {
   const left = size(normal95 * found.constant_sd_deg);
-  if (found.pairs === 0) return { figure: t.oneReference, meaning: t.oneReferenceLong(left) };
+  if (found.pairs === 0) return { figure: t().oneReference, meaning: t().oneReferenceLong(left) };
   const pairs = count(found.pairs);
   if (typeof found.offset_deg !== 'number') {
-    return { figure: t.notCompared, meaning: t.notComparedLong(pairs, left) };
+    return { figure: t().notCompared, meaning: t().notComparedLong(pairs, left) };
   }
   const apart = degrees(Math.abs(found.offset_deg));
-  const usual = found.offset_deg < 0 ? t.gyroBehind(apart, pairs) : t.gyroAhead(apart, pairs);
-  return { figure: t.apart(apart), meaning: `${usual} ${t.constantLeft(left)}` };
+  const usual = found.offset_deg < 0 ? t().gyroBehind(apart, pairs) : t().gyroAhead(apart, pairs);
+  return { figure: t().apart(apart), meaning: `${usual} ${t().constantLeft(left)}` };
 }
 
 /** How many readings were not believed, and why; empty where all were. */
 export function dropped(found: References): string {
   if (found.gyro_dropped + found.satellite_dropped === 0) return '';
-  const counts = t.dropped(count(found.gyro_dropped), count(found.satellite_dropped));
-  if (typeof found.offset_deg !== 'number') return `${counts} ${t.droppedStuck}`;
-  return `${counts} ${t.droppedWhy(degrees(found.failed_beyond_deg))}`;
+  const counts = t().dropped(count(found.gyro_dropped), count(found.satellite_dropped));
+  if (typeof found.offset_deg !== 'number') return `${counts} ${t().droppedStuck}`;
+  return `${counts} ${t().droppedWhy(degrees(found.failed_beyond_deg))}`;
 }
 
 function rangeWords({ fromDeg, toDeg }: Range): string {
   // A latitude is never broken over two lines.
   const shown = (value: number) => magneticLatitude(value).replace(' ', '\u00a0');
-  return t.between(shown(fromDeg), shown(toDeg));
+  return t().between(shown(fromDeg), shown(toDeg));
 }
 
 function list(words: string[]): string {
