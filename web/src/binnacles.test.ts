@@ -1,6 +1,15 @@
 import { describe, expect, test } from 'vitest';
-import type { Binnacle, BinnacleDesign } from './api/types';
-import { binnacleOf, draftOf, fault, imported, newBinnacle, piecesOf } from './binnacles';
+import type { Binnacle, BinnacleDesign, FleetBinnacle } from './api/types';
+import {
+  aboardInWords,
+  binnacleOf,
+  draftOf,
+  fault,
+  imported,
+  newBinnacle,
+  piecesOf,
+  soughtBinnacles,
+} from './binnacles';
 
 const rack = { carrier: 'tray', at_once: 2, magnets_each: 4, magnets: ['200 mm'], holes: [] };
 const design = {
@@ -72,5 +81,55 @@ describe('a binnacle', () => {
     ]) {
       expect(imported(other)).toBeNull();
     }
+  });
+});
+
+describe('the fleet’s binnacles', () => {
+  const of = (vessel: string, compass: string, serial?: string): FleetBinnacle => ({
+    vessel_id: vessel,
+    vessel_name: vessel,
+    compass_id: `${vessel} ${compass}`,
+    compass_name: compass,
+    role: 'standard',
+    binnacle:
+      serial === undefined
+        ? null
+        : {
+            maker: 'Cassens',
+            model: 'Trays',
+            serial,
+            aboard: aboard.aboard,
+            measured_effects: 0,
+            revision: 1,
+            at: '2026-11-01T00:00:00Z',
+            by: 'Ada',
+            reason: null,
+          },
+  });
+  const fleet = [
+    of('Óbidos', 'Standard', '17'),
+    of('Nao', 'Standard', '18'),
+    of('Pinta', 'Steering'),
+  ];
+  const names = (search: string) => soughtBinnacles(fleet, search).map((one) => one.vessel_name);
+
+  test('begin with those of which nothing can be planned, then go by name', () => {
+    expect(names('')).toEqual(['Pinta', 'Nao', 'Óbidos']);
+  });
+
+  test('are found by ship, compass, maker or number, without accents', () => {
+    expect(names('obidos')).toEqual(['Óbidos']);
+    expect(names('steering')).toEqual(['Pinta']);
+    expect(names('cassens 18')).toEqual(['Nao']);
+    expect(names('nobody')).toEqual([]);
+  });
+
+  test('say what is on board as people count it', () => {
+    expect(aboardInWords(aboard.aboard)).toEqual([
+      '12 magnets, 200 mm',
+      'pair of 7 inch',
+      'Flinders bar in pieces of 300, 75, 75 mm',
+    ]);
+    expect(aboardInWords({ magnets: [] })).toEqual([]);
   });
 });

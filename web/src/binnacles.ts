@@ -3,8 +3,9 @@
  * the server checks it whole.
  */
 
-import type { Binnacle, BinnacleDesign, CorrectorSetting } from './api/types';
+import type { Binnacle, BinnacleDesign, CorrectorSetting, FleetBinnacle } from './api/types';
 import { number } from './orders/reading';
+import { plainly } from './plainly';
 import * as text from './text';
 
 /** What stands in the fields. */
@@ -114,4 +115,34 @@ export function imported(content: string): Binnacle | null {
   } catch {
     return null;
   }
+}
+
+type Aboard = Pick<Binnacle['aboard'], 'magnets' | 'quadrantal' | 'flinders_pieces_mm'>;
+
+/** The correctors on board, a line each, as people count them. */
+export function aboardInWords(aboard: Aboard): string[] {
+  const { bar, pair } = text.binnacles;
+  const pieces = aboard.flinders_pieces_mm ?? [];
+  return [
+    ...aboard.magnets.map((lot) => text.berth.step.magnets(lot.count, lot.magnet)),
+    ...(aboard.quadrantal ?? []).map((size) => pair(size)),
+    ...(pieces.length > 0 ? [bar(pieces.join(', '))] : []),
+  ];
+}
+
+/** Those with these words in what they say: where nothing is entered first, then by name. */
+export function soughtBinnacles(all: readonly FleetBinnacle[], search: string): FleetBinnacle[] {
+  const words = plainly(search).split(/\s+/).filter(Boolean);
+  return all
+    .filter((one) => {
+      const { maker = '', model = '', serial = '' } = one.binnacle ?? {};
+      const hay = plainly([one.vessel_name, one.compass_name, maker, model, serial].join(' '));
+      return words.every((word) => hay.includes(word));
+    })
+    .sort(
+      (a, b) =>
+        Number(a.binnacle !== null) - Number(b.binnacle !== null) ||
+        a.vessel_name.localeCompare(b.vessel_name, 'en') ||
+        a.compass_name.localeCompare(b.compass_name, 'en'),
+    );
 }

@@ -5,6 +5,7 @@
 
 import type { FleetVessel } from './api/types';
 import { pressing, reasonsOf, worstAhead, type FleetLine } from './attention';
+import { plainly } from './plainly';
 import { grade } from './science/curve';
 
 export const filters = ['all', 'attention', 'unacknowledged', 'large', 'weak', 'silent'] as const;
@@ -38,17 +39,6 @@ function says(vessel: FleetVessel, words: string[]): boolean {
   const hay = plainly([vessel.name, vessel.imo_number, vessel.call_sign].join(' '));
   return words.every((word) => hay.includes(word));
 }
-
-/** Letters that no mark is taken from to have a plain one. */
-const otherLetters: Record<string, string> = { ø: 'o', ł: 'l', đ: 'd', æ: 'ae', œ: 'oe', ß: 'ss' };
-
-/** Without capitals and accents: not every keyboard has every ship's letters. */
-const plainly = (words: string): string =>
-  words
-    .normalize('NFD')
-    .replace(/\p{M}/gu, '')
-    .toLowerCase()
-    .replace(/[øłđæœß]/g, (letter) => otherLetters[letter] ?? letter);
 
 function passes(vessel: FleetLine, filter: Filter, now: Date): boolean {
   switch (filter) {

@@ -6,6 +6,7 @@
 //! (docs/binnacle.md), which `plan --binnacle` reads too.
 
 mod design_schema;
+mod fleet;
 mod schema;
 mod shipped;
 mod store;
@@ -38,6 +39,7 @@ use utoipa_axum::routes;
 pub fn router() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .merge(shipped::router())
+        .merge(fleet::router())
         .routes(routes!(find_binnacle, put_binnacle))
         .routes(routes!(list_revisions))
         .routes(routes!(export_binnacle))

@@ -74,7 +74,7 @@ pub(super) struct DesignSchema {
 #[derive(ToSchema)]
 #[schema(as = CorrectorsAboard)]
 #[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Aboard")]
-struct AboardSchema {
+pub(super) struct AboardSchema {
     /// Magnets by their kind.
     magnets: Vec<LotSchema>,
     /// Sizes of which there is a pair.

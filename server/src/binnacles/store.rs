@@ -1,9 +1,10 @@
 //! Binnacles in the database.
 
 use super::BinnacleRevision;
+use crate::compasses::Role;
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::Result;
-use crate::ids::{BinnacleId, CompassId, VesselId};
+use crate::ids::{BinnacleId, CompassId, OperatorId, VesselId};
 use crate::time::Time;
 use binnacle_magnetics::binnacle::Binnacle;
 use uuid::Uuid;
@@ -83,6 +84,67 @@ pub(super) async fn list(
         vessel,
         compass,
         before.unwrap_or(i64::MAX),
+        limit
+    )
+}
+
+/// A compass of a fleet's, and the latest of what was written of its binnacle.
+#[derive(Debug, sqlx::FromRow)]
+pub(super) struct Standing {
+    pub(super) vessel_id: VesselId,
+    pub(super) vessel_name: String,
+    pub(super) compass_id: CompassId,
+    pub(super) compass_name: String,
+    pub(super) role: Role,
+    revision: Option<i64>,
+    at: Option<Time>,
+    author_name: Option<String>,
+    reason: Option<String>,
+    binnacle: Option<String>,
+}
+
+impl Standing {
+    /// What was written last; none where nothing ever was.
+    pub(super) fn revised(&self) -> Result<Option<Revised>> {
+        let (Some(revision), Some(at), Some(author_name), Some(text)) =
+            (self.revision, self.at, &self.author_name, &self.binnacle)
+        else {
+            return Ok(None);
+        };
+        Ok(Some(Revised {
+            revision,
+            at,
+            author_name: author_name.clone(),
+            reason: self.reason.clone(),
+            binnacle: text.clone().try_into()?,
+        }))
+    }
+}
+
+/// The compasses of an operator's vessels in service, from after an id.
+pub(super) async fn of_fleet(
+    db: &Db,
+    operator: OperatorId,
+    after: Option<Uuid>,
+    limit: i64,
+) -> DbResult<Vec<Standing>> {
+    rows!(
+        db,
+        Standing,
+        "SELECT v.id AS vessel_id, v.name AS vessel_name, c.id AS compass_id,
+                c.name AS compass_name, c.role, b.revision, b.at, b.author_name, b.reason,
+                b.binnacle
+         FROM vessels v
+         JOIN compasses c ON c.vessel_id = v.id
+         LEFT JOIN binnacles b
+           ON b.vessel_id = c.vessel_id AND b.compass_id = c.id
+          AND b.revision = (SELECT MAX(l.revision) FROM binnacles l
+                            WHERE l.vessel_id = c.vessel_id AND l.compass_id = c.id)
+         WHERE v.operator_id = $1 AND v.out_of_service_at IS NULL AND c.id > $2
+         ORDER BY c.id
+         LIMIT $3",
+        operator,
+        after.unwrap_or(Uuid::nil()),
         limit
     )
 }

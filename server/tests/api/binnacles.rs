@@ -13,6 +13,7 @@ on_both!(
     a_binnacle_sent_again_under_its_key_is_one_revision,
     what_is_no_binnacle_is_refused_by_its_field_and_leaves_nothing,
     a_viewer_reads_a_binnacle_and_does_not_write,
+    the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing,
 );
 
 /// A binnacle with trays, spheres and a bar in pieces, nothing of it in use.
@@ -166,5 +167,54 @@ async fn a_viewer_reads_a_binnacle_and_does_not_write(shore: Shore) {
     let bob = ada.viewer(&shore).await;
     assert_eq!(bob.get(&path).await.good()["revision"], 1);
     assert_eq!(put(&bob, &path, &binnacle()).await.problem(), "forbidden");
+    shore.finish().await;
+}
+
+async fn the_fleet_says_what_each_compass_stands_in_and_which_stand_in_nothing(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let mut paths = Vec::new();
+    for name in ["Nao", "Pinta", "Niña"] {
+        let vessel = ada.create_vessel(name).await;
+        let id = vessel["id"].as_str().unwrap();
+        let compass = vessel["compasses"][0]["id"].as_str().unwrap();
+        paths.push((
+            format!("/vessels/{id}"),
+            format!("/vessels/{id}/compasses/{compass}/binnacle"),
+        ));
+    }
+    put(&ada, &paths[0].1, &binnacle()).await.good();
+    let mut fuller = binnacle();
+    fuller["aboard"]["magnets"][0]["count"] = json!(16);
+    let why = format!("{}?reason=four+were+bought", paths[0].1);
+    put(&ada, &why, &fuller).await.good();
+    put(&ada, &paths[2].1, &binnacle()).await.good();
+    let sold = json!({ "in_service": false });
+    let sold = ada.request(Method::PATCH, &paths[2].0).json(&sold);
+    Answer::of(sold).await.good();
+
+    let first = ada.get("/binnacles?limit=1").await.good();
+    let nao = &first["items"][0];
+    assert_eq!(
+        (&nao["vessel_name"], &nao["compass_name"]),
+        (&json!("Nao"), &json!("Standard compass"))
+    );
+    let kept = &nao["binnacle"];
+    assert_eq!(kept["model"], binnacle()["type"]["model"]);
+    assert_eq!(
+        (&kept["serial"], &kept["revision"], &kept["reason"]),
+        (&json!("2047"), &json!(2), &json!("four were bought"))
+    );
+    assert_eq!(kept["aboard"]["magnets"][0]["count"], 16);
+    let next = first["next"].as_str().unwrap();
+    let rest = ada.get(&format!("/binnacles?after={next}")).await.good();
+    let rest = rest["items"].as_array().unwrap();
+    assert_eq!(rest.len(), 1, "who is out of service is left out: {rest:?}");
+    assert_eq!(
+        (&rest[0]["vessel_name"], &rest[0]["binnacle"]),
+        (&json!("Pinta"), &Value::Null)
+    );
+
+    let eve = shore.admin("eve").await;
+    assert_eq!(eve.get("/binnacles").await.good()["items"], json!([]));
     shore.finish().await;
 }

@@ -44,6 +44,7 @@ const pages = [
   },
   { name: 'orders', path: '/work-orders', ready: (page) => page.getByRole('row').first() },
   { name: 'new-order', path: '/work-orders/new', ready: (page) => page.getByLabel('Vessel') },
+  { name: 'binnacles', path: '/binnacles', ready: (page) => page.getByTestId('binnacles') },
   {
     name: 'firms',
     path: '/firms',
@@ -136,7 +137,7 @@ async function eachOf({ page, settings, shoot }, { who, home, paths }, look) {
 
 /** From the narrowest phone to a wall, beside each width at which a page is laid out anew. */
 const widths = [
-  320, 390, 480, 640, 641, 760, 768, 900, 1024, 1099, 1150, 1151, 1440, 1920, 2800, 3840,
+  320, 390, 480, 640, 641, 760, 768, 900, 1024, 1099, 1150, 1230, 1231, 1440, 1920, 2800, 3840,
 ];
 
 /** Two frames after, what is measured has been drawn. */

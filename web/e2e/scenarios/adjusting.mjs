@@ -157,6 +157,38 @@ export const adjusting = {
     },
   },
 
+  'the fleet’s binnacles say which compass has none, and lead to where it is entered': {
+    // Who has none may have no model either.
+    allowedErrors: [notSignedIn, /status of 404 .*\/(model|deviation)\b/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const entered = await calm(page);
+      await page.getByRole('link', { name: 'Binnacles', exact: true }).click();
+      await page.getByRole('heading', { name: 'Binnacles', level: 1 }).waitFor();
+      const table = page.getByTestId('binnacles');
+      const hers = table.getByRole('row').filter({ hasText: entered.name });
+      await hers.getByText('No. 2047').waitFor();
+      await hers.getByText('12 magnets, 200 mm').waitFor();
+      await hers.getByText(/^revision 1, by Test Officer/).waitFor();
+      await page.getByText(/ not entered yet: no adjustment of /).waitFor();
+      const first = table.getByRole('row').nth(1);
+      await first.getByText('not entered').waitFor();
+      await fitsItsWidth(page);
+      await shoot('binnacles', { fullPage: true });
+
+      await page.getByLabel('Search').fill('2047');
+      assert.equal(await table.getByRole('rowheader').count(), 1);
+      await page.getByLabel('Search').fill('no such');
+      await page.getByText('No binnacle fits').waitFor();
+      await page.getByLabel('Search').fill('');
+      const name = await first.getByRole('rowheader').getByRole('link').innerText();
+      await first.getByRole('link', { name: /^Enter it: the binnacle of / }).click();
+      await page.getByRole('heading', { name, level: 1 }).waitFor();
+      const panel = page.getByRole('region', { name: 'Binnacle and correctors' });
+      await panel.getByText('The binnacle of this compass is not entered yet').waitFor();
+    },
+  },
+
   'at the binnacle a phone goes on without a connection, and loses nothing': {
     viewport: phone,
     allowedErrors: [notSignedIn, cut, /status of 422 .*\/berth-reading/],

@@ -26,7 +26,7 @@ export const alerts = {
       await card.getByText('Acknowledged by Test Officer').waitFor();
       await card.getByText('What shows it').click();
       await card.getByText('By the model of the samples').waitFor();
-      await page.getByRole('link', { name: 'Binnacle' }).click();
+      await page.getByRole('link', { name: 'Binnacle', exact: true }).click();
       await page
         .getByRole('row')
         .filter({ hasText: vessel.name })

@@ -115,6 +115,26 @@ export const session = {
     },
   },
 
+  'the lamp is not that of a live page before it is one': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      const colour = () =>
+        page.locator('header .lamp').evaluate((lamp) => getComputedStyle(lamp).backgroundColor);
+      let open = () => undefined;
+      await page.route('**/api/v1/events**', async (route) => {
+        await new Promise((done) => (open = done));
+        await route.continue();
+      });
+      await signIn(page, settings);
+      const banner = page.getByRole('banner');
+      await banner.getByText('Connecting', { exact: true }).waitFor();
+      const before = await colour();
+      open();
+      await banner.getByText('Live', { exact: true }).waitFor();
+      assert.notEqual(before, await colour());
+    },
+  },
+
   'signing out ends the session': {
     allowedErrors: [notSignedIn],
     async run({ page, settings }) {

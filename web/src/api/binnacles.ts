@@ -1,6 +1,6 @@
 /** The calls about binnacles, and about what a card says of ship and compass. */
 
-import { answer, client } from './client';
+import { answer, client, everyPage, longestPage, page } from './client';
 import type {
   Binnacle,
   BinnacleRevision,
@@ -10,6 +10,12 @@ import type {
 } from './types';
 
 export const listBinnacleTypes = () => answer(client.GET('/api/v1/binnacle-types'));
+
+/** What each compass of the fleet stands in. */
+export const listBinnacles = () =>
+  everyPage((after) =>
+    answer(client.GET('/api/v1/binnacles', { params: { query: page(longestPage, after) } })),
+  );
 
 export const findBinnacleType = (name: string) =>
   answer(client.GET('/api/v1/binnacle-types/{name}', { params: { path: { name } } }));

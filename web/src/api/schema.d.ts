@@ -215,6 +215,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/binnacles": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * List what the fleet's compasses stand in
+         * @description Every compass of the vessels in service, with its binnacle in short where one is entered.
+         */
+        get: operations["list_binnacles"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/calendar-feeds": {
         parameters: {
             query?: never;
@@ -3602,6 +3622,30 @@ export interface components {
              */
             version: number;
         };
+        /** @description The latest revision of a binnacle, in a line. */
+        BinnacleInShort: {
+            /** @description All correctors on board, those in use included. */
+            aboard: components["schemas"]["CorrectorsAboard"];
+            /** @description When it was written. */
+            at: components["schemas"]["Time"];
+            /** @description Who wrote it. */
+            by: string;
+            /** @description Who makes it. */
+            maker: string;
+            /** @description How many of its effects were measured. */
+            measured_effects: number;
+            /** @description What the maker calls it. */
+            model: string;
+            /** @description Why, in a few words. */
+            reason: string | null;
+            /**
+             * Format: int64
+             * @description Counts from 1.
+             */
+            revision: number;
+            /** @description The maker's number of this one. */
+            serial: string;
+        };
         /** @description A revision of the binnacle that a compass stands in. */
         BinnacleRevision: {
             /** @description When it was written. */
@@ -5019,6 +5063,27 @@ export interface components {
             state: components["schemas"]["AlertState"];
             /** @description What is so, in a sentence. */
             summary: string;
+        };
+        /** @description A compass of the fleet's, and what it stands in. */
+        FleetBinnacle: {
+            binnacle: components["schemas"]["BinnacleInShort"] | null;
+            /** @description The compass's id. */
+            compass_id: components["schemas"]["CompassId"];
+            /** @description Its name. */
+            compass_name: string;
+            /** @description What it serves as. */
+            role: components["schemas"]["CompassRole"];
+            /** @description Her id. */
+            vessel_id: components["schemas"]["VesselId"];
+            /** @description Her name. */
+            vessel_name: string;
+        };
+        /** @description A page of binnacles. */
+        FleetBinnacleList: {
+            /** @description In the order in which the compasses were entered. */
+            items: components["schemas"]["FleetBinnacle"][];
+            /** @description `after` of the next page. */
+            next: string | null;
         };
         /** @description How good a model is, in short. */
         FleetModel: {
@@ -9619,6 +9684,58 @@ export interface operations {
             };
             /** @description Not Found */
             404: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    list_binnacles: {
+        parameters: {
+            query?: {
+                /** @description How many at most; 100 if not said. */
+                limit?: number;
+                /** @description `next` of the page before. */
+                after?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description OK */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FleetBinnacleList"];
+                };
+            };
+            /** @description Bad Request */
+            400: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Unauthorized */
+            401: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description Forbidden */
+            403: {
                 headers: {
                     [name: string]: unknown;
                 };

@@ -17,6 +17,7 @@ export type Binnacle = Schemas['Binnacle'];
 export type BinnacleDesign = Schemas['BinnacleDesign'];
 export type BinnacleRevision = Schemas['BinnacleRevision'];
 export type BinnacleType = Schemas['BinnacleType'];
+export type FleetBinnacle = Schemas['FleetBinnacle'];
 export type CargoKind = Schemas['CargoKind'];
 export type CardWithdrawn = Schemas['CardWithdrawn'];
 export type Caution = Schemas['Caution'];

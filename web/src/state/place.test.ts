@@ -1,5 +1,5 @@
 import { expect, test } from 'vitest';
-import { placeInSearch, withPlace } from './place';
+import { compassInSearch, placeInSearch, withCompass, withPlace } from './place';
 
 const place = { lat: -31.45, lon: 15.207, at: '2026-11-23T12:00:00.000Z' };
 
@@ -12,6 +12,14 @@ test('a place in an address is read again as it was', () => {
 test('an address without a place has what else stood there', () => {
   expect(withPlace(withPlace('?compass=c', place), undefined)).toBe('?compass=c');
   expect(withPlace(withPlace('', place), undefined)).toBe('');
+});
+
+test('a compass in an address is read again, and leaves the place as it was', () => {
+  const search = withCompass(withPlace('', place), 'steering');
+  expect(compassInSearch(search)).toBe('steering');
+  expect(placeInSearch(search)).toEqual(place);
+  expect(compassInSearch(withCompass(search, 'standard'))).toBe('standard');
+  expect(compassInSearch('')).toBeUndefined();
 });
 
 test.each([

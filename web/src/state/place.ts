@@ -1,6 +1,6 @@
 /**
- * A place and an instant in an address, so that a page that is opened again, or sent to
- * somebody, shows the same waters. What is no place counts as none.
+ * A place and an instant in an address, and which compass, so that a page that is opened
+ * again, or sent to somebody, shows the same. What is no place counts as none.
  */
 
 import type { Place } from '../api/client';
@@ -21,6 +21,17 @@ function angleOf(text: string | null, most: number): number | undefined {
   if (text === null || text.trim() === '') return undefined;
   const value = Number(text);
   return Math.abs(value) <= most ? value : undefined;
+}
+
+/** Which of her compasses the address names, if it names one. */
+export const compassInSearch = (search: string): string | undefined =>
+  new URLSearchParams(search).get('compass') ?? undefined;
+
+/** The address's search with this compass; all else in it stays. */
+export function withCompass(search: string, compass: string): string {
+  const params = new URLSearchParams(search);
+  params.set('compass', compass);
+  return `?${params.toString()}`;
 }
 
 /** The address's search with this place and no other; all else in it stays. */

@@ -6,6 +6,7 @@ const plain = [
   'mail',
   'webhooks',
   'schedule',
+  'binnacles',
   'firms',
   'reports',
   'notifications',
@@ -58,6 +59,10 @@ export const webhooksPath = '/webhooks';
 export const schedulePath = '/schedule';
 /** What is planned for a compass, or why nothing is. */
 export const plannedPath = (compass: string): string => `${schedulePath}#${compass}`;
+export const binnaclesPath = '/binnacles';
+/** The binnacle of a vessel's compass, on her page. */
+export const binnaclePath = (vessel: string, compass: string): string =>
+  `${vesselPath(vessel)}?${new URLSearchParams({ compass }).toString()}#binnacle`;
 export const firmsPath = '/firms';
 export const reportsPath = '/reports';
 export const notificationsPath = '/notifications';

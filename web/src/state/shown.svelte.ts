@@ -73,6 +73,7 @@ export class ShownVessel {
   #logbookLines = logbookStep;
 
   readonly id: string;
+  #named: string | undefined;
   placed: PlacedDeviation;
 
   #where = $derived(whereabouts(this.picture.value?.dots, this.happened.value?.calls ?? []));
@@ -81,8 +82,10 @@ export class ShownVessel {
   );
   noModelYet = $derived(this.model.problem?.kind === 'no-model-yet');
 
-  constructor(id: string) {
+  /** `named` is the compass that the address names, hers or not. */
+  constructor(id: string, named?: string) {
     this.id = id;
+    this.#named = named;
     this.placed = new PlacedDeviation((place) => findDeviation(id, this.compass, place));
   }
 
@@ -110,6 +113,8 @@ export class ShownVessel {
     void this.loadOrders();
     await this.loadVessel();
     if (!this.vessel.value) return;
+    // What is not hers is as if it were not named.
+    this.compass ??= this.vessel.value.compasses.find(({ id }) => id === this.#named)?.id;
     await needed;
     await new Promise((drawn) => setTimeout(drawn));
     this.#loadScience();

@@ -14,6 +14,7 @@ describe('addresses', () => {
     expect(parseRoute('/vessels/abc')).toEqual({ page: 'vessel', id: 'abc' });
     expect(parseRoute('/alerts')).toEqual({ page: 'alerts' });
     expect(parseRoute('/webhooks/')).toEqual({ page: 'webhooks' });
+    expect(parseRoute('/binnacles')).toEqual({ page: 'binnacles' });
     expect(parseRoute('/invitation')).toEqual({ page: 'invitation' });
     expect(parseRoute('/work-orders')).toEqual({ page: 'work-orders' });
     expect(parseRoute('/work-orders/new')).toEqual({ page: 'new-work-order' });

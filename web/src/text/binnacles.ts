@@ -63,6 +63,36 @@ export const binnacles = {
   },
 };
 
+/** The fleet's binnacles. */
+export const fleetBinnacles = {
+  lead: 'What each compass stands in, and the correctors on board. Without it no adjustment of that compass can be planned.',
+  missing: (n: number, all: number) =>
+    n === 0
+      ? `All ${all} compasses have their binnacle entered.`
+      : n === 1
+        ? 'The binnacle of 1 compass is not entered yet: no adjustment of it can be planned.'
+        : `The binnacles of ${n} compasses are not entered yet: no adjustment of them can be planned.`,
+  search: 'Search',
+  searchHint: 'Vessel, maker, type or serial number',
+  none: 'No binnacle fits. Change the search.',
+  emptyTitle: 'No compass yet',
+  empty: 'A vessel that is added to the fleet comes with her standard compass.',
+  table: 'Binnacles',
+  vessel: 'Vessel',
+  binnacle: 'Binnacle',
+  aboard: 'Correctors on board',
+  written: 'Written',
+  notEntered: 'not entered',
+  enter: 'Enter it',
+  enterOf: (vessel: string, compass: string) => `Enter it: the binnacle of ${vessel}, ${compass}`,
+  serial: (serial: string) => `No. ${serial}`,
+  noCorrectors: 'none',
+  revision: (n: number, who: string) => `revision ${n}, by ${who}`,
+  types: 'Types that come with the product',
+  typesLead:
+    'A binnacle of another type is brought in as a file, on the vessel’s page; docs/binnacle.md describes it.',
+};
+
 export const particulars = {
   title: 'Particulars',
   lead: 'What the deviation card says of ship and compass.',

@@ -13,6 +13,8 @@ export const copy = 'Copy';
 export const copied = 'Copied';
 export const optional = 'optional';
 export const utc = 'UTC';
+/** On paper: of when it is. */
+export const asOf = (when: string) => `As of ${when}`;
 
 export const signOut = 'Sign out';
 
@@ -112,6 +114,7 @@ export const document = {
   webhooks: 'Webhooks · Binnacle',
   orders: 'Work orders · Binnacle',
   schedule: 'Schedule · Binnacle',
+  binnacles: 'Binnacles · Binnacle',
   firms: 'Firms · Binnacle',
   home: 'My orders · Binnacle',
   platform: 'Platform · Binnacle',
@@ -137,6 +140,7 @@ export const pages = {
   notifications: 'Notifications',
   unread: ' unread',
   orders: 'Work orders',
+  binnacles: 'Binnacles',
   firms: 'Firms',
   home: 'My orders',
   platform: 'Platform',

@@ -2,6 +2,7 @@
 
 export const needs = {
   title: 'What she needs',
+  unknown: (why: string) => `What she needs could not be found out in full: ${why}`,
   alerts: 'Open alerts',
   noAlerts: 'none',
   moreAlerts: (n: number) => (n === 1 ? 'and 1 more' : `and ${n} more`),

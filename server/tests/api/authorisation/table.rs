@@ -48,6 +48,7 @@ pub(super) const TABLE: &[(&str, &str)] = &[
     ("GET /audit.csv", AUDIT),
     ("GET /binnacle-types", ANYONE),
     ("GET /binnacle-types/{name}", ANYONE),
+    ("GET /binnacles", FLEET_READS),
     ("GET /calendar-feeds", PARTY_READS),
     ("POST /calendar-feeds", PARTY_WRITES),
     ("DELETE /calendar-feeds/{id}", OPERATORS_WRITES),
