@@ -1,6 +1,6 @@
 /** Which ships need someone today: the map, the table and the views of them. */
 import assert from 'node:assert/strict';
-import { fitsItsWidth, notSignedIn, phone, signIn } from '../helpers.mjs';
+import { fitsItsWidth, fleetIsShown, notSignedIn, phone, signIn, withModel } from '../helpers.mjs';
 
 const names = (page) => page.getByRole('rowheader').getByRole('link').allInnerTexts();
 const map = (page) => page.getByRole('application', { name: 'Map of the fleet' });
@@ -112,6 +112,57 @@ export const fleet = {
       const due = needs.filter({ hasText: 'Overdue' }).getByRole('link', { name: 'not scheduled' });
       await due.first().click();
       await page.waitForURL(/\/schedule#[0-9a-f-]{36}$/);
+    },
+  },
+
+  'what is due and could not be found out is not shown as nothing': {
+    allowedErrors: [notSignedIn, /status of 500 .*needs/],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await page.getByText(/ · (\d+ needs? someone|none needs anyone)/).waitFor();
+      const { id } = await withModel(page);
+      const problem = { type: 'https://binnacle.example/problems/internal', status: 500 };
+      await page.route(/\/needs\b/, (route) =>
+        route.fulfill({
+          status: 500,
+          contentType: 'application/problem+json',
+          body: JSON.stringify(problem),
+        }),
+      );
+      await page.goto('/');
+      await page.getByText('Which compasses are due could not be found out').waitFor();
+      const needs = await page
+        .getByRole('cell')
+        .filter({ hasText: /^nothing$/ })
+        .count();
+      assert.equal(needs, 0, 'a vessel of which it is not known needs nothing');
+      await shoot('fleet-dues-unknown');
+      await page.goto(`/vessels/${id}`);
+      await page.getByText('What she needs could not be found out in full').waitFor();
+      await page.unrouteAll();
+      await page.getByRole('button', { name: 'Try again' }).click();
+      await page.getByText('What she needs could not be found out').waitFor({ state: 'detached' });
+    },
+  },
+
+  'on paper the fleet is a table that says of when it is': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      await fleetIsShown(page);
+      // A sheet of A4 is this wide.
+      await page.setViewportSize({ width: 718, height: 1000 });
+      await page.emulateMedia({ media: 'print' });
+      assert.equal(
+        await page
+          .getByRole('row')
+          .nth(1)
+          .evaluate((row) => getComputedStyle(row).display),
+        'table-row',
+      );
+      await page.getByText(/^As of \d+ \w{3} \d{4}, \d\d:\d\d UTC$/).waitFor();
+      await fitsItsWidth(page);
+      await shoot('fleet-on-paper', { fullPage: true });
     },
   },
 

@@ -149,7 +149,7 @@ test('the list shows side, heading and band, and what is not there yet', () => {
       summary: 'The deviation exceeds 5°.',
     },
   };
-  const row = { vessel, chosen: false, choose: () => undefined };
+  const row = { vessel, chosen: false, choose: () => undefined, duesKnown: true };
   const shown = words(render(FleetRow, { props: row }));
   expect(shown).toContain('MV Arcturus EAVN Critical Deviation over the limit and 2 more');
   expect(shown).toContain('6.2° W large on 045°, ± 0.4° (95 %)');
@@ -158,6 +158,10 @@ test('the list shows side, heading and band, and what is not there yet', () => {
   const calm = { ...vessel, alert: null, open_alerts: 0, worst: null, model: null };
   const said = words(render(FleetRow, { props: { ...row, vessel: calm } }));
   expect(said).toContain('nothing No model yet none yet');
+  // Before it is known what is due she may need more.
+  const early = words(render(FleetRow, { props: { ...row, vessel: calm, duesKnown: false } }));
+  expect(early).toContain('not known yet No model yet');
+  expect(early).not.toContain('nothing No model');
 });
 
 test('a worst deviation without a band claims none', () => {

@@ -35,14 +35,14 @@ export class FleetState {
 
   /** Keeps it up to date until the function it returns is called. */
   follow(): () => void {
-    const loadAll = () => this.load().then(this.#loadNeeds);
+    const loadAll = () => this.load().then(this.loadNeeds);
     const stopAll = kept(loadAll, allEveryMs);
     const back = () => {
       const age = Date.now() - (this.vessels.loadedAt?.getTime() ?? 0);
       if (!document.hidden && age > backAfterMs) void loadAll();
     };
     document.addEventListener('visibilitychange', back);
-    const needs = gathered(() => void this.#loadNeeds(), needsWaitMs);
+    const needs = gathered(() => void this.loadNeeds(), needsWaitMs);
     const refresh = gathered(() => void this.#refresh(), waitMs);
     const stop = live.listen(({ vesselId, kind }) => {
       if (kind !== 'batch') needs.call();
@@ -68,7 +68,7 @@ export class FleetState {
     if (news) this.vessels.value = withNews(this.vessels.value ?? [], id, news);
   }
 
-  #loadNeeds = (): Promise<void> =>
+  loadNeeds = (): Promise<void> =>
     this.needs.load(async () => {
       const [needs, { plan }] = await Promise.all([listNeeds(), findSchedule()]);
       return { needs, plan };

@@ -9,6 +9,11 @@ export const fleet = {
   name: 'Vessel',
   needs: 'Needs',
   needsNothing: 'nothing',
+  needsUnknown: 'not known yet',
+  needing: (n: number) =>
+    n === 0 ? 'none needs anyone' : n === 1 ? '1 needs someone' : `${n} need someone`,
+  duesMissing: (why: string) =>
+    `Which compasses are due could not be found out, so that the list may not show all that your vessels need: ${why}`,
   worst: 'Largest deviation',
   worstHelp: 'By her model, where she was last and at her next port: whichever is larger',
   quality: 'Model',
