@@ -4,7 +4,7 @@
  */
 
 import type { Change, ChangeCause, DeviationRow, Epoch, LogbookEntry, Timeline } from './api/types';
-import { degrees, heading, signed, time } from './format';
+import { degrees, eastWest, heading, signed, time } from './format';
 import * as text from './text';
 import { withoutItsDay, type At } from './whereabouts';
 
@@ -100,7 +100,7 @@ export function sizes(timeline: Timeline, change: Change): Size[] {
   const all: Size[] = [];
   const add = (what: string, size: string) => all.push({ what, size: t.by(size) });
   if (then !== null) add(t.then, degrees(Math.abs(then)));
-  if (last) add(t.last(heading(last.pair.compass_deg)), degrees(Math.abs(last.degrees)));
+  if (last) add(t.last(heading(last.pair.compass_deg)), eastWest(last.degrees));
   if (step) {
     add(t.foreAft, component(step.bx_nt, step.bx_se_nt));
     add(t.athwart, component(step.by_nt, step.by_se_nt));

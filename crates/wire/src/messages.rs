@@ -166,7 +166,7 @@ impl CardWithdrawn {
     pub fn of_older_cards(&self) -> String {
         format!(
             "no card from before {} holds ({})",
-            self.since,
+            self.since.to_chrono().format("%Y-%m-%d %H:%M UTC"),
             self.reason.replace('_', " ")
         )
     }

@@ -102,10 +102,10 @@ const listed = (state: string): WorkOrderSummary =>
     firm: null,
   }) as WorkOrderSummary;
 
-test('the list shows state, port and day, and that nobody is named yet', () => {
+test('the list shows state, port and time, and that nobody is named yet', () => {
   const said = words(render(OrderTable, { props: { orders: [listed('waiting_for_tide')] } }));
   expect(said).toContain(
-    'Nao Standard compass waiting for tide Bilbao, A5 22 Nov 2026 nobody named yet',
+    'Nao Standard compass waiting for tide Bilbao, A5 22 Nov 2026, 08:00 UTC nobody named yet',
   );
 });
 
