@@ -68,15 +68,15 @@ impl Spool {
         }))
     }
 
-    /// Whether no other batch waits.
-    pub(crate) async fn is_last(&self, seq: u64) -> sqlx::Result<bool> {
+    /// How many others wait.
+    pub(crate) async fn waiting_beside(&self, seq: u64) -> sqlx::Result<u64> {
         let others: i64 = sqlx::query_scalar(
             "SELECT COUNT(*) FROM batches WHERE standing = 'waiting' AND seq <> $1",
         )
         .bind(seq.cast_signed())
         .fetch_one(&self.pool)
         .await?;
-        Ok(others == 0)
+        Ok(others.unsigned_abs())
     }
 
     /// Notes that these very bytes are about to be sent: they are not changed any more.

@@ -28,7 +28,7 @@ pub(crate) use status::{LinkState, LinkStatus, Tell};
 
 use backoff::Backoff;
 use plan::{Budget, Class, Now};
-use shore::Have;
+use shore::{Aboard, Have};
 
 use crate::spool::{Identity, Spool};
 use binnacle_magnetics::time::Timestamp;
@@ -167,8 +167,11 @@ impl Uplink {
         let cost = self.spend(octets).await?;
         let result = match &batch {
             Some(batch) => {
-                let is_last = batch.samples > 0 && self.spool.is_last(batch.seq).await?;
-                let sent = self.shore.put_batch(&identity, batch, have, is_last);
+                let aboard = Aboard {
+                    waits: self.spool.waiting_beside(batch.seq).await?,
+                    budget: self.budget.short_percent(),
+                };
+                let sent = self.shore.put_batch(&identity, batch, have, aboard);
                 sent.await
             }
             None => self.shore.downlink(&identity, have).await,

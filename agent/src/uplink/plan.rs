@@ -218,6 +218,14 @@ impl Budget {
         self.account
     }
 
+    /// What is left where it is less than a day's, in hundredths of that; less than none when
+    /// overdrawn.
+    pub(crate) fn short_percent(&self) -> Option<i32> {
+        let day = self.account.day_octets.filter(|day| *day > 0.0)?;
+        let left = (100.0 * self.account.left_octets / day).round() as i32;
+        (left < 100).then_some(left)
+    }
+
     /// How long to wait before a body of `octets` may go; nothing when it may go now.
     pub(crate) fn wait(&mut self, class: Class, octets: usize, now: Now) -> Option<Duration> {
         self.earn(now);

@@ -75,6 +75,29 @@ pub(crate) struct Have {
     pub(crate) settings: u32,
 }
 
+/// How it is on board, for whoever looks after the ship.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Aboard {
+    /// How many batches wait besides this one.
+    pub(crate) waits: u64,
+    /// What is left of the budget where that is less than a day's, in hundredths of it.
+    pub(crate) budget: Option<i32>,
+}
+
+impl Aboard {
+    /// With a batch; of an ordinary one nothing but that none follows it.
+    fn with(self, batch: &SealedBatch) -> String {
+        let budget = self.budget.map(|left| format!("&budget={left}"));
+        let waits = if batch.samples > 0 && self.waits == 0 {
+            // What it shows comes with this answer, and not half a day later with the next.
+            WAIT_FOR_ANALYSIS.to_owned()
+        } else {
+            format!("&waits={}", self.waits)
+        };
+        waits + &budget.unwrap_or_default()
+    }
+}
+
 /// Why a request did not succeed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Trouble {
@@ -212,14 +235,11 @@ impl Shore {
         identity: &Identity,
         batch: &SealedBatch,
         have: Have,
-        is_last: bool,
+        aboard: Aboard,
     ) -> Result<Downlink, Trouble> {
         let path = format!("batches/{}", batch.seq);
         let mut url = stream_url(identity, &path, have);
-        if is_last {
-            // What it shows comes with this answer, and not half a day later with the next.
-            url.push_str(WAIT_FOR_ANALYSIS);
-        }
+        url.push_str(&aboard.with(batch));
         let request = self
             .http
             .put(url)

@@ -79,6 +79,23 @@ pub struct AgentStream {
     pub tally: BTreeMap<String, u64>,
     /// How the link did of late.
     pub last_week: LinkWeek,
+    /// How it was on board when an agent last said so, with a batch; none before.
+    #[schema(required)]
+    pub aboard: Option<Aboard>,
+}
+
+/// What an agent says of its spool and budget, with a batch.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, ToSchema)]
+#[schema(as = AgentAboard)]
+pub struct Aboard {
+    /// Batches that waited on board besides the one that was sent.
+    pub batches_waiting: i64,
+    /// What was left of the link's budget where that was less than a day's, in hundredths of
+    /// it, less than none when overdrawn; none where there was enough, or is no limit.
+    #[schema(required)]
+    pub budget_left_percent: Option<i64>,
+    /// When it was said.
+    pub at: Time,
 }
 
 /// What came over a stream's link in the last seven days.

@@ -1,6 +1,6 @@
 //! Codes, agents and their streams in the database.
 
-use super::{AgentStream, LinkWeek};
+use super::{Aboard, AgentStream, LinkWeek};
 use crate::access::Agent;
 use crate::alerts;
 use crate::audit;
@@ -205,11 +205,20 @@ pub(super) struct StreamRow {
     week_batches: i64,
     week_octets: i64,
     week_wait: Option<i64>,
+    batches_waiting: Option<i64>,
+    budget_left_percent: Option<i64>,
+    aboard_at: Option<Time>,
 }
 
 impl StreamRow {
     pub(super) fn read(self) -> error::Result<AgentStream> {
+        let aboard = self.batches_waiting.zip(self.aboard_at);
         Ok(AgentStream {
+            aboard: aboard.map(|(batches_waiting, at)| Aboard {
+                batches_waiting,
+                budget_left_percent: self.budget_left_percent,
+                at,
+            }),
             tally: serde_json::from_str(&self.tally)?,
             stream: self.stream,
             agent_id: self.agent_id,
@@ -244,7 +253,7 @@ pub(super) async fn list_streams(
         "SELECT s.id AS stream, s.agent_id, a.revoked_at, s.compass_id, c.name AS compass_name, a.agent_version,
                 s.opened_at, s.last_upload_at, s.contiguous_seq, s.batches, s.samples, s.tally,
                 COALESCE(w.batches, 0) AS week_batches, COALESCE(w.octets, 0) AS week_octets,
-                w.wait AS week_wait
+                w.wait AS week_wait, s.batches_waiting, s.budget_left_percent, s.aboard_at
          FROM streams s
          JOIN compasses c ON c.vessel_id = s.vessel_id AND c.id = s.compass_id
          JOIN agents a ON a.vessel_id = s.vessel_id AND a.id = s.agent_id

@@ -29,6 +29,11 @@ pub(super) struct Has {
     settings: Option<u32>,
     /// The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent.
     form: Option<u8>,
+    /// With a batch: how many others wait on board; none when `wait` says that it is the last.
+    pub(super) waits: Option<u32>,
+    /// With a batch: what is left of the link's budget where that is less than a day's, in
+    /// hundredths of it; less than none when overdrawn.
+    pub(super) budget: Option<i32>,
     /// So many seconds at most, and no more than 55, the answer to a batch may wait for the
     /// analysis of its samples, and then tells what that found: of the last batch for now.
     pub(super) wait: Option<u16>,

@@ -85,6 +85,28 @@ pub(super) async fn insert(
     Ok(true)
 }
 
+/// Keeps how it is on board: batches that wait, and what is left of the budget.
+pub(super) async fn note_aboard(
+    tx: &mut Tx,
+    vessel: VesselId,
+    stream: Uuid,
+    (waits, budget): (u32, Option<i32>),
+    now: Time,
+) -> DbResult<()> {
+    execute!(
+        tx,
+        "UPDATE streams
+         SET batches_waiting = $3, budget_left_percent = $4, aboard_at = $5
+         WHERE vessel_id = $1 AND id = $2",
+        vessel,
+        stream,
+        i64::from(waits),
+        budget.map(i64::from),
+        now
+    )?;
+    Ok(())
+}
+
 /// Brings the stream's sums up to date with a batch just stored.
 async fn advance(tx: &mut Tx, vessel: VesselId, batch: &Batch, progress: Progress) -> Result<()> {
     let mut tally: BTreeMap<String, u64> = serde_json::from_str(&progress.tally)?;

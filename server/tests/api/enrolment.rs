@@ -14,6 +14,7 @@ on_both!(
     a_code_for_another_vessels_compass_is_refused,
     an_agent_reaches_only_its_own_streams,
     how_the_link_did_in_the_last_week_is_told,
+    what_waits_on_board_and_a_budget_that_is_short_are_told,
     a_token_is_replaced_by_one_that_was_made_for_the_agent_and_not_before,
     a_revoked_agent_is_known_no_more_and_what_it_sent_stays,
     a_second_computer_with_an_agents_files_is_an_alert_until_the_agent_is_revoked,
@@ -128,6 +129,32 @@ async fn how_the_link_did_in_the_last_week_is_told(shore: Shore) {
     shore.advance(8.0 * 86_400.0);
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     assert_eq!(told(&ada).await, nothing);
+    shore.finish().await;
+}
+
+async fn what_waits_on_board_and_a_budget_that_is_short_are_told(shore: Shore) {
+    let ada = shore.admin("ada").await;
+    let nao = shore.ship(&ada, "Nao").await;
+    let path = nao.path("/agents");
+    let told = async || ada.get(&path).await.good()["items"][0]["aboard"].clone();
+    assert_eq!(told().await, Value::Null);
+    let send = async |seq: u64, said: &str| {
+        let taken = [sample(shore.app.clock.now(), 90.0)];
+        let batch = crate::support::frame(nao.stream, seq, &taken);
+        let path = format!("/streams/{}/batches/{seq}{said}", nao.stream);
+        let put = nao.request(Method::PUT, &path).body(batch);
+        Answer::of(put).await.good();
+    };
+    send(1, "").await;
+    assert_eq!(told().await, Value::Null, "it was not said");
+    let now = || shore.app.clock.now().to_string();
+    send(2, "?waits=12&budget=-40").await;
+    let short = json!({ "batches_waiting": 12, "budget_left_percent": -40, "at": now() });
+    assert_eq!(told().await, short);
+    shore.advance(3600.0);
+    send(3, "?wait=1").await;
+    let well = json!({ "batches_waiting": 0, "budget_left_percent": null, "at": now() });
+    assert_eq!(told().await, well);
     shore.finish().await;
 }
 

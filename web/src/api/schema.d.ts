@@ -3160,6 +3160,22 @@ export interface components {
             /** @description What is wrong. */
             words: string;
         };
+        /** @description What an agent says of its spool and budget, with a batch. */
+        AgentAboard: {
+            /** @description When it was said. */
+            at: components["schemas"]["Time"];
+            /**
+             * Format: int64
+             * @description Batches that waited on board besides the one that was sent.
+             */
+            batches_waiting: number;
+            /**
+             * Format: int64
+             * @description What was left of the link's budget where that was less than a day's, in hundredths of
+             *     it, less than none when overdrawn; none where there was enough, or is no limit.
+             */
+            budget_left_percent: number | null;
+        };
         /**
          * Format: uuid
          * @description An installation of the agent.
@@ -3205,6 +3221,7 @@ export interface components {
         };
         /** @description A stream: one compass as one installation of the agent reports it. */
         AgentStream: {
+            aboard: components["schemas"]["AgentAboard"] | null;
             /** @description The installation, which may have opened several streams. */
             agent_id: components["schemas"]["AgentId"];
             /** @description The agent's version when it was enrolled. */
@@ -14114,6 +14131,13 @@ export interface operations {
                 settings?: number;
                 /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
                 form?: number;
+                /** @description With a batch: how many others wait on board; none when `wait` says that it is the last. */
+                waits?: number;
+                /**
+                 * @description With a batch: what is left of the link's budget where that is less than a day's, in
+                 *     hundredths of it; less than none when overdrawn.
+                 */
+                budget?: number;
                 /**
                  * @description So many seconds at most, and no more than 55, the answer to a batch may wait for the
                  *     analysis of its samples, and then tells what that found: of the last batch for now.
@@ -14211,6 +14235,13 @@ export interface operations {
                 settings?: number;
                 /** @description The compact form that it reads, of crates/wire/DOWNLINK.md; JSON when absent. */
                 form?: number;
+                /** @description With a batch: how many others wait on board; none when `wait` says that it is the last. */
+                waits?: number;
+                /**
+                 * @description With a batch: what is left of the link's budget where that is less than a day's, in
+                 *     hundredths of it; less than none when overdrawn.
+                 */
+                budget?: number;
                 /**
                  * @description So many seconds at most, and no more than 55, the answer to a batch may wait for the
                  *     analysis of its samples, and then tells what that found: of the last batch for now.

@@ -87,6 +87,7 @@ describe('the installations', () => {
     samples: 12_000,
     tally: { turning: 25, accepted: 70, moonlight_too_bright: 5 },
     last_week: { batches: 28, octets: 12_400, longest_wait_s: 5 * 3600 + 60 },
+    aboard: { batches_waiting: 12, budget_left_percent: -40, at: '2026-11-20T06:00:00Z' },
   };
 
   test('tell how their link did of late', () => {
@@ -97,6 +98,19 @@ describe('the installations', () => {
     const still = words(render(AgentPanel, { props: { agents: [silent] } }));
     expect(still).toContain('Link, last 7 days nothing came');
     expect(still).not.toContain('Longest wait');
+  });
+
+  test('tell what waits on board, and how short the budget of the link is', () => {
+    const shown = (aboard: AgentStream['aboard']) =>
+      words(render(AgentPanel, { props: { agents: [{ ...agent, aboard }] } }));
+    expect(shown(agent.aboard)).toContain(
+      'Waiting on board 12 batches as of 20 Nov 2026, 06:00 UTC Budget of the link overdrawn by 40 % of a day’s',
+    );
+    const well = { batches_waiting: 0, budget_left_percent: null, at: '2026-11-20T06:00:00Z' };
+    expect(shown(well)).toMatch(/Waiting on board nothing as of .* Budget of the link not short/);
+    expect(shown({ ...well, budget_left_percent: 37 })).toContain('37 % of a day’s left');
+    expect(shown(null)).toContain('Waiting on board not said');
+    expect(shown(null)).not.toContain('Budget');
   });
 
   test('are revoked by whom may, one by one, and say so', () => {

@@ -33,6 +33,36 @@ async fn what_cannot_be_afforded_waits_until_the_ships_clock_has_earned_it() {
 }
 
 #[tokio::test]
+async fn what_waits_is_told_and_the_budget_where_it_is_short() {
+    let said = |rig: &Rig| -> Vec<[Option<String>; 3]> {
+        let of = |query: &HashMap<String, String>| {
+            ["waits", "wait", "budget"].map(|name| query.get(name).cloned())
+        };
+        let fake = rig.fake.lock().unwrap();
+        fake.queries.iter().map(of).collect()
+    };
+    let word = |said: &str| Some(said.to_owned());
+
+    let plenty = Profile::Metered.plan(None);
+    let mut rig = rig_with(3, Fake::default(), &plenty, Some(left(24_000.0))).await;
+    rig.all_sent().await;
+    let nothing_short = [
+        [word("2"), None, None],
+        [word("1"), None, None],
+        [None, word("20"), None],
+    ];
+    assert_eq!(said(&rig), nothing_short);
+
+    let mut rig = rig_with(1, Fake::default(), &plenty, Some(left(6_000.0))).await;
+    rig.all_sent().await;
+    let [[waits, wait, budget]]: &[[Option<String>; 3]; 1] = &said(&rig).try_into().unwrap();
+    assert_eq!((waits, wait), (&None, &word("20")));
+    // Less than a day's, and a connection with its request is paid for.
+    let budget: i32 = budget.as_ref().expect("it is short").parse().unwrap();
+    assert!((40..50).contains(&budget), "{budget} %");
+}
+
+#[tokio::test]
 async fn a_request_is_paid_for_before_it_is_made_and_the_answer_after() {
     let plan = Profile::Metered.plan(None);
     let mut rig = rig_with(1, Fake::default(), &plan, Some(left(8_000.0))).await;
