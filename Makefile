@@ -6,7 +6,7 @@ CARGO ?= cargo
 # What has tests, and the programs that tests drive: benchmarks and studies are no part of it.
 TESTED := --lib --bins --tests --example changes_baselines
 
-.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes study study-adjust study-changes study-losses methods clean
+.PHONY: help setup web build deb demo test test-rust test-web test-api test-browser lint soak bench bench-link bench-formats bench-peer bench-changes bench-web study study-adjust study-changes study-losses methods clean
 
 help: ## Show what can be made
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -86,6 +86,9 @@ bench-peer: setup ## Compare the fit with the same model in statsmodels and NumP
 
 bench-changes: setup ## Compare how soon changes are found with simpler detectors (SHIPS=20)
 	scripts/bench-changes $(SHIPS)
+
+bench-web: build ## Have Lighthouse judge the dashboard with what `LIVE=no make demo` sailed (RUNS=5)
+	scripts/bench-web $(RUNS)
 
 clean: ## Remove what was built (tools in .tools are kept)
 	rm -rf target web/dist web/node_modules .demo tests/artefacts
