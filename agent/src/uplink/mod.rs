@@ -13,6 +13,7 @@
 //!   how they are read. One that the shore does not take keeps nothing else back.
 //! - A model or settings that arrive are kept first and then in effect at once.
 
+mod aboard;
 mod answer;
 mod backoff;
 mod plan;
@@ -26,9 +27,10 @@ pub(crate) use shore::{Line, Shore, Trouble};
 pub(crate) use start::{Told, prepare};
 pub(crate) use status::{LinkState, LinkStatus, Tell};
 
+use aboard::Aboard;
 use backoff::Backoff;
 use plan::{Budget, Class, Now};
-use shore::{Aboard, Have};
+use shore::Have;
 
 use crate::spool::{Identity, Spool};
 use binnacle_magnetics::time::Timestamp;

@@ -5,6 +5,7 @@
 //! harbour's network or a proxy says, with whatever status and in whatever form, is a
 //! failure of the link.
 
+use super::aboard::Aboard;
 use crate::spool::{Identity, SealedBatch, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
@@ -31,9 +32,6 @@ use uuid::Uuid;
 
 /// A TLS handshake over a satellite takes five seconds and may lose packets.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
-/// How long the shore may wait with its answer for what the samples show, in the words of
-/// the request.
-const WAIT_FOR_ANALYSIS: &str = "&wait=20";
 /// Between two bytes. A whole exchange has [`Line::exchange`].
 const READ_TIMEOUT: Duration = Duration::from_secs(90);
 /// TLS sessions to resume; there is one shore.
@@ -73,29 +71,6 @@ pub(crate) struct Have {
     pub(crate) model: Option<Uuid>,
     /// The settings' version.
     pub(crate) settings: u32,
-}
-
-/// How it is on board, for whoever looks after the ship.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Aboard {
-    /// How many batches wait besides this one.
-    pub(crate) waits: u64,
-    /// What is left of the budget where that is less than a day's, in hundredths of it.
-    pub(crate) budget: Option<i32>,
-}
-
-impl Aboard {
-    /// With a batch; of an ordinary one nothing but that none follows it.
-    fn with(self, batch: &SealedBatch) -> String {
-        let budget = self.budget.map(|left| format!("&budget={left}"));
-        let waits = if batch.samples > 0 && self.waits == 0 {
-            // What it shows comes with this answer, and not half a day later with the next.
-            WAIT_FOR_ANALYSIS.to_owned()
-        } else {
-            format!("&waits={}", self.waits)
-        };
-        waits + &budget.unwrap_or_default()
-    }
 }
 
 /// Why a request did not succeed.
