@@ -91,8 +91,9 @@ fn returned(how: &str, ships: u64, logbook: impl Fn(u64, &Happened) -> Vec<Logbo
             .any(|c| c.cause == Cause::MagneticCargo);
         if then.of == Of::Another {
             println!(
-                "  seed {seed}: on board {} to {discharged}, not back: {:?}",
+                "  seed {seed}: on board {} to {discharged}, {:.1} nats, not back: {:?}",
                 planned(&log, Name::Cargo)?.from,
+                nats_of_discharge(&log).unwrap_or(f64::NAN),
                 then.told()
             );
         }

@@ -18,9 +18,11 @@ const HOPELESS_NATS: f64 = 16.0;
 const TEMPER: f64 = 0.5;
 /// How likely a ship is to become herself again at a port call after a change at sea.
 const RETURN_AFTER_SEA: f64 = 0.01;
-/// A change that began at a port call is cargo with this probability, and cargo is
-/// discharged at any one call with that.
+/// A change that began at a port call is cargo with this probability, one that is dated soon
+/// after one with that, for little cargo is noticed late, and cargo is discharged at any one
+/// call with the third.
 const IS_CARGO: f64 = 0.84;
+const IS_CARGO_SOON_AFTER: f64 = 0.25;
 const DISCHARGED: f64 = 0.6;
 
 /// She is herself again so likely at a call at which the logbook says that her cargo was
@@ -30,7 +32,7 @@ const SAID_ON_BOARD: f64 = 0.05;
 /// And so likely where it says so of an hour when she was under way, or where what may have
 /// been the cargo was dated after she had sailed with it: the rows are to tell.
 const SAID_UNDER_WAY: f64 = 0.5;
-const SAID_NOTICED_AT_SEA: f64 = 0.3;
+const SAID_NOTICED_AT_SEA: f64 = 0.7;
 
 /// What the logbook tells of cargo at a port call.
 #[derive(Clone, Copy, Debug)]
@@ -46,13 +48,21 @@ pub(super) enum Said {
     OnBoard,
 }
 
+/// Where a step happened, as far as the rows tell.
+pub(super) enum Began {
+    AtPort,
+    /// At sea, soon after a port call, from which she had sailed so: if it was cargo, it was
+    /// on board by then.
+    SoonAfter(Box<Filter>),
+    AtSea,
+}
+
 /// The ship as she was before a step.
 pub(super) struct Base {
     /// The step's place in the list of events.
     pub(super) event: usize,
     pub(super) filter: Filter,
-    /// Whether the step began at a port call.
-    pub(super) at_port: bool,
+    pub(super) began: Began,
     /// When the step happened at the latest.
     pub(super) latest: Option<Timestamp>,
     /// Port calls since.
@@ -63,11 +73,25 @@ impl Base {
     /// How likely the ship is herself again at the next port call: what has stayed
     /// through many was no cargo.
     fn chance(&self) -> f64 {
-        if !self.at_port {
-            return RETURN_AFTER_SEA;
+        let is_cargo = match self.began {
+            Began::AtPort => IS_CARGO,
+            Began::SoonAfter(_) => IS_CARGO_SOON_AFTER,
+            Began::AtSea => return RETURN_AFTER_SEA,
+        };
+        let still = is_cargo * (1.0 - DISCHARGED).powi(self.calls);
+        DISCHARGED * still / (still + 1.0 - is_cargo)
+    }
+
+    pub(super) fn began_at_port(&self) -> bool {
+        matches!(self.began, Began::AtPort)
+    }
+
+    /// The ship without what changed her.
+    pub(super) fn unladen(&self) -> &Filter {
+        match &self.began {
+            Began::SoonAfter(sailed) => sailed,
+            _ => &self.filter,
         }
-        let still = IS_CARGO * (1.0 - DISCHARGED).powi(self.calls);
-        DISCHARGED * still / (still + 1.0 - IS_CARGO)
     }
 }
 
@@ -136,7 +160,7 @@ impl Calls {
                 Return {
                     event: base.event,
                     prior_odds: chance / (1.0 - chance),
-                    filter: set_back(now, &base.filter),
+                    filter: set_back(now, base.unladen()),
                 }
             })
             .collect();
@@ -158,10 +182,10 @@ impl Calls {
         let since = |base: &&Base| base.latest.is_some_and(|latest| latest >= loaded);
         let mut since = self.bases.iter().filter(since);
         let first = since.next()?;
-        if !since.all(|base| base.at_port) {
+        if !since.all(Base::began_at_port) {
             return None;
         }
-        let chance = match (first.at_port, at_port) {
+        let chance = match (first.began_at_port(), at_port) {
             (true, true) => SAID_DISCHARGED,
             (true, false) => SAID_UNDER_WAY,
             (false, _) => SAID_NOTICED_AT_SEA,
@@ -296,7 +320,7 @@ mod tests {
         calls.step(Base {
             event: 0,
             filter: ship(),
-            at_port: true,
+            began: Began::AtPort,
             latest: None,
             calls: 0,
         });

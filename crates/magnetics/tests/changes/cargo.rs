@@ -7,7 +7,7 @@ use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
 use binnacle_magnetics::analyse::{
     Analysis, AnalysisSettings, LogbookEntry, LogbookKind, SampleReason, analyse,
 };
-use binnacle_magnetics::change::Cause;
+use binnacle_magnetics::change::{Cause, Change};
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 
@@ -116,6 +116,50 @@ fn cargo_that_stays_on_board_by_the_logbook_is_not_over_at_a_call() {
     }];
     let analysis = analyse(&log.samples, &stays, &settings);
     assert_eq!(analysis.current_epoch().unwrap().resumes, Some(0));
+}
+
+#[test]
+fn cargo_that_is_noticed_days_after_a_disturbance_at_sea_came_on_board_at_the_call() {
+    let varieties = [Variety::Rich, Variety::Medium, Variety::Poor];
+    for seed in [530_154_u64, 530_158] {
+        let plan = Plan {
+            days: 75.0,
+            ..Plan::of(Event::Cargo, varieties[(seed % 3) as usize])
+        };
+        let log = sail_log(seed, &plan);
+        let loaded = began(&log, Name::Cargo);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let passed = |c: &&Change| c.confirmed && !c.cause.is_the_ships() && c.from > loaded;
+        let passed = analysis.changes.iter().find(passed).unwrap();
+        let found = of_the_ship(&analysis)[0];
+        assert!(passed.from < found.detected_at, "seed {seed}");
+        assert_eq!(found.cause, Cause::MagneticCargo, "seed {seed}: {found:?}");
+        let sailed = log.samples.partition_point(|s| s.time <= loaded);
+        let call = loaded..log.samples[sailed].time;
+        assert!(call.contains(&found.from), "seed {seed}: {found:?}");
+    }
+}
+
+#[test]
+fn what_cargo_in_the_logbook_does_is_no_drift_and_may_be_over_with_it() {
+    let plan = Plan {
+        days: 130.0,
+        ..Plan::of(Event::Cargo, Variety::Rich)
+    };
+    let log = sail_log(530_160, &plan);
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
+    let sailed = log.samples.partition_point(|s| Some(s.time) <= cargo.to);
+    let day = sailed + 144;
+    let alone = run(&log.samples[..day]);
+    assert_eq!(of_the_ship(&alone)[0].cause, Cause::Drift);
+    let settings = AnalysisSettings::default();
+    let analysis = analyse(&log.samples[..day], &[reported(cargo)], &settings);
+    is_sound(&analysis);
+    let found = of_the_ship(&analysis);
+    assert!(found.iter().all(|c| c.cause != Cause::Drift), "{found:?}");
+    let may_have_ended = |c: &&Change| c.evidence.iter().any(|line| line.contains("have ended"));
+    assert!(found.iter().any(may_have_ended), "{found:?}");
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! What is believed takes over from the filter, and becomes an event.
 
-use super::date::{Dated, at_before};
+use super::date::Dated;
 use super::event::{snapshot, take_out};
 use super::learn::Lesson;
 use super::unsettled::Unsettled;
 use super::{EVERY, Event, Leads, Search, What};
 use crate::change::bank::{Kind, Lead};
-use crate::change::calls::{Base, Candidate};
+use crate::change::calls::{Base, Began, Candidate};
 use crate::change::filter::Filter;
 use crate::change::upset::{Earlier, misled, upset};
 
@@ -27,7 +27,7 @@ impl Search<'_> {
         let lead = large.unwrap_or(lead);
         let dated = self.date(lead.spawn, lead.kind, k);
         let earlier = self.calls.bases.last();
-        let at_sea = self.misaligned.is_some() || earlier.is_some_and(|base| !base.at_port);
+        let at_sea = self.misaligned.is_some() || earlier.is_some_and(|base| !base.began_at_port());
         if kind == Kind::Step && self.misled.is_none() && at_sea {
             // Linearised each at its own end, either may be the likelier.
             let back = leads[Kind::Return as usize];
@@ -42,9 +42,6 @@ impl Search<'_> {
         {
             return self.step_is(k, event, filter);
         }
-        let before = self.bank.spawns[dated.from].origin().clone();
-        let calm = at_before(dated.kind, &before, &dated.filter.unknowns());
-        let before = self.run(before, dated.at_spawn..dated.first, &calm);
         self.supersede_burst(dated.first);
         let what = match kind {
             Kind::Step => What::Step,
@@ -59,23 +56,23 @@ impl Search<'_> {
             dated.first,
             dated.between,
             leads,
-            Some((&before, &dated.filter)),
+            Some((&dated.before, &dated.filter)),
         );
         let mut rivals = Vec::new();
         let mut doubt = None;
         if kind == Kind::Step {
             self.misaligned = None;
-            doubt = Some(self.doubt_of(k, &dated, &before, &leads));
-            rivals = self.rivals_of(k, &dated, &before);
+            doubt = Some(self.doubt_of(k, &dated, &leads));
+            rivals = self.rivals_of(k, &dated);
             // It may be that several steps were the same.
             rivals.append(&mut self.rivals);
             if !self.began_at_call(&dated) {
-                self.unsettled = Unsettled::after(dated.first, &before, &dated.filter);
+                self.unsettled = Unsettled::after(dated.first, &dated.before, &dated.filter);
             }
-            self.retrace(k, &dated, &before);
+            self.retrace(k, &dated);
         } else {
             if what == What::Reference && self.misled.is_none() {
-                self.misled = Some((self.events.len() - 1, before));
+                self.misled = Some((self.events.len() - 1, dated.before));
             }
             let gained = dated.filter.log_likelihood - self.null.log_likelihood;
             let mut calls = std::mem::take(&mut self.calls);
@@ -99,12 +96,20 @@ impl Search<'_> {
 
     /// The port calls since a step, and the one at which it happened, as the filter
     /// that knows of the step would have met them.
-    pub(super) fn retrace(&mut self, k: usize, dated: &Dated, before: &Filter) {
+    pub(super) fn retrace(&mut self, k: usize, dated: &Dated) {
         let event = self.events.len() - 1;
+        let began = if self.began_at_call(dated) || self.is_said_loaded(dated.between) {
+            Began::AtPort
+        } else {
+            let sailed = self.sailed(dated.first, &self.events[..event]);
+            sailed.map_or(Began::AtSea, |(_, sailed)| {
+                Began::SoonAfter(Box::new(sailed.clone()))
+            })
+        };
         let base = Base {
             event,
-            filter: before.clone(),
-            at_port: self.began_at_call(dated) || self.is_said_loaded(dated.between),
+            filter: dated.before.clone(),
+            began,
             latest: self.observations[dated.between.1].time,
             calls: 0,
         };
@@ -114,13 +119,17 @@ impl Search<'_> {
         let calls: Vec<usize> = (dated.first..=k).filter(|row| is_call(*row)).collect();
         if calls.first() == Some(&dated.first) {
             let said = self.said_at(dated.first);
-            self.calls.call(dated.first, before, event, said);
+            self.calls.call(dated.first, &dated.before, event, said);
         }
-        let mut since = upset(before, dated.kind);
+        let calm: Vec<usize> = self.calm(dated.first..k + 1).collect();
+        let mut since = upset(&dated.before, dated.kind);
         for row in dated.first..=k {
             if row > dated.first && calls.contains(&row) {
                 let said = self.said_at(row);
                 self.calls.call(row, &since, usize::MAX, said);
+            }
+            if calm.binary_search(&row).is_err() {
+                continue;
             }
             let m = self.measure(row, &at);
             since.take(&m, &self.noise, None);

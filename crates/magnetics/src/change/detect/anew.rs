@@ -44,7 +44,7 @@ impl Search<'_> {
 
     fn step_read(&self, k: usize, before: &Filter, first: usize, kind: Kind) -> Filter {
         let mut filter = upset(before, kind);
-        for row in first..=k {
+        for row in self.calm(first..k + 1) {
             let m = relinearised(&filter, &self.noise, |at| self.measure(row, at));
             filter.take(&m, &self.noise, None);
         }

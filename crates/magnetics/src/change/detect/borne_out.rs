@@ -34,16 +34,9 @@ pub(super) struct Doubt {
 }
 
 impl Search<'_> {
-    /// The doubt of a step that was dated just now, and is the last event; `before` is the
-    /// filter before it.
-    pub(super) fn doubt_of(
-        &self,
-        k: usize,
-        dated: &Dated,
-        before: &Filter,
-        leads: &Leads,
-    ) -> Doubt {
-        let rows = dated.first..k + 1;
+    /// The doubt of a step that was dated just now, and is the last event.
+    pub(super) fn doubt_of(&self, k: usize, dated: &Dated, leads: &Leads) -> Doubt {
+        let (before, rows) = (&dated.before, dated.first..k + 1);
         let nothing = self.run(before.clone(), rows, &before.unknowns());
         let passed = leads[Kind::Burst as usize].and_then(|lead| {
             let copy = self.bank.spawns[lead.spawn].copy(lead.kind)?;

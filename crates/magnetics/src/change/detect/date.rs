@@ -24,16 +24,14 @@ pub(super) struct Dated {
     pub(super) first: usize,
     pub(super) between: (usize, usize),
     pub(super) kind: Kind,
-    /// The filter that knew of it, now.
+    /// The filter just before it, and the one that knew of it, now.
+    pub(super) before: Filter,
     pub(super) filter: Filter,
-    /// The spawn that it was dated from, and that one's row.
-    pub(super) from: usize,
-    pub(super) at_spawn: usize,
 }
 
 /// Where rows before a change are linearised that led to `after`: before a large step at the
 /// ship that she was, who is another altogether.
-pub(super) fn at_before(kind: Kind, origin: &Filter, after: &Unknowns) -> Unknowns {
+fn at_before(kind: Kind, origin: &Filter, after: &Unknowns) -> Unknowns {
     match kind {
         Kind::Large => origin.unknowns(),
         _ => *after,
@@ -44,8 +42,7 @@ impl Search<'_> {
     /// When it happened, to the row.
     pub(super) fn date(&self, winner: usize, kind: Kind, k: usize) -> Dated {
         let spawns = &self.bank.spawns;
-        let from = winner.saturating_sub(1);
-        let origin = &spawns[from];
+        let origin = &spawns[winner.saturating_sub(1)];
         let until = spawns.get(winner + 1).map_or(k, |s| s.at);
         let earlier = earlier(self.misled.as_ref(), self.misaligned.as_ref(), &self.calls);
         let began = |filter: &Filter, next: &Measurement| match (kind, earlier) {
@@ -117,13 +114,13 @@ impl Search<'_> {
         let rows: Vec<usize> = near(0).into_iter().chain(near(1)).chain([first]).collect();
         let earliest = rows.iter().copied().min().unwrap_or(first);
         let latest = rows.iter().copied().max().unwrap_or(first);
+        let calm = at_before(kind, origin.origin(), &filter.unknowns());
         Dated {
             first,
             between: (earliest, latest),
             kind,
+            before: self.run(origin.origin().clone(), origin.at..first, &calm),
             filter,
-            from,
-            at_spawn: origin.at,
         }
     }
 
@@ -158,8 +155,7 @@ impl Search<'_> {
         let spawns = &self.bank.spawns;
         let since = row.saturating_sub(CALL_ROWS);
         let from = spawns.partition_point(|s| s.at <= since).saturating_sub(1);
-        let from = from.min(winner);
-        let origin = &spawns[from];
+        let origin = &spawns[from.min(winner)];
         let until = spawns
             .get(winner + 1)
             .map_or(k, |s| s.at)
@@ -168,20 +164,32 @@ impl Search<'_> {
         let calls = calls.filter(|&row| self.is_call(row)).take(CALLS);
         let at = filter.unknowns();
         let calm = at_before(kind, origin.origin(), &at);
-        let tried = calls.map(|call| {
-            let before = self.run(origin.origin().clone(), origin.at..call, &calm);
-            (call, self.run(upset(&before, kind), call..k + 1, &at))
+        let before = calls.map(|call| {
+            let rows = origin.at..call;
+            (call, self.run(origin.origin().clone(), rows, &calm))
         });
-        let (call, filter) = tried
-            .filter(|(_, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
-            .max_by(|a, b| a.1.log_likelihood.total_cmp(&b.1.log_likelihood))?;
+        let sailed = self.sailed(row, &self.events);
+        let sailed = sailed.filter(|(call, _)| *call < origin.at);
+        let tried = before.chain(sailed.map(|(call, before)| {
+            // As likely as the filter that may have been told of what passed since.
+            let nothing = self.run(before.clone(), call..k + 1, &self.null.unknowns());
+            let mut before = before.clone();
+            before.log_likelihood += self.null.log_likelihood - nothing.log_likelihood;
+            (call, before)
+        }));
+        let (call, before, filter) = tried
+            .map(|(call, before)| {
+                let filter = self.run(upset(&before, kind), call..k + 1, &at);
+                (call, before, filter)
+            })
+            .filter(|(_, _, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
+            .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
         Some(Dated {
             first: call,
             between: (call.min(row), call.max(row)),
             kind,
+            before,
             filter,
-            from,
-            at_spawn: origin.at,
         })
     }
 }

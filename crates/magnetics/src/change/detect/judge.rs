@@ -2,7 +2,7 @@
 
 use super::{EVERY, Event, Leads, Search, What};
 use crate::change::bank::{Kind, Lead};
-use crate::change::calls::Candidate;
+use crate::change::calls::{Base, Candidate};
 use crate::change::filter::Filter;
 use crate::fit::Observation;
 
@@ -78,7 +78,7 @@ impl Search<'_> {
             return self.adopt_mended(k, leads);
         }
         let earlier = self.calls.bases.last();
-        let enough = if self.misaligned.is_none() && earlier.is_some_and(|base| base.at_port) {
+        let enough = if self.misaligned.is_none() && earlier.is_some_and(Base::began_at_port) {
             LOADED_RETURN_AT_SEA_NATS
         } else {
             RETURN_AT_SEA_NATS
@@ -254,7 +254,11 @@ impl Search<'_> {
     /// The port call at about row `at`, until row `k`, at which what began in port may have
     /// ended.
     pub(super) fn discharge_near(&self, at: usize, k: usize) -> Option<usize> {
-        let laden = self.calls.bases.last().filter(|base| base.at_port)?;
+        let laden = self
+            .calls
+            .bases
+            .last()
+            .filter(|base| base.began_at_port())?;
         if self.misaligned.is_some() || self.misled.is_some() {
             return None;
         }

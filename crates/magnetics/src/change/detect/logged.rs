@@ -62,6 +62,17 @@ impl Search<'_> {
         })
     }
 
+    /// Whether the logbook has it that cargo was on board when a row was read.
+    pub(super) fn is_said_on_board(&self, k: usize) -> bool {
+        let Some(time) = self.observations[k].time else {
+            return false;
+        };
+        let on_board = |loaded: &Loaded| {
+            loaded.from <= time && loaded.to.is_none_or(|discharged| time <= discharged)
+        };
+        self.cargo.iter().any(on_board)
+    }
+
     /// Whether the logbook has it that cargo was discharged between a row and the one
     /// before, whether or not she seems to have lain there.
     pub(super) fn is_said_discharged(&self, k: usize) -> bool {

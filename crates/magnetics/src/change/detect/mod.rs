@@ -305,10 +305,18 @@ impl<'a> Search<'a> {
 
     /// A filter over some rows, all linearised at one point.
     fn run(&self, mut filter: Filter, rows: std::ops::Range<usize>, at: &Unknowns) -> Filter {
-        for k in rows {
+        for k in self.calm(rows) {
             filter.take(&self.measure(k, at), &self.noise, None);
         }
         filter
+    }
+
+    /// Those rows in which nothing was astray that passed.
+    fn calm(&self, rows: std::ops::Range<usize>) -> impl Iterator<Item = usize> {
+        let passed = self.events.iter().filter(|event| event.what == What::Burst);
+        let passed = passed.filter_map(|burst| Some(burst.first..=burst.last?));
+        let passed: Vec<_> = passed.filter(|p| *p.end() >= rows.start).collect();
+        rows.filter(move |row| !passed.iter().any(|passed| passed.contains(row)))
     }
 
     /// What is suspected when the rows end.
@@ -385,7 +393,7 @@ fn earlier<'a>(
 ) -> Option<Earlier<'a>> {
     let reference = misled.map(|(_, before)| Earlier::Reference(before));
     let zero = || misaligned.map(|(_, before)| Earlier::Zero(before));
-    let ship = || calls.bases.last().map(|base| Earlier::Ship(&base.filter));
+    let ship = || calls.bases.last().map(|base| Earlier::Ship(base.unladen()));
     reference.or_else(zero).or_else(ship)
 }
 

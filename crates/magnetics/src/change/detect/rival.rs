@@ -11,7 +11,7 @@ use super::event::{Event, snapshot, take_out};
 use super::unsettled::Unsettled;
 use super::{Leads, Search, What};
 use crate::change::bank::Kind;
-use crate::change::calls::Base;
+use crate::change::calls::{Base, Began};
 use crate::change::filter::{CONSTANT_STATE, Filter, Measurement};
 use crate::change::upset::misaligned;
 
@@ -27,8 +27,8 @@ const RIVAL_NATS: f64 = 8.0;
 /// But by this, where it takes the place of several: one change is likelier than more.
 const RIVAL_OF_SEVERAL_NATS: f64 = 3.0;
 const SPARED_NATS: f64 = 6.0;
-/// And by so much more for a drift where all steps were dated in port, for that is cargo as
-/// a rule; it must have begun so many rows before the first.
+/// And by so much more for a drift where all steps were dated in port, or with cargo on board,
+/// for that is cargo as a rule; it must have begun so many rows before the first.
 const DRIFT_IN_PORT_NATS: f64 = 16.0;
 const BEFORE_PORT_ROWS: usize = 72;
 /// And no less likely by this than another step would be: two in a row are seldom.
@@ -57,25 +57,25 @@ pub(super) struct Rival {
 }
 
 impl Search<'_> {
-    /// The rivals of a step that was dated just now; `before` is the filter before it.
-    pub(super) fn rivals_of(&self, k: usize, dated: &Dated, before: &Filter) -> Vec<Rival> {
+    /// The rivals of a step that was dated just now.
+    pub(super) fn rivals_of(&self, k: usize, dated: &Dated) -> Vec<Rival> {
         let creeping = CREEPS
             .iter()
             .filter_map(|drift| self.creeping(k, dated, *drift));
-        let misaligned = self.has_both(k).then(|| self.misaligned(k, dated, before));
+        let misaligned = self.has_both(k).then(|| self.misaligned(k, dated));
         creeping.chain(misaligned).collect()
     }
 
     /// The zero moved when the step is dated.
-    fn misaligned(&self, k: usize, dated: &Dated, before: &Filter) -> Rival {
+    fn misaligned(&self, k: usize, dated: &Dated) -> Rival {
         Rival {
             what: What::Alignment,
             event: self.events.len() - 1,
             drift: 0.0,
             first: dated.first,
             between: dated.between,
-            filter: self.zero_moved(k, before, dated.first),
-            before: before.clone(),
+            filter: self.zero_moved(k, &dated.before, dated.first),
+            before: dated.before.clone(),
         }
     }
 
@@ -166,7 +166,7 @@ impl Search<'_> {
         let (nats, of) = (lead(&self.rivals[place]), self.rivals[place].event);
         let mut steps = (of..self.events.len()).filter(|&e| self.is_standing_step(e));
         let is_drift = self.rivals[place].what == What::Drift;
-        let in_port = is_drift && steps.all(|event| self.began_in_port(event));
+        let in_port = is_drift && steps.all(|event| self.is_cargo_likely(event));
         let mut enough = if later(&self.rivals[place]) > 0 {
             RIVAL_OF_SEVERAL_NATS
         } else {
@@ -250,7 +250,7 @@ impl Search<'_> {
         self.calls.step(Base {
             event: step.event,
             filter: step.before.clone(),
-            at_port,
+            began: if at_port { Began::AtPort } else { Began::AtSea },
             latest: self.observations[step.between.1].time,
             calls: 0,
         });
@@ -297,6 +297,10 @@ impl Search<'_> {
         if let Some((place, _)) = &mut self.misled {
             *place = moved(*place);
         }
+    }
+
+    fn is_cargo_likely(&self, event: usize) -> bool {
+        self.began_in_port(event) || self.is_said_on_board(self.events[event].first)
     }
 
     fn began_in_port(&self, event: usize) -> bool {

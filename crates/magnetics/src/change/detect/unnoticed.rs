@@ -14,6 +14,9 @@ use crate::change::upset::upset;
 const CHANGED: f64 = 0.02;
 const MISLED: f64 = 0.002;
 const ASTRAY: f64 = 0.03;
+/// What is dated no more than so many rows after a call may be cargo that was noticed late:
+/// three days.
+const SOON_ROWS: usize = 432;
 /// Calls that are asked about: the last few among so many rows.
 const ROWS: usize = 288;
 const CALLS: usize = 3;
@@ -42,6 +45,16 @@ impl Ports {
 }
 
 impl Search<'_> {
+    /// The last port call, if that was soon before row `row`, and the ship as she sailed from
+    /// it: cargo that was noticed at sea was on board by then. None where something else that
+    /// lasts was told since, `earlier` being all that has been.
+    pub(super) fn sailed(&self, row: usize, earlier: &[Event]) -> Option<(usize, &Filter)> {
+        let (at, filter) = self.ports.0.iter().rfind(|(at, _)| *at <= row)?;
+        let is_news = |event: &Event| event.told >= *at && event.what != What::Burst;
+        let is_soon = row < at + SOON_ROWS && !earlier.iter().any(is_news);
+        is_soon.then_some((*at, filter))
+    }
+
     /// The likeliest of the last port calls for a step that has not been told, and how
     /// likely one at any of them is; `returned` is how likely she is herself again.
     pub(super) fn unnoticed(&self, leads: &Leads, returned: f64) -> Option<Unnoticed> {
