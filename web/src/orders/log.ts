@@ -19,6 +19,8 @@ interface Read {
   at: string;
   author: { name: string };
   content: {
+    firm_name?: string;
+    firms?: { firm_name: string }[];
     text?: string;
     caption?: string | null;
     number?: number;
@@ -45,9 +47,15 @@ export function lineOf({ entry }: WorkOrderEntry): Line {
   return {
     at,
     author: author.name,
-    title: text.order.log.kinds[kind] ?? kind.replaceAll('_', ' '),
+    title: title(kind, content?.firm_name),
     words: words(kind, content ?? {}),
   };
+}
+
+function title(kind: string, firm: string | undefined): string {
+  const { kinds, between } = text.order.log;
+  const named = firm === undefined ? undefined : between[kind]?.(firm);
+  return named ?? kinds[kind] ?? kind.replaceAll('_', ' ');
 }
 
 /** What was found, and what alone would explain it. */
@@ -59,6 +67,8 @@ function words(kind: string, content: Read['content']): string {
   switch (kind) {
     case 'opened':
       return content.port ?? '';
+    case 'offered':
+      return (content.firms ?? []).map(({ firm_name }) => firm_name).join(', ');
     case 'berth_reading':
       if (content.refusal) return refused(content.refusal);
       return content.checked

@@ -1,7 +1,15 @@
 import { describe, expect, test } from 'vitest';
-import type { BerthReading, PlanOffer, PlanStep, WorkOrder, WorkOrderSummary } from '../api/types';
+import type {
+  BerthReading,
+  PlanOffer,
+  PlanStep,
+  WorkOrder,
+  WorkOrderEntry,
+  WorkOrderSummary,
+} from '../api/types';
 import { againOf, faultAgain, newAgain } from './again';
 import { ahead, expectedDeg, isAsExpected, offBy, wrapped } from './ahead';
+import { lineOf } from './log';
 import { callNeeds, inOrder, isOpen, stateName } from './order';
 import { correctorName, standing, written } from './places';
 import { draftOf, fault, headingOf, horizontalNt, newReading, number, readingOf } from './reading';
@@ -342,5 +350,34 @@ describe('a reading after the steps', () => {
     expect(faultAgain({ ...good, compass: '400' })?.field).toBe('compass');
     expect(faultAgain({ ...good, heading: '-1' })?.field).toBe('heading');
     expect(faultAgain({ ...good, at: '' })?.field).toBe('at');
+  });
+});
+
+describe('a line of the log', () => {
+  const line = (entry: unknown) => lineOf({ seq: 1, sha256: '', entry } as WorkOrderEntry);
+  const said = (kind: string, content: unknown) =>
+    line({ kind, at: '2026-11-22T08:00:00Z', author: { name: 'Ada' }, content });
+  const maas = { firm_id: 'm', firm_name: 'Maas Compass' };
+
+  test('names the firm that is asked, and those that the job is offered to', () => {
+    expect(said('asked', { ...maas, fee_eur: 1800 }).title).toBe('Maas Compass was asked');
+    expect(said('declined', maas).title).toBe('Maas Compass declined');
+    expect(said('message', { ...maas, text: 'When?' })).toMatchObject({
+      title: 'Message between the operator and Maas Compass',
+      words: 'When?',
+    });
+    const firms = [maas, { firm_id: 'i', firm_name: 'Ibaizabal' }];
+    expect(said('offered', { firms }).words).toBe('Maas Compass, Ibaizabal');
+  });
+
+  test('has a title where no firm is named, and says nothing of what is withheld', () => {
+    expect(said('accepted', {}).title).toBe('A firm accepted');
+    expect(said('something_new', {}).title).toBe('something new');
+    expect(line({})).toEqual({
+      at: null,
+      author: null,
+      title: 'Between the operator and others: not shown to your firm',
+      words: '',
+    });
   });
 });
