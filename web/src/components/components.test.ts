@@ -109,8 +109,16 @@ describe('the installations', () => {
     const well = { batches_waiting: 0, budget_left_percent: null, at: '2026-11-20T06:00:00Z' };
     expect(shown(well)).toMatch(/Waiting on board nothing as of .* Budget of the link not short/);
     expect(shown({ ...well, budget_left_percent: 37 })).toContain('37 % of a day’s left');
-    expect(shown(null)).toContain('Waiting on board not said');
-    expect(shown(null)).not.toContain('Budget');
+    const unknown = 'not known: neither short bursts nor older agents say it';
+    expect(shown(null)).toContain(`Waiting on board ${unknown} Budget of the link ${unknown}`);
+    const later = { ...agent, last_upload_at: '2026-11-21T06:00:00Z' };
+    expect(words(render(AgentPanel, { props: { agents: [later] } }))).toContain(
+      'as of 20 Nov 2026, 06:00 UTC; what came later did not say, as short bursts do not',
+    );
+    const first = { ...agent, aboard: null, batches: 0 };
+    expect(words(render(AgentPanel, { props: { agents: [first] } }))).toContain(
+      'Waiting on board not known before the first batch Budget of the link not known before',
+    );
   });
 
   test('are revoked by whom may, one by one, and say so', () => {
