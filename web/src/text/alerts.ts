@@ -21,6 +21,25 @@ export const alerts = {
   confirmClear: 'Clear the alert',
   saidAcknowledged: 'The alert is acknowledged.',
   saidCleared: 'The alert is cleared.',
+  filter: {
+    search: 'Vessel',
+    searchHint: 'Name of the vessel or compass',
+    state: 'State',
+    anyState: 'Open',
+    states: { raised: 'To acknowledge', acknowledged: 'Acknowledged' },
+    severity: 'Severity',
+    anySeverity: 'Any severity',
+    cause: 'Cause',
+    anyCause: 'Any cause',
+    shown: (n: number, all: number) =>
+      n === all ? (n === 1 ? '1 open alert' : `${n} open alerts`) : `${n} of ${all} open alerts`,
+    noneTitle: 'Nothing fits',
+    none: (all: number) =>
+      all === 1
+        ? 'No open alert fits. There is one: change what is asked for, or show it.'
+        : `No open alert fits. There are ${all}: change what is asked for, or show all.`,
+    reset: 'Show all alerts',
+  },
   noSuch: 'The alert that the link names is neither open nor among those cleared lately.',
   clearedTitle: 'Cleared lately',
   toMail: 'Mail',

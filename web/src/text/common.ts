@@ -11,6 +11,7 @@ export const chartNotLoaded = 'The drawing could not be loaded. Its figures stan
 export const cancel = 'Cancel';
 export const copy = 'Copy';
 export const copied = 'Copied';
+export const showMore = (n: number) => `Show ${n} more`;
 export const optional = 'optional';
 export const utc = 'UTC';
 /** On paper: of when it is. */

@@ -57,7 +57,6 @@ export const fleet = {
   sorted: (column: string) => `Sort by ${column}`,
   none: 'No vessel fits. Change the search or show all vessels.',
   reset: 'Show all vessels',
-  showMore: (n: number) => `Show ${n} more`,
 
   views: 'Saved views',
   noView: 'No saved view',
