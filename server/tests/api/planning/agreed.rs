@@ -63,3 +63,9 @@ impl Agreed {
             .await
     }
 }
+
+/// What the two sides wrote to each other.
+pub(super) async fn messages(person: &Person, order: &str) -> Vec<Value> {
+    let list = person.get(&format!("{order}/messages")).await.good();
+    list["items"].as_array().unwrap().clone()
+}

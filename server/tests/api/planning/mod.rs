@@ -1,6 +1,7 @@
 //! The schedule: what it is made from, and that it follows what changes.
 
 mod agreed;
+mod at_risk;
 mod concurrent;
 mod fees;
 mod firms;
@@ -10,6 +11,7 @@ mod offers;
 mod pins;
 mod plans;
 mod teams;
+mod withdrawn;
 
 use crate::port_calls;
 use crate::support::{Answer, Person, Shore};

@@ -1,14 +1,14 @@
 //! A port call that moves under an order: both sides are told, and agree on another time.
 
-use super::agreed::Agreed;
-use super::offers::{alerts, direct, firm, offer};
-use super::{due_vessel, enter, first, follow, put, solve, terms};
+use super::agreed::{Agreed, messages};
+use super::offers::{alerts, offer};
+use super::{due_vessel, enter, first, put, solve, terms};
 use crate::calendar::events;
 use crate::logbook::patch;
 use crate::notifications::told;
 use crate::on_both;
 use crate::port_calls;
-use crate::support::{Answer, Person, Shore};
+use crate::support::{Answer, Shore};
 use crate::webhooks::{Receiver, deliver, make};
 use binnacle_server::work_orders::lapse;
 use icalendar::Component;
@@ -22,19 +22,8 @@ on_both!(
     a_new_day_is_one_in_the_call_on_which_the_firm_has_a_team,
     another_time_leaves_the_fee_that_was_agreed,
     a_question_that_is_not_answered_leaves_what_was_agreed,
-    a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks,
-    a_call_withdrawn_after_acceptance_is_told_and_done_at_another,
-    a_call_entered_anew_has_the_agreed_job_again,
     what_nobody_is_asked_for_moves_in_silence,
-    an_agreed_job_stays_at_risk_when_its_firm_is_left_out,
-    an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk,
-    an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known,
 );
-
-async fn messages(person: &Person, order: &str) -> Vec<Value> {
-    let list = person.get(&format!("{order}/messages")).await.good();
-    list["items"].as_array().unwrap().clone()
-}
 
 async fn an_eta_that_moves_is_told_to_both_sides_in_both_times(shore: Shore) {
     let agreed = Agreed::new(&shore).await;
@@ -297,112 +286,6 @@ async fn a_question_that_is_not_answered_leaves_what_was_agreed(shore: Shore) {
     shore.finish().await;
 }
 
-async fn a_call_moved_past_the_due_date_is_at_risk_before_anyone_asks(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
-    follow(&shore).await;
-    // She is due on the twentieth.
-    agreed
-        .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
-        .await;
-    assert_eq!(agreed.seen().await["call_fit"], "needs_new_day");
-    assert_eq!(follow(&shore).await, Some(agreed.ada.operator));
-    let told = alerts(&agreed.ada).await;
-    assert_eq!(told.len(), 1, "{told:?}");
-    let summary = told[0]["summary"].as_str().unwrap();
-    assert!(
-        summary.contains("agreed with rosa for 2026-12-15"),
-        "{summary}"
-    );
-    // A new day in the call is late, and agreed on all the same if both want it.
-    agreed.retime("2026-12-22T08:00:00Z").await.good();
-    agreed.answer(&agreed.rosa, "accept").await.good();
-    assert_eq!(agreed.seen().await["call_fit"], Value::Null);
-    follow(&shore).await;
-    let told = alerts(&agreed.ada).await;
-    assert_eq!(told.len(), 1, "it is still after the due date: {told:?}");
-    shore.finish().await;
-}
-
-async fn a_call_withdrawn_after_acceptance_is_told_and_done_at_another(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
-    let why = json!({ "reason": "charter" });
-    let path = format!("{}/withdraw", agreed.call);
-    agreed.ada.post(&path, &why).await.good();
-    let order = agreed.seen().await;
-    assert_eq!(order["call_fit"], "no_call");
-    assert_eq!(order["call_change"]["is"], Value::Null);
-    assert_eq!(order["state"], "accepted");
-    let last = told(&agreed.rosa).await.pop().unwrap();
-    assert!(last.contains("the port call is withdrawn"), "{last}");
-    follow(&shore).await;
-    assert_eq!(alerts(&agreed.ada).await.len(), 1);
-    let nowhere = agreed.retime("2026-12-15T08:00:00Z").await;
-    assert_eq!(nowhere.problem(), "wrong-state");
-    // In another port the firm would have another journey: that is another order.
-    enter(&agreed.ada, &agreed.nao, "BEANR", 14).await;
-    let elsewhere = agreed.retime("2026-12-15T08:00:00Z").await;
-    assert_eq!(elsewhere.problem(), "wrong-state");
-    enter(&agreed.ada, &agreed.nao, "NLRTM", 17).await;
-    agreed.retime("2026-12-17T08:00:00Z").await.good();
-    agreed.answer(&agreed.rosa, "accept").await.good();
-    let plan = solve(&agreed.ada).await;
-    assert_eq!(first(&plan), ("NLRTM", "2026-12-17", "rosa"));
-    assert_eq!(plan["jobs"][0]["state"], "confirmed");
-    assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
-    shore.finish().await;
-}
-
-async fn a_call_entered_anew_has_the_agreed_job_again(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
-    let withdrawn = format!("{}/withdraw", agreed.call);
-    agreed.ada.post(&withdrawn, &json!({})).await.good();
-    assert_eq!(agreed.seen().await["call_fit"], "no_call");
-    // One at another port, or at another time, is none of the job's.
-    enter(&agreed.ada, &agreed.nao, "NLRTM", 18).await;
-    assert_eq!(agreed.seen().await["call_fit"], "no_call");
-    let call = enter(&agreed.ada, &agreed.nao, "NLRTM", 14).await;
-    let order = agreed.seen().await;
-    assert_eq!(order["call_fit"], "fits");
-    assert_eq!(order["call_change"]["call_id"], call["id"]);
-    let last = messages(&agreed.rosa, &agreed.order).await.pop().unwrap();
-    let last = last["text"].as_str().unwrap();
-    assert!(
-        last.contains("The port call at NLRTM is there again"),
-        "{last}"
-    );
-    assert!(last.ends_with("still lies in it."), "{last}");
-    let plan = solve(&agreed.ada).await;
-    assert_eq!(plan["jobs"][0]["state"], "confirmed", "{plan}");
-    assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
-    // So it is in a file that withdraws a call, and in a later one that has it again.
-    let file = async |text: &str| {
-        let path = format!("{}.csv?replace=true", port_calls::path(&agreed.nao));
-        let request = agreed
-            .ada
-            .request(Method::POST, &path)
-            .body(text.to_owned());
-        Answer::of(request.header("content-type", "text/csv"))
-            .await
-            .good()
-    };
-    agreed
-        .ada
-        .post(
-            &format!(
-                "{}/{}/withdraw",
-                port_calls::path(&agreed.nao),
-                call["id"].as_str().unwrap()
-            ),
-            &json!({}),
-        )
-        .await
-        .good();
-    assert_eq!(agreed.seen().await["call_fit"], "no_call");
-    file("id,port,eta,etd\nx,NLRTM,2026-12-14T06:00:00Z,2026-12-15T18:00:00Z\n").await;
-    assert_eq!(agreed.seen().await["call_fit"], "fits");
-    shore.finish().await;
-}
-
 async fn what_nobody_is_asked_for_moves_in_silence(shore: Shore) {
     let agreed = Agreed::new(&shore).await;
     let other = enter(&agreed.ada, &agreed.nao, "BEANR", 20).await;
@@ -422,84 +305,5 @@ async fn what_nobody_is_asked_for_moves_in_silence(shore: Shore) {
         .await;
     assert_eq!(agreed.seen().await["call_fit"], Value::Null);
     assert_eq!(messages(&agreed.ada, &agreed.order).await.len(), 0);
-    shore.finish().await;
-}
-
-async fn an_agreed_job_stays_at_risk_when_its_firm_is_left_out(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
-    let ada = &agreed.ada;
-    solve(ada).await;
-    let path = format!("/firms/{}/terms", agreed.firm);
-    let left_out = async || {
-        Answer::of(ada.request(Method::DELETE, &path)).await;
-        let plan = solve(ada).await;
-        assert_eq!(plan["under_way"].as_array().unwrap().len(), 1, "{plan}");
-        alerts(ada).await
-    };
-    assert_eq!(left_out().await, [] as [Value; 0]);
-    put(ada, &path, &terms()).await.good();
-    agreed
-        .moves("2026-12-22T06:00:00Z", "2026-12-23T18:00:00Z")
-        .await;
-    solve(ada).await;
-    let before = alerts(ada).await;
-    assert_eq!(before.len(), 1, "{before:?}");
-    let after = left_out().await;
-    assert_eq!(after.len(), 1, "{after:?}");
-    assert_eq!(after[0]["id"], before[0]["id"]);
-    let summary = after[0]["summary"].as_str().unwrap();
-    assert!(
-        summary.contains("alongside from 2026-12-22 06:00 UTC to 2026-12-23 18:00 UTC"),
-        "{summary}"
-    );
-    let cancelled = json!({ "text": "sold" });
-    ada.post(&format!("{}/cancel", agreed.order), &cancelled)
-        .await
-        .good();
-    solve(ada).await;
-    assert_eq!(alerts(ada).await, [] as [Value; 0]);
-    shore.finish().await;
-}
-
-async fn an_agreed_job_whose_firm_has_no_teams_any_more_is_at_risk(shore: Shore) {
-    let agreed = Agreed::new(&shore).await;
-    let path = format!("/firms/{}/terms", agreed.firm);
-    let mut none = terms();
-    none["teams"] = json!(0);
-    put(&agreed.ada, &path, &none).await.good();
-    solve(&agreed.ada).await;
-    let told = alerts(&agreed.ada).await;
-    assert_eq!(told.len(), 1, "{told:?}");
-    let summary = told[0]["summary"].as_str().unwrap();
-    assert!(
-        summary.contains("a firm without teams does nothing"),
-        "{summary}"
-    );
-    put(&agreed.ada, &path, &terms()).await.good();
-    solve(&agreed.ada).await;
-    assert_eq!(alerts(&agreed.ada).await, [] as [Value; 0]);
-    shore.finish().await;
-}
-
-async fn an_agreed_job_without_a_call_is_at_risk_once_her_calls_are_known(shore: Shore) {
-    let ada = shore.admin("ada").await;
-    let nao = due_vessel(&ada, "Nao").await;
-    let (id, rosa) = firm(&shore, &ada, "rosa").await;
-    let order = direct(&nao, "NLRTM", "2026-12-15T09:00:00Z", &id);
-    let order = ada.post("/work-orders", &order).await.good();
-    let order = format!("/work-orders/{}", order["id"].as_str().unwrap());
-    rosa.post(&format!("{order}/accept"), &json!({}))
-        .await
-        .good();
-    solve(&ada).await;
-    assert_eq!(alerts(&ada).await, [] as [Value; 0]);
-    enter(&ada, &nao, "BEANR", 14).await;
-    solve(&ada).await;
-    let told = alerts(&ada).await;
-    let summary = told[0]["summary"].as_str().unwrap();
-    assert!(summary.contains("no port call is known"), "{summary}");
-    enter(&ada, &nao, "NLRTM", 16).await;
-    solve(&ada).await;
-    assert_eq!(alerts(&ada).await.len(), 1);
     shore.finish().await;
 }
