@@ -202,7 +202,8 @@ fn deviation_over_the_vessels_own_limit_is_due_where_her_flag_sets_none() {
     let mut compass = json!({"adjusted_on": "2025-11-20", "deviation_limit_deg": 5.0,
         "predicted": [
             {"on": "2026-11-18", "worst_deviation_deg": 5.4},
-            {"on": "2026-11-21", "place": "her position", "worst_deviation_deg": 25.7}]});
+            {"on": "2026-11-21", "place": "her position", "worst_deviation_deg": 25.7,
+             "side": "west"}]});
     let over = over_own_limit(&compass);
     assert_eq!(
         (over.on, over.urgency),
@@ -210,7 +211,7 @@ fn deviation_over_the_vessels_own_limit_is_due_where_her_flag_sets_none() {
     );
     assert_eq!(
         over.reason,
-        "25.7° of deviation at her position, 5.4° or more since 2026-11-18, over the vessel's own \
+        "25.7° W of deviation at her position, 5.4° or more since 2026-11-18, over the vessel's own \
          limit of 5°"
     );
     assert_eq!(over.causes[0].rule, None);
@@ -223,12 +224,12 @@ fn deviation_over_the_vessels_own_limit_at_a_port_ahead_names_the_port() {
     let over = over_own_limit(
         &json!({"adjusted_on": "2025-11-20", "deviation_limit_deg": 4.5,
         "predicted": [
-            {"on": "2026-12-08", "place": "Tromsø", "worst_deviation_deg": 4.6}]}),
+            {"on": "2026-12-08", "place": "Tromsø", "worst_deviation_deg": 4.6, "side": "east"}]}),
     );
     assert_eq!(over.on, day("2026-12-22"));
     assert_eq!(
         over.reason,
-        "4.6° of deviation predicted for 2026-12-08 at Tromsø, over the vessel's own limit of 4.5°"
+        "4.6° E of deviation predicted for 2026-12-08 at Tromsø, over the vessel's own limit of 4.5°"
     );
 }
 
@@ -253,15 +254,16 @@ fn a_flags_stricter_limit_speaks_and_the_vessels_own_speaks_below_it() {
 fn deviation_over_the_limit_is_named_where_no_adjustment_is_on_record() {
     let over = over_own_limit(&json!({"deviation_limit_deg": 5.0,
         "predicted": [
-            {"on": "2026-11-21", "place": "her position", "worst_deviation_deg": 25.7}]}));
+            {"on": "2026-11-21", "place": "her position", "worst_deviation_deg": 25.7,
+             "side": "west"}]}));
     assert_eq!(
         (over.on, over.urgency),
         (day("2026-11-21"), Urgency::Overdue)
     );
     assert_eq!(
         over.reason,
-        "no adjustment is on record (ISO 25862:2019, Annex G, read second-hand); 25.7° of \
-         deviation at her position on 2026-11-21, over the vessel's own limit of 5°"
+        "no adjustment is on record (ISO 25862:2019, Annex G, read second-hand); 25.7° W \
+         of deviation at her position on 2026-11-21, over the vessel's own limit of 5°"
     );
 }
 

@@ -6,7 +6,7 @@
 use super::contents::NextDue;
 use crate::time::Time;
 use binnacle_magnetics::analyse::{LogbookEntry, LogbookKind};
-use binnacle_schedule::needs::{self, Event, Predicted, Terms, due};
+use binnacle_schedule::needs::{self, Event, Predicted, Side, Terms, due};
 use binnacle_schedule::rules::{EventKind, Flag, Limit, shipped};
 use binnacle_schedule::time::Instant;
 
@@ -24,7 +24,7 @@ pub(super) struct Facts<'a> {
     pub(super) logbook: &'a [LogbookEntry],
     /// The day of the card.
     pub(super) at: Time,
-    /// The greatest deviation on it, degrees.
+    /// The greatest deviation on it, degrees, east positive.
     pub(super) worst_deviation_deg: f64,
     /// The greatest that the vessel's own limits let stand, degrees.
     pub(super) own_limit_deg: f64,
@@ -49,6 +49,7 @@ pub(super) fn next_due(facts: &Facts<'_>) -> Option<NextDue> {
             on: facts.at.day().parse().ok()?,
             place: None,
             worst_deviation_deg: facts.worst_deviation_deg.abs(),
+            side: Some(Side::of(facts.worst_deviation_deg)),
         }],
         deviation_limit_deg: Limit::try_from(facts.own_limit_deg).ok(),
         ..needs::Compass::default()
@@ -154,6 +155,7 @@ mod tests {
         };
         let over = next_due(&own(3.0)).unwrap();
         assert_eq!(over.on, "2026-12-15");
+        assert!(over.reason.starts_with("3.2° W"), "{}", over.reason);
         assert!(over.reason.contains("own limit of 3°"), "{}", over.reason);
         assert_eq!(next_due(&own(4.0)).unwrap().on, "2028-11-21");
     }

@@ -14,7 +14,7 @@ use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::ship::EarthField;
 use binnacle_magnetics::time::Timestamp;
-use binnacle_schedule::needs::{Change, Compass, Event, FailedVerification, Predicted, Ship};
+use binnacle_schedule::needs::{Change, Compass, Event, FailedVerification, Predicted, Ship, Side};
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::rules::{EventKind, Limit};
 use binnacle_schedule::time::Instant;
@@ -118,6 +118,8 @@ pub(super) fn compass(
         on,
         place: None,
         worst_deviation_deg,
+        // It has been as great as that, on whichever side.
+        side: None,
     });
     let adjusted = stored
         .work
@@ -173,6 +175,7 @@ fn predicted(ahead: &Ahead) -> Predicted {
         on: ahead.on,
         place: Some(place.to_owned()),
         worst_deviation_deg: ahead.worst_deviation_deg,
+        side: Some(ahead.side),
     }
 }
 
@@ -232,6 +235,7 @@ fn ahead(stored: &Stored<'_>, particulars: &Particulars, now: Time) -> Vec<Ahead
             on,
             place: place.to_owned(),
             worst_deviation_deg: worst.deviation_deg.abs(),
+            side: Side::of(worst.deviation_deg),
         }));
     };
     add(day(now), HERE, here);

@@ -1,8 +1,8 @@
 //! A need, as it is shown.
 
-use super::schema::{CauseKindSchema, UrgencySchema};
+use super::schema::{CauseKindSchema, SideSchema, UrgencySchema};
 use crate::ids::{CompassId, VesselId};
-use binnacle_schedule::needs::{CauseKind, Due, Urgency};
+use binnacle_schedule::needs::{CauseKind, Due, Side, Urgency};
 use binnacle_schedule::rules::{Rule, shipped};
 use chrono::NaiveDate;
 use serde::{Deserialize, Serialize};
@@ -86,6 +86,9 @@ pub struct Ahead {
     pub place: String,
     /// The largest deviation on any heading, either way, degrees.
     pub worst_deviation_deg: f64,
+    /// Which way that is.
+    #[schema(value_type = SideSchema)]
+    pub side: Side,
 }
 
 /// A page of needs.

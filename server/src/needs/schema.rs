@@ -40,3 +40,15 @@ pub(super) enum CauseKindSchema {
     /// The last adjustment did not pass at sea.
     FailedVerification,
 }
+
+/// Which way a compass deviates.
+#[derive(Serialize, ToSchema)]
+#[serde(rename_all = "snake_case")]
+#[schema(as = DeviationSide)]
+#[allow(dead_code, reason = "describes binnacle_schedule::needs::Side")]
+pub(super) enum SideSchema {
+    /// Its north lies east of magnetic north.
+    East,
+    /// Its north lies west of magnetic north.
+    West,
+}

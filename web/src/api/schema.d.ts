@@ -4554,6 +4554,8 @@ export interface components {
              * @example Rotterdam
              */
             place: string;
+            /** @description Which way that is. */
+            side: components["schemas"]["DeviationSide"];
             /**
              * Format: double
              * @description The largest deviation on any heading, either way, degrees.
@@ -4738,6 +4740,11 @@ export interface components {
              */
             magnetic_deg: number;
         };
+        /**
+         * @description Which way a compass deviates.
+         * @enum {string}
+         */
+        DeviationSide: "east" | "west";
         /** @description A deviation table. */
         DeviationTable: {
             /** @description When. */

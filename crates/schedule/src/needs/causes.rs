@@ -1,6 +1,6 @@
 //! Each cause of a due date.
 
-use super::{Cause, CauseKind, Compass, Event, Predicted, Ship, Terms};
+use super::{Cause, CauseKind, Compass, Event, Predicted, Ship, Side, Terms};
 use crate::rules::{Applies, DeviationRecord, Limit, Requirement, Rule};
 use chrono::{Days, NaiveDate};
 use std::cmp::Ordering;
@@ -167,13 +167,13 @@ fn over(
     let how_much = match first.on.cmp(&today) {
         Ordering::Greater => {
             let (on, at) = (first.on, at(first));
-            format!("{first_deg:.1}° of deviation predicted for {on}{at}")
+            format!("{} predicted for {on}{at}", worst(first))
         }
-        Ordering::Equal => format!("{first_deg:.1}° of deviation{} on {today}", at(first)),
+        Ordering::Equal => format!("{}{} on {today}", worst(first), at(first)),
         Ordering::Less => match over().find(|predicted| predicted.on == today) {
             Some(now) => format!(
-                "{:.1}° of deviation{}, {first_deg:.1}° or more since {since}",
-                now.worst_deviation_deg,
+                "{}{}, {first_deg:.1}° or more since {since}",
+                worst(now),
                 at(now)
             ),
             None => format!("{first_deg:.1}° of deviation or more since {since}"),
@@ -184,6 +184,15 @@ fn over(
         plus(since, terms.over_limit_days),
         format!("{how_much}, {words}"),
     ))
+}
+
+fn worst(predicted: &Predicted) -> String {
+    let side = match predicted.side {
+        Some(Side::East) => " E",
+        Some(Side::West) => " W",
+        None => "",
+    };
+    format!("{:.1}°{side} of deviation", predicted.worst_deviation_deg)
 }
 
 fn at(predicted: &Predicted) -> String {
@@ -221,8 +230,8 @@ fn at_transit(
         return None;
     }
     found(format!(
-        "{:.1}° of deviation predicted at the transit of {on}, which asks for less than {}°",
-        then.worst_deviation_deg,
+        "{} predicted at the transit of {on}, which asks for less than {}°",
+        worst(then),
         below.degrees()
     ))
 }

@@ -99,6 +99,30 @@ pub struct Predicted {
     pub place: Option<String>,
     /// The largest deviation on any heading, either way.
     pub worst_deviation_deg: f64,
+    /// Which way that is; none where it is not said.
+    #[serde(default)]
+    pub side: Option<Side>,
+}
+
+/// Which way a compass deviates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Its north lies east of magnetic north.
+    East,
+    /// Its north lies west of magnetic north.
+    West,
+}
+
+impl Side {
+    /// The side of a deviation, degrees, east positive.
+    pub fn of(deviation_deg: f64) -> Side {
+        if deviation_deg < 0.0 {
+            Side::West
+        } else {
+            Side::East
+        }
+    }
 }
 
 /// A change of magnetism.

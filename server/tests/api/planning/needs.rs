@@ -249,11 +249,17 @@ async fn deviation_over_the_vessels_own_limit_brings_a_need_forward(shore: Shore
     let here = over["predicted"][0]["worst_deviation_deg"]
         .as_f64()
         .unwrap();
+    let now = ada.get(&nao.path("")).await.good();
+    let (side, letter) = match now["worst"]["deviation_deg"].as_f64().unwrap() {
+        east if east > 0.0 => ("east", "E"),
+        _ => ("west", "W"),
+    };
+    assert_eq!(over["predicted"][0]["side"], side);
     assert_eq!(
         over["reason"],
         format!(
-            "{here:.1}° of deviation at her position on 2026-11-21, over the vessel's own limit \
-             of 5°"
+            "{here:.1}° {letter} of deviation at her position on 2026-11-21, over the vessel's own \
+             limit of 5°"
         )
     );
     let alerts = |figure: &str, deg: f64| {
