@@ -44,6 +44,8 @@ const FOLLOWED: &str = "another of its cause followed";
 pub(super) struct News {
     pub(super) alert: AlertId,
     pub(super) became: Option<Kind>,
+    /// How bad it was before, where that is another severity.
+    pub(super) was: Option<Severity>,
 }
 
 /// What became of an alert, and how it stands then.
@@ -55,6 +57,8 @@ pub struct AlertNews {
     pub kind: Kind,
     /// The alert.
     pub alert: Alert,
+    /// How bad it was before, where that is another severity.
+    pub was: Option<Severity>,
 }
 
 /// Holds a compass's alerts against its last analysis.
@@ -77,7 +81,8 @@ pub async fn after_analysis(
     }
     let mut known = store::known(tx, vessel, compass).await?;
     known.retain(|alert| alert.cause.is_of_an_analysis());
-    let open: Vec<Cause> = known.iter().map(|alert| alert.cause).collect();
+    let open = known.iter().map(|alert| (alert.cause, alert.severity));
+    let open: Vec<(Cause, Severity)> = open.collect();
     let mut wanted = alerts_of(&findings, limits, &open);
     wanted.extend(work_orders::alert(tx, vessel, compass).await?);
     let why = |alert: &Known| match adjusted {
@@ -241,6 +246,7 @@ async fn open_or_update(
     Ok(vec![News {
         alert: known.id,
         became,
+        was: (wanted.severity != known.severity).then_some(known.severity),
     }])
 }
 
@@ -255,8 +261,9 @@ pub(super) async fn tell(
         return Ok(None);
     }
     let mut told = Vec::new();
-    for News { alert, became } in news {
-        let Some(kind) = *became else {
+    for news in news {
+        let News { alert, was, .. } = news;
+        let Some(kind) = news.became else {
             continue;
         };
         info!(%vessel, %alert, ?kind, "an alert changed");
@@ -264,6 +271,7 @@ pub(super) async fn tell(
             id: DeliveryId::new(),
             kind,
             alert: store::read(tx, vessel, *alert).await?,
+            was: *was,
         });
     }
     let event = events::insert(tx, vessel, events::Kind::Alert, now).await?;
@@ -278,6 +286,7 @@ impl News {
         News {
             alert,
             became: Some(became),
+            was: None,
         }
     }
 }

@@ -3,7 +3,7 @@
 //! What always holds: [`alerts_of`] is a pure function of what was found, the
 //! vessel's limits and what is open already; it names each cause once. A limit that
 //! was passed is left only [`SLACK_DEG`] below it, so that an alert does not come
-//! and go with every batch.
+//! and go with every batch, nor rise and sink.
 
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::changed::changed;
@@ -24,15 +24,17 @@ const FAILED_SHARE: f64 = 0.1;
 /// if there are so many of them.
 const FAILED_SAMPLES: u64 = 3;
 
-/// The alerts that ought to be open; `open` are the causes that are.
-pub fn alerts_of(findings: &Findings, limits: &AlertLimits, open: &[Cause]) -> Vec<AlertWanted> {
-    let slack_deg = |cause| {
-        if open.contains(&cause) {
-            SLACK_DEG
-        } else {
-            0.0
-        }
+/// The alerts that ought to be open; `open` are the causes that are, and how bad.
+pub fn alerts_of(
+    findings: &Findings,
+    limits: &AlertLimits,
+    open: &[(Cause, Severity)],
+) -> Vec<AlertWanted> {
+    let open_at = |cause| {
+        let known = open.iter().find(|(known, _)| *known == cause);
+        known.map(|(_, severity)| *severity)
     };
+    let slack_deg = |cause| open_at(cause).map_or(0.0, |_| SLACK_DEG);
     let Some(data_until) = findings.data_until else {
         return Vec::new();
     };
@@ -41,7 +43,10 @@ pub fn alerts_of(findings: &Findings, limits: &AlertLimits, open: &[Cause]) -> V
     let over = findings
         .worst
         .filter(|worst| worst.deviation_deg.abs() > allowed_deg)
-        .map(|worst| over_limit(worst, limits, data_until));
+        .map(|worst| {
+            let was = open_at(Cause::DeviationOverLimit);
+            over_limit(worst, limits, data_until, was)
+        });
     let waited_since = findings
         .epoch_data_from
         .filter(|from| data_until.seconds_since(*from) >= PATIENCE_S);
@@ -64,7 +69,7 @@ pub fn alerts_of(findings: &Findings, limits: &AlertLimits, open: &[Cause]) -> V
         .any(|alert| alert.cause != Cause::ReferenceFault);
     let uncertain = uncertain.filter(|alert| {
         let is_wide = alert.cause == Cause::WideBand;
-        !(is_wide && is_told) || open.contains(&Cause::WideBand)
+        !(is_wide && is_told) || open_at(Cause::WideBand).is_some()
     });
     for alert in [over, references, uncertain].into_iter().flatten() {
         // What the detector says of a cause is the better word.
@@ -96,12 +101,24 @@ pub fn silence(last: Time, limits: &AlertLimits, now: Time) -> Option<AlertWante
     })
 }
 
-fn over_limit(worst: Worst, limits: &AlertLimits, data_until: Timestamp) -> AlertWanted {
+fn over_limit(
+    worst: Worst,
+    limits: &AlertLimits,
+    data_until: Timestamp,
+    was: Option<Severity>,
+) -> AlertWanted {
     let size_deg = worst.deviation_deg.abs();
-    let surely = size_deg - worst.band95_deg.unwrap_or(0.0) > limits.deviation_deg;
-    let severity = if size_deg > 2.0 * limits.deviation_deg {
+    let surely_deg = size_deg - worst.band95_deg.unwrap_or(0.0);
+    let slack_deg = |severity| {
+        if was >= Some(severity) {
+            SLACK_DEG
+        } else {
+            0.0
+        }
+    };
+    let severity = if size_deg > 2.0 * limits.deviation_deg - slack_deg(Severity::Critical) {
         Severity::Critical
-    } else if surely {
+    } else if surely_deg > limits.deviation_deg - slack_deg(Severity::Warning) {
         Severity::Warning
     } else {
         Severity::Notice
@@ -260,7 +277,7 @@ mod tests {
         }
     }
 
-    fn causes(findings: &Findings, open: &[Cause]) -> Vec<(Cause, Severity)> {
+    fn causes(findings: &Findings, open: &[(Cause, Severity)]) -> Vec<(Cause, Severity)> {
         let wanted = alerts_of(findings, &AlertLimits::default(), open);
         wanted
             .iter()
@@ -295,7 +312,7 @@ mod tests {
 
     #[test]
     fn an_open_alert_stays_until_the_figure_is_well_below_its_limit() {
-        let open = [Cause::DeviationOverLimit];
+        let open = [(Cause::DeviationOverLimit, Severity::Notice)];
         let wanted = alerts_of(&with_worst(-4.9, 1.0), &AlertLimits::default(), &open);
         assert_eq!(
             wanted[0].summary,
@@ -303,6 +320,24 @@ mod tests {
              yet fallen to 4.5°."
         );
         assert_eq!(causes(&with_worst(4.4, 1.0), &open), []);
+    }
+
+    #[test]
+    fn an_alert_sinks_when_the_figure_is_well_below_what_made_it_so_bad() {
+        use Severity::{Critical, Notice, Warning};
+        for (was, deviation_deg, is) in [
+            (Critical, 9.6, Critical),
+            (Critical, 9.4, Warning),
+            (Warning, 9.6, Warning),
+            (Warning, 5.6, Warning),
+            (Warning, 5.4, Notice),
+            (Notice, 5.6, Notice),
+        ] {
+            let open = [(Cause::DeviationOverLimit, was)];
+            let found = causes(&with_worst(deviation_deg, 1.0), &open);
+            let expected = [(Cause::DeviationOverLimit, is)];
+            assert_eq!(found, expected, "{was:?} {deviation_deg}");
+        }
     }
 
     #[test]

@@ -57,7 +57,12 @@ async fn note(
     match news.kind {
         Kind::AlertRaised | Kind::AlertUpdated => {
             let severity = news.alert.severity;
-            if severity < least || told.is_some_and(|told| severity <= told) {
+            if severity < least {
+                // For this recipient that is its end.
+                store::forget(tx, recipient, alert).await?;
+                return Ok(told.is_some());
+            }
+            if told.is_some_and(|told| severity <= told) {
                 return Ok(false);
             }
             store::tell(tx, recipient, alert, severity).await?;
@@ -105,6 +110,7 @@ mod tests {
                 cleared_by: None,
                 clearing_reason: None,
             },
+            was: None,
         }
     }
 

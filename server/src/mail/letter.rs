@@ -1,6 +1,6 @@
 //! What a letter says: plain text, so that every program shows it the same.
 
-use crate::alerts::{Alert, AlertNews, Severity};
+use crate::alerts::{AlertNews, Severity};
 use crate::ids::OperatorId;
 use crate::outbox::Kind;
 use serde::{Deserialize, Serialize};
@@ -128,13 +128,14 @@ impl Letter {
 /// What is new about an alert: in a line, and in full.
 pub fn words_of(news: &AlertNews) -> (String, String) {
     let alert = &news.alert;
-    let state = match news.kind {
-        Kind::AlertCleared if alert.is_over() => "over",
-        Kind::AlertCleared => "closed",
-        _ => name(alert.severity),
+    let state = match (news.kind, news.was) {
+        (Kind::AlertCleared, _) if alert.is_over() => "over".to_owned(),
+        (Kind::AlertCleared, _) => "closed".to_owned(),
+        (_, Some(was)) if was > alert.severity => format!("only {} now", name(alert.severity)),
+        _ => name(alert.severity).to_owned(),
     };
     let subject = format!("{}: {state}, {}", alert.vessel_name, alert.cause.words());
-    (one_line(&subject), text(alert, news.kind))
+    (one_line(&subject), text(news))
 }
 
 /// A subject as it goes into a header: a name that looks like an encoded word (RFC 2047,
@@ -143,14 +144,20 @@ pub(super) fn header(subject: &str) -> String {
     one_line(subject).replace("=?", "= ?")
 }
 
-fn text(alert: &Alert, kind: Kind) -> String {
+fn text(news: &AlertNews) -> String {
+    let AlertNews { alert, kind, .. } = news;
+    let before = news.was.map(|was| format!(" ({} before)", name(was)));
     let mut lines = vec![
         format!("Vessel:   {}", one_line(&alert.vessel_name)),
         format!("Compass:  {}", one_line(&alert.compass_name)),
-        format!("Severity: {}", name(alert.severity)),
+        format!(
+            "Severity: {}{}",
+            name(alert.severity),
+            before.unwrap_or_default()
+        ),
         format!("Since:    {}", alert.since.to_the_minute()),
     ];
-    if let (Kind::AlertCleared, Some(cleared_at)) = (kind, alert.cleared_at) {
+    if let (Kind::AlertCleared, Some(cleared_at)) = (*kind, alert.cleared_at) {
         let word = if alert.is_over() {
             "Over:  "
         } else {

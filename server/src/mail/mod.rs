@@ -5,8 +5,8 @@
 //! - Letters wait and are sent as [`crate::outbox`] says. One that the relay took is
 //!   not sent again; one whose answer was lost comes again under the same message id.
 //! - Of an alert a recipient gets a letter when it reaches the recipient's severity,
-//!   when it gets worse than the last letter said, and when it is over; not when it
-//!   only says something new.
+//!   when it gets worse than the last letter said, and when it is over or sinks below
+//!   that severity, whichever comes first; not when it only says something new.
 //! - No text of others makes a header: names are encoded, line breaks are taken out.
 
 mod announce;

@@ -185,7 +185,7 @@ pub(super) async fn tell(
     Ok(())
 }
 
-/// Forgets what was told of an alert that is over.
+/// Forgets what was told of an alert that is over, or is so for the recipient.
 pub(super) async fn forget(tx: &mut Tx, recipient: RecipientId, alert: AlertId) -> DbResult<()> {
     execute!(
         tx,

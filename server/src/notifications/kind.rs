@@ -36,7 +36,8 @@ pub enum Kind {
     VerificationFailed,
     /// An order is not to be done, or another firm has it.
     Withdrawn,
-    /// An alert of severity warning or worse is raised, becomes critical, or is over.
+    /// An alert of severity warning or worse is raised, becomes critical, sinks to a notice,
+    /// or is over.
     /// Critical ones wait for nothing.
     Alert,
 }

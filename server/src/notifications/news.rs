@@ -85,11 +85,12 @@ pub async fn tell_of_alerts(
 fn of_alert(news: &AlertNews) -> Option<News> {
     let alert = &news.alert;
     let critical = alert.severity == Severity::Critical;
+    let presses = alert.severity >= Severity::Warning;
+    let pressed = news.was.is_some_and(|was| was >= Severity::Warning);
     let told = match news.kind {
-        outbox::Kind::AlertRaised | outbox::Kind::AlertCleared => {
-            alert.severity >= Severity::Warning
-        }
-        outbox::Kind::AlertUpdated => critical,
+        outbox::Kind::AlertRaised | outbox::Kind::AlertCleared => presses,
+        // Who was told of it hears once that it presses no more, now or when it is over.
+        outbox::Kind::AlertUpdated => critical || presses != pressed,
         _ => false,
     };
     let (subject, text) = crate::mail::words_of(news);

@@ -20,7 +20,10 @@ pub async fn announce(
 ) -> Result<()> {
     for (webhook, kinds) in store::wishes(tx, operator.into()).await? {
         let wanted = news.iter().filter(|news| kinds.0.contains(&news.kind));
-        for AlertNews { id, kind, alert } in wanted {
+        for AlertNews {
+            id, kind, alert, ..
+        } in wanted
+        {
             let message = Message {
                 id: *id,
                 kind: *kind,

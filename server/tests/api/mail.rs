@@ -206,15 +206,30 @@ async fn a_recipient_hears_of_nothing_less_bad_than_asked(shore: Shore) {
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
     assert_eq!(deliver(&shore, &relay).await, []);
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
-    // Told of the worst, the master is told of the end, however bad it is by then.
-    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.5 })).await;
+    // Told of the worst, the master is told once that it is not so bad any more.
+    limit(&shore, &ada, &nao, json!({ "deviation_deg": 2.9 })).await;
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     assert_eq!(deliver(&shore, &relay).await, [Sent::Delivered; 2]);
     let expected = [
         "Nao: critical, deviation over the limit",
-        "Nao: over, deviation over the limit",
+        "Nao: only warning now, deviation over the limit",
     ];
     assert_eq!(subjects(&relay), expected);
+    let sunk = read(&relay.got().pop().unwrap());
+    let text = sunk["text"].as_str().unwrap();
+    assert!(
+        text.contains("Severity: warning (critical before)"),
+        "{text}"
+    );
+    // What is as bad as asked until it is over is told to be over.
+    limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
+    limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
+    deliver(&shore, &relay).await;
+    let expected = [
+        "Nao: critical, deviation over the limit",
+        "Nao: over, deviation over the limit",
+    ];
+    assert_eq!(subjects(&relay)[2..], expected);
     shore.finish().await;
 }
 

@@ -14,6 +14,7 @@ on_both!(
     quiet_hours_keep_letters_back_and_put_them_together,
     what_is_read_in_quiet_hours_is_not_mailed_after_them,
     a_critical_alert_passes_quiet_hours_and_a_warning_does_not,
+    who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over,
     who_is_on_the_mailing_list_gets_no_second_letter_of_an_alert,
     a_digest_has_what_came_since_the_last_one,
     two_servers_make_one_letter,
@@ -115,6 +116,37 @@ async fn a_critical_alert_passes_quiet_hours_and_a_warning_does_not(shore: Shore
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 45.0 })).await;
     limit(&shore, &ada, &nao, json!({ "deviation_deg": 1.0 })).await;
     assert_eq!(mailed(&shore, &relay).await.len(), 2);
+    shore.finish().await;
+}
+
+async fn who_was_told_of_an_alert_hears_once_that_it_sank_or_is_over(shore: Shore) {
+    let relay = Relay::start().await;
+    let ada = shore.admin("ada").await;
+    let nao = with_model(&shore, &ada).await;
+    say(&ada, &json!({ "ways": { "alert": "mail" } }))
+        .await
+        .good();
+    let vessel = ada.get(&nao.path("")).await.good();
+    let worst_deg = vessel["worst"]["deviation_deg"].as_f64().unwrap().abs();
+    // Below the limit, but not by so much that the alert would be over.
+    let sunk_deg = worst_deg + 0.45;
+    for deviation_deg in [1.0, 2.9, sunk_deg, 45.0, 2.9, sunk_deg, 2.9, 45.0] {
+        limit(
+            &shore,
+            &ada,
+            &nao,
+            json!({ "deviation_deg": deviation_deg }),
+        )
+        .await;
+        mailed(&shore, &relay).await;
+    }
+    let [critical, warning, sunk, over] = ["critical", "warning", "only notice now", "over"]
+        .map(|state| format!("Nao: {state}, deviation over the limit"));
+    let all = mailed(&shore, &relay).await;
+    assert_eq!(
+        all,
+        [&critical, &sunk, &warning, &sunk, &warning, &over].map(String::as_str)
+    );
     shore.finish().await;
 }
 
