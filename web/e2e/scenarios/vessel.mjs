@@ -260,6 +260,36 @@ export const vessel = {
     },
   },
 
+  'on paper what happened ends where the chart above it does': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const { id } = await struck(page);
+      await page.goto(`/vessels/${id}#residuals`);
+      await page.getByTestId('time-lanes').getByRole('listitem').first().waitFor();
+      // Sheets and their margins differ; how wide a panel is on one, only the printer knows.
+      for (const width of [560, 718, 760]) {
+        await page.setViewportSize({ width, height: 1000 });
+        await page.emulateMedia({ media: 'print' });
+        await page.evaluate(() => dispatchEvent(new Event('beforeprint')));
+        const right = (found) =>
+          found.evaluateAll((all) =>
+            Math.max(...all.map((node) => node.getBoundingClientRect().right)),
+          );
+        const chartEnds = await right(page.getByTestId('residual-chart').locator('svg'));
+        const lanesEnd = await right(page.getByTestId('time-lanes').getByRole('listitem'));
+        assert.ok(
+          lanesEnd <= chartEnds && lanesEnd > chartEnds - 40,
+          `at ${width} px the lanes end at ${lanesEnd}, the chart at ${chartEnds}`,
+        );
+        await fitsItsWidth(page);
+        await shoot(`residuals-on-paper-${width}`, {}, page.locator('#residuals'));
+        await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+        await page.emulateMedia({ media: 'screen' });
+      }
+    },
+  },
+
   'cargo is reported, discharged and withdrawn': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {
