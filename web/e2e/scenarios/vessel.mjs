@@ -290,6 +290,37 @@ export const vessel = {
     },
   },
 
+  'on a slow phone nothing moves once it is there': {
+    viewport: phone,
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      const { id } = await struck(page);
+      // Alerts, needs, orders and the fleet's line of her come in whatever order.
+      let late = 0;
+      await page.route(
+        /\/api\/v1\/(alerts|fleet|work-orders|vessels\/[^/]+\/needs)\b/,
+        async (route) => {
+          late += 250;
+          await new Promise((done) => setTimeout(done, late));
+          await route.continue();
+        },
+      );
+      await page.addInitScript(() => {
+        window.moved = 0;
+        new PerformanceObserver((seen) => {
+          for (const { value, hadRecentInput } of seen.getEntries())
+            if (!hadRecentInput) window.moved += value;
+        }).observe({ type: 'layout-shift', buffered: true });
+      });
+      await page.goto(`/vessels/${id}`);
+      await page.getByTestId('residual-chart').waitFor({ state: 'attached' });
+      assert.ok(late > 0, 'nothing came late');
+      const moved = await page.evaluate(() => window.moved);
+      assert.ok(moved < 0.005, `the layout shifted by ${moved}`);
+    },
+  },
+
   'cargo is reported, discharged and withdrawn': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {
