@@ -1,4 +1,5 @@
 /** What a form sends: what became of it, and that a repetition is known for one. */
+import { tick } from 'svelte';
 import { newKey } from './api/client';
 
 export class Submission {
@@ -26,15 +27,23 @@ export class Submission {
     const written = JSON.stringify(content);
     if (written !== this.#sent) this.#key = newKey();
     this.#sent = written;
+    const focused = typeof document === 'undefined' ? null : document.activeElement;
     this.busy = true;
     this.failure = '';
     try {
       return await by(content, this.#key);
     } catch (error) {
       this.failure = error instanceof Error ? error.message : String(error);
+      void this.#goBackTo(focused);
       return undefined;
     } finally {
       this.busy = false;
     }
+  }
+
+  /** A button that cannot be pressed while it sends loses the focus: then it gets it back. */
+  async #goBackTo(focused: Element | null): Promise<void> {
+    await tick();
+    if (focused instanceof HTMLElement && document.activeElement === document.body) focused.focus();
   }
 }

@@ -345,7 +345,19 @@ export const vessel = {
       await logbook.getByRole('button', { name: 'Report' }).click();
       await logbook.getByRole('alert').filter({ hasText: 'before it begins' }).waitFor();
       await shoot('logbook-form', {}, logbook);
-      await logbook.getByLabel('Discharged').fill('');
+      const discharged = logbook.getByLabel('Discharged');
+      await discharged.and(page.locator(':focus')).waitFor();
+      // A day without its hour is no time yet, and not as if nothing had been typed.
+      await discharged.fill('');
+      await page.keyboard.type('05102026');
+      await page.keyboard.press('Enter');
+      assert.equal(
+        await discharged.evaluate((field) => field.validationMessage),
+        'Finish this, or clear it.',
+      );
+      assert.equal(await logbook.getByRole('listitem').count(), 0);
+      await discharged.fill('2026-05-10T06:00');
+      await discharged.fill('');
       await logbook.getByLabel('Remarks').press('Tab');
       await page.keyboard.press('Enter');
       await logbook.getByText('since 9 May 2026, 06:00 UTC').first().waitFor();

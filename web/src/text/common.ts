@@ -13,6 +13,7 @@ export const copy = 'Copy';
 export const copied = 'Copied';
 export const showMore = (n: number) => `Show ${n} more`;
 export const optional = 'optional';
+export const unfinished = 'Finish this, or clear it.';
 export const utc = 'UTC';
 /** On paper: of when it is. */
 export const asOf = (when: string) => `As of ${when}`;
