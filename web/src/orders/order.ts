@@ -27,8 +27,10 @@ export function stateName(state: string): string {
 }
 
 /** What comes next, for whoever watches. */
-export function whatNext(state: string): string {
-  return text.orders.next[state as WorkOrderState] ?? '';
+export function whatNext(state: string, reader: 'operator' | 'firm' = 'operator'): string {
+  const { next, nextForFirm } = text.orders;
+  const theirs = reader === 'firm' ? nextForFirm[state as WorkOrderState] : undefined;
+  return theirs ?? next[state as WorkOrderState] ?? '';
 }
 
 export function tone(state: string): 'good' | 'notable' | 'bad' | 'plain' {

@@ -10,7 +10,7 @@ import type {
 import { againOf, faultAgain, newAgain } from './again';
 import { ahead, expectedDeg, isAsExpected, offBy, wrapped } from './ahead';
 import { lineOf } from './log';
-import { callNeeds, inOrder, isOpen, stateName } from './order';
+import { callNeeds, inOrder, isOpen, stateName, whatNext } from './order';
 import { correctorName, standing, written } from './places';
 import { draftOf, fault, headingOf, horizontalNt, newReading, number, readingOf } from './reading';
 import { feeInWords, feeOf, isFee, termsInWords } from './terms';
@@ -351,6 +351,12 @@ describe('a reading after the steps', () => {
     expect(faultAgain({ ...good, heading: '-1' })?.field).toBe('heading');
     expect(faultAgain({ ...good, at: '' })?.field).toBe('at');
   });
+});
+
+test('what comes next is said to the operator of a firm, and to the firm of itself', () => {
+  expect(whatNext('offered')).toMatch(/^A firm was asked/);
+  expect(whatNext('offered', 'firm')).toMatch(/^Your firm is asked/);
+  expect(whatNext('verified', 'firm')).toBe(whatNext('verified'));
 });
 
 describe('a line of the log', () => {

@@ -59,6 +59,12 @@ export const orders = {
       'Done with, though no headings at sea have spoken: what was foretold stays a prediction.',
     cancelled: 'Was not done, or no further.',
   } as Record<string, string>,
+  /** Where the firm's people read something else. */
+  nextForFirm: {
+    offered: 'Your firm is asked: accept it, decline it or propose another day.',
+    proposed: 'Your firm would have it on other terms: they wait for the operator’s answer.',
+    accepted: 'Your firm has it. Next: your adjuster comes on board.',
+  } as Record<string, string | undefined>,
 };
 
 export const order = {
