@@ -361,6 +361,7 @@ export const adjusting = {
       await shoot('order-offer', {}, firms);
       await submit.click();
       await firms.getByText(/^Ibaizabal Compass: asked, answer due by /).waitFor();
+      await page.getByText('Ibaizabal Compass was asked').waitFor();
       await fitsItsWidth(page);
 
       // The firm's adjuster, on a phone of their own.

@@ -49,6 +49,49 @@ export const alerts = {
     },
   },
 
+  'the inbox is filtered, which the address keeps': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings, shoot }) {
+      await signIn(page, settings);
+      const vessel = await withModel(page);
+      await limit(page, vessel.id, { deviation_deg: 1 });
+      await page.goto('/alerts');
+      const hers = page
+        .getByRole('article')
+        .filter({ hasText: `${vessel.name}: Deviation over the limit` });
+      await hers.waitFor();
+      const id = await hers.getAttribute('id');
+      const all = await page.getByRole('article').count();
+
+      await page.getByRole('searchbox', { name: 'Vessel' }).fill(vessel.name.toLowerCase());
+      await page.getByLabel('Cause').selectOption({ label: 'Deviation over the limit' });
+      await page.getByText(/^1 of \d+ open alerts$/).waitFor();
+      await hers.waitFor();
+      await page.getByLabel('State').selectOption({ label: 'Acknowledged' });
+      const none = page.getByTestId('none-fits');
+      await none.getByText(/^No open alert fits\. There (is one|are \d+): /).waitFor();
+      assert.deepEqual(await findings(page), []);
+      await shoot('alerts-none-fits');
+      assert.match(page.url(), /\?q=.*&state=acknowledged&cause=deviation_over_limit$/);
+      await page.reload();
+      await none.waitFor();
+      assert.equal(await page.getByLabel('State').inputValue(), 'acknowledged');
+
+      // A link to an alert shows it, whatever was asked for.
+      await page.evaluate((named) => (location.hash = named), id);
+      await hers.waitFor();
+      await page.getByLabel('State').selectOption({ label: 'Acknowledged' });
+      await none.getByRole('button', { name: 'Show all alerts' }).click();
+      await hers.waitFor();
+      assert.ok((await page.getByRole('article').count()) >= all);
+      assert.equal(new URL(page.url()).search, '');
+      await page.setViewportSize(phone);
+      await fitsItsWidth(page);
+      await shoot('alerts-filter-phone');
+      await limit(page, vessel.id, { deviation_deg: 45 });
+    },
+  },
+
   'from when on there are alerts is said on her page, and holds': {
     allowedErrors: [notSignedIn],
     async run({ page, settings, shoot }) {

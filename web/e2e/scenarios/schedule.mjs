@@ -299,7 +299,7 @@ export const schedule = {
         await shoot('order-fee-proposed', {}, firms);
         await firms.getByRole('button', { name: /^Agree to what/ }).click();
         await firms.getByText(/: has it/).waitFor();
-        await page.getByText('Its terms were accepted').waitFor();
+        await page.getByText(/^The terms of .* were accepted$/).waitFor();
 
         // She is two days late: both pages hear of it by themselves.
         const day = call.from + 2 * dayMs;
