@@ -65,8 +65,25 @@ pub(crate) struct CardRow {
     pub(crate) band95_deg: Option<f64>,
 }
 
-/// Corrects the compass as far as the ingredients go.
+/// A heading that may be off by more than this, one time in twenty, is none to steer by:
+/// nobody sees the band on an autopilot.
+const WIDEST_BAND_DEG: f64 = 10.0;
+
+/// Corrects the compass as far as the ingredients go, and as far as it can be steered by.
 pub(crate) fn correct(from: Ingredients<'_>) -> Corrected {
+    let mut corrected = foretell(from);
+    let is_wide = |band_deg: &f64| *band_deg > WIDEST_BAND_DEG;
+    if let Some(band_deg) = corrected.band95_deg.filter(is_wide) {
+        (corrected.magnetic_deg, corrected.true_deg) = (None, None);
+        corrected.problem = Some(format!(
+            "the deviation here is known to ±{band_deg:.0}° only"
+        ));
+    }
+    corrected
+}
+
+/// Corrects the compass as far as the ingredients go, however little is known.
+pub(crate) fn foretell(from: Ingredients<'_>) -> Corrected {
     let mut corrected = Corrected {
         compass_deg: from.compass,
         ..Corrected::default()
@@ -201,6 +218,22 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn a_heading_known_to_no_better_than_ten_degrees_is_none_to_steer_by() {
+        let known = |sd_deg: f64| {
+            let model = model(0.0, Some(sd_deg * sd_deg));
+            let corrected = correct(ingredients(Some(&model)));
+            (corrected.true_deg.is_some(), corrected.problem)
+        };
+        assert_eq!(known(5.0), (true, None));
+        let (is_given, problem) = known(5.2);
+        assert!(!is_given);
+        assert_eq!(
+            problem.as_deref(),
+            Some("the deviation here is known to ±10° only")
+        );
+    }
+
+    #[test]
     fn the_band_follows_from_the_covariance() {
         let model = model(0.0, Some(0.25));
         let corrected = correct(ingredients(Some(&model)));
@@ -251,7 +284,7 @@ pub(crate) mod tests {
                 },
                 acknowledged: true,
                 followed: false,
-                sectors: 1,
+                parted: 1,
             };
             correct(Ingredients {
                 alert: Some(&alert),

@@ -325,7 +325,7 @@ pub(crate) mod tests {
             },
             acknowledged: false,
             followed: false,
-            sectors: 1,
+            parted: 1,
         };
         page.spool.keep_alert(&aboard).await.unwrap();
         let press = |id: Uuid, guard: &str| {

@@ -35,6 +35,8 @@ pub(crate) fn sentences(corrected: &Corrected, quality: Option<Quality>) -> Vec<
             .map(tenth),
         deviation_deg_east: corrected
             .deviation_deg
+            // Whoever hears it adds it.
+            .filter(|_| corrected.magnetic_deg.is_some())
             .map(Deviation::degrees_east)
             .map(tenth),
         variation_deg_east: corrected

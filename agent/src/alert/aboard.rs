@@ -13,8 +13,14 @@ pub(crate) struct Aboard {
     pub(crate) acknowledged: bool,
     /// Whether the revision that follows some time after the first was made.
     pub(crate) followed: bool,
-    /// A bit for each 30° of compass heading on which they were last seen apart.
-    pub(crate) sectors: u16,
+    /// A bit for each 10° of the reference's heading on which they were last seen apart; where that
+    /// was not kept, all.
+    #[serde(default = "everywhere")]
+    pub(crate) parted: u64,
+}
+
+fn everywhere() -> u64 {
+    u64::MAX
 }
 
 /// An alert as the page and `status` show it.
@@ -120,7 +126,7 @@ mod tests {
             alert,
             acknowledged: false,
             followed: false,
-            sectors: 0,
+            parted: 0,
         };
         aboard.status()
     }

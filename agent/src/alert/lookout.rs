@@ -10,7 +10,7 @@
 
 use super::aboard::Aboard;
 use crate::config::AlertConfig;
-use crate::corrected::{Ingredients, correct};
+use crate::corrected::{Ingredients, foretell};
 use crate::sampler::{WINDOW_S, Window, median};
 use binnacle_magnetics::angle::{CompassHeading, wrap_180};
 use binnacle_magnetics::time::Timestamp;
@@ -29,11 +29,19 @@ const AGREE_SHARE: f64 = 0.75;
 const LONGEST_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
 /// After half an hour of settled windows what came since the alert goes ashore too.
 const FOLLOW_WINDOWS: usize = 1800 / WINDOW_S as usize;
-/// After so many settled hours of agreement it is over, whatever the heading.
-const AGREE_ANYWHERE_WINDOWS: usize = 6 * 3600 / WINDOW_S as usize;
-/// Degrees of compass heading that one bit of [`Aboard::sectors`] stands for.
-const SECTOR_DEG: f64 = 30.0;
-const SECTORS: u32 = 12;
+/// After so many settled hours of agreement it is over, whatever the heading: a day.
+const AGREE_ANYWHERE_WINDOWS: usize = 24 * 3600 / WINDOW_S as usize;
+/// Degrees of heading by the reference that one bit of [`Aboard::parted`] stands for. What a magnet
+/// does is nothing on two courses and at its most a quarter of a circle from them, so that
+/// agreement on one course says little of the next: a magnet that turns the compass by 14° does
+/// as good as nothing within 10° of either.
+const SECTOR_DEG: f64 = 10.0;
+const SECTORS: u32 = 36;
+/// Agreement on two courses so many sectors apart speaks for all: on one of them a magnet does
+/// at least half of what it does anywhere.
+const ACROSS: std::ops::RangeInclusive<u32> = 6..=12;
+/// A change that the shore dates no further before the alert than this is what the alert is of.
+const SAME_CHANGE_S: f64 = 86_400.0;
 /// A ship's clock that is so far behind the model's data is wrong, and so is what
 /// variation is taken for it.
 const BEHIND_MODEL_S: f64 = 86_400.0;
@@ -68,8 +76,9 @@ pub(crate) struct Lookout {
     aboard: Option<Aboard>,
     /// Settled windows since the alert was raised, or the agent was started.
     since_raised: usize,
-    /// Settled windows of agreement in a row.
+    /// Settled windows of agreement in a row, and a bit for each sector they were of.
     agreed: usize,
+    agreed_on: u64,
 }
 
 impl Lookout {
@@ -83,6 +92,7 @@ impl Lookout {
             aboard,
             since_raised: 0,
             agreed: 0,
+            agreed_on: 0,
         }
     }
 
@@ -106,11 +116,7 @@ impl Lookout {
         if model != self.model {
             self.model = model;
             self.recent.clear();
-            self.agreed = 0;
-            if let Some(aboard) = &mut self.aboard {
-                // Where they were apart by another card says nothing by this one.
-                aboard.sectors = 0;
-            }
+            self.disagree();
         }
         if model.is_some() {
             return None;
@@ -143,7 +149,7 @@ impl Lookout {
                 .is_apart()
                 .then(|| self.raise(stand, version, now, new_id()));
         }
-        if self.agrees(raise) {
+        if self.agrees(raise, card) {
             return self.revise(ShipAlertState::Agree, now);
         }
         self.follow_up(stand, now)
@@ -154,7 +160,7 @@ impl Lookout {
         if now.seconds_since(model.data_until) < -BEHIND_MODEL_S {
             return None;
         }
-        let corrected = correct(Ingredients {
+        let corrected = foretell(Ingredients {
             compass: CompassHeading::new(window.compass_deg),
             position: Some(window.position),
             time: Some(now),
@@ -165,6 +171,9 @@ impl Lookout {
         });
         let true_deg = corrected.true_deg?.degrees();
         let departure = |reference_deg: f64| wrap_180(true_deg - reference_deg);
+        // By the reference: that of a compass gone astray is another on the same course.
+        let reference = window.gyro_deg.or(window.satellite_deg);
+        let heading_deg = reference.unwrap_or(true_deg);
         let lat_deg = window.position.lat_deg().abs().min(HIGHEST_LAT_DEG);
         let gyro_error_deg = self.config.gyro_error_deg.0 / lat_deg.to_radians().cos();
         Some(Apart {
@@ -172,7 +181,7 @@ impl Lookout {
             gyro_deg: window.gyro_deg.map(departure),
             satellite_deg: window.satellite_deg.map(departure),
             limit_deg: corrected.band95_deg.unwrap_or(USUAL_BAND_DEG) + gyro_error_deg,
-            sector: (window.compass_deg.rem_euclid(360.0) / SECTOR_DEG) as u32 % SECTORS,
+            sector: (heading_deg.rem_euclid(360.0) / SECTOR_DEG) as u32 % SECTORS,
         })
     }
 
@@ -243,42 +252,47 @@ impl Lookout {
             alert,
             acknowledged: false,
             followed: false,
-            sectors: 1 << stand.sector,
+            parted: 1 << stand.sector,
         });
         self.since_raised = 0;
-        self.agreed = 0;
+        self.disagree();
         // What agreed before the alert is no sign of its end.
         self.recent.clear();
         alert
     }
 
     fn mark(&mut self, sector: u32) {
-        self.agreed = 0;
+        self.disagree();
         if let Some(aboard) = self.aboard.as_mut().filter(|aboard| aboard.is_open()) {
-            aboard.sectors |= 1 << sector;
+            aboard.parted |= 1 << sector;
         }
     }
 
+    fn disagree(&mut self) {
+        (self.agreed, self.agreed_on) = (0, 0);
+    }
+
     /// Whether an open alert is over: they agree on every heading on which they were
-    /// apart, for the compass's deviation may be right on one and wrong on the next.
-    fn agrees(&mut self, raise: usize) -> bool {
-        let Some(stand) = self.stand(2 * raise) else {
+    /// apart, for the compass's deviation may be right on one and wrong on the next; or on two
+    /// courses across each other; or by a model of what the ship has become. A band that
+    /// is wider than when they parted makes none of what is as far apart as then.
+    fn agrees(&mut self, raise: usize, card: Card<'_>) -> bool {
+        let Some((stand, aboard)) = self.stand(2 * raise).zip(self.aboard.as_mut()) else {
             return false;
         };
-        let agree = stand
-            .main_deg()
-            .is_some_and(|departure_deg| departure_deg.abs() <= AGREE_SHARE * stand.limit_deg);
-        let Some(aboard) = self.aboard.as_mut().filter(|_| agree) else {
-            self.agreed = 0;
+        let limit_deg = AGREE_SHARE * stand.limit_deg.min(aboard.alert.limit_deg);
+        if stand.main_deg().is_none_or(|deg| deg.abs() > limit_deg) {
+            self.disagree();
             return false;
-        };
-        self.agreed = self.agreed.saturating_add(1);
-        for near in [SECTORS - 1, 0, 1] {
-            aboard.sectors &= !(1 << ((stand.sector + near) % SECTORS));
         }
-        aboard.sectors == 0
+        aboard.parted &= !(1 << stand.sector);
+        let is_known_ashore = card.knows_of(&aboard.alert);
+        let is_settled = aboard.parted == 0
             || aboard.alert.suspect() == Suspect::Gyro
-            || self.agreed >= AGREE_ANYWHERE_WINDOWS
+            || (is_known_ashore && tenth(stand.limit_deg) <= aboard.alert.limit_deg);
+        self.agreed = self.agreed.saturating_add(1);
+        self.agreed_on |= 1 << stand.sector;
+        is_settled || is_across(self.agreed_on) || self.agreed >= AGREE_ANYWHERE_WINDOWS
     }
 
     fn follow_up(&mut self, stand: Stand, now: Timestamp) -> Option<ShipAlert> {
@@ -330,6 +344,18 @@ impl<'a> Card<'a> {
     fn in_use(self) -> Option<&'a ModelDownlink> {
         self.model.filter(|_| self.withdrawn.is_none())
     }
+
+    /// Whether the model is of the ship after what the alert is of.
+    fn knows_of(self, alert: &ShipAlert) -> bool {
+        let replaces = self.in_use().and_then(|model| model.replaces.as_ref());
+        replaces.is_some_and(|old| old.since.seconds_since(alert.since) > -SAME_CHANGE_S)
+    }
+}
+
+/// Whether two of the sectors lie across each other.
+fn is_across(sectors: u64) -> bool {
+    let is_in = |sector: u32| sectors & (1 << (sector % SECTORS)) != 0;
+    (0..SECTORS).any(|one| is_in(one) && ACROSS.into_iter().any(|far| is_in(one + far)))
 }
 
 fn start_of(window: i64) -> Option<Timestamp> {

@@ -85,7 +85,7 @@ mod tests {
             },
             acknowledged,
             followed: false,
-            sectors: 1,
+            parted: 1,
         }
     }
 

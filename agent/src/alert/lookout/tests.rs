@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::config::GyroError;
+use crate::corrected::foretell;
 use binnacle_magnetics::model::{Model, Parameters};
 use binnacle_magnetics::position::Position;
 
@@ -78,7 +79,7 @@ impl Ship {
             let noise_deg = [0.4, -0.5, 0.1, -0.3, 0.6, -0.2][self.index.rem_euclid(6) as usize];
             let position = Position::new(43.5, -3.0).unwrap();
             let reading = CompassHeading::new(heading_deg);
-            let right = correct(Ingredients {
+            let right = foretell(Ingredients {
                 compass: reading,
                 position: Some(position),
                 time: end_of(START),
@@ -220,22 +221,71 @@ fn it_goes_ashore_again_with_what_came_after_and_ends_when_they_agree() {
 }
 
 #[test]
-fn agreement_on_another_heading_ends_nothing_until_it_has_lasted() {
+fn agreement_on_another_heading_ends_nothing_until_it_has_lasted_a_day() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, WELL);
+    ship.sail(200, 90.0, STRUCK);
+    ship.sail(6 * 360, 180.0, WELL);
+    ship.sail(60, 215.0, WELL);
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+    ship.sail(18 * 360 + 100, 180.0, WELL);
+    assert_eq!(ship.states()[2..], [(3, Agree)]);
+}
+
+#[test]
+fn agreement_on_two_courses_across_each_other_speaks_for_all() {
     let mut ship = ship();
     ship.sail(60, 90.0, WELL);
     ship.sail(200, 90.0, STRUCK);
     ship.sail(600, 180.0, WELL);
-    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
-    ship.sail(60, 110.0, WELL);
+    ship.sail(60, 355.0, WELL);
     assert_eq!(
-        ship.states()[2..],
-        [(3, Agree)],
-        "120° is near enough to 090°"
+        ship.states(),
+        [(1, Open), (2, Open)],
+        "a magnet's two nulls"
     );
+    ship.sail(60, 260.0, WELL);
+    assert_eq!(ship.states()[2..], [(3, Agree)]);
+}
 
-    ship.sail(60, 90.0, STRUCK);
-    ship.sail(6 * 360 + 100, 180.0, WELL);
-    assert_eq!(ship.states().last(), Some(&(3, Agree)), "six hours will do");
+#[test]
+fn a_strike_is_not_over_on_a_course_on_which_it_does_nothing() {
+    // A magnet that turns the compass by 14° at its most, and by nothing on 150°.
+    let struck = |heading_deg: f64| Errors {
+        compass_deg: 14.0 * (heading_deg - 150.0).to_radians().sin(),
+        ..WELL
+    };
+    let mut ship = ship();
+    ship.sail(60, 190.0, WELL);
+    for heading_deg in [
+        190.0, 197.0, 172.0, 150.0, 153.0, 147.0, 155.0, 330.0, 148.0,
+    ] {
+        ship.sail(400, heading_deg, struck(heading_deg));
+    }
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+}
+
+#[test]
+fn a_band_that_has_grown_ends_no_alert() {
+    let mut ship = ship();
+    let apart = Errors {
+        compass_deg: 9.0,
+        ..WELL
+    };
+    ship.sail(60, 90.0, apart);
+    assert_eq!(ship.states(), [(1, Open)]);
+    ship.card = model(2);
+    let mut covariance = [[0.0; 8]; 8];
+    covariance[7][7] = 13.0_f64.powi(2);
+    ship.card.model.covariance = Some(covariance);
+    ship.card.replaces = Some(CardWithdrawn {
+        since: end_of(START).unwrap(),
+        reason: "a change".to_owned(),
+    });
+    ship.sail(400, 90.0, apart);
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+    ship.sail(400, 40.0, WELL);
+    assert_eq!(ship.states(), [(1, Open), (2, Open)], "it says too little");
 }
 
 #[test]
@@ -313,15 +363,22 @@ fn without_a_card_there_is_no_alert_and_one_that_is_open_ends() {
 }
 
 #[test]
-fn another_model_judges_anew() {
+fn a_model_of_what_she_has_become_judges_anew_and_another_does_not() {
     let mut ship = ship();
     ship.sail(60, 90.0, STRUCK);
     ship.card = model(2);
     // What this model calls right, on another heading.
+    ship.sail(400, 200.0, WELL);
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+    ship.card = model(3);
+    ship.card.replaces = Some(CardWithdrawn {
+        since: end_of(START).unwrap(),
+        reason: "lightning".to_owned(),
+    });
     ship.sail(59, 200.0, WELL);
-    assert_eq!(ship.states(), [(1, Open)]);
+    assert_eq!(ship.revisions.len(), 2);
     ship.sail(1, 200.0, WELL);
-    assert_eq!(ship.states(), [(1, Open), (2, Agree)]);
+    assert_eq!(ship.states()[2..], [(3, Agree)]);
 }
 
 #[test]

@@ -7,7 +7,7 @@ fn aboard(revision: u32) -> Aboard {
         alert: alert(revision),
         acknowledged: false,
         followed: false,
-        sectors: 8,
+        parted: 8,
     }
 }
 
