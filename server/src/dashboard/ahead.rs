@@ -15,6 +15,8 @@ use uuid::Uuid;
 /// What the build says of its files, by their sources.
 const MANIFEST: &str = "files.json";
 const VESSEL: &str = "src/pages/Vessel.svelte";
+/// What the dashboard asks for of what comes in pages.
+const LONGEST_PAGE: u32 = 10_000;
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -54,8 +56,16 @@ pub(super) fn links(path: &str, request: &HeaderMap) -> Option<HeaderValue> {
         .and_then(|id| Uuid::try_parse(id).ok());
     let mut links = Vec::new();
     if request.contains_key(COOKIE) {
-        // What is read first of a vessel: who she is, and what is due.
-        let ours = vessel.map(|id| [format!("vessels/{id}"), format!("vessels/{id}/needs")]);
+        // What is read first of a vessel: who she is, and all that says what she needs.
+        let ours = vessel.map(|id| {
+            [
+                format!("vessels/{id}"),
+                format!("vessels/{id}/needs"),
+                format!("fleet?vessel={id}"),
+                format!("work-orders?vessel={id}&limit={LONGEST_PAGE}"),
+                format!("alerts?open=true&limit={LONGEST_PAGE}"),
+            ]
+        });
         let data = ["me".to_owned()]
             .into_iter()
             .chain(ours.into_iter().flatten());
@@ -131,6 +141,7 @@ mod tests {
             both.contains(&format!("</api/v1/{VESSELS_PAGE}/needs>; rel=preload")),
             "{both}"
         );
+        assert!(both.contains("</api/v1/fleet?vessel="), "{both}");
         assert!(!links("vessels/none\r\nX: y", &somebody).contains("vessels"));
     }
 }

@@ -18,11 +18,13 @@ const HOPELESS_NATS: f64 = 16.0;
 const TEMPER: f64 = 0.5;
 /// How likely a ship is to become herself again at a port call after a change at sea.
 const RETURN_AFTER_SEA: f64 = 0.01;
-/// A change that began at a port call is cargo with this probability, one that is dated soon
-/// after one with that, for little cargo is noticed late, and cargo is discharged at any one
-/// call with the third.
+/// A change that began at a port call is cargo with this probability; little cargo is noticed
+/// late, so that one that is dated days after a call may be, too, and the rather where the rows
+/// fit one at the call as well.
 const IS_CARGO: f64 = 0.84;
+const IS_CARGO_NOTICED_LATE: f64 = 0.6;
 const IS_CARGO_SOON_AFTER: f64 = 0.25;
+/// Cargo is discharged at any one call with this probability.
 const DISCHARGED: f64 = 0.6;
 
 /// She is herself again so likely at a call at which the logbook says that her cargo was
@@ -51,6 +53,8 @@ pub(super) enum Said {
 /// Where a step happened, as far as the rows tell.
 pub(super) enum Began {
     AtPort,
+    /// At a port call, or at sea in the days after it.
+    NoticedLate,
     /// At sea, soon after a port call, from which she had sailed so: if it was cargo, it was
     /// on board by then.
     SoonAfter(Box<Filter>),
@@ -75,6 +79,7 @@ impl Base {
     fn chance(&self) -> f64 {
         let is_cargo = match self.began {
             Began::AtPort => IS_CARGO,
+            Began::NoticedLate => IS_CARGO_NOTICED_LATE,
             Began::SoonAfter(_) => IS_CARGO_SOON_AFTER,
             Began::AtSea => return RETURN_AFTER_SEA,
         };

@@ -138,6 +138,9 @@ fn cargo_that_is_noticed_days_after_a_disturbance_at_sea_came_on_board_at_the_ca
         let sailed = log.samples.partition_point(|s| s.time <= loaded);
         let call = loaded..log.samples[sailed].time;
         assert!(call.contains(&found.from), "seed {seed}: {found:?}");
+        let says = |words: &str| found.evidence.iter().any(|line| line.contains(words));
+        assert!(says("may have begun at the port call before"), "{found:?}");
+        assert!(!says("it began"), "{found:?}");
     }
 }
 

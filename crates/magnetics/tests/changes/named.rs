@@ -194,6 +194,25 @@ fn with_ramp(mut log: Log, from_day: f64, nt: f64) -> Log {
 }
 
 #[test]
+fn an_entry_of_cargo_that_nobody_closed_weeks_ago_hides_no_drift() {
+    let mut plan = calm(Event::Nothing);
+    plan.days = 70.0;
+    let mut drifts = 0;
+    for (seed, nt) in [(81, 3000.0), (82, 3000.0), (83, -3000.0), (84, 2500.0)] {
+        let log = with_ramp(sail_log(seed, &plan), 25.0, nt);
+        let loaded = log.start.plus_seconds(DAY_S);
+        let open = [entry(LogbookKind::MagneticCargo, loaded, None)];
+        let analysis = with(&log, &open);
+        is_sound(&analysis);
+        let found = of_the_ship(&analysis);
+        drifts += usize::from(found.iter().any(|c| c.cause == Cause::Drift));
+        let struck = |c: &&&Change| c.cause == Cause::LightningOrShock;
+        assert_eq!(found.iter().find(struck), None, "seed {seed}");
+    }
+    assert!(drifts >= 3, "{drifts}");
+}
+
+#[test]
 fn what_creeps_is_one_drift_from_early_on() {
     let mut plan = calm(Event::Nothing);
     plan.days = 70.0;

@@ -68,6 +68,11 @@ pub(super) fn evidence(
     match known.at_port {
         Some(true) => told.push("it began at a port call".to_owned()),
         Some(false) => told.push("it began at sea".to_owned()),
+        None if event.is_late => told.push(
+            "it may have begun at the port call before, where cargo comes on board, though it was \
+             seen at sea only"
+                .to_owned(),
+        ),
         None => {}
     }
     match known.ended_at_port {

@@ -128,6 +128,7 @@ impl Teller<'_> {
         // A drift has no date: it is taken from one of the times that were tried.
         let at_port = match event.what {
             What::Drift => None,
+            _ if event.is_late => None,
             _ => self.began_at_port(event),
         };
         let astray = (event.what == What::Burst)

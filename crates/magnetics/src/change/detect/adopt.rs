@@ -58,6 +58,9 @@ impl Search<'_> {
             leads,
             Some((&dated.before, &dated.filter)),
         );
+        if let Some(event) = self.events.last_mut() {
+            event.is_late = dated.is_late;
+        }
         let mut rivals = Vec::new();
         let mut doubt = None;
         if kind == Kind::Step {
@@ -98,7 +101,10 @@ impl Search<'_> {
     /// that knows of the step would have met them.
     pub(super) fn retrace(&mut self, k: usize, dated: &Dated) {
         let event = self.events.len() - 1;
-        let began = if self.began_at_call(dated) || self.is_said_loaded(dated.between) {
+        let is_said_loaded = self.is_said_loaded(dated.between);
+        let began = if dated.is_late && !is_said_loaded {
+            Began::NoticedLate
+        } else if is_said_loaded || self.began_at_call(dated) {
             Began::AtPort
         } else {
             let sailed = self.sailed(dated.first, &self.events[..event]);
@@ -304,6 +310,7 @@ impl Search<'_> {
             was_step: false,
             over_step: 0.0,
             zero_over_step: None,
+            is_late: false,
         };
         self.events.push(event);
     }

@@ -27,6 +27,9 @@ pub(super) struct Dated {
     /// The filter just before it, and the one that knew of it, now.
     pub(super) before: Filter,
     pub(super) filter: Filter,
+    /// Whether it is dated at a call for what the bank no longer knew: the likeliest row is of
+    /// days after it.
+    pub(super) is_late: bool,
 }
 
 /// Where rows before a change are linearised that led to `after`: before a large step at the
@@ -121,6 +124,7 @@ impl Search<'_> {
             kind,
             before: self.run(origin.origin().clone(), origin.at..first, &calm),
             filter,
+            is_late: false,
         }
     }
 
@@ -184,12 +188,14 @@ impl Search<'_> {
             })
             .filter(|(_, _, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
             .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
+        let is_late = call < origin.at;
         Some(Dated {
             first: call,
             between: (call.min(row), call.max(row)),
             kind,
             before,
             filter,
+            is_late,
         })
     }
 }

@@ -74,6 +74,9 @@ pub(crate) struct Event {
     pub(crate) over_step: f64,
     /// By how much a zero that moved is likelier than the step, nats, where that is open.
     pub(crate) zero_over_step: Option<f64>,
+    /// Whether it is dated at a port call, but was seen days after only: it may have happened
+    /// at sea.
+    pub(crate) is_late: bool,
 }
 
 impl Event {
@@ -172,6 +175,7 @@ mod tests {
             was_step: false,
             over_step: 0.0,
             zero_over_step: None,
+            is_late: false,
         }
     }
 

@@ -7,6 +7,8 @@ use crate::time::Timestamp;
 
 /// People write down the day, or when the hatches were shut.
 const ABOUT_S: f64 = 12.0 * 3600.0;
+/// What nobody closed was discharged by then, and forgotten.
+const OPEN_S: f64 = 21.0 * 86_400.0;
 /// A step that is dated after so many rows or more of sailing since was not the loading:
 /// half of it for what people write, half for dating.
 pub(crate) const SAILED_SINCE: usize = 36;
@@ -68,7 +70,8 @@ impl Search<'_> {
             return false;
         };
         let on_board = |loaded: &Loaded| {
-            loaded.from <= time && loaded.to.is_none_or(|discharged| time <= discharged)
+            let until = loaded.to.unwrap_or(loaded.from.plus_seconds(OPEN_S));
+            (loaded.from..=until).contains(&time)
         };
         self.cargo.iter().any(on_board)
     }

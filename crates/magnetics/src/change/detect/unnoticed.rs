@@ -14,9 +14,8 @@ use crate::change::upset::upset;
 const CHANGED: f64 = 0.02;
 const MISLED: f64 = 0.002;
 const ASTRAY: f64 = 0.03;
-/// What is dated no more than so many rows after a call may be cargo that was noticed late:
-/// three days.
-const SOON_ROWS: usize = 432;
+/// What is dated no longer than this after a call may be cargo that was noticed late.
+const SOON_S: f64 = 3.0 * 86_400.0;
 /// Calls that are asked about: the last few among so many rows.
 const ROWS: usize = 288;
 const CALLS: usize = 3;
@@ -51,8 +50,9 @@ impl Search<'_> {
     pub(super) fn sailed(&self, row: usize, earlier: &[Event]) -> Option<(usize, &Filter)> {
         let (at, filter) = self.ports.0.iter().rfind(|(at, _)| *at <= row)?;
         let is_news = |event: &Event| event.told >= *at && event.what != What::Burst;
-        let is_soon = row < at + SOON_ROWS && !earlier.iter().any(is_news);
-        is_soon.then_some((*at, filter))
+        let times = self.observations[*at].time.zip(self.observations[row].time);
+        let is_soon = times.is_some_and(|(sailed, now)| now.seconds_since(sailed) < SOON_S);
+        (is_soon && !earlier.iter().any(is_news)).then_some((*at, filter))
     }
 
     /// The likeliest of the last port calls for a step that has not been told, and how
