@@ -40,6 +40,8 @@ const SECTORS: u32 = 36;
 /// Agreement on two courses so many sectors apart speaks for all: on one of them a magnet does
 /// at least half of what it does anywhere.
 const ACROSS: std::ops::RangeInclusive<u32> = 6..=12;
+/// A model whose limit is so many times what it was, and more, does not know what she has become.
+const NARROW: f64 = 1.5;
 /// A change that the shore dates no further before the alert than this is what the alert is of.
 const SAME_CHANGE_S: f64 = 86_400.0;
 /// A ship's clock that is so far behind the model's data is wrong, and so is what
@@ -289,7 +291,7 @@ impl Lookout {
         let is_known_ashore = card.knows_of(&aboard.alert);
         let is_settled = aboard.parted == 0
             || aboard.alert.suspect() == Suspect::Gyro
-            || (is_known_ashore && tenth(stand.limit_deg) <= aboard.alert.limit_deg);
+            || (is_known_ashore && stand.limit_deg < NARROW * aboard.alert.limit_deg);
         self.agreed = self.agreed.saturating_add(1);
         self.agreed_on |= 1 << stand.sector;
         is_settled || is_across(self.agreed_on) || self.agreed >= AGREE_ANYWHERE_WINDOWS
