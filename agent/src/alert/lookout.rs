@@ -37,13 +37,9 @@ const AGREE_ANYWHERE_WINDOWS: usize = 24 * 3600 / WINDOW_S as usize;
 /// as good as nothing within 10° of either.
 const SECTOR_DEG: f64 = 10.0;
 const SECTORS: u32 = 36;
-/// Agreement on two courses so many sectors apart speaks for all: on one of them a magnet does
-/// at least half of what it does anywhere.
-const ACROSS: std::ops::RangeInclusive<u32> = 6..=12;
-/// A model whose limit is so many times what it was, and more, does not know what she has become.
-const NARROW: f64 = 1.5;
-/// A change that the shore dates no further before the alert than this is what the alert is of.
-const SAME_CHANGE_S: f64 = 86_400.0;
+/// Agreement on three courses, each so many sectors from the next, speaks for all: neither a
+/// magnet, with its two nulls, nor soft iron, with its four, does little on all of them.
+const ACROSS: std::ops::RangeInclusive<u32> = 4..=8;
 /// A ship's clock that is so far behind the model's data is wrong, and so is what
 /// variation is taken for it.
 const BEHIND_MODEL_S: f64 = 86_400.0;
@@ -151,7 +147,7 @@ impl Lookout {
                 .is_apart()
                 .then(|| self.raise(stand, version, now, new_id()));
         }
-        if self.agrees(raise, card) {
+        if self.agrees(raise) {
             return self.revise(ShipAlertState::Agree, now);
         }
         self.follow_up(stand, now)
@@ -275,11 +271,14 @@ impl Lookout {
     }
 
     /// Whether an open alert is over: they agree on every heading on which they were
-    /// apart, for the compass's deviation may be right on one and wrong on the next; or on two
-    /// courses across each other; or by a model of what the ship has become. A band that
-    /// is wider than when they parted makes none of what is as far apart as then.
-    fn agrees(&mut self, raise: usize, card: Card<'_>) -> bool {
-        let Some((stand, aboard)) = self.stand(2 * raise).zip(self.aboard.as_mut()) else {
+    /// apart, for the compass's deviation may be right on one and wrong on the next; or on
+    /// courses that speak for all; or long enough. A band that is wider than when they parted
+    /// makes none of what is as far apart as then, and what was read before a turn is of
+    /// another course.
+    fn agrees(&mut self, raise: usize) -> bool {
+        let stand = self.stand(2 * raise);
+        let on_course = stand.filter(|stand| self.is_on_course(2 * raise, stand.sector));
+        let Some((stand, aboard)) = on_course.zip(self.aboard.as_mut()) else {
             return false;
         };
         let limit_deg = AGREE_SHARE * stand.limit_deg.min(aboard.alert.limit_deg);
@@ -288,13 +287,19 @@ impl Lookout {
             return false;
         }
         aboard.parted &= !(1 << stand.sector);
-        let is_known_ashore = card.knows_of(&aboard.alert);
-        let is_settled = aboard.parted == 0
-            || aboard.alert.suspect() == Suspect::Gyro
-            || (is_known_ashore && stand.limit_deg < NARROW * aboard.alert.limit_deg);
+        let is_settled = aboard.parted == 0 || aboard.alert.suspect() == Suspect::Gyro;
         self.agreed = self.agreed.saturating_add(1);
         self.agreed_on |= 1 << stand.sector;
         is_settled || is_across(self.agreed_on) || self.agreed >= AGREE_ANYWHERE_WINDOWS
+    }
+
+    /// Whether so many of the latest windows are of one course, but for yaw.
+    fn is_on_course(&self, windows: usize, sector: u32) -> bool {
+        let is_near = |apart: &Apart| {
+            let turned = (apart.sector + SECTORS - sector) % SECTORS;
+            turned <= 1 || turned == SECTORS - 1
+        };
+        self.recent.iter().rev().take(windows).all(is_near)
     }
 
     fn follow_up(&mut self, stand: Stand, now: Timestamp) -> Option<ShipAlert> {
@@ -346,18 +351,13 @@ impl<'a> Card<'a> {
     fn in_use(self) -> Option<&'a ModelDownlink> {
         self.model.filter(|_| self.withdrawn.is_none())
     }
-
-    /// Whether the model is of the ship after what the alert is of.
-    fn knows_of(self, alert: &ShipAlert) -> bool {
-        let replaces = self.in_use().and_then(|model| model.replaces.as_ref());
-        replaces.is_some_and(|old| old.since.seconds_since(alert.since) > -SAME_CHANGE_S)
-    }
 }
 
-/// Whether two of the sectors lie across each other.
+/// Whether three of the sectors speak for all.
 fn is_across(sectors: u64) -> bool {
     let is_in = |sector: u32| sectors & (1 << (sector % SECTORS)) != 0;
-    (0..SECTORS).any(|one| is_in(one) && ACROSS.into_iter().any(|far| is_in(one + far)))
+    let next = |one: u32| ACROSS.map(move |far| one + far).filter(|two| is_in(*two));
+    (0..SECTORS).any(|one| is_in(one) && next(one).any(|two| next(two).next().is_some()))
 }
 
 fn start_of(window: i64) -> Option<Timestamp> {

@@ -228,40 +228,69 @@ fn agreement_on_another_heading_ends_nothing_until_it_has_lasted_a_day() {
     ship.sail(6 * 360, 180.0, WELL);
     ship.sail(60, 215.0, WELL);
     assert_eq!(ship.states(), [(1, Open), (2, Open)]);
-    ship.sail(18 * 360 + 100, 180.0, WELL);
+    ship.sail(18 * 360 + 300, 180.0, WELL);
     assert_eq!(ship.states()[2..], [(3, Agree)]);
 }
 
 #[test]
-fn agreement_on_two_courses_across_each_other_speaks_for_all() {
+fn agreement_on_three_courses_across_each_other_speaks_for_all() {
     let mut ship = ship();
     ship.sail(60, 90.0, WELL);
     ship.sail(200, 90.0, STRUCK);
-    ship.sail(600, 180.0, WELL);
-    ship.sail(60, 355.0, WELL);
-    assert_eq!(
-        ship.states(),
-        [(1, Open), (2, Open)],
-        "a magnet's two nulls"
-    );
-    ship.sail(60, 260.0, WELL);
+    for heading_deg in [180.0, 0.0, 270.0] {
+        ship.sail(100, heading_deg, WELL);
+    }
+    assert_eq!(ship.states(), [(1, Open), (2, Open)], "soft iron's nulls");
+    ship.sail(100, 220.0, WELL);
     assert_eq!(ship.states()[2..], [(3, Agree)]);
+}
+
+/// Sails 400 windows on each of some headings with so much deviation as `error_deg` gives.
+fn sail_each(ship: &mut Ship, headings_deg: &[f64], error_deg: impl Fn(f64) -> f64) {
+    for &heading_deg in headings_deg {
+        let errors = Errors {
+            compass_deg: error_deg(heading_deg),
+            ..WELL
+        };
+        ship.sail(400, heading_deg, errors);
+    }
+}
+
+/// A magnet that turns the compass by 14° at its most, and by nothing on 150° and 330°.
+fn magnet_deg(heading_deg: f64) -> f64 {
+    14.0 * (heading_deg - 150.0).to_radians().sin()
 }
 
 #[test]
 fn a_strike_is_not_over_on_a_course_on_which_it_does_nothing() {
-    // A magnet that turns the compass by 14° at its most, and by nothing on 150°.
-    let struck = |heading_deg: f64| Errors {
-        compass_deg: 14.0 * (heading_deg - 150.0).to_radians().sin(),
-        ..WELL
-    };
-    let mut ship = ship();
-    ship.sail(60, 190.0, WELL);
-    for heading_deg in [
-        190.0, 197.0, 172.0, 150.0, 153.0, 147.0, 155.0, 330.0, 148.0,
+    for headings_deg in [
+        [190.0, 197.0, 172.0, 150.0, 153.0, 147.0, 155.0, 330.0],
+        [190.0, 150.0, 190.0, 150.0, 225.0, 150.0, 225.0, 150.0],
+        [250.0, 150.0, 250.0, 330.0, 250.0, 150.0, 90.0, 150.0],
+        [40.0, 150.0, 80.0, 330.0, 270.0, 330.0, 30.0, 150.0],
     ] {
-        ship.sail(400, heading_deg, struck(heading_deg));
+        let mut ship = ship();
+        ship.sail(60, headings_deg[0], WELL);
+        sail_each(&mut ship, &headings_deg, magnet_deg);
+        assert_eq!(
+            ship.states(),
+            [(1, Open), (2, Open)],
+            "{headings_deg:?}: {:?}",
+            ship.revisions
+        );
     }
+}
+
+#[test]
+fn soft_iron_is_not_over_on_courses_on_which_it_does_nothing() {
+    let soft_deg = |heading_deg: f64| 9.0 * (2.0 * heading_deg).to_radians().sin();
+    let mut ship = ship();
+    ship.sail(60, 45.0, WELL);
+    sail_each(
+        &mut ship,
+        &[45.0, 0.0, 90.0, 45.0, 180.0, 270.0, 45.0],
+        soft_deg,
+    );
     assert_eq!(ship.states(), [(1, Open), (2, Open)]);
 }
 
@@ -363,21 +392,16 @@ fn without_a_card_there_is_no_alert_and_one_that_is_open_ends() {
 }
 
 #[test]
-fn a_model_of_what_she_has_become_judges_anew_and_another_does_not() {
+fn another_model_judges_anew_on_the_course_on_which_they_parted() {
     let mut ship = ship();
     ship.sail(60, 90.0, STRUCK);
     ship.card = model(2);
-    // What this model calls right, on another heading.
     ship.sail(400, 200.0, WELL);
     assert_eq!(ship.states(), [(1, Open), (2, Open)]);
     ship.card = model(3);
-    ship.card.replaces = Some(CardWithdrawn {
-        since: end_of(START).unwrap(),
-        reason: "lightning".to_owned(),
-    });
-    ship.sail(59, 200.0, WELL);
+    ship.sail(59, 90.0, WELL);
     assert_eq!(ship.revisions.len(), 2);
-    ship.sail(1, 200.0, WELL);
+    ship.sail(1, 90.0, WELL);
     assert_eq!(ship.states()[2..], [(3, Agree)]);
 }
 
