@@ -9,6 +9,7 @@
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::findings::{Findings, FoundChange};
 use super::limits::AlertLimits;
+use super::wanted::SLACK_DEG;
 use crate::time::Time;
 use binnacle_magnetics::change;
 use binnacle_magnetics::time::Timestamp;
@@ -43,7 +44,11 @@ enum Stage {
 }
 
 /// The alerts that the changes call for, one of each cause.
-pub(super) fn changed(findings: &Findings, limits: &AlertLimits) -> Vec<AlertWanted> {
+pub(super) fn changed(
+    findings: &Findings,
+    limits: &AlertLimits,
+    open_at: impl Fn(Cause) -> Option<Severity>,
+) -> Vec<AlertWanted> {
     let mut wanted: Vec<AlertWanted> = Vec::new();
     for found in findings.changes.iter().rev() {
         let cause = cause_of(found.change.cause);
@@ -51,7 +56,8 @@ pub(super) fn changed(findings: &Findings, limits: &AlertLimits) -> Vec<AlertWan
         let stage = stage(found, findings, limits);
         if !known && !found.expected && holds(found, stage, findings) {
             let dated = dated(found, findings);
-            wanted.push(alert(found, cause, stage, dated, limits));
+            let severity = severity(found, stage, limits, open_at(cause));
+            wanted.push(alert(found, cause, stage, dated, severity));
         }
     }
     wanted
@@ -168,7 +174,7 @@ fn alert(
     cause: Cause,
     stage: Stage,
     dated: Dated,
-    limits: &AlertLimits,
+    severity: Severity,
 ) -> AlertWanted {
     let change = &found.change;
     let mut evidence = change.evidence.clone();
@@ -181,7 +187,7 @@ fn alert(
     }
     AlertWanted {
         cause,
-        severity: severity(found, stage, limits),
+        severity,
         since: change.from.into(),
         dated,
         summary: summary(found, stage),
@@ -194,16 +200,31 @@ fn alert(
     }
 }
 
-/// As bad as the deviation that it causes, here or on the waters ahead.
-fn severity(found: &FoundChange, stage: Stage, limits: &AlertLimits) -> Severity {
+/// As bad as the deviation that it causes, here or on the waters ahead; what it has been is left
+/// only well below what made it so.
+fn severity(
+    found: &FoundChange,
+    stage: Stage,
+    limits: &AlertLimits,
+    was: Option<Severity>,
+) -> Severity {
     if found.change.cause == change::Cause::CompassFault {
         return Severity::Critical;
     }
     let ahead_deg = found.size_ahead_deg.unwrap_or(0.0);
     let size_deg = found.size_deg.unwrap_or(0.0).max(ahead_deg);
-    let by_size = if size_deg >= limits.deviation_deg {
+    let slack_deg = |severity| {
+        if was >= Some(severity) {
+            SLACK_DEG
+        } else {
+            0.0
+        }
+    };
+    let by_size = if size_deg >= limits.deviation_deg - slack_deg(Severity::Critical) {
         Severity::Critical
-    } else if size_deg >= WARN_DEG || found.change.cause == change::Cause::ReferenceFault {
+    } else if size_deg >= WARN_DEG - slack_deg(Severity::Warning)
+        || found.change.cause == change::Cause::ReferenceFault
+    {
         Severity::Warning
     } else {
         Severity::Notice

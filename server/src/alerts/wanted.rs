@@ -15,7 +15,7 @@ use crate::time::Time;
 use binnacle_magnetics::time::Timestamp;
 
 /// An open alert stays until the figure is so far below its limit, degrees.
-const SLACK_DEG: f64 = 0.5;
+pub(super) const SLACK_DEG: f64 = 0.5;
 /// So long a ship may need to make the headings that a model asks for, seconds.
 const PATIENCE_S: f64 = 7.0 * 86_400.0;
 /// Of the samples of the last day, so large a part with a failed reference is more
@@ -62,7 +62,7 @@ pub fn alerts_of(
         (None, Some(failed)) if failed.is_more_than_a_drop_out() => Some(one_failed(failed)),
         _ => None,
     };
-    let mut wanted = changed(findings, limits);
+    let mut wanted = changed(findings, limits, open_at);
     // Who is told of a change is told with it that less is known for now.
     let is_told = wanted
         .iter()

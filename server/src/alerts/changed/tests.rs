@@ -37,6 +37,16 @@ fn found(cause: Found, size_deg: f64) -> FoundChange {
 
 /// A ship that has sailed for so many days since, with such a band by now.
 fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<AlertWanted> {
+    known_as(None, changes, days, band95_deg)
+}
+
+/// The same where an alert of such a severity is open of each cause.
+fn known_as(
+    was: Option<Severity>,
+    changes: Vec<FoundChange>,
+    days: f64,
+    band95_deg: Option<f64>,
+) -> Vec<AlertWanted> {
     let findings = Findings {
         epoch_from: changes.last().map(|found| found.change.from),
         data_until: changes
@@ -46,7 +56,7 @@ fn sailed(changes: Vec<FoundChange>, days: f64, band95_deg: Option<f64>) -> Vec<
         changes,
         ..Findings::default()
     };
-    changed(&findings, &AlertLimits::default())
+    changed(&findings, &AlertLimits::default(), |_| was)
 }
 
 #[test]
@@ -60,6 +70,28 @@ fn a_change_that_is_small_here_and_large_on_the_waters_ahead_is_as_bad_as_there(
         summary.contains("1.0° here, 6.0° on the waters"),
         "{summary}"
     );
+}
+
+#[test]
+fn a_change_is_less_bad_only_once_it_is_well_below_what_made_it_so() {
+    use Severity::{Critical, Notice, Warning};
+    for (was, size_deg, is) in [
+        (None, 4.8, Warning),
+        (Some(Critical), 4.8, Critical),
+        (Some(Critical), 4.4, Warning),
+        (Some(Warning), 4.8, Warning),
+        (Some(Warning), 1.6, Warning),
+        (Some(Warning), 1.4, Notice),
+        (Some(Notice), 1.6, Notice),
+    ] {
+        let wanted = known_as(
+            was,
+            vec![found(Found::LightningOrShock, size_deg)],
+            0.0,
+            None,
+        );
+        assert_eq!(wanted[0].severity, is, "{was:?}, {size_deg}");
+    }
 }
 
 #[test]
