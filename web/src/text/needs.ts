@@ -5,6 +5,7 @@ export const needs = {
   unknown: (why: string) => `What she needs could not be found out in full: ${why}`,
   alerts: 'Open alerts',
   noAlerts: 'none',
+  notKnown: 'not known yet',
   moreAlerts: (n: number) => (n === 1 ? 'and 1 more' : `and ${n} more`),
   due: 'Next adjustment due',
   noDue: 'nothing is due',
