@@ -81,8 +81,10 @@ export const alerts = {
       await page.evaluate((named) => (location.hash = named), id);
       await hers.waitFor();
       await page.getByLabel('State').selectOption({ label: 'Acknowledged' });
-      await none.getByRole('button', { name: 'Show all alerts' }).click();
+      await none.getByRole('button', { name: 'Show all alerts' }).press('Enter');
       await hers.waitFor();
+      const focused = page.locator(':focus');
+      assert.match(await focused.innerText(), /open alerts?/, 'the focus is not lost');
       assert.ok((await page.getByRole('article').count()) >= all);
       assert.equal(new URL(page.url()).search, '');
       await page.setViewportSize(phone);

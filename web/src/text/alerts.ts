@@ -33,6 +33,8 @@ export const alerts = {
     anyCause: 'Any cause',
     shown: (n: number, all: number) =>
       n === all ? (n === 1 ? '1 open alert' : `${n} open alerts`) : `${n} of ${all} open alerts`,
+    criticalHidden: (n: number) =>
+      n === 1 ? '1 critical is not shown' : `${n} critical are not shown`,
     noneTitle: 'Nothing fits',
     none: (all: number) =>
       all === 1
