@@ -77,10 +77,13 @@ test('what is proposed for her is told where it is due, or that nothing could be
   expect(words(ordered)).not.toContain('Proposed');
 });
 
-test('nothing is claimed of what has not come yet', () => {
+test('what has not come yet is said to be not known', () => {
   const none = { alerts: undefined, needs: undefined, glance: undefined, orders: undefined };
   const shown = words(render(NeedsPanel, { props: none }));
-  expect(shown).toBe('Open alerts Next adjustment due Next port call Work order');
+  const unknown = 'not known yet';
+  expect(shown).toBe(
+    `Open alerts ${unknown} Next adjustment due ${unknown} Next port call ${unknown} Work order ${unknown}`,
+  );
   const empty = { alerts: [], needs: [], glance: { next_call: null } as FleetVessel, orders: [] };
   expect(words(render(NeedsPanel, { props: empty }))).toBe(
     'Open alerts none Next adjustment due nothing is due Next port call none is known Work order none is open',
