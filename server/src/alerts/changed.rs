@@ -9,7 +9,7 @@
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::findings::{Findings, FoundChange};
 use super::limits::AlertLimits;
-use super::wanted::SLACK_DEG;
+use super::wanted::sinking_slack_deg;
 use crate::time::Time;
 use binnacle_magnetics::change;
 use binnacle_magnetics::time::Timestamp;
@@ -213,16 +213,9 @@ fn severity(
     }
     let ahead_deg = found.size_ahead_deg.unwrap_or(0.0);
     let size_deg = found.size_deg.unwrap_or(0.0).max(ahead_deg);
-    let slack_deg = |severity| {
-        if was >= Some(severity) {
-            SLACK_DEG
-        } else {
-            0.0
-        }
-    };
-    let by_size = if size_deg >= limits.deviation_deg - slack_deg(Severity::Critical) {
+    let by_size = if size_deg >= limits.deviation_deg - sinking_slack_deg(was, Severity::Critical) {
         Severity::Critical
-    } else if size_deg >= WARN_DEG - slack_deg(Severity::Warning)
+    } else if size_deg >= WARN_DEG - sinking_slack_deg(was, Severity::Warning)
         || found.change.cause == change::Cause::ReferenceFault
     {
         Severity::Warning

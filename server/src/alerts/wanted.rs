@@ -15,7 +15,7 @@ use crate::time::Time;
 use binnacle_magnetics::time::Timestamp;
 
 /// An open alert stays until the figure is so far below its limit, degrees.
-pub(super) const SLACK_DEG: f64 = 0.5;
+const SLACK_DEG: f64 = 0.5;
 /// So long a ship may need to make the headings that a model asks for, seconds.
 const PATIENCE_S: f64 = 7.0 * 86_400.0;
 /// Of the samples of the last day, so large a part with a failed reference is more
@@ -101,6 +101,15 @@ pub fn silence(last: Time, limits: &AlertLimits, now: Time) -> Option<AlertWante
     })
 }
 
+/// How far below what made an alert so bad the figure must be, for one that has been.
+pub(super) fn sinking_slack_deg(was: Option<Severity>, severity: Severity) -> f64 {
+    if was >= Some(severity) {
+        SLACK_DEG
+    } else {
+        0.0
+    }
+}
+
 fn over_limit(
     worst: Worst,
     limits: &AlertLimits,
@@ -109,20 +118,14 @@ fn over_limit(
 ) -> AlertWanted {
     let size_deg = worst.deviation_deg.abs();
     let surely_deg = size_deg - worst.band95_deg.unwrap_or(0.0);
-    let slack_deg = |severity| {
-        if was >= Some(severity) {
-            SLACK_DEG
+    let severity =
+        if size_deg > 2.0 * limits.deviation_deg - sinking_slack_deg(was, Severity::Critical) {
+            Severity::Critical
+        } else if surely_deg > limits.deviation_deg - sinking_slack_deg(was, Severity::Warning) {
+            Severity::Warning
         } else {
-            0.0
-        }
-    };
-    let severity = if size_deg > 2.0 * limits.deviation_deg - slack_deg(Severity::Critical) {
-        Severity::Critical
-    } else if surely_deg > limits.deviation_deg - slack_deg(Severity::Warning) {
-        Severity::Warning
-    } else {
-        Severity::Notice
-    };
+            Severity::Notice
+        };
     let side = if worst.deviation_deg < 0.0 { "W" } else { "E" };
     let heading = format!("{:03.0}°", worst.compass_deg);
     let stands = stands(size_deg, limits.deviation_deg);
