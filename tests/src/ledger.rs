@@ -66,26 +66,28 @@ impl Spool {
         let mut db = SqliteConnection::connect_with(&options)
             .await
             .with_context(|| file.display().to_string())?;
+        // One moment of it: a batch is acknowledged between any two statements.
+        let mut db = db.begin().await?;
         let rows: Vec<(String, i64, i64, i64)> = sqlx::query_as(
             "SELECT stream, seq, samples, crc32 FROM acknowledged ORDER BY stream, seq",
         )
-        .fetch_all(&mut db)
+        .fetch_all(&mut *db)
         .await?;
         let (waiting, parked): (i64, i64) = sqlx::query_as(
             "SELECT COUNT(*) FILTER (WHERE standing = 'waiting'),
                     COUNT(*) FILTER (WHERE standing = 'parked') FROM batches",
         )
-        .fetch_one(&mut db)
+        .fetch_one(&mut *db)
         .await?;
         let quarantined: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM quarantine")
-            .fetch_one(&mut db)
+            .fetch_one(&mut *db)
             .await?;
         let samples_aboard: i64 = sqlx::query_scalar(
             "SELECT (SELECT COUNT(*) FROM pending_samples)
                   + (SELECT COALESCE(SUM(samples), 0) FROM batches
                      WHERE standing <> 'acknowledged')",
         )
-        .fetch_one(&mut db)
+        .fetch_one(&mut *db)
         .await?;
         let windows_aboard = windows_aboard(&mut db).await?;
         let acknowledged = rows

@@ -175,9 +175,15 @@ async fn assert_every_batch_once(
         sent.extend(batch.samples);
     }
     let aboard = &spool.acknowledged;
+    let lacking = |of: &[Acknowledged], other: &[Acknowledged]| -> Vec<Acknowledged> {
+        let lacks = |batch: &&Acknowledged| !other.contains(batch);
+        of.iter().filter(lacks).cloned().collect()
+    };
     ensure!(
         logged == *aboard,
-        "on board {aboard:?}, on shore {logged:?}"
+        "only on board {:?}, only on shore {:?}",
+        lacking(aboard, &logged),
+        lacking(&logged, aboard)
     );
     sent.sort_by_key(|sample| sample.time);
     for pair in sent.windows(2) {
