@@ -39,7 +39,7 @@ self.addEventListener('fetch', (event) => {
   const url = new URL(request.url);
   if (request.method !== 'GET' || url.origin !== location.origin) return;
   if (request.mode === 'navigate' && !url.pathname.startsWith('/api/')) {
-    event.respondWith(page());
+    event.respondWith(page(request.url));
   } else if (isAsset(url)) {
     event.respondWith(asset(request));
   }
@@ -51,22 +51,33 @@ async function keep(cache, file) {
   if (!(await cache.match(file))) await cache.add(file).catch(() => undefined);
 }
 
-/** Every address of the dashboard is the same page. */
-async function page() {
+/** Every address of the dashboard is the same page, under headers of its own. */
+async function page(address) {
   const cache = await caches.open(kept);
   try {
-    const answer = await fetch('/', { signal: AbortSignal.timeout(patienceMs) });
-    if (!answer.ok || answer.redirected) return answer;
+    const answer = await fetch(address, { signal: AbortSignal.timeout(patienceMs) });
+    if (!isPage(answer)) return answer;
     const before = await cache.match('/');
     const [was, is] = await Promise.all([before?.text(), answer.clone().text()]);
     if (was !== is) await forgetAssets(cache);
-    await cache.put('/', answer.clone());
+    await cache.put('/', new Response(is, { headers: ofAnyAddress(answer.headers) }));
     return answer;
   } catch (error) {
     const found = await cache.match('/');
     if (found) return found;
     throw error;
   }
+}
+
+/** What else the server has, such as whether it is well, is no page. */
+const isPage = (answer) =>
+  answer.ok && !answer.redirected && answer.headers.get('Content-Type')?.startsWith('text/html');
+
+/** What is asked for along with a page is so for one address only. */
+function ofAnyAddress(headers) {
+  const kept = new Headers(headers);
+  kept.delete('Link');
+  return kept;
 }
 
 /** Those of an older version of the page are asked for no more. */

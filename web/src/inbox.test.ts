@@ -1,6 +1,13 @@
 import { describe, expect, it } from 'vitest';
 import type { Alert } from './api/types';
-import { causesOf, everyAlert, fromInboxSearch, matching, toInboxSearch } from './inbox';
+import {
+  asTheyStood,
+  causesOf,
+  everyAlert,
+  fromInboxSearch,
+  matching,
+  toInboxSearch,
+} from './inbox';
 
 const alert = (over: Partial<Alert>): Alert =>
   ({
@@ -39,6 +46,13 @@ describe('the inbox', () => {
   it('asks what is over for no state', () => {
     const over = [alert({ state: 'cleared' })];
     expect(matching(over, { ...everyAlert, state: 'raised' })).toEqual(over);
+  });
+
+  it('stays in the order in which it stood, those first that are new', () => {
+    const order = (stood: string[]) => asTheyStood(inbox, stood).map(({ id }) => id);
+    expect(order(['quiet', 'drift', 'struck'])).toEqual(['quiet', 'drift', 'struck']);
+    expect(order(['struck', 'gone', 'drift'])).toEqual(['quiet', 'struck', 'drift']);
+    expect(order([])).toEqual(['drift', 'struck', 'quiet']);
   });
 
   it('offers the causes that there are, and the one that is asked for', () => {

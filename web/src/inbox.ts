@@ -40,6 +40,12 @@ export function matching(alerts: readonly Alert[], query: InboxQuery): Alert[] {
   );
 }
 
+/** In the order in which they stood, those first that were not there. */
+export function asTheyStood(alerts: readonly Alert[], stood: readonly string[]): Alert[] {
+  const place = ({ id }: Alert) => stood.indexOf(id);
+  return [...alerts].sort((a, b) => place(a) - place(b));
+}
+
 /** The causes among alerts, and one that is asked for in any case, by their words. */
 export function causesOf(alerts: readonly Alert[], asked: AlertCause | ''): AlertCause[] {
   const found = new Set(alerts.map(({ cause }) => cause));

@@ -151,10 +151,16 @@ export const alerts = {
         .getByRole('article')
         .filter({ hasText: `${vessel.name}: Deviation over the limit` });
       await card.getByRole('button', { name: 'Clear' }).click();
-      await card.getByLabel('Why it is over').fill('Half a sentence');
+      const field = card.getByLabel('Why it is over');
+      await field.fill('Half a sentence');
+      const titles = () => page.getByRole('article').getByRole('heading').allInnerTexts();
+      const stood = await titles();
+      assert.ok(stood.length > 1, `nothing lies about it: ${stood}`);
       await limit(page, vessel.id, { deviation_deg: 45 });
       await card.getByText(/^Over since/).waitFor();
-      assert.equal(await card.getByLabel('Why it is over').inputValue(), 'Half a sentence');
+      assert.equal(await field.inputValue(), 'Half a sentence');
+      assert.deepEqual(await titles(), stood);
+      assert.ok(await field.evaluate((element) => element === document.activeElement));
       assert.ok(await card.getByRole('button', { name: 'Clear the alert' }).isDisabled());
       await shoot('alert-over-meanwhile', {}, card);
       await card.getByRole('button', { name: 'Cancel' }).click();

@@ -1,6 +1,6 @@
 /** What a slow and dear link carries before the fleet can be seen. */
 import assert from 'node:assert/strict';
-import { fleetIsShown, notSignedIn, signIn } from '../helpers.mjs';
+import { fleetIsShown, notSignedIn, signIn, withModel } from '../helpers.mjs';
 import { wireTo } from '../wire.mjs';
 
 /** Sign-in, the fleet's page, coasts and data, compressed as they cross the wire. */
@@ -32,6 +32,30 @@ export const link = {
       } finally {
         await context.close();
         wire.close();
+      }
+    },
+  },
+
+  'who returns is brought what she needs along with her page, and each answer once': {
+    allowedErrors: [notSignedIn],
+    async run({ page, settings }) {
+      await signIn(page, settings);
+      await page.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));
+      await page.waitForFunction(() => navigator.serviceWorker.controller);
+      const { id, name } = await withModel(page);
+      await page.goto(`/vessels/${id}`);
+      await page.getByRole('heading', { name, level: 1 }).waitFor();
+      await page.getByTestId('needs').waitFor();
+      const begun = await page.evaluate(() =>
+        performance
+          .getEntriesByType('resource')
+          .map((entry) => [entry.initiatorType, new URL(entry.name).pathname]),
+      );
+      const hers = ['', '/needs'].map((part) => `/api/v1/vessels/${id}${part}`);
+      for (const path of [...hers, '/api/v1/fleet', '/api/v1/work-orders', '/api/v1/alerts']) {
+        const by = begun.filter(([, asked]) => asked === path).map(([initiator]) => initiator);
+        // By what came with the page, before any of its files ran.
+        assert.deepEqual(by, ['link'], `${path} was asked for by ${by}`);
       }
     },
   },

@@ -48,6 +48,7 @@ export class Resource<T> {
     this.value = undefined;
     this.problem = undefined;
     this.loading = false;
+    this.loadedAt = undefined;
   }
 }
 

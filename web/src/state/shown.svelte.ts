@@ -12,10 +12,12 @@ import {
   findModel,
   findPicture,
   findTimeline,
+  findVessel,
   listAgents,
   listCallsSince,
   listLogbook,
   listLogbookSince,
+  listVesselNeeds,
 } from '../api/client';
 import { gathered, live } from '../api/live.svelte';
 import { findOrder, listOrders } from '../api/orders';
@@ -38,7 +40,6 @@ import type {
 import { inOrder } from '../orders/order';
 import { foretoldOf } from '../science/foretold';
 import { whereabouts, type At } from '../whereabouts';
-import { needsAsked, vesselAsked } from './ahead';
 import { PlacedDeviation } from './placed.svelte';
 import { Resource } from './resource.svelte';
 import { times } from './times.svelte';
@@ -92,8 +93,8 @@ export class ShownVessel {
   /** An instant as the reader wants it, where she was then. */
   at: At = (value, port) => times.at(value, port ? { port } : this.#where(value));
 
-  loadVessel = () => this.vessel.load(() => vesselAsked(this.id));
-  loadNeeds = () => this.needs.load(() => needsAsked(this.id));
+  loadVessel = () => this.vessel.load(() => findVessel(this.id));
+  loadNeeds = () => this.needs.load(() => listVesselNeeds(this.id));
   loadOrders = () => this.orders.load(async () => inOrder(await listOrders(this.id)));
   loadPlan = () => this.plan.load(async () => (await findSchedule()).plan ?? null);
   loadModel = async () => {

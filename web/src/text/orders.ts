@@ -224,6 +224,7 @@ export const order = {
       lapsed: (firm) => `No answer in time between the operator and ${firm}`,
       retime_proposed: (firm) => `${firm} was asked for another time`,
       retime_accepted: (firm) => `${firm} agreed to another time`,
+      retime_declined: (firm) => `Another time was declined between the operator and ${firm}`,
       retime_lapsed: (firm) => `No answer in time from ${firm} to another time`,
       message: (firm) => `Message between the operator and ${firm}`,
     } as Record<string, (firm: string) => string>,
