@@ -1,8 +1,9 @@
 //! What people report for the magnetic logbook, on board or ashore.
 //!
 //! What always holds: a report that [`Report::checked`] gave back is one line of a
-//! logbook: it lies in this era and not in the future, ends no earlier than it
-//! begins, and its words are trimmed, few, and without control characters.
+//! logbook: it lies in this era and does not begin in the future, ends no earlier than it
+//! begins and within a year from now, and its words are trimmed, few, and without control
+//! characters.
 
 use binnacle_magnetics::analyse::{Cargo, LogbookEntry, LogbookError, LogbookKind};
 use binnacle_magnetics::time::Timestamp;
@@ -17,6 +18,8 @@ pub const MAX_NOTE: usize = 1000;
 const EARLIEST_MICROS: i64 = 315_964_800_000_000;
 /// A reporter's clock, or the time zone in mind, may be wrong by so much.
 const AHEAD_S: f64 = 86_400.0;
+/// Cargo and docks last for weeks or months: an end further ahead is of a year mistaken.
+const LONGEST_AHEAD_S: f64 = 366.0 * 86_400.0;
 
 /// One event, as its reporter writes it down.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -64,6 +67,9 @@ impl Report {
         }
         if self.from > latest {
             return Err(error("from", format!("{} is yet to come", self.from)));
+        }
+        if let Some(to) = self.to.filter(|to| *to > now.plus_seconds(LONGEST_AHEAD_S)) {
+            return Err(error("to", format!("{to} is more than a year ahead")));
         }
         let report = Report {
             hatch: optional("hatch", self.hatch.as_deref())?,
@@ -165,6 +171,7 @@ mod tests {
             ("from", json!({ "from": "2026-11-23T00:00:00Z" })),
             ("from", json!({ "from": "0026-11-20T00:00:00Z" })),
             ("to", json!({ "to": "2026-11-19T23:59:59Z" })),
+            ("to", json!({ "to": "2027-11-22T07:00:01Z" })),
             ("cargo", json!({ "kind": "lightning" })),
             (
                 "hatch",
@@ -177,6 +184,12 @@ mod tests {
         ] {
             assert_eq!(read(&changes).unwrap_err().field, field, "{changes}");
         }
+    }
+
+    #[test]
+    fn an_end_may_be_foreseen_for_a_year() {
+        let end = Timestamp::parse("2027-11-22T07:00:00Z").unwrap();
+        assert_eq!(read(&json!({ "to": end })).unwrap().to, Some(end));
     }
 
     #[test]

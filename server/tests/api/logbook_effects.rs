@@ -181,7 +181,7 @@ async fn entries_that_overlap_or_lie_outside_the_samples_leave_a_sound_timeline(
         json!({ "kind": "berth", "from": "2026-11-15T03:00:00Z", "to": "2026-11-15T04:55:00Z" }),
         // a stay without an end from before it all, and work still to come today.
         json!({ "kind": "berth", "from": "2000-01-01T00:00:00Z" }),
-        json!({ "kind": "dry_docking", "from": "2026-11-21T12:00:00Z", "to": "2099-01-01T00:00:00Z" }),
+        json!({ "kind": "dry_docking", "from": "2026-11-21T12:00:00Z", "to": "2027-02-01T00:00:00Z" }),
     ] {
         nao.report(&ada, &entry).await;
     }
