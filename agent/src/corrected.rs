@@ -30,6 +30,8 @@ pub(crate) struct Ingredients<'a> {
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
     /// The ship's own alert, once there was one.
     pub(crate) alert: Option<&'a Aboard>,
+    /// Whether the heading before this one was known too badly to be given out.
+    pub(crate) withheld: bool,
 }
 
 /// One heading in three ways, as far as they can be told.
@@ -68,11 +70,18 @@ pub(crate) struct CardRow {
 /// A heading that may be off by more than this, one time in twenty, is none to steer by:
 /// nobody sees the band on an autopilot.
 const WIDEST_BAND_DEG: f64 = 10.0;
+/// One that was withheld is given out again at this: it does not come and go as she yaws.
+const WIDEST_BAND_AGAIN_DEG: f64 = 9.0;
 
 /// Corrects the compass as far as the ingredients go, and as far as it can be steered by.
 pub(crate) fn correct(from: Ingredients<'_>) -> Corrected {
     let mut corrected = foretell(from);
-    let is_wide = |band_deg: &f64| *band_deg > WIDEST_BAND_DEG;
+    let widest_deg = if from.withheld {
+        WIDEST_BAND_AGAIN_DEG
+    } else {
+        WIDEST_BAND_DEG
+    };
+    let is_wide = |band_deg: &f64| *band_deg > widest_deg;
     if let Some(band_deg) = corrected.band95_deg.filter(is_wide) {
         (corrected.magnetic_deg, corrected.true_deg) = (None, None);
         corrected.problem = Some(format!(
@@ -80,6 +89,13 @@ pub(crate) fn correct(from: Ingredients<'_>) -> Corrected {
         ));
     }
     corrected
+}
+
+impl Corrected {
+    /// Whether it is known, but too badly to be steered by.
+    pub(crate) fn is_withheld(&self) -> bool {
+        self.band95_deg.is_some() && self.true_deg.is_none()
+    }
 }
 
 /// Corrects the compass as far as the ingredients go, however little is known.
@@ -195,6 +211,7 @@ pub(crate) mod tests {
             model,
             withdrawn: None,
             alert: None,
+            withheld: false,
         }
     }
 
@@ -219,13 +236,20 @@ pub(crate) mod tests {
 
     #[test]
     fn a_heading_known_to_no_better_than_ten_degrees_is_none_to_steer_by() {
-        let known = |sd_deg: f64| {
+        let known = |sd_deg: f64, withheld: bool| {
             let model = model(0.0, Some(sd_deg * sd_deg));
-            let corrected = correct(ingredients(Some(&model)));
+            let corrected = correct(Ingredients {
+                withheld,
+                ..ingredients(Some(&model))
+            });
+            assert_eq!(corrected.is_withheld(), corrected.true_deg.is_none());
             (corrected.true_deg.is_some(), corrected.problem)
         };
-        assert_eq!(known(5.0), (true, None));
-        let (is_given, problem) = known(5.2);
+        assert_eq!(known(5.0, false), (true, None));
+        // Once withheld it must be known somewhat better.
+        assert!(!known(5.0, true).0);
+        assert_eq!(known(4.5, true), (true, None));
+        let (is_given, problem) = known(5.2, false);
         assert!(!is_given);
         assert_eq!(
             problem.as_deref(),

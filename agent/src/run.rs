@@ -77,6 +77,8 @@ struct Agent {
     lookout: Lookout,
     /// What the spool has of the lookout's alert.
     alert_kept: Option<Aboard>,
+    /// Whether the last heading sent was known too badly to be given out.
+    withheld: bool,
     acknowledged: watch::Receiver<Option<Uuid>>,
     alarm: Option<AlarmSentence>,
     status: watch::Sender<Arc<Status>>,
@@ -176,6 +178,7 @@ impl Agent {
             hold,
             lookout: Lookout::new(config.alert, alert_kept, judged_by),
             alert_kept,
+            withheld: false,
             acknowledged: acknowledged_rx,
             alarm: config.output.alarm_sentence.then(AlarmSentence::default),
             status,
@@ -361,12 +364,14 @@ impl Agent {
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
             alert: self.lookout.aboard(),
+            withheld: self.withheld,
         };
         (corrected::correct(from), corrected::card(from))
     }
 
     fn send_heading(&mut self) {
         let (corrected, _) = self.correct();
+        self.withheld = corrected.is_withheld();
         let quality = self.model_status().map(|model| Quality {
             version: model.version,
             age_days: model.age_days.unwrap_or_default(),

@@ -166,6 +166,7 @@ impl Lookout {
             withdrawn: None,
             // The compass is judged on, whatever was said of it.
             alert: None,
+            withheld: false,
         });
         let true_deg = corrected.true_deg?.degrees();
         let departure = |reference_deg: f64| wrap_180(true_deg - reference_deg);

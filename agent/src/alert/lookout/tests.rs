@@ -86,6 +86,7 @@ impl Ship {
                 model: Some(&self.card),
                 withdrawn: None,
                 alert: None,
+                withheld: false,
             });
             let gyro_deg = right.true_deg.unwrap().degrees();
             let window = Window {
