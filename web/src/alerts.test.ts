@@ -82,12 +82,13 @@ describe('an alert', () => {
     expect(words).toContain('Acknowledge Clear');
   });
 
-  test('has no buttons for those who only look, and none once it is cleared', () => {
+  test('has no buttons for those who only look; once it is cleared there is nothing to do', () => {
     expect(shown(alert('a'), false)).not.toContain('Acknowledge');
     const cleared = alert('a', { state: 'cleared', cleared_at: '2026-11-21T07:00:00Z' });
     const words = shown(cleared, true);
     expect(words).toContain('Over since 21 Nov 2026, 07:00 UTC');
     expect(words).not.toContain('Acknowledge');
+    expect(words).not.toContain('What to do');
   });
 
   test('tells who acknowledged it, with the note', () => {
