@@ -37,43 +37,75 @@ pub(super) fn is_laden(epoch: &Epoch, own: &[Reading]) -> bool {
         && with_reason(Some(SampleReason::MagneticCargo)) > with_reason(None)
 }
 
+/// An entry of cargo without an end that the samples no longer bear out.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Idle {
+    /// When the entry begins.
+    entry: Timestamp,
+    /// Readings since then are taken: from when it began, or from when she was herself again.
+    since: Timestamp,
+    /// Whether she was another with that cargo, and is herself again.
+    is_back: bool,
+}
+
 /// Takes in the readings of an epoch of the logbook that an entry without an end so far leaves
-/// out, if by now nothing has told them from those without cargo; when those entries began.
+/// out, where nothing tells them from those without cargo.
 pub(super) fn take_idle(
     epoch: &Epoch,
     found: &Found,
     own: &mut [Reading],
     logbook: &[LogbookEntry],
-) -> Vec<Timestamp> {
+) -> Vec<Idle> {
     let Some(until) = own.last().map(|r| r.sample().time) else {
         return Vec::new();
     };
-    let mut idle = Vec::new();
-    for entry in without_end(logbook, until) {
-        let from = epoch.from.map_or(entry.from, |begun| begun.max(entry.from));
-        let loaded = from.plus_seconds(-LOADED_BEFORE_S);
-        let changed = found.boundaries.iter().any(|b| b.at > loaded);
-        let laden = own.partition_point(|r| r.sample().time < from);
-        let is_long =
-            until.seconds_since(from) > IDLE_DAYS * DAY_S && own.len() - laden > IDLE_READINGS;
-        if is_long && !changed && found.perhaps.is_none() {
-            idle.push(entry.from);
-        }
-    }
+    let idle = |entry: &LogbookEntry| idle(entry, epoch, found, own);
+    let idle: Vec<Idle> = without_end(logbook, until).filter_map(idle).collect();
     if idle.is_empty() {
         return idle;
     }
-    let is_other = |entry: &&LogbookEntry| {
-        entry.kind == LogbookKind::MagneticCargo && !idle.contains(&entry.from)
-    };
-    let others: Vec<&LogbookEntry> = logbook.iter().filter(is_other).collect();
+    let cargoes = logbook
+        .iter()
+        .filter(|e| e.kind == LogbookKind::MagneticCargo);
+    let since = |entry: &LogbookEntry| idle.iter().find(|i| i.entry == entry.from);
+    let cargoes: Vec<_> = cargoes
+        .map(|entry| (entry, since(entry).map(|idle| idle.since)))
+        .collect();
     for reading in own {
         let sample = *reading.sample();
-        let is_idle = others.iter().all(|entry| entry.excludes(&sample).is_none());
+        let bears_out = |(entry, since): &(&LogbookEntry, Option<Timestamp>)| {
+            entry.excludes(&sample).is_some() && since.is_none_or(|since| sample.time < since)
+        };
+        let is_laden = cargoes.iter().any(bears_out);
         let reason = &mut reading.diagnostic.reason;
-        *reason = reason.filter(|reason| *reason != SampleReason::MagneticCargo || !is_idle);
+        *reason = reason.filter(|reason| *reason != SampleReason::MagneticCargo || is_laden);
     }
     idle
+}
+
+/// Since when an entry without an end is not borne out, in an epoch of the logbook: since it
+/// began, or since she was herself again, if by the time that cargo shows nothing had set the
+/// samples apart.
+fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> Option<Idle> {
+    let first = own.first()?.sample().time;
+    let until = own.last()?.sample().time;
+    let from = entry.from.max(epoch.from.unwrap_or(first)).max(first);
+    let returns = found.boundaries.iter().filter(|b| b.resumes && b.at > from);
+    let begun = (from, from.plus_seconds(-LOADED_BEFORE_S), false);
+    let mut starts = std::iter::once(begun).chain(returns.map(|b| (b.at, b.at, true)));
+    starts.find_map(|(since, after, is_back)| {
+        let laden = own.partition_point(|r| r.sample().time < since);
+        let many = own.get(laden + IDLE_READINGS)?.sample().time;
+        let by = many.max(since.plus_seconds(IDLE_DAYS * DAY_S));
+        let is_apart = found.boundaries.iter().any(|b| b.at > after && b.at <= by);
+        let perhaps = found.perhaps.as_ref();
+        let may_be = perhaps.is_some_and(|ended| found.changes[ended.change].from <= by);
+        (until > by && !is_apart && !may_be).then_some(Idle {
+            entry: entry.from,
+            since,
+            is_back,
+        })
+    })
 }
 
 /// What people should know of entries of cargo that have no end so far.
@@ -97,13 +129,20 @@ pub(super) fn notices(
                 r.sample().time >= from && r.diagnostic.reason == Some(SampleReason::MagneticCargo)
             });
             let left_out = left_out.count();
-            if course.idle.contains(&from) {
-                let days = until.seconds_since(from) / DAY_S;
+            if let Some(idle) = course.idle.iter().find(|idle| idle.entry == from) {
+                let days = until.seconds_since(idle.since) / DAY_S;
+                let so = if idle.is_back {
+                    format!(
+                        "Since {} the samples are those of the ship without it",
+                        idle.since
+                    )
+                } else {
+                    format!("In {days:.0} days nothing has set the samples apart from those before")
+                };
                 return Some(format!(
-                    "the logbook has magnetic cargo on board since {from}, and {end}. In \
-                     {days:.0} days nothing has set the samples apart from those before, so that \
-                     they are taken for the ship as she is. If the cargo was discharged, give the \
-                     entry its end"
+                    "the logbook has magnetic cargo on board since {from}, and {end}. {so}, so \
+                     that they are taken for the ship as she is. If the cargo was discharged, \
+                     give the entry its end"
                 ));
             }
             (left_out > 0).then(|| {

@@ -5,7 +5,7 @@
 
 mod allow;
 
-use super::cargo::{is_laden, take_idle};
+use super::cargo::{Idle, is_laden, take_idle};
 use super::changes::{Found, Known, MISTIMED_S, find, sharpen};
 use super::epoch::{Reference, Stretch, empty_epoch, fit_epoch, prior, reference, refuse};
 use super::logbook::LogbookEntry;
@@ -30,8 +30,8 @@ pub(super) struct Course {
     /// Places among those of the epoch of the logbook.
     ranges: Vec<Range<usize>>,
     pub(super) changes: Vec<Change>,
-    /// When the entries of cargo began that was found not to move the compass.
-    pub(super) idle: Vec<Timestamp>,
+    /// Entries of cargo that the samples no longer bear out.
+    pub(super) idle: Vec<Idle>,
     /// Whether a change in the last of them would not have been noticed.
     pub(super) is_unwatched: bool,
 }

@@ -283,11 +283,6 @@ fn cargo_that_nobody_closed_is_said_to_leave_samples_out_and_after_weeks_leaves_
         let samples = log.samples.partition_point(|s| s.time < until);
         analyse(&log.samples[..samples], &open, &AnalysisSettings::default())
     };
-    let left_out = |analysis: &Analysis| {
-        let reasons = analysis.samples.iter().map(|s| s.reason);
-        let cargo = reasons.filter(|reason| *reason == Some(SampleReason::MagneticCargo));
-        cargo.count()
-    };
     let soon = sailed(10.0);
     assert!(left_out(&soon) > 300);
     assert_eq!(soon.notices.len(), 1, "{:?}", soon.notices);
@@ -303,6 +298,62 @@ fn cargo_that_nobody_closed_is_said_to_leave_samples_out_and_after_weeks_leaves_
     assert!(used(&late) as f64 > 0.9 * late.samples.len() as f64);
     let closed = analyse(&log.samples, &[], &AnalysisSettings::default());
     assert!(closed.notices.is_empty());
+}
+
+fn left_out(analysis: &Analysis) -> usize {
+    let reasons = analysis.samples.iter().map(|s| s.reason);
+    let cargo = reasons.filter(|reason| *reason == Some(SampleReason::MagneticCargo));
+    cargo.count()
+}
+
+#[test]
+fn a_strike_weeks_after_an_entry_that_nobody_closed_takes_no_model_away() {
+    let log = sail_log(11, &calm(Event::Nothing));
+    let loaded = log.start.plus_seconds(5.0 * 86_400.0);
+    let struck = loaded.plus_seconds(36.0 * 86_400.0);
+    let log = with_step(log, struck, [2000.0, -1500.0]);
+    let open = [entry(LogbookKind::MagneticCargo, loaded, None)];
+    let until = struck.plus_seconds(2.0 * 86_400.0);
+    let samples = log.samples.partition_point(|s| s.time < until);
+    let analysis = analyse(&log.samples[..samples], &open, &AnalysisSettings::default());
+    is_sound(&analysis);
+    assert_eq!(of_the_ship(&analysis).len(), 1, "{:?}", analysis.changes);
+    assert_eq!(left_out(&analysis), 0, "{:?}", analysis.notices);
+    assert_eq!(analysis.epochs.len(), 2);
+    for epoch in &analysis.epochs {
+        assert!(epoch.model.is_some(), "{:?}", epoch.refusal);
+    }
+}
+
+#[test]
+fn cargo_that_left_by_the_samples_leaves_out_none_for_ever_though_nobody_closed_its_entry() {
+    let mut plan = calm(Event::Cargo);
+    plan.days = 90.0;
+    let log = sail_log(40, &plan);
+    let cargo = log.happened.iter().find(|h| h.what == Name::Cargo).unwrap();
+    let open = [LogbookEntry {
+        to: None,
+        ..reported(cargo)
+    }];
+    let discharged = cargo.to.unwrap();
+    let sailed = |days: f64| {
+        let until = discharged.plus_seconds(days * 86_400.0);
+        let samples = log.samples.partition_point(|s| s.time < until);
+        analyse(&log.samples[..samples], &open, &AnalysisSettings::default())
+    };
+    let since = |analysis: &Analysis| {
+        let later = log.samples.partition_point(|s| s.time < discharged);
+        let kept = analysis.samples[later..].iter();
+        kept.filter(|s| s.reason != Some(SampleReason::MagneticCargo))
+            .count() as f64
+            / (analysis.samples.len() - later) as f64
+    };
+    let (soon, late) = (sailed(10.0), sailed(26.0));
+    is_sound(&late);
+    assert!(since(&soon) < 0.1, "{}", since(&soon));
+    assert!(since(&late) > 0.9, "{}", since(&late));
+    let told = &late.notices[0];
+    assert!(told.contains("those of the ship without it"), "{told}");
 }
 
 /// A year mistaken is no reason to leave out a year's samples without a word.
