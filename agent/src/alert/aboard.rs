@@ -67,8 +67,8 @@ fn says(alert: &ShipAlert) -> String {
     );
     match alert.state {
         ShipAlertState::Open => format!(
-            "compass and {reference} are {:.0}° apart since {since} UTC; {:.1}° is the most \
-             that their usual errors explain",
+            "compass and {reference} parted at {since} UTC, by {:.1}°; {:.1}° is the most that \
+             their usual errors explain",
             alert.departure_deg().abs(),
             alert.limit_deg
         ),
@@ -97,7 +97,11 @@ fn advice(alert: &ShipAlert) -> &'static str {
              course over ground. Check the satellite compass and its antennas. Report lightning, \
              a shock or magnetic cargo."
         }
-        Suspect::Satellite | Suspect::Unknown => {
+        Suspect::Satellite => {
+            "The gyro bears out the compass: do not trust the satellite compass. Check it and \
+             its antennas."
+        }
+        Suspect::Unknown => {
             "Steer by gyro, but trust neither until one is proven: take an azimuth, and check the \
              gyro and its repeaters. Report lightning, a shock or magnetic cargo."
         }
@@ -136,7 +140,7 @@ mod tests {
         let open = status(ShipAlertState::Open, Some(-28.4), None);
         assert!(
             open.says
-                .starts_with("compass and gyro are 28° apart since 2026-11-21 07:00 UTC"),
+                .starts_with("compass and gyro parted at 2026-11-21 07:00 UTC, by 28.4°"),
             "{}",
             open.says
         );
@@ -151,12 +155,18 @@ mod tests {
         assert!(gyro.advice.contains("do not trust the gyro"));
         let compass = status(ShipAlertState::Open, Some(9.0), Some(9.2));
         assert!(compass.advice.starts_with("Steer by gyro"));
+        let satellite = status(ShipAlertState::Open, Some(0.2), Some(9.0));
+        assert!(
+            satellite
+                .advice
+                .contains("do not trust the satellite compass")
+        );
     }
 
     #[test]
     fn nobody_is_sent_to_a_gyro_that_gave_nothing() {
         let alone = status(ShipAlertState::Open, None, Some(-7.2));
-        assert!(alone.says.contains("compass and satellite compass are 7°"));
+        assert!(alone.says.contains("compass and satellite compass parted"));
         assert!(!alone.advice.contains("gyro"), "{}", alone.advice);
         assert!(alone.advice.contains("take an azimuth"));
     }

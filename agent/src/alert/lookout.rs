@@ -25,6 +25,9 @@ const USUAL_BAND_DEG: f64 = 2.0;
 const HIGHEST_LAT_DEG: f64 = 75.0;
 /// They agree again when they are so much nearer than what parted them.
 const AGREE_SHARE: f64 = 0.75;
+/// A model that knows this heading by so many times less than what parted them agrees with
+/// anything.
+const VAGUE: f64 = 2.0;
 /// Windows further apart than half an hour do not belong together.
 const LONGEST_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
 /// After half an hour of settled windows what came since the alert goes ashore too.
@@ -150,7 +153,8 @@ impl Lookout {
         if self.agrees(raise) {
             return self.revise(ShipAlertState::Agree, now);
         }
-        self.follow_up(stand, now)
+        self.judge_anew(raise, now)
+            .or_else(|| self.follow_up(stand, now))
     }
 
     fn compare(&self, window: &Window, card: Card<'_>, now: Timestamp) -> Option<Apart> {
@@ -274,14 +278,17 @@ impl Lookout {
     /// Whether an open alert is over: they agree on every heading on which they were
     /// apart, for the compass's deviation may be right on one and wrong on the next; or on
     /// courses that speak for all; or long enough. A band that is wider than when they parted
-    /// makes none of what is as far apart as then, and what was read before a turn is of
-    /// another course.
+    /// makes none of what is as far apart as then, one that is far wider nothing at all, and
+    /// what was read before a turn is of another course.
     fn agrees(&mut self, raise: usize) -> bool {
         let stand = self.stand(2 * raise);
         let on_course = stand.filter(|stand| self.is_on_course(2 * raise, stand.sector));
         let Some((stand, aboard)) = on_course.zip(self.aboard.as_mut()) else {
             return false;
         };
+        if stand.limit_deg > VAGUE * aboard.alert.limit_deg {
+            return false;
+        }
         let limit_deg = AGREE_SHARE * stand.limit_deg.min(aboard.alert.limit_deg);
         if stand.main_deg().is_none_or(|deg| deg.abs() > limit_deg) {
             self.disagree();
@@ -303,16 +310,27 @@ impl Lookout {
         self.recent.iter().rev().take(windows).all(is_near)
     }
 
+    /// Whose fault it is shows when a reference speaks again that was silent, or another
+    /// instrument fails, too.
+    fn judge_anew(&mut self, raise: usize, now: Timestamp) -> Option<ShipAlert> {
+        let said = self.stand(2 * raise)?.said(&self.aboard?.alert);
+        let alert = &mut self.aboard.as_mut()?.alert;
+        if said.suspect() == alert.suspect() || !may_follow(alert, &said) {
+            return None;
+        }
+        *alert = said;
+        self.revise(ShipAlertState::Open, now)
+    }
+
     fn follow_up(&mut self, stand: Stand, now: Timestamp) -> Option<ShipAlert> {
         let aboard = self.aboard.as_mut()?;
         if aboard.followed || self.since_raised < FOLLOW_WINDOWS {
             return None;
         }
         aboard.followed = true;
-        if stand.is_apart() {
-            aboard.alert.gyro_departure_deg = stand.gyro_deg.map(tenth);
-            aboard.alert.satellite_departure_deg = stand.satellite_deg.map(tenth);
-            aboard.alert.limit_deg = tenth(stand.limit_deg);
+        let said = stand.said(&aboard.alert);
+        if stand.is_apart() && may_follow(&aboard.alert, &said) {
+            aboard.alert = said;
         }
         self.revise(ShipAlertState::Open, now)
     }
@@ -346,6 +364,27 @@ impl Stand {
         self.main_deg()
             .is_some_and(|deg| deg.abs() > self.limit_deg)
     }
+
+    /// The alert with these figures.
+    fn said(&self, alert: &ShipAlert) -> ShipAlert {
+        ShipAlert {
+            gyro_departure_deg: self.gyro_deg.map(tenth),
+            satellite_departure_deg: self.satellite_deg.map(tenth),
+            limit_deg: tenth(self.limit_deg),
+            ..*alert
+        }
+    }
+}
+
+/// Whether new figures may take the place of those of an alert: a reference that is silent
+/// takes nothing back of what it has proven, and what two instruments said against the third
+/// holds until they say it of another, or all three are apart.
+fn may_follow(before: &ShipAlert, said: &ShipAlert) -> bool {
+    let is_silent = |was: Option<f64>, is: Option<f64>| was.is_some() && is.is_none();
+    let lacks = is_silent(before.gyro_departure_deg, said.gyro_departure_deg)
+        || is_silent(before.satellite_departure_deg, said.satellite_departure_deg);
+    let says_less = said.suspect() == Suspect::Unknown && before.suspect() != Suspect::Unknown;
+    !lacks && (!says_less || said.are_all_apart())
 }
 
 impl<'a> Card<'a> {

@@ -60,37 +60,66 @@ pub enum Suspect {
 }
 
 impl ShipAlert {
-    /// The departure that raised it, which both ends speak of: from the gyro, or from
-    /// the satellite compass where the gyro gave nothing.
+    /// The departure that both ends speak of: from the gyro, or from the satellite compass
+    /// where the gyro gave nothing, or bears out the compass.
     pub fn departure_deg(&self) -> f64 {
-        let departure = self.gyro_departure_deg.or(self.satellite_departure_deg);
-        departure.unwrap_or_default()
+        let (first, second) = if self.is_of_satellite() {
+            (self.satellite_departure_deg, self.gyro_departure_deg)
+        } else {
+            (self.gyro_departure_deg, self.satellite_departure_deg)
+        };
+        first.or(second).unwrap_or_default()
     }
 
     /// What the compass departed from by that.
     pub fn reference(&self) -> &'static str {
-        if self.gyro_departure_deg.is_some() {
-            "gyro"
-        } else {
+        if self.is_of_satellite() {
             "satellite compass"
+        } else {
+            "gyro"
         }
     }
 
-    /// What the references say of each other.
+    fn is_of_satellite(&self) -> bool {
+        self.gyro_departure_deg.is_none() || self.suspect() == Suspect::Satellite
+    }
+
+    /// What the references say of each other: the two that lie nearest bear each other out, if
+    /// the third is far from both.
     pub fn suspect(&self) -> Suspect {
-        let (gyro, satellite) = (self.gyro_departure_deg, self.satellite_departure_deg);
-        let Some((gyro, satellite)) = gyro.zip(satellite) else {
+        let Some([gyro, satellite, between]) = self.sides_deg() else {
             return Suspect::Unknown;
         };
+        let is_pair = |near: f64, [one, other]: [f64; 2]| {
+            let nearer = one.min(other);
+            near <= self.limit_deg
+                && one.max(other) > self.limit_deg
+                && nearer > self.limit_deg / 2.0
+                && nearer >= 2.0 * near
+        };
+        if is_pair(between, [gyro, satellite]) {
+            Suspect::Compass
+        } else if is_pair(satellite, [gyro, between]) {
+            Suspect::Gyro
+        } else if is_pair(gyro, [satellite, between]) {
+            Suspect::Satellite
+        } else {
+            Suspect::Unknown
+        }
+    }
+
+    /// Whether no two of compass, gyro and satellite compass agree.
+    pub fn are_all_apart(&self) -> bool {
+        let sides = self.sides_deg();
+        sides.is_some_and(|sides| sides.iter().all(|deg| *deg > self.limit_deg))
+    }
+
+    /// How far compass and gyro, compass and satellite compass, and both references lie apart.
+    fn sides_deg(&self) -> Option<[f64; 3]> {
+        let (gyro, satellite) = (self.gyro_departure_deg?, self.satellite_departure_deg?);
         // Headings may be apart either way round.
         let between = (gyro - satellite + 180.0).rem_euclid(360.0) - 180.0;
-        let apart = [gyro, satellite, between].map(|angle| angle.abs() > self.limit_deg);
-        match apart {
-            [true, true, false] => Suspect::Compass,
-            [true, false, true] => Suspect::Gyro,
-            [false, true, true] => Suspect::Satellite,
-            _ => Suspect::Unknown,
-        }
+        Some([gyro, satellite, between].map(f64::abs))
     }
 }
 
@@ -121,6 +150,10 @@ mod tests {
             (Some(-0.5), Some(-8.0), Suspect::Satellite),
             (Some(8.0), Some(-8.0), Suspect::Unknown),
             (Some(179.5), Some(-179.5), Suspect::Compass),
+            // The third lies about the limit from the second.
+            (Some(3.1), Some(0.3), Suspect::Gyro),
+            (Some(3.1), Some(2.8), Suspect::Compass),
+            (Some(3.1), Some(1.6), Suspect::Unknown),
             (Some(8.0), None, Suspect::Unknown),
             (None, None, Suspect::Unknown),
         ] {
@@ -137,5 +170,13 @@ mod tests {
         };
         assert_eq!(said(Some(-6.2), Some(-7.2)), (-6.2, "gyro"));
         assert_eq!(said(None, Some(-7.2)), (-7.2, "satellite compass"));
+        assert_eq!(said(Some(0.2), Some(-7.2)), (-7.2, "satellite compass"));
+    }
+
+    #[test]
+    fn all_are_apart_when_no_two_agree() {
+        assert!(alert(Some(8.0), Some(-8.0)).are_all_apart());
+        assert!(!alert(Some(8.0), Some(7.0)).are_all_apart());
+        assert!(!alert(Some(8.0), None).are_all_apart());
     }
 }

@@ -213,8 +213,10 @@ fn wanted(alert: &ShipAlert) -> AlertWanted {
         })
         .collect();
     evidence.push(format!(
-        "Model {} and the gyro's usual error allow {:.1}°.",
-        alert.model_version, alert.limit_deg
+        "Model {} and the usual error of the {} allow {:.1}°.",
+        alert.model_version,
+        alert.reference(),
+        alert.limit_deg
     ));
     let (who, advice) = words(alert);
     AlertWanted {
@@ -229,7 +231,7 @@ fn wanted(alert: &ShipAlert) -> AlertWanted {
 }
 
 fn words(alert: &ShipAlert) -> (&'static str, &'static str) {
-    let both = if alert.gyro_departure_deg.is_some() {
+    let both = if alert.reference() == "gyro" {
         "Compass and gyro"
     } else {
         "Compass and satellite compass"
@@ -251,7 +253,12 @@ fn words(alert: &ShipAlert) -> (&'static str, &'static str) {
              ground, check the satellite compass and its antennas, and ask on board about \
              lightning, a shock or magnetic cargo.",
         ),
-        Suspect::Satellite | Suspect::Unknown => (
+        Suspect::Satellite => (
+            both,
+            "The gyro bears out the magnetic compass: have the satellite compass and its antennas \
+             checked.",
+        ),
+        Suspect::Unknown => (
             both,
             "Steer by gyro, but trust neither until an azimuth proves one: check the gyro, and \
              ask on board about lightning, a shock or magnetic cargo.",

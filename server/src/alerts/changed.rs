@@ -297,6 +297,11 @@ fn advice(cause: change::Cause, stage: Stage) -> &'static str {
             "Do not use the compass. Steer by the gyro; look at bowl, pivot and liquid, and at \
              the sensor and its cable. The samples taken meanwhile are left out of the model."
         }
+        (change::Cause::ReferenceFault, Stage::Doubtful) => {
+            "Compass or reference is astray, and the samples do not tell yet which. Take an \
+             azimuth now and once a watch and steer by what it confirms; report in the logbook \
+             what may have happened."
+        }
         (change::Cause::ReferenceFault, _) => {
             "Check gyro and satellite compass against an azimuth. The magnetic compass itself is \
              not suspected."

@@ -352,6 +352,57 @@ fn a_gyro_fault_that_the_satellite_compass_sees_ends_on_any_heading() {
 }
 
 #[test]
+fn a_satellite_compass_that_falls_silent_takes_nothing_back_of_what_it_has_proven() {
+    let mut ship = ship();
+    let beside = |compass_deg: f64, satellite_deg: Option<f64>| Errors {
+        compass_deg,
+        satellite_deg,
+    };
+    ship.sail(60, 90.0, beside(0.0, Some(0.2)));
+    ship.sail(60, 90.0, beside(9.0, Some(9.2)));
+    ship.sail(400, 90.0, beside(9.0, None));
+    ship.sail(60, 90.0, beside(9.0, Some(9.2)));
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+    for alert in &ship.revisions {
+        assert_eq!(alert.suspect(), Suspect::Gyro, "{alert:?}");
+    }
+    // All three apart is another matter: the compass was struck as well.
+    ship.sail(60, 90.0, beside(30.0, Some(9.2)));
+    assert_eq!(ship.revisions[2].suspect(), Suspect::Unknown);
+}
+
+#[test]
+fn whose_fault_it_is_shows_when_the_satellite_compass_is_back() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, WELL);
+    let beside = |satellite_deg: Option<f64>| Errors {
+        compass_deg: 9.0,
+        satellite_deg,
+    };
+    ship.sail(60, 90.0, beside(None));
+    assert_eq!(ship.revisions[0].suspect(), Suspect::Unknown);
+    ship.sail(60, 90.0, beside(Some(9.2)));
+    assert_eq!(ship.states(), [(1, Open), (2, Open)]);
+    assert_eq!(ship.revisions[1].suspect(), Suspect::Gyro);
+}
+
+#[test]
+fn a_model_that_hardly_knows_the_heading_agrees_with_nothing() {
+    let mut ship = ship();
+    ship.sail(60, 90.0, WELL);
+    ship.sail(60, 90.0, STRUCK);
+    let mut covariance = [[0.0; 8]; 8];
+    covariance[7][7] = 20.0_f64.powi(2);
+    ship.card.model.covariance = Some(covariance);
+    // It was fitted to the same hour on the same course.
+    ship.sail(400, 90.0, WELL);
+    assert!(!ship.states().iter().any(|(_, state)| *state == Agree));
+    ship.card.model.covariance = None;
+    ship.sail(60, 90.0, WELL);
+    assert_eq!(ship.states().last().unwrap().1, Agree);
+}
+
+#[test]
 fn the_satellite_compass_stands_in_for_a_silent_gyro() {
     let mut ship = ship();
     let mut sail = |windows: i64, departure_deg: f64| {

@@ -41,7 +41,7 @@ use stuck::mark_stuck;
 
 /// The name of the estimator behind [`analyse`], to be kept with its models.
 /// It changes whenever the same input may lead to another model.
-pub const ESTIMATOR: &str = "state-space-27";
+pub const ESTIMATOR: &str = "state-space-28";
 
 /// Said where nothing can be watched for.
 const UNWATCHED: &str = "so far too little is known of the ship to tell a change of her \

@@ -37,10 +37,9 @@ const ASKEW_DEG: f64 = 15.0;
 const SLIGHT_TURN_DEG: f64 = 1.5;
 /// Of a card that trembles, turns count between courses that were kept for so many
 /// readings, by all references: wild ones come singly. No strike comes just at a turn and
-/// undoes it, so that by two references one is enough. By one there must be more of them,
-/// for it may be that which errs.
+/// undoes it, so that one is enough that two references saw. By one there must be more of
+/// them, for it may be that which errs, also while the other is silent.
 const COURSE_READINGS: usize = 3;
-const TURNS_BY_BOTH: usize = 1;
 const TURNS_BY_ONE: usize = 4;
 
 /// Marks the readings of a stuck compass; tells each time that it stuck.
@@ -110,15 +109,11 @@ fn apart_deg(a: &Reading, b: &Reading) -> f64 {
 fn trembling(readings: &[Reading], stands: Range<usize>) -> Option<Stuck> {
     let stood = &readings[stands.clone()];
     let courses = courses(stood);
-    let by_both = stood.iter().filter(|reading| {
-        let sample = reading.sample();
-        sample.gyro.is_some() && sample.satellite.is_some()
-    });
-    let enough = if 2 * by_both.count() > stood.len() {
-        TURNS_BY_BOTH
-    } else {
-        TURNS_BY_ONE
-    };
+    let course = |first: usize| &stood[first..first + COURSE_READINGS];
+    let by_both = courses
+        .windows(2)
+        .position(|pair| turned_deg(course(pair[0]), course(pair[1])).count() == 2);
+    let enough = by_both.map_or(TURNS_BY_ONE, |turn| TURNS_BY_ONE.min(turn + 1));
     let showed = stands.start + courses.get(enough)? + COURSE_READINGS - 1;
     // On the first course it may have been sound.
     let mut first = stands.start + courses[1];

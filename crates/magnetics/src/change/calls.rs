@@ -53,6 +53,8 @@ pub(super) enum Said {
 /// Where a step happened, as far as the rows tell.
 pub(super) enum Began {
     AtPort,
+    /// At sea, so soon after cargo came on board by the logbook that it may be that.
+    SaidLoaded,
     /// At a port call, or at sea in the days after it.
     NoticedLate,
     /// At sea, soon after a port call, from which she had sailed so: if it was cargo, it was
@@ -78,7 +80,7 @@ impl Base {
     /// through many was no cargo.
     fn chance(&self) -> f64 {
         let is_cargo = match self.began {
-            Began::AtPort => IS_CARGO,
+            Began::AtPort | Began::SaidLoaded => IS_CARGO,
             Began::NoticedLate => IS_CARGO_NOTICED_LATE,
             Began::SoonAfter(_) => IS_CARGO_SOON_AFTER,
             Began::AtSea => return RETURN_AFTER_SEA,
@@ -87,8 +89,14 @@ impl Base {
         DISCHARGED * still / (still + 1.0 - is_cargo)
     }
 
+    /// What began at sea may end there.
     pub(super) fn began_at_port(&self) -> bool {
         matches!(self.began, Began::AtPort)
+    }
+
+    /// Whether it came on board with cargo, as far as logbook and rows tell.
+    pub(super) fn came_on_board(&self) -> bool {
+        matches!(self.began, Began::AtPort | Began::SaidLoaded)
     }
 
     /// The ship without what changed her.
@@ -187,10 +195,10 @@ impl Calls {
         let since = |base: &&Base| base.latest.is_some_and(|latest| latest >= loaded);
         let mut since = self.bases.iter().filter(since);
         let first = since.next()?;
-        if !since.all(Base::began_at_port) {
+        if !since.all(Base::came_on_board) {
             return None;
         }
-        let chance = match (first.began_at_port(), at_port) {
+        let chance = match (first.came_on_board(), at_port) {
             (true, true) => SAID_DISCHARGED,
             (true, false) => SAID_UNDER_WAY,
             (false, _) => SAID_NOTICED_AT_SEA,

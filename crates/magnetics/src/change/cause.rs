@@ -41,6 +41,8 @@ pub(crate) struct Circumstances {
     pub(crate) alongside: bool,
     /// How far a burst led the compass astray, degrees where H is 24 µT.
     pub(crate) astray_deg: Option<f64>,
+    /// Whether nothing is certain yet.
+    pub(crate) is_open: bool,
     /// Whether there was no second reference.
     pub(crate) one_reference: bool,
     /// Whether another step at sea, weeks before or after, went the same way.
@@ -108,8 +110,10 @@ const ZERO_PUT_RIGHT: f64 = 0.1;
 /// How likely the sun, or a place at sea, begins and ends with a stay alongside.
 const WITH_A_STAY: f64 = 0.02;
 
-/// What contradicts what the search decided weighs so much less.
+/// What contradicts what the search decided weighs so much less; and so much while it has
+/// not decided.
 const AGAINST: f64 = 0.02;
+const AGAINST_WHILE_OPEN: f64 = 0.5;
 
 /// The odds that a lead stands for.
 pub(crate) fn odds(nats: f64) -> f64 {
@@ -197,8 +201,13 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
         .map(|(_, weight)| *weight)
         .fold(f64::MIN_POSITIVE, f64::max);
     let against = weights.iter_mut().filter(|(cause, _)| !agrees(*cause));
+    let share = if known.is_open {
+        AGAINST_WHILE_OPEN
+    } else {
+        AGAINST
+    };
     for (cause, weight) in against {
-        *weight *= AGAINST;
+        *weight *= share;
         if cause.is_the_ships() != is_of_the_ship {
             // Whether an epoch begins has been decided: it is not named for what it is not.
             *weight = weight.min(most);

@@ -73,6 +73,35 @@ fn a_gyro_that_is_wild_now_and_then_makes_no_stuck_compass_of_a_steady_one() {
     assert!(causes.all(|cause| cause != Cause::CompassFault));
 }
 
+/// On a steady course the gyro is off by 9° from when on, and the satellite compass drops out
+/// soon after: by the only one that is left the ship turned.
+#[test]
+fn a_gyros_fault_while_the_satellite_compass_is_silent_makes_no_stuck_compass() {
+    for seed in [61, 62, 64] {
+        let log = sail_log(seed, &calm(Event::Nothing));
+        let is_steady = |course: &[Sample]| {
+            let first = course[0].compass.degrees();
+            let off = |s: &Sample| wrap_180(s.compass.degrees() - first).abs();
+            day(&log, &course[0]) > 25.0 && course.iter().all(|s| off(s) < 0.8)
+        };
+        let steady = log.samples.windows(10).position(is_steady).unwrap();
+        let mut samples = log.samples.clone();
+        for (place, sample) in samples.iter_mut().enumerate().skip(steady + 4) {
+            sample.gyro = sample.gyro.map(|gyro| turned(gyro, 9.0));
+            if place < steady + 9 {
+                sample.satellite = None;
+            }
+        }
+        samples.truncate(steady + 150);
+        let analysis = run(&samples);
+        let found = certain(&analysis);
+        assert!(
+            found.iter().all(|c| c.cause != Cause::CompassFault),
+            "seed {seed}: {found:?}"
+        );
+    }
+}
+
 #[test]
 fn a_compass_whose_zero_moved_is_no_struck_ship() {
     for (seed, moved_deg) in [(60, 3.0), (61, -4.0), (62, 3.0)] {

@@ -144,6 +144,7 @@ impl Teller<'_> {
             is_over: event.last.is_some() || (event.what == What::Reference && back.is_some()),
             alongside: false,
             astray_deg: astray.as_ref().map(|astray| astray.usual_deg),
+            is_open: !event.confirmed && event.withdrawn.is_none(),
             one_reference: self.one_reference(),
             creeps: self.creeps(index),
             in_a_day: self.in_a_day(index),

@@ -104,8 +104,10 @@ impl Search<'_> {
         let is_said_loaded = self.is_said_loaded(dated.between);
         let began = if dated.is_late && !is_said_loaded {
             Began::NoticedLate
-        } else if is_said_loaded || self.began_at_call(dated) {
+        } else if self.began_at_call(dated) {
             Began::AtPort
+        } else if is_said_loaded {
+            Began::SaidLoaded
         } else {
             let sailed = self.sailed(dated.first, &self.events[..event]);
             sailed.map_or(Began::AtSea, |(_, sailed)| {

@@ -1,6 +1,6 @@
 //! When a change happened, to the row.
 
-use super::{GAP_S, Search, earlier};
+use super::{Event, GAP_S, Search, What, earlier};
 use crate::change::bank::Kind;
 use crate::change::filter::{Filter, Measurement};
 use crate::change::upset::{misled, upset};
@@ -27,8 +27,8 @@ pub(super) struct Dated {
     /// The filter just before it, and the one that knew of it, now.
     pub(super) before: Filter,
     pub(super) filter: Filter,
-    /// Whether it is dated at a call for what the bank no longer knew: the likeliest row is of
-    /// days after it.
+    /// Whether it is dated at a call though the likeliest row is of days after it, or comes
+    /// after something that passed since.
     pub(super) is_late: bool,
 }
 
@@ -188,7 +188,9 @@ impl Search<'_> {
             })
             .filter(|(_, _, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
             .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
-        let is_late = call < origin.at;
+        let has_passed =
+            |event: &Event| event.what == What::Burst && event.first > call && event.first < row;
+        let is_late = call < origin.at || self.events.iter().any(has_passed);
         Some(Dated {
             first: call,
             between: (call.min(row), call.max(row)),

@@ -258,7 +258,7 @@ impl Search<'_> {
             .calls
             .bases
             .last()
-            .filter(|base| base.began_at_port())?;
+            .filter(|base| base.came_on_board())?;
         if self.misaligned.is_some() || self.misled.is_some() {
             return None;
         }
