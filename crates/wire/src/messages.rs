@@ -172,8 +172,8 @@ impl CardWithdrawn {
     }
 
     /// What to do while there is no model.
-    pub const ADVICE: &str = "steer by the gyro, take an azimuth once a watch and on each new \
-        course; steady courses on other headings make a new card soonest";
+    pub const ADVICE: &str = "steer by gyro or satellite compass, take an azimuth once a watch and \
+        on each new course; steady courses on other headings make a new card soonest";
 
     /// The same as a sentence without a full stop.
     pub fn in_words(&self) -> String {

@@ -294,8 +294,9 @@ fn is_compass_or_gyro(change: &change::Change) -> bool {
 fn advice(cause: change::Cause, stage: Stage) -> &'static str {
     match (cause, stage) {
         (change::Cause::CompassFault, _) => {
-            "Do not use the compass. Steer by the gyro; look at bowl, pivot and liquid, and at \
-             the sensor and its cable. The samples taken meanwhile are left out of the model."
+            "Do not use the compass. Steer by gyro or satellite compass; look at bowl, pivot and \
+             liquid, and at the sensor and its cable. The samples taken meanwhile are left out of \
+             the model."
         }
         (change::Cause::ReferenceFault, Stage::Doubtful) => {
             "Compass or reference is astray, and the samples do not tell yet which. Take an \
@@ -308,38 +309,39 @@ fn advice(cause: change::Cause, stage: Stage) -> &'static str {
         }
         (change::Cause::Alignment, _) => {
             "Use no card from before: the compass is off by the same on every heading. Steer by \
-             the gyro or the corrected heading and take an azimuth. Look whether the bowl, the \
-             lubber line or the sensor has shifted against the ship's head; put it back, and \
-             report that in the logbook. No corrector needs to be moved."
+             gyro, satellite compass or the corrected heading and take an azimuth. Look whether \
+             the bowl, the lubber line or the sensor has shifted against the ship's head; put it \
+             back, and report that in the logbook. No corrector needs to be moved."
         }
         (_, Stage::Doubtful) => {
-            "Steer by the gyro until the next samples tell whether the card still holds. Take an \
-             azimuth now and once a watch, and report in the logbook what may have happened."
+            "Steer by gyro or satellite compass until the next samples tell whether the card still \
+             holds. Take an azimuth now and once a watch, and report in the logbook what may have \
+             happened."
         }
         (_, Stage::NotTheShips) => {
-            "Steer by the gyro until it is over. Nothing needs to be adjusted: the samples taken \
-             meanwhile are left out of the model."
+            "Steer by gyro or satellite compass until it is over. Nothing needs to be adjusted: \
+             the samples taken meanwhile are left out of the model."
         }
         (change::Cause::MagneticCargo, Stage::NoModel) => {
-            "No card holds with this cargo. Steer by the gyro, take an azimuth once a watch and \
-             after each large alteration of course, and report the cargo in the logbook. The \
-             model from before is used again once it is discharged."
+            "No card holds with this cargo. Steer by gyro or satellite compass, take an azimuth \
+             once a watch and after each large alteration of course, and report the cargo in the \
+             logbook. The model from before is used again once it is discharged."
         }
         (change::Cause::MagneticCargo, _) => {
-            "Use no card from before loading. Steer by the gyro or the corrected heading, which \
-             knows the cargo, take an azimuth once a watch, and report the cargo in the logbook. \
-             The model from before is used again once it is discharged."
+            "Use no card from before loading. Steer by gyro, satellite compass or the corrected \
+             heading, which knows the cargo, take an azimuth once a watch, and report the cargo in \
+             the logbook. The model from before is used again once it is discharged."
         }
         (_, Stage::NoModel) => {
-            "No card holds. Steer by the gyro, take an azimuth once a watch and on each new \
-             course, and report what happened in the logbook. Steady courses on other headings \
-             make a new model soonest; expect an adjustment."
+            "No card holds. Steer by gyro or satellite compass, take an azimuth once a watch and \
+             on each new course, and report what happened in the logbook. Steady courses on other \
+             headings make a new model soonest; expect an adjustment."
         }
         (_, Stage::Interim) => {
-            "Do not use the card from before. Steer by the gyro or the corrected heading, whose \
-             band is wider for now, take an azimuth once a watch and on each new course, and \
-             report what happened in the logbook. Expect an adjustment if the deviation stays \
-             large."
+            "Do not use the card from before. Steer by gyro, satellite compass or the corrected \
+             heading, whose band is wider for now, take an azimuth once a watch and on each new \
+             course, and report what happened in the logbook. Expect an adjustment if the \
+             deviation stays large."
         }
         (_, Stage::Learnt) => {
             "Put up a new card: the one from before does not hold. The corrected heading takes \

@@ -93,7 +93,7 @@ export const refusal = {
   fieldTooWeak: (strongest: string, needed: string) =>
     `All samples are from waters with a horizontal field of at most ${strongest}; a magnetic compass needs ${needed} or more to steer by.`,
   fieldTooWeakTodo:
-    'Nothing is wrong with the compass. A model comes with samples from lower magnetic latitudes; until then steer by the gyro.',
+    'Nothing is wrong with the compass. A model comes with samples from lower magnetic latitudes; until then steer by gyro or satellite compass.',
   ambiguousHeadings: (h: string) =>
     `The samples ask for so much magnetism that, at a horizontal field of ${h}, one compass heading would belong to several courses.`,
   ambiguousHeadingsTodo:
