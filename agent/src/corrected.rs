@@ -309,6 +309,8 @@ pub(crate) mod tests {
                 acknowledged: true,
                 followed: false,
                 parted: 1,
+                raised_by_deg: None,
+                is_doubted: false,
             };
             correct(Ingredients {
                 alert: Some(&alert),

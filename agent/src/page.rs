@@ -326,6 +326,8 @@ pub(crate) mod tests {
             acknowledged: false,
             followed: false,
             parted: 1,
+            raised_by_deg: None,
+            is_doubted: false,
         };
         page.spool.keep_alert(&aboard).await.unwrap();
         let press = |id: Uuid, guard: &str| {

@@ -55,7 +55,8 @@ async function keep(cache, file) {
 async function page(address) {
   const cache = await caches.open(kept);
   try {
-    const answer = await fetch(address, { signal: AbortSignal.timeout(patienceMs) });
+    const signal = AbortSignal.timeout(patienceMs);
+    const answer = await fetch(address, { redirect: 'manual', signal });
     if (!isPage(answer)) return answer;
     const before = await cache.match('/');
     const [was, is] = await Promise.all([before?.text(), answer.clone().text()]);
@@ -69,9 +70,9 @@ async function page(address) {
   }
 }
 
-/** What else the server has, such as whether it is well, is no page. */
+/** What else the server has, such as whether it is well, is no page; nor is another's address. */
 const isPage = (answer) =>
-  answer.ok && !answer.redirected && answer.headers.get('Content-Type')?.startsWith('text/html');
+  answer.ok && answer.headers.get('Content-Type')?.startsWith('text/html');
 
 /** What is asked for along with a page is so for one address only. */
 function ofAnyAddress(headers) {

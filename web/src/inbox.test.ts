@@ -48,10 +48,11 @@ describe('the inbox', () => {
     expect(matching(over, { ...everyAlert, state: 'raised' })).toEqual(over);
   });
 
-  it('stays in the order in which it stood, those first that are new', () => {
+  it('stays in the order in which it stood, what is new after what it follows', () => {
     const order = (stood: string[]) => asTheyStood(inbox, stood).map(({ id }) => id);
     expect(order(['quiet', 'drift', 'struck'])).toEqual(['quiet', 'drift', 'struck']);
-    expect(order(['struck', 'gone', 'drift'])).toEqual(['quiet', 'struck', 'drift']);
+    expect(order(['struck', 'gone', 'drift'])).toEqual(['struck', 'quiet', 'drift']);
+    expect(order(['quiet', 'struck'])).toEqual(['drift', 'quiet', 'struck']);
     expect(order([])).toEqual(['drift', 'struck', 'quiet']);
   });
 

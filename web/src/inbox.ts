@@ -40,10 +40,17 @@ export function matching(alerts: readonly Alert[], query: InboxQuery): Alert[] {
   );
 }
 
-/** In the order in which they stood, those first that were not there. */
+/** In the order in which they stood; each that is new after the one that it follows. */
 export function asTheyStood(alerts: readonly Alert[], stood: readonly string[]): Alert[] {
-  const place = ({ id }: Alert) => stood.indexOf(id);
-  return [...alerts].sort((a, b) => place(a) - place(b));
+  const places = new Map(stood.map((id, place) => [id, place]));
+  const place = ({ id }: Alert) => places.get(id) ?? -1;
+  const known = alerts.filter(({ id }) => places.has(id)).sort((a, b) => place(a) - place(b));
+  alerts.forEach((alert, index) => {
+    if (places.has(alert.id)) return;
+    const before = alerts[index - 1];
+    known.splice(before ? known.indexOf(before) + 1 : 0, 0, alert);
+  });
+  return known;
 }
 
 /** The causes among alerts, and one that is asked for in any case, by their words. */

@@ -17,6 +17,12 @@ pub(crate) struct Aboard {
     /// was not kept, all.
     #[serde(default = "everywhere")]
     pub(crate) parted: u64,
+    /// What they were allowed when they parted, degrees.
+    #[serde(default)]
+    pub(crate) raised_by_deg: Option<f64>,
+    /// Whether two instruments bore the compass out, and do no more.
+    #[serde(default)]
+    pub(crate) is_doubted: bool,
 }
 
 fn everywhere() -> u64 {
@@ -131,6 +137,8 @@ mod tests {
             acknowledged: false,
             followed: false,
             parted: 0,
+            raised_by_deg: None,
+            is_doubted: false,
         };
         aboard.status()
     }

@@ -25,9 +25,6 @@ const USUAL_BAND_DEG: f64 = 2.0;
 const HIGHEST_LAT_DEG: f64 = 75.0;
 /// They agree again when they are so much nearer than what parted them.
 const AGREE_SHARE: f64 = 0.75;
-/// A model that knows this heading by so many times less than what parted them agrees with
-/// anything.
-const VAGUE: f64 = 2.0;
 /// Windows further apart than half an hour do not belong together.
 const LONGEST_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
 /// After half an hour of settled windows what came since the alert goes ashore too.
@@ -62,6 +59,8 @@ struct Apart {
     gyro_deg: Option<f64>,
     /// Corrected compass less satellite compass.
     satellite_deg: Option<f64>,
+    /// What the model may err on this heading, and with it what the reference may.
+    band_deg: f64,
     limit_deg: f64,
     sector: u32,
 }
@@ -179,11 +178,13 @@ impl Lookout {
         let heading_deg = reference.unwrap_or(true_deg);
         let lat_deg = window.position.lat_deg().abs().min(HIGHEST_LAT_DEG);
         let gyro_error_deg = self.config.gyro_error_deg.0 / lat_deg.to_radians().cos();
+        let band_deg = corrected.band95_deg.unwrap_or(USUAL_BAND_DEG);
         Some(Apart {
             index: window.index,
             gyro_deg: window.gyro_deg.map(departure),
             satellite_deg: window.satellite_deg.map(departure),
-            limit_deg: corrected.band95_deg.unwrap_or(USUAL_BAND_DEG) + gyro_error_deg,
+            band_deg,
+            limit_deg: band_deg + gyro_error_deg,
             sector: (heading_deg.rem_euclid(360.0) / SECTOR_DEG) as u32 % SECTORS,
         })
     }
@@ -201,20 +202,33 @@ impl Lookout {
         }
     }
 
-    /// How they stand over the last so many windows; none when there are fewer.
+    /// How they stand over the last so many windows; none when there are fewer. Half of the
+    /// windows speak for all, and for both references the same ones.
     fn stand(&self, windows: usize) -> Option<Stand> {
         let from = self.recent.len().checked_sub(windows)?;
         let last = self.recent.back()?;
-        let of = |departure: fn(&Apart) -> Option<f64>| {
-            let departures: Vec<f64> = self.recent.range(from..).filter_map(departure).collect();
+        let middle = |departures: Vec<f64>| {
             let origin = *departures.first()?;
             let middle = median(departures.iter().map(|deg| wrap_180(deg - origin)));
-            // Half of the windows speak for all.
             (departures.len() * 2 >= windows).then(|| wrap_180(origin + middle))
         };
+        let of = |departure: fn(&Apart) -> Option<f64>| {
+            middle(self.recent.range(from..).filter_map(departure).collect())
+        };
+        let both = || {
+            let both = self.recent.range(from..);
+            both.filter_map(|apart| apart.gyro_deg.zip(apart.satellite_deg))
+        };
+        let gyro_deg = middle(both().map(|(gyro, _)| gyro).collect());
+        let satellite_deg = middle(both().map(|(_, satellite)| satellite).collect());
+        let (gyro_deg, satellite_deg) = match gyro_deg.or_else(|| of(|apart| apart.gyro_deg)) {
+            Some(gyro_deg) => (Some(gyro_deg), satellite_deg),
+            None => (None, of(|apart| apart.satellite_deg)),
+        };
         Some(Stand {
-            gyro_deg: of(|apart| apart.gyro_deg),
-            satellite_deg: of(|apart| apart.satellite_deg),
+            gyro_deg,
+            satellite_deg,
+            band_deg: last.band_deg,
             limit_deg: last.limit_deg,
             sector: last.sector,
         })
@@ -256,6 +270,8 @@ impl Lookout {
             acknowledged: false,
             followed: false,
             parted: 1 << stand.sector,
+            raised_by_deg: Some(alert.limit_deg),
+            is_doubted: false,
         });
         self.since_raised = 0;
         self.disagree();
@@ -286,16 +302,22 @@ impl Lookout {
         let Some((stand, aboard)) = on_course.zip(self.aboard.as_mut()) else {
             return false;
         };
-        if stand.limit_deg > VAGUE * aboard.alert.limit_deg {
+        let alert = &aboard.alert;
+        let raised_by_deg = aboard.raised_by_deg.unwrap_or(alert.limit_deg);
+        // A model that hardly knows the heading agrees with anything.
+        if stand.band_deg > raised_by_deg {
             return false;
         }
-        let limit_deg = AGREE_SHARE * stand.limit_deg.min(aboard.alert.limit_deg);
-        if stand.main_deg().is_none_or(|deg| deg.abs() > limit_deg) {
+        let limit_deg = AGREE_SHARE * stand.limit_deg.min(raised_by_deg);
+        let is_near = |deg: f64| deg.abs() <= limit_deg;
+        let (judged_deg, other_deg) = stand.judged_deg(aboard);
+        if !judged_deg.is_some_and(is_near) || !other_deg.is_none_or(is_near) {
             self.disagree();
             return false;
         }
+        let is_sound = is_trusting(alert.suspect());
         aboard.parted &= !(1 << stand.sector);
-        let is_settled = aboard.parted == 0 || aboard.alert.suspect() == Suspect::Gyro;
+        let is_settled = aboard.parted == 0 || is_sound;
         self.agreed = self.agreed.saturating_add(1);
         self.agreed_on |= 1 << stand.sector;
         is_settled || is_across(self.agreed_on) || self.agreed >= AGREE_ANYWHERE_WINDOWS
@@ -310,15 +332,18 @@ impl Lookout {
         self.recent.iter().rev().take(windows).all(is_near)
     }
 
-    /// Whose fault it is shows when a reference speaks again that was silent, or another
-    /// instrument fails, too.
+    /// Whose fault it is shows when a reference speaks again that was silent, and another
+    /// instrument may fail, too. Readings from before a turn have no part in it.
     fn judge_anew(&mut self, raise: usize, now: Timestamp) -> Option<ShipAlert> {
-        let said = self.stand(2 * raise)?.said(&self.aboard?.alert);
-        let alert = &mut self.aboard.as_mut()?.alert;
-        if said.suspect() == alert.suspect() || !may_follow(alert, &said) {
+        let stand = self.stand(2 * raise)?;
+        if !self.is_on_course(2 * raise, stand.sector) {
             return None;
         }
-        *alert = said;
+        let aboard = self.aboard.as_mut()?;
+        let before = aboard.alert.suspect();
+        let said = judged_anew(aboard, stand.said(&aboard.alert))?;
+        aboard.is_doubted |= is_trusting(before);
+        aboard.alert = said;
         self.revise(ShipAlertState::Open, now)
     }
 
@@ -329,7 +354,8 @@ impl Lookout {
         }
         aboard.followed = true;
         let said = stand.said(&aboard.alert);
-        if stand.is_apart() && may_follow(&aboard.alert, &said) {
+        let is_of_same = !lacks(&aboard.alert, &said) && said.suspect() == aboard.alert.suspect();
+        if stand.is_apart() && is_of_same {
             aboard.alert = said;
         }
         self.revise(ShipAlertState::Open, now)
@@ -350,6 +376,7 @@ impl Lookout {
 struct Stand {
     gyro_deg: Option<f64>,
     satellite_deg: Option<f64>,
+    band_deg: f64,
     limit_deg: f64,
     sector: u32,
 }
@@ -365,6 +392,19 @@ impl Stand {
             .is_some_and(|deg| deg.abs() > self.limit_deg)
     }
 
+    /// The departure whose end is that of an alert, and the other, if that is to have ended,
+    /// too: where an instrument was borne out, both.
+    fn judged_deg(&self, aboard: &Aboard) -> (Option<f64>, Option<f64>) {
+        let (gyro_deg, satellite_deg) = (self.gyro_deg, self.satellite_deg);
+        match aboard.alert.suspect() {
+            Suspect::Gyro => (gyro_deg, satellite_deg),
+            Suspect::Satellite => (satellite_deg, gyro_deg),
+            _ if aboard.is_doubted => (self.main_deg(), satellite_deg),
+            _ if aboard.alert.gyro_departure_deg.is_none() => (satellite_deg.or(gyro_deg), None),
+            _ => (self.main_deg(), None),
+        }
+    }
+
     /// The alert with these figures.
     fn said(&self, alert: &ShipAlert) -> ShipAlert {
         ShipAlert {
@@ -376,15 +416,50 @@ impl Stand {
     }
 }
 
-/// Whether new figures may take the place of those of an alert: a reference that is silent
-/// takes nothing back of what it has proven, and what two instruments said against the third
-/// holds until they say it of another, or all three are apart.
-fn may_follow(before: &ShipAlert, said: &ShipAlert) -> bool {
+/// Whether two instruments bear the compass out, so that it is steered by.
+fn is_trusting(suspect: Suspect) -> bool {
+    matches!(suspect, Suspect::Gyro | Suspect::Satellite)
+}
+
+/// Whether a reference that has spoken is silent.
+fn lacks(before: &ShipAlert, said: &ShipAlert) -> bool {
     let is_silent = |was: Option<f64>, is: Option<f64>| was.is_some() && is.is_none();
-    let lacks = is_silent(before.gyro_departure_deg, said.gyro_departure_deg)
-        || is_silent(before.satellite_departure_deg, said.satellite_departure_deg);
-    let says_less = said.suspect() == Suspect::Unknown && before.suspect() != Suspect::Unknown;
-    !lacks && (!says_less || said.are_all_apart())
+    is_silent(before.gyro_departure_deg, said.gyro_departure_deg)
+        || is_silent(before.satellite_departure_deg, said.satellite_departure_deg)
+}
+
+/// What an open alert is to say by new figures, if it is another verdict. A reference that falls
+/// silent takes nothing back of what it has proven, as long as the other says what it said. The
+/// compass is borne out at most once: what speaks against that takes it back for the rest of
+/// the alert, for a bad reference and a compass that moves to it look like a bad other one.
+fn judged_anew(aboard: &Aboard, said: ShipAlert) -> Option<ShipAlert> {
+    let before = &aboard.alert;
+    let (was, is) = (before.suspect(), said.suspect());
+    if !is_trusting(was) {
+        let may_be = is == Suspect::Compass || (is_trusting(is) && !aboard.is_doubted);
+        return (was == Suspect::Unknown && may_be).then_some(said);
+    }
+    if lacks(before, &said) {
+        let moved = |was: Option<f64>, is: Option<f64>| {
+            was.zip(is)
+                .is_some_and(|(was, is)| wrap_180(is - was).abs() > said.limit_deg)
+        };
+        let has_moved = moved(before.gyro_departure_deg, said.gyro_departure_deg)
+            || moved(before.satellite_departure_deg, said.satellite_departure_deg);
+        return has_moved.then_some(said);
+    }
+    let bears_out = match was {
+        Suspect::Gyro => said.satellite_departure_deg,
+        _ => said.gyro_departure_deg,
+    };
+    if bears_out.is_none_or(|deg| deg.abs() <= said.limit_deg) {
+        return None;
+    }
+    // By one reference alone nobody is borne out.
+    Some(ShipAlert {
+        satellite_departure_deg: said.satellite_departure_deg.filter(|_| !is_trusting(is)),
+        ..said
+    })
 }
 
 impl<'a> Card<'a> {

@@ -86,6 +86,8 @@ mod tests {
             acknowledged,
             followed: false,
             parted: 1,
+            raised_by_deg: None,
+            is_doubted: false,
         }
     }
 

@@ -108,12 +108,6 @@ impl ShipAlert {
         }
     }
 
-    /// Whether no two of compass, gyro and satellite compass agree.
-    pub fn are_all_apart(&self) -> bool {
-        let sides = self.sides_deg();
-        sides.is_some_and(|sides| sides.iter().all(|deg| *deg > self.limit_deg))
-    }
-
     /// How far compass and gyro, compass and satellite compass, and both references lie apart.
     fn sides_deg(&self) -> Option<[f64; 3]> {
         let (gyro, satellite) = (self.gyro_departure_deg?, self.satellite_departure_deg?);
@@ -171,12 +165,5 @@ mod tests {
         assert_eq!(said(Some(-6.2), Some(-7.2)), (-6.2, "gyro"));
         assert_eq!(said(None, Some(-7.2)), (-7.2, "satellite compass"));
         assert_eq!(said(Some(0.2), Some(-7.2)), (-7.2, "satellite compass"));
-    }
-
-    #[test]
-    fn all_are_apart_when_no_two_agree() {
-        assert!(alert(Some(8.0), Some(-8.0)).are_all_apart());
-        assert!(!alert(Some(8.0), Some(7.0)).are_all_apart());
-        assert!(!alert(Some(8.0), None).are_all_apart());
     }
 }

@@ -8,6 +8,8 @@ fn aboard(revision: u32) -> Aboard {
         acknowledged: false,
         followed: false,
         parted: 8,
+        raised_by_deg: None,
+        is_doubted: false,
     }
 }
 
