@@ -47,7 +47,12 @@ pub(crate) async fn put(
     let ship_time = page.status.borrow().ship_time;
     let now = ship_time.map_or_else(clock::now, |time| time.max(clock::now()));
     let reporter = reporter(&written.reporter).map_err(|error| wrong(&error))?;
-    let report = written.report.checked(now).map_err(|error| wrong(&error))?;
+    let mut report = written.report.checked(now).map_err(|error| wrong(&error))?;
+    if !written.withdrawn {
+        report = report
+            .ending_within_a_year(now)
+            .map_err(|error| wrong(&error))?;
+    }
     let stored = page
         .spool
         .keep_report(id, report, reporter, written.withdrawn, now)

@@ -71,8 +71,7 @@ async function page(address) {
 }
 
 /** What else the server has, such as whether it is well, is no page; nor is another's address. */
-const isPage = (answer) =>
-  answer.ok && answer.headers.get('Content-Type')?.startsWith('text/html');
+const isPage = (answer) => answer.ok && answer.headers.get('Content-Type')?.startsWith('text/html');
 
 /** What is asked for along with a page is so for one address only. */
 function ofAnyAddress(headers) {

@@ -39,6 +39,8 @@ pub(crate) struct AlertStatus {
     pub(crate) says: String,
     /// What to do; nothing once it is over.
     pub(crate) advice: String,
+    /// Whether the corrected heading and the card are not to be used while it goes on.
+    pub(crate) is_of_the_compass: bool,
 }
 
 impl Aboard {
@@ -60,6 +62,7 @@ impl Aboard {
             acknowledged: self.acknowledged,
             says: says(&self.alert),
             advice: advice(&self.alert).to_owned(),
+            is_of_the_compass: self.is_of_the_compass(),
         }
     }
 }

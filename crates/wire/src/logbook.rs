@@ -2,8 +2,7 @@
 //!
 //! What always holds: a report that [`Report::checked`] gave back is one line of a
 //! logbook: it lies in this era and does not begin in the future, ends no earlier than it
-//! begins and within a year from now, and its words are trimmed, few, and without control
-//! characters.
+//! begins, and its words are trimmed, few, and without control characters.
 
 use binnacle_magnetics::analyse::{Cargo, LogbookEntry, LogbookError, LogbookKind};
 use binnacle_magnetics::time::Timestamp;
@@ -68,9 +67,6 @@ impl Report {
         if self.from > latest {
             return Err(error("from", format!("{} is yet to come", self.from)));
         }
-        if let Some(to) = self.to.filter(|to| *to > now.plus_seconds(LONGEST_AHEAD_S)) {
-            return Err(error("to", format!("{to} is more than a year ahead")));
-        }
         let report = Report {
             hatch: optional("hatch", self.hatch.as_deref())?,
             port: optional("port", self.port.as_deref())?,
@@ -87,6 +83,18 @@ impl Report {
             }
             Err(LogbookError::NotACargo) => Err(error("cargo", "only magnetic cargo is one")),
         }
+    }
+
+    /// The report, if its end is none of a year mistaken. Asked of who writes it down: what was
+    /// kept once is carried on, and may be taken back.
+    ///
+    /// # Errors
+    /// [`ReportError`] when it ends more than a year after `now`.
+    pub fn ending_within_a_year(self, now: Timestamp) -> Result<Report, ReportError> {
+        let far = self.to.filter(|to| *to > now.plus_seconds(LONGEST_AHEAD_S));
+        far.map_or(Ok(self), |to| {
+            Err(error("to", format!("{to} is more than a year ahead")))
+        })
     }
 
     /// What an analysis makes of it: everything but the words.
@@ -153,7 +161,8 @@ mod tests {
             report[name] = value.clone();
         }
         let report: Report = serde_json::from_value(report).unwrap();
-        report.checked(Timestamp::parse("2026-11-21T07:00:00Z").unwrap())
+        let now = Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
+        report.checked(now)?.ending_within_a_year(now)
     }
 
     #[test]

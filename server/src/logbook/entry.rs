@@ -181,7 +181,7 @@ pub(super) struct CheckedFilter {
 impl NewEntry {
     /// The entry, if it can be one at this time.
     pub(super) fn checked(self, now: Timestamp) -> Result<NewEntry> {
-        let report = self.report.checked(now)?;
+        let report = self.report.checked(now)?.ending_within_a_year(now)?;
         if self.compass_id.is_some() && !may_name_a_compass(report.kind) {
             return Err(Error::Invalid {
                 field: "compass_id",

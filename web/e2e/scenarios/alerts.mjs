@@ -24,6 +24,8 @@ export const alerts = {
       await card.getByLabel(/^Note/).fill('Azimuth taken');
       await card.getByRole('button', { name: 'Acknowledge the alert' }).click();
       await card.getByText('Acknowledged by Test Officer').waitFor();
+      // The form took the focus with it.
+      await page.waitForFunction(() => document.activeElement?.textContent?.trim() === 'Clear');
       await card.getByText('What shows it').click();
       await card.getByText('By the model of the samples').waitFor();
       await page.getByRole('link', { name: 'Binnacle', exact: true }).click();
@@ -163,8 +165,9 @@ export const alerts = {
       assert.ok(await field.evaluate((element) => element === document.activeElement));
       assert.ok(await card.getByRole('button', { name: 'Clear the alert' }).isDisabled());
       await shoot('alert-over-meanwhile', {}, card);
-      await card.getByRole('button', { name: 'Cancel' }).click();
+      await card.getByRole('button', { name: 'Cancel' }).press('Enter');
       await card.waitFor({ state: 'detached' });
+      await page.waitForFunction(() => document.activeElement?.textContent?.includes('open alert'));
     },
   },
 

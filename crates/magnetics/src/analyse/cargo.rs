@@ -40,10 +40,12 @@ pub(super) fn is_laden(epoch: &Epoch, own: &[Reading]) -> bool {
 /// An entry of cargo without an end that the samples no longer bear out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Idle {
-    /// When the entry begins.
-    entry: Timestamp,
+    /// When the entry begins, and ends.
+    entry: (Timestamp, Option<Timestamp>),
     /// Readings since then are taken: from when it began, or from when she was herself again.
     since: Timestamp,
+    /// Until when nothing has set them apart.
+    until: Timestamp,
     /// Whether she was another with that cargo, and is herself again.
     is_back: bool,
 }
@@ -67,7 +69,7 @@ pub(super) fn take_idle(
     let cargoes = logbook
         .iter()
         .filter(|e| e.kind == LogbookKind::MagneticCargo);
-    let since = |entry: &LogbookEntry| idle.iter().find(|i| i.entry == entry.from);
+    let since = |entry: &LogbookEntry| idle.iter().find(|i| i.entry == (entry.from, entry.to));
     let cargoes: Vec<_> = cargoes
         .map(|entry| (entry, since(entry).map(|idle| idle.since)))
         .collect();
@@ -90,9 +92,13 @@ fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> 
     let first = own.first()?.sample().time;
     let until = own.last()?.sample().time;
     let from = entry.from.max(epoch.from.unwrap_or(first)).max(first);
-    let returns = found.boundaries.iter().filter(|b| b.resumes && b.at > from);
-    let begun = (from, from.plus_seconds(-LOADED_BEFORE_S), false);
-    let mut starts = std::iter::once(begun).chain(returns.map(|b| (b.at, b.at, true)));
+    let loaded = from.plus_seconds(-LOADED_BEFORE_S);
+    let since_then = found.boundaries.iter().filter(|b| b.at > loaded);
+    let first = since_then.clone().next();
+    let is_of_cargo = |change: usize| first.is_some_and(|first| first.change == change);
+    let returns = since_then.filter(|b| b.resumes && b.at > from);
+    let returns = returns.map(|b| (b.at, b.at, is_of_cargo(b.change)));
+    let mut starts = std::iter::once((from, loaded, false)).chain(returns);
     starts.find_map(|(since, after, is_back)| {
         let laden = own.partition_point(|r| r.sample().time < since);
         let many = own.get(laden + IDLE_READINGS)?.sample().time;
@@ -100,9 +106,11 @@ fn idle(entry: &LogbookEntry, epoch: &Epoch, found: &Found, own: &[Reading]) -> 
         let is_apart = found.boundaries.iter().any(|b| b.at > after && b.at <= by);
         let perhaps = found.perhaps.as_ref();
         let may_be = perhaps.is_some_and(|ended| found.changes[ended.change].from <= by);
+        let later = found.boundaries.iter().map(|b| b.at).filter(|at| *at > by);
         (until > by && !is_apart && !may_be).then_some(Idle {
-            entry: entry.from,
+            entry: (entry.from, entry.to),
             since,
+            until: later.min().unwrap_or(until),
             is_back,
         })
     })
@@ -129,8 +137,12 @@ pub(super) fn notices(
                 r.sample().time >= from && r.diagnostic.reason == Some(SampleReason::MagneticCargo)
             });
             let left_out = left_out.count();
-            if let Some(idle) = course.idle.iter().find(|idle| idle.entry == from) {
-                let days = until.seconds_since(idle.since) / DAY_S;
+            if let Some(idle) = course
+                .idle
+                .iter()
+                .find(|idle| idle.entry == (from, entry.to))
+            {
+                let days = idle.until.seconds_since(idle.since) / DAY_S;
                 let so = if idle.is_back {
                     format!(
                         "Since {} the samples are those of the ship without it",

@@ -188,8 +188,11 @@ impl Search<'_> {
             })
             .filter(|(_, _, at_call)| at_call.log_likelihood > filter.log_likelihood - CALL_NATS)
             .max_by(|a, b| a.2.log_likelihood.total_cmp(&b.2.log_likelihood))?;
-        let has_passed =
-            |event: &Event| event.what == What::Burst && event.first > call && event.first < row;
+        let has_passed = |event: &Event| {
+            event.what == What::Burst
+                && event.first > call
+                && event.last.is_some_and(|last| last < row)
+        };
         let is_late = call < origin.at || self.events.iter().any(has_passed);
         Some(Dated {
             first: call,
