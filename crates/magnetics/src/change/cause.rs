@@ -189,30 +189,8 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
             *weight *= REPORTED;
         }
     }
-    // In port she may be another since, as long as she has not sailed.
-    let may_be_hers = known.alongside && !known.is_over;
-    let agrees = |cause: Cause| {
-        let is_hers = matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair);
-        agrees(what, cause, known.one_reference) || (may_be_hers && is_hers)
-    };
-    let is_of_the_ship = matches!(what, What::Return(_)) || what.is_lasting();
-    let agreeing = weights.iter().filter(|(cause, _)| agrees(*cause));
-    let most = agreeing
-        .map(|(_, weight)| *weight)
-        .fold(f64::MIN_POSITIVE, f64::max);
-    let against = weights.iter_mut().filter(|(cause, _)| !agrees(*cause));
-    let share = if known.is_open {
-        AGAINST_WHILE_OPEN
-    } else {
-        AGAINST
-    };
-    for (cause, weight) in against {
-        *weight *= share;
-        if cause.is_the_ships() != is_of_the_ship {
-            // Whether an epoch begins has been decided: it is not named for what it is not.
-            *weight = weight.min(most);
-        }
-    }
+    let agrees = |cause: Cause| is_of(what, cause, known);
+    hold_to(what, known, &mut weights);
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
     let mut causes: Vec<CauseProbability> = weights
         .into_iter()
@@ -233,6 +211,37 @@ pub(crate) fn causes(what: What, known: &Circumstances) -> Vec<CauseProbability>
             .then_with(by_agreement)
     });
     causes
+}
+
+/// Takes from the weight of what contradicts what the search decided.
+fn hold_to(what: What, known: &Circumstances, weights: &mut [(Cause, f64)]) {
+    let agrees = |cause: Cause| is_of(what, cause, known);
+    let is_of_the_ship = matches!(what, What::Return(_)) || what.is_lasting();
+    let agreeing = weights.iter().filter(|(cause, _)| agrees(*cause));
+    let most = agreeing
+        .map(|(_, weight)| *weight)
+        .fold(f64::MIN_POSITIVE, f64::max);
+    let share = if known.is_open {
+        AGAINST_WHILE_OPEN
+    } else {
+        AGAINST
+    };
+    let against = weights.iter_mut().filter(|(cause, _)| !agrees(*cause));
+    for (cause, weight) in against {
+        *weight *= share;
+        if cause.is_the_ships() != is_of_the_ship {
+            // Whether an epoch begins has been decided: it is not named for what it is not.
+            *weight = weight.min(most);
+        }
+    }
+}
+
+/// Whether a cause is of what the search decided, or in port of what it may yet be: there she
+/// may be another since, as long as she has not sailed.
+fn is_of(what: What, cause: Cause, known: &Circumstances) -> bool {
+    let may_be_hers = known.alongside && !known.is_over;
+    let is_hers = matches!(cause, Cause::MagneticCargo | Cause::AdjustmentOrRepair);
+    agrees(what, cause, known.one_reference) || (may_be_hers && is_hers)
 }
 
 impl Kind {
