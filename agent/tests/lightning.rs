@@ -70,7 +70,10 @@ async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
     assert!((departure + 25.0).abs() < 2.0, "{departure}");
     let said = agent.call(&["status"]).await;
     let said = String::from_utf8(said.stdout).unwrap();
-    assert!(said.contains("ALERT      compass and gyro parted"), "{said}");
+    assert!(
+        said.contains("ALERT      compass and gyro parted"),
+        "{said}"
+    );
 
     // It is acknowledged, and still the same alert after a kill.
     let id = alert["id"].as_str().unwrap();

@@ -193,6 +193,8 @@ fn alert(
         summary: summary(found, stage),
         advice: if is_compass_or_gyro(change) {
             COMPASS_OR_GYRO
+        } else if stage == Stage::Doubtful && may_be_hers(change) {
+            WHICH_IS_OPEN
         } else {
             advice(change.cause, stage)
         },
@@ -281,6 +283,9 @@ const COMPASS_OR_GYRO: &str = "Compass or gyro swings, and there is no third to 
      neither: take an azimuth now and each watch, compare both with a steady course over ground, \
      and look at compass, sensor and cables. The samples taken meanwhile are left out of the model.";
 
+/// A share of causes in the ship from which on she is not cleared.
+const HERS_SUSPECTED: f64 = 0.05;
+
 /// Whether a fault of the only reference may as well be one of the compass.
 fn is_compass_or_gyro(change: &change::Change) -> bool {
     let of_the_compass = change::Cause::CompassFault;
@@ -291,17 +296,23 @@ fn is_compass_or_gyro(change: &change::Change) -> bool {
             .any(|c| c.cause == of_the_compass && c.probability > COMPASS_SUSPECTED)
 }
 
+const WHICH_IS_OPEN: &str = "Compass or reference is astray, and the samples do not tell yet \
+     which. Take an azimuth now and once a watch and steer by what it confirms; report in the \
+     logbook what may have happened.";
+
+/// Whether what looks like a reference's fault may as well be a change of the ship.
+fn may_be_hers(change: &change::Change) -> bool {
+    let hers = change.causes.iter().filter(|c| c.cause.is_the_ships());
+    change.cause == change::Cause::ReferenceFault
+        && hers.map(|c| c.probability).sum::<f64>() > HERS_SUSPECTED
+}
+
 fn advice(cause: change::Cause, stage: Stage) -> &'static str {
     match (cause, stage) {
         (change::Cause::CompassFault, _) => {
             "Do not use the compass. Steer by gyro or satellite compass; look at bowl, pivot and \
              liquid, and at the sensor and its cable. The samples taken meanwhile are left out of \
              the model."
-        }
-        (change::Cause::ReferenceFault, Stage::Doubtful) => {
-            "Compass or reference is astray, and the samples do not tell yet which. Take an \
-             azimuth now and once a watch and steer by what it confirms; report in the logbook \
-             what may have happened."
         }
         (change::Cause::ReferenceFault, _) => {
             "Check gyro and satellite compass against an azimuth. The magnetic compass itself is \

@@ -1,8 +1,9 @@
 //! What a browser will ask for once it has a page: named in the page's `Link` headers
 //! (RFC 8288), so that it asks at once.
 //!
-//! What always holds: only who has a cookie of ours is told to ask for data; all that is named
-//! is asked for by the page itself, so that nothing is fetched in vain.
+//! What always holds: only who has a cookie of ours is told to ask for data, and of a vessel only
+//! who has a fleet; all that is named is asked for by the page itself, so that nothing is fetched
+//! in vain.
 
 use super::Files;
 use axum::http::HeaderMap;
@@ -49,15 +50,23 @@ fn files_of(source: &str, manifest: &BTreeMap<String, Built>) -> Vec<String> {
     found.into_iter().collect()
 }
 
-/// What the page at `path` is to come with, for who asked with these headers.
-pub(super) fn links(path: &str, request: &HeaderMap) -> Option<HeaderValue> {
-    let vessel = path
-        .strip_prefix("vessels/")
-        .and_then(|id| Uuid::try_parse(id).ok());
+/// The vessel whose page is at `path`.
+pub(super) fn vessel(path: &str) -> Option<Uuid> {
+    let id = path.strip_prefix("vessels/")?;
+    Uuid::try_parse(id).ok()
+}
+
+/// What a vessel's page, or any other, is to come with, for who asked with these headers and has
+/// a fleet, or not.
+pub(super) fn links(
+    vessel: Option<Uuid>,
+    has_fleet: bool,
+    request: &HeaderMap,
+) -> Option<HeaderValue> {
     let mut links = Vec::new();
     if request.contains_key(COOKIE) {
         // What is read first of a vessel: who she is, and all that says what she needs.
-        let ours = vessel.map(|id| {
+        let ours = vessel.filter(|_| has_fleet).map(|id| {
             [
                 format!("vessels/{id}"),
                 format!("vessels/{id}/needs"),
@@ -121,8 +130,8 @@ mod tests {
     fn data_is_named_to_who_may_be_signed_in_and_of_the_vessel_that_the_address_names() {
         let nobody = HeaderMap::new();
         let somebody = HeaderMap::from_iter([(COOKIE, HeaderValue::from_static("a=b"))]);
-        let links = |path, request: &HeaderMap| {
-            let links = links(path, request);
+        let links = |path: &str, request: &HeaderMap| {
+            let links = links(vessel(path), true, request);
             links.map_or(String::new(), |links| links.to_str().unwrap().to_owned())
         };
         assert_eq!(links("", &nobody), "");
@@ -143,5 +152,8 @@ mod tests {
         );
         assert!(both.contains("</api/v1/fleet?vessel="), "{both}");
         assert!(!links("vessels/none\r\nX: y", &somebody).contains("vessels"));
+        let without_fleet = super::links(vessel(VESSELS_PAGE), false, &somebody);
+        let without_fleet = without_fleet.unwrap();
+        assert!(!without_fleet.to_str().unwrap().contains("/api/v1/vessels"));
     }
 }

@@ -6,8 +6,11 @@
 
 mod ahead;
 
+use crate::access::Reader;
+use crate::app::App;
+use axum::extract::{FromRequestParts, Request, State};
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, ETAG, IF_NONE_MATCH};
-use axum::http::{HeaderMap, StatusCode, Uri};
+use axum::http::{HeaderMap, StatusCode};
 use axum::response::{Html, IntoResponse, Response};
 use rust_embed::{EmbeddedFile, RustEmbed};
 
@@ -22,10 +25,11 @@ const NOT_BUILT: &str = "<!doctype html><html lang=en><meta charset=utf-8><title
     <p>The API is there: <a href=/api/docs>read about it</a>.</p></html>";
 
 /// Answers with a file, or with the page that shows everything.
-pub async fn serve(uri: Uri, headers: HeaderMap) -> Response {
-    let path = uri.path().trim_start_matches('/');
-    if let Some(file) = Files::get(path) {
-        return answer(path, &file, &headers);
+pub async fn serve(State(app): State<App>, request: Request) -> Response {
+    let (mut parts, _) = request.into_parts();
+    let path = parts.uri.path().trim_start_matches('/').to_owned();
+    if let Some(file) = Files::get(&path) {
+        return answer(&path, &file, &parts.headers);
     }
     // A missing asset is an error, not a page: a stale page must not run it.
     if path.starts_with("assets/") {
@@ -33,8 +37,14 @@ pub async fn serve(uri: Uri, headers: HeaderMap) -> Response {
     }
     match Files::get("index.html") {
         Some(page) => {
-            let mut answer = answer("index.html", &page, &headers);
-            ahead::add(ahead::links(path, &headers), answer.headers_mut());
+            let mut answer = answer("index.html", &page, &parts.headers);
+            let vessel = ahead::vessel(&path);
+            let reads =
+                vessel.is_some() && Reader::from_request_parts(&mut parts, &app).await.is_ok();
+            ahead::add(
+                ahead::links(vessel, reads, &parts.headers),
+                answer.headers_mut(),
+            );
             answer
         }
         None => Html(NOT_BUILT).into_response(),

@@ -137,7 +137,7 @@ fn parts() -> (Router<App>, Router<App>, utoipa::openapi::OpenApi) {
         .route("/api/openapi.json", get(super::docs::document))
         .route("/api/docs", get(super::docs::page))
         .route("/api/{*rest}", get(no_such_route).fallback(no_such_route))
-        .fallback_service(get(dashboard::serve))
+        .fallback(get(dashboard::serve))
         .layer(CompressionLayer::new())
         .layer(axum::middleware::from_fn(headers::add));
     (agents, people, document)
