@@ -59,8 +59,9 @@ struct Apart {
     gyro_deg: Option<f64>,
     /// Corrected compass less satellite compass.
     satellite_deg: Option<f64>,
-    /// What the model may err on this heading, and with it what the reference may.
+    /// What the model may err on this heading.
     band_deg: f64,
+    /// The same, with what a sound reference may.
     limit_deg: f64,
     sector: u32,
 }

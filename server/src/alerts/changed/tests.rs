@@ -262,3 +262,18 @@ fn a_zero_that_moved_is_told_with_what_to_do() {
     assert!(wanted[0].advice.contains("lubber line"));
     assert!(wanted[0].advice.contains("No corrector"));
 }
+
+#[test]
+fn while_a_references_fault_is_open_the_compass_is_cleared_only_where_she_did_not_change() {
+    let advice = |hers: f64| {
+        let mut open = found(Found::ReferenceFault, 2.0);
+        open.change.confirmed = false;
+        open.change.causes.push(CauseProbability {
+            cause: Found::LightningOrShock,
+            probability: hers,
+        });
+        sailed(vec![open], 0.1, Some(1.0))[0].advice
+    };
+    assert!(advice(0.02).contains("is not suspected"));
+    assert!(advice(0.1).contains("do not tell yet which"));
+}
