@@ -2,17 +2,16 @@
 //!
 //! What always holds: a [`Reader`] and a [`Writer`] belong to one operator, and
 //! every query about a fleet takes that operator's id; a [`PartyReader`] and a
-//! [`PartyWriter`] belong to an operator or a firm, and find nothing of another's; an
-//! [`Agent`] belongs to one vessel. A request that a cookie vouches for may change something only with the
+//! [`PartyWriter`] belong to an operator or a firm, and find nothing of another's. A request that a cookie vouches for may change something only with the
 //! header `X-Binnacle-Request`, which another site's form cannot send.
 
 use crate::app::App;
 use crate::error::{Error, Result};
-use crate::ids::{AgentId, CompassId, FirmId, OperatorId, SessionId, TokenId, UserId, VesselId};
+use crate::ids::{FirmId, OperatorId, SessionId, TokenId, UserId};
 use crate::session::{self, Role, User, cookie};
 use crate::tenants::Tenant;
-use crate::{audit, enrolment, secret, tokens};
-use axum::extract::FromRequestParts;
+use crate::{audit, secret, tokens};
+use axum::extract::{FromRef, FromRequestParts};
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
 
@@ -107,17 +106,6 @@ pub struct Auditor {
 pub struct Platform {
     user: UserId,
     read_only: bool,
-}
-
-/// A ship's agent.
-#[derive(Clone, Copy, Debug, sqlx::FromRow)]
-pub struct Agent {
-    /// The ship.
-    pub vessel_id: VesselId,
-    /// The installation.
-    pub agent_id: AgentId,
-    /// The compass whose streams it may feed.
-    pub compass_id: CompassId,
 }
 
 impl Caller {
@@ -218,11 +206,15 @@ impl Platform {
     }
 }
 
-impl FromRequestParts<App> for Caller {
+impl<S> FromRequestParts<S> for Caller
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Caller> {
-        let caller = Caller::find(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Caller> {
+        let caller = Caller::find(parts, &App::from_ref(state)).await?;
         audit::acts(&caller);
         Ok(caller)
     }
@@ -254,11 +246,15 @@ impl Caller {
     }
 }
 
-impl FromRequestParts<App> for Reader {
+impl<S> FromRequestParts<S> for Reader
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Reader> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Reader> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         Ok(Reader {
             operator,
@@ -267,11 +263,15 @@ impl FromRequestParts<App> for Reader {
     }
 }
 
-impl FromRequestParts<App> for Writer {
+impl<S> FromRequestParts<S> for Writer
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Writer> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Writer> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         caller.must_be_admin()?;
         caller.must_not_only_read()?;
@@ -282,11 +282,15 @@ impl FromRequestParts<App> for Writer {
     }
 }
 
-impl FromRequestParts<App> for Overseer {
+impl<S> FromRequestParts<S> for Overseer
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Overseer> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Overseer> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         caller.must_be_admin()?;
         Ok(Overseer {
@@ -296,11 +300,15 @@ impl FromRequestParts<App> for Overseer {
     }
 }
 
-impl FromRequestParts<App> for Custodian {
+impl<S> FromRequestParts<S> for Custodian
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Custodian> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Custodian> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         let operator = caller.operator()?;
         caller.must_be_admin()?;
         caller.must_be_signed_in()?;
@@ -311,11 +319,15 @@ impl FromRequestParts<App> for Custodian {
     }
 }
 
-impl FromRequestParts<App> for PartyReader {
+impl<S> FromRequestParts<S> for PartyReader
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<PartyReader> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<PartyReader> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         Ok(PartyReader {
             tenant: caller.party()?,
             user: caller.user.user_id,
@@ -323,11 +335,15 @@ impl FromRequestParts<App> for PartyReader {
     }
 }
 
-impl FromRequestParts<App> for PartyWriter {
+impl<S> FromRequestParts<S> for PartyWriter
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<PartyWriter> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<PartyWriter> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         let tenant = caller.party()?;
         if !caller.user.role.may_bring_orders_on() {
             return Err(Error::Forbidden(
@@ -342,11 +358,15 @@ impl FromRequestParts<App> for PartyWriter {
     }
 }
 
-impl FromRequestParts<App> for Auditor {
+impl<S> FromRequestParts<S> for Auditor
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Auditor> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Auditor> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         caller.must_have_second_factor()?;
         if caller.user.role == Role::Viewer {
             return Err(Error::Forbidden("only an admin may do this"));
@@ -357,11 +377,15 @@ impl FromRequestParts<App> for Auditor {
     }
 }
 
-impl FromRequestParts<App> for Platform {
+impl<S> FromRequestParts<S> for Platform
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Platform> {
-        let caller = Caller::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Platform> {
+        let caller = Caller::from_request_parts(parts, state).await?;
         if caller.user.role != Role::PlatformAdmin {
             return Err(Error::Forbidden("only a platform admin may do this"));
         }
@@ -372,21 +396,8 @@ impl FromRequestParts<App> for Platform {
     }
 }
 
-impl FromRequestParts<App> for Agent {
-    type Rejection = Error;
-
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Agent> {
-        let token = bearer(parts).ok_or(Error::Unauthenticated)?;
-        let vessel = secret::vessel_of_token(token).ok_or(Error::Unauthenticated)?;
-        let agent = enrolment::find_agent(&app.db, VesselId(vessel), &secret::hash(token))
-            .await?
-            .ok_or(Error::Unauthenticated)?;
-        audit::acts(&agent);
-        Ok(agent)
-    }
-}
-
-fn bearer(parts: &Parts) -> Option<&str> {
+/// Returns the bearer token of a request's `Authorization` header.
+pub fn bearer(parts: &Parts) -> Option<&str> {
     let value = parts.headers.get(AUTHORIZATION)?.to_str().ok()?;
     let (scheme, token) = value.split_once(' ')?;
     scheme

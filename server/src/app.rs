@@ -5,7 +5,6 @@ use crate::config::Serve;
 use crate::db::Db;
 use crate::events::Live;
 use crate::oidc::Provider;
-use crate::schedule::Turns;
 use metrics_exporter_prometheus::PrometheusHandle;
 use std::sync::Arc;
 use tokio::sync::{Notify, Semaphore};
@@ -29,8 +28,6 @@ pub struct App {
     /// Plans for correctors being made at once: each takes a core for a second or two, and an
     /// adjuster at the berth waits for it.
     pub planning: Arc<Semaphore>,
-    /// Schedules being made, and those that wait: each takes a core for seconds.
-    pub schedules: Turns,
     /// Who else's word one may sign in by, as far as is known.
     pub provider: Arc<Provider>,
     /// Cancelled when the server is to stop.
@@ -50,7 +47,6 @@ impl App {
             work: Arc::new(Notify::new()),
             hashing: Arc::new(Semaphore::new(2)),
             planning: Arc::new(Semaphore::new(2)),
-            schedules: Turns::default(),
             provider: Arc::default(),
             stopping: CancellationToken::new(),
             metrics,

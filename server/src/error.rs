@@ -1,34 +1,24 @@
-//! The one error of the API: a status and an RFC 9457 problem document.
+//! Error of the API: a status and an RFC 9457 problem document.
 //!
-//! What always holds: what went wrong inside is logged here, once, and never sent.
+//! What always holds: what went wrong inside is logged here, once, and never sent. No domain
+//! is known here: what a domain refuses becomes a [`DomainProblem`] by its own conversion.
 
-use crate::analysis::{LeftOut, RefusalSchema};
-use crate::card;
-use crate::models::NoModel;
-use crate::streams::CardWithdrawnSchema;
-use crate::work_orders::Refusal;
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use binnacle_magnetics::fit::FitError;
-use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
+use serde_json::{Map, Value};
+use std::fmt;
 use tracing::error;
 use utoipa::ToSchema;
 
-/// What a handler may answer instead of what was asked.
+/// Failure of a request, as every handler returns it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// It does not exist, or belongs to someone else: nobody is told which.
     #[error("{0} not found")]
     NotFound(&'static str),
-    /// The compass has no model yet, for the reason given.
-    #[error("{0}")]
-    NoModelYet(NoModel),
-    /// There is a model, but no deviation card is made of it.
-    #[error("{0}")]
-    NoCard(card::Refusal),
     /// No valid session or token came with the request.
     #[error("sign in, or send a valid token")]
     Unauthenticated,
@@ -58,17 +48,12 @@ pub enum Error {
         /// What is wrong with it.
         detail: String,
     },
-    /// Other bytes are stored under this stream and number.
-    #[error(
-        "batch {0} of this stream is stored with other bytes; open a new stream and number anew"
-    )]
-    StreamForked(u64),
     /// Not to be done to it as it stands.
     #[error("{0}")]
     WrongState(String),
-    /// There is no plan, or a reading is not taken, for the reasons given.
-    #[error("{}", in_words(.0))]
-    NotAdjustable(Vec<Refusal>),
+    /// A domain's own refusal.
+    #[error("{0}")]
+    Domain(Box<DomainProblem>),
     /// The server was not told how to.
     #[error("{0}")]
     NotSetUp(&'static str),
@@ -101,7 +86,50 @@ pub enum Error {
 /// A result whose error can be sent.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// An error as it is sent (RFC 9457).
+/// Refusal that only one domain knows: its kind, its words, and fields of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DomainProblem {
+    /// HTTP status.
+    pub status: StatusCode,
+    /// Last word of the problem's type.
+    pub kind: &'static str,
+    /// Kind in a few words.
+    pub title: &'static str,
+    /// Sentence that says what is wrong this time.
+    pub detail: String,
+    /// Fields of this kind alone, as members of the problem document.
+    pub extra: Map<String, Value>,
+}
+
+impl fmt::Display for DomainProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.detail)
+    }
+}
+
+impl DomainProblem {
+    /// Adds the fields of a serialisable struct.
+    ///
+    /// # Panics
+    /// When the value is no struct, which is a mistake in the code.
+    #[must_use]
+    pub fn with(mut self, extra: &impl Serialize) -> DomainProblem {
+        let value = serde_json::to_value(extra).expect("a struct of plain fields is JSON");
+        let Value::Object(fields) = value else {
+            panic!("only a struct has fields");
+        };
+        self.extra.extend(fields);
+        self
+    }
+}
+
+impl From<DomainProblem> for Error {
+    fn from(problem: DomainProblem) -> Error {
+        Error::Domain(Box::new(problem))
+    }
+}
+
+/// Error as it is sent (RFC 9457).
 #[derive(Debug, Serialize, ToSchema)]
 pub struct Problem {
     /// Names the kind of problem; ends in a word that programs may act on.
@@ -113,35 +141,16 @@ pub struct Problem {
     pub status: u16,
     /// What is wrong this time.
     pub detail: String,
-    /// What a model is refused for; only in `no-model-yet`, and not before the
-    /// first samples have been analysed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Option<RefusalSchema>)]
-    pub refusal: Option<FitError>,
-    /// The samples that the logbook leaves out of the current epoch; only in
-    /// `no-model-yet`, and only if there are any.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false)]
-    pub left_out: Option<LeftOut>,
-    /// That the last model holds no more; only in `no-model-yet`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false, value_type = Option<CardWithdrawnSchema>)]
-    pub card_withdrawn: Option<CardWithdrawn>,
-    /// What is wrong at the berth and what would cure it; only in `not-adjustable`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    #[schema(required = false)]
-    pub refusals: Option<Vec<Refusal>>,
+    /// Fields of one kind of problem alone; the document lists them by domain.
+    #[serde(flatten)]
+    #[schema(ignore)]
+    pub extra: Map<String, Value>,
 }
 
 impl Error {
     fn kind(&self) -> (StatusCode, &'static str, &'static str) {
         match self {
             Error::NotFound(_) => (StatusCode::NOT_FOUND, "not-found", "Not found"),
-            Error::NoModelYet(_) => (StatusCode::NOT_FOUND, "no-model-yet", "No model yet"),
-            Error::NoCard(refusal) => {
-                let (kind, title) = refusal.kind();
-                (StatusCode::CONFLICT, kind, title)
-            }
             Error::Unauthenticated => {
                 (StatusCode::UNAUTHORIZED, "unauthenticated", "Not signed in")
             }
@@ -168,17 +177,8 @@ impl Error {
                 "invalid",
                 "A value is not valid",
             ),
-            Error::StreamForked(_) => (
-                StatusCode::CONFLICT,
-                "stream-forked",
-                "The stream has forked",
-            ),
             Error::WrongState(_) => (StatusCode::CONFLICT, "wrong-state", "Not in this state"),
-            Error::NotAdjustable(_) => (
-                StatusCode::UNPROCESSABLE_ENTITY,
-                "not-adjustable",
-                "No plan as it stands",
-            ),
+            Error::Domain(problem) => (problem.status, problem.kind, problem.title),
             Error::NotSetUp(_) => (StatusCode::CONFLICT, "not-set-up", "Not set up"),
             Error::KeyReused => (
                 StatusCode::UNPROCESSABLE_ENTITY,
@@ -211,38 +211,20 @@ impl Error {
     }
 }
 
-fn in_words(refusals: &[Refusal]) -> String {
-    let said = refusals.iter().map(|refusal| {
-        let explained = refusal.could_be.join(", or ");
-        match explained.as_str() {
-            "" => refusal.words.clone(),
-            explained => format!("{}; it could be that {explained}", refusal.words),
-        }
-    });
-    said.collect::<Vec<_>>().join("; ")
-}
-
 impl IntoResponse for Error {
     fn into_response(self) -> Response {
         let (status, kind, title) = self.kind();
         if let Error::Internal(cause) = &self {
             error!(error = format!("{cause:#}"), "a request failed");
         }
-        let none = match &self {
-            Error::NoModelYet(none) => Some(none),
-            _ => None,
-        };
         let problem = Problem {
             kind: format!("/problems/{kind}"),
             title: title.to_owned(),
             status: status.as_u16(),
             detail: self.to_string(),
-            refusal: none.and_then(|none| none.refusal.clone()),
-            left_out: none.map(|none| none.left_out).filter(LeftOut::any),
-            card_withdrawn: none.and_then(|none| none.card_withdrawn.clone()),
-            refusals: match &self {
-                Error::NotAdjustable(refusals) => Some(refusals.clone()),
-                _ => None,
+            extra: match &self {
+                Error::Domain(problem) => problem.extra.clone(),
+                _ => Map::new(),
             },
         };
         let mut response = (status, Json(problem)).into_response();

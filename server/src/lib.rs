@@ -75,6 +75,7 @@ pub mod webhooks;
 pub mod dashboard;
 pub mod http;
 pub mod operations;
+pub mod state;
 pub mod tls;
 
 pub mod command;

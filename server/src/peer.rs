@@ -8,7 +8,7 @@
 use crate::app::App;
 use crate::tls::TlsListener;
 use axum::extract::connect_info::{ConnectInfo, Connected};
-use axum::extract::{Extension, FromRequestParts};
+use axum::extract::{FromRef, FromRequestParts};
 use axum::http::header::USER_AGENT;
 use axum::http::request::Parts;
 use axum::serve::IncomingStream;
@@ -64,25 +64,34 @@ impl Origin {
     }
 }
 
-impl FromRequestParts<App> for Origin {
-    type Rejection = Infallible;
-
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Origin, Infallible> {
-        let peer = Extension::<ConnectInfo<Peer>>::from_request_parts(parts, app).await;
-        let peer = peer
-            .ok()
-            .map(|Extension(ConnectInfo(Peer(peer)))| peer.ip());
+impl Origin {
+    /// Reads the origin of a request that came through as many proxies as are configured.
+    pub fn of_request(parts: &Parts, app: &App) -> Origin {
+        let peer = parts.extensions.get::<ConnectInfo<Peer>>();
+        let peer = peer.map(|ConnectInfo(Peer(peer))| peer.ip());
         let forwarded = parts.headers.get_all("x-forwarded-for");
         let forwarded: Vec<&str> = forwarded.iter().filter_map(|v| v.to_str().ok()).collect();
         let named = parts.headers.get(USER_AGENT).and_then(|v| v.to_str().ok());
-        Ok(Origin {
+        Origin {
             address: client(peer, &forwarded, usize::from(app.config.proxies)),
             program: named
                 .unwrap_or_default()
                 .chars()
                 .take(MAX_PROGRAM)
                 .collect(),
-        })
+        }
+    }
+}
+
+impl<S> FromRequestParts<S> for Origin
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
+    type Rejection = Infallible;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Origin, Infallible> {
+        Ok(Origin::of_request(parts, &App::from_ref(state)))
     }
 }
 

@@ -8,9 +8,9 @@
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity};
 use super::look::{OVER, bring_in_line, tell};
 use super::store;
-use crate::access::Agent;
 use crate::app::App;
 use crate::db::{Tx, row};
+use crate::enrolment::Agent;
 use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CompassId, VesselId};

@@ -45,14 +45,18 @@ use crate::ids::AlertId;
 use crate::outbox::Kind;
 use crate::session;
 use alert::{Acknowledgement, AlertList, Clearing, Filter};
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use look::News;
 use store::Word;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_alerts))
         .routes(routes!(find_alert))

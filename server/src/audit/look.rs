@@ -7,7 +7,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Page, Params, file, time};
 use crate::time::Time;
 use axum::body::{Body, Bytes};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::response::Response;
 use futures_util::{StreamExt, stream};
 use serde::Serialize;
@@ -21,7 +21,11 @@ use uuid::Uuid;
 const AT_A_TIME: i64 = 1000;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_audit))
         .routes(routes!(audit_csv))

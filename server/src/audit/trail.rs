@@ -1,9 +1,10 @@
 //! What is known of a request while it is served, until it is a line.
 
 use super::{ActorKind, Line, store};
-use crate::access::{Agent, Caller};
+use crate::access::Caller;
 use crate::app::App;
 use crate::db::{self, Tx};
+use crate::enrolment::Agent;
 use crate::error::Error;
 use crate::ids::{OrderId, UserId, VesselId};
 use crate::oidc;
@@ -156,7 +157,7 @@ pub async fn keep(State(app): State<App>, request: Request, next: Next) -> Respo
     let (mut parts, body) = request.into_parts();
     let route = parts.extensions.get::<MatchedPath>();
     let route = route.map_or("", MatchedPath::as_str).to_owned();
-    let Ok(from) = Origin::from_request_parts(&mut parts, &app).await;
+    let from = Origin::of_request(&parts, &app);
     let is_ours = route.starts_with("/api/v1/") && route != BATCHES;
     let trail = Arc::new(Trail {
         id: Uuid::now_v7(),

@@ -9,14 +9,18 @@ use crate::error::{Problem, Result};
 use crate::http::{Json, Page};
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_magnetics::binnacle::{Aboard, Binnacle};
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(list_binnacles))
 }
 

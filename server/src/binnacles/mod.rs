@@ -27,7 +27,7 @@ use crate::session;
 use crate::time::Time;
 use crate::vessels;
 use crate::work_orders;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::header::{CONTENT_DISPOSITION, HeaderName};
 use binnacle_magnetics::binnacle::{Binnacle, BinnacleError, BinnacleForm};
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .merge(shipped::router())
         .merge(fleet::router())

@@ -6,13 +6,18 @@ use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json};
 use anyhow::Context;
+use axum::extract::FromRef;
 use binnacle_magnetics::binnacle::{Design, SHIPPED};
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_types))
         .routes(routes!(find_type))

@@ -20,7 +20,7 @@ use crate::session;
 use crate::tenants::Tenant;
 use crate::time::Time;
 use crate::vessels;
-use axum::extract::{FromRequestParts, State};
+use axum::extract::{FromRef, FromRequestParts, State};
 use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::http::request::Parts;
@@ -34,7 +34,11 @@ use utoipa_axum::routes;
 const PREFIX: &str = "bnc_";
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_feeds, create_feed))
         .routes(routes!(delete_feed))
@@ -182,16 +186,21 @@ struct Subscriber {
     vessel: Option<VesselId>,
 }
 
-impl FromRequestParts<App> for Subscriber {
+impl<S> FromRequestParts<S> for Subscriber
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
     type Rejection = Error;
 
-    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Subscriber> {
-        let Params(address) = Params::<Address>::from_request_parts(parts, app).await?;
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Subscriber> {
+        let Params(address) = Params::<Address>::from_request_parts(parts, state).await?;
         if let Some(token) = address.token {
+            let app = App::from_ref(state);
             let found = store::find(&app.db, &secret::hash(&token)).await?;
             return found.ok_or(Error::Unauthenticated);
         }
-        let reader = PartyReader::from_request_parts(parts, app).await?;
+        let reader = PartyReader::from_request_parts(parts, state).await?;
         Ok(Subscriber {
             name: "Binnacle".to_owned(),
             tenant: reader.tenant,

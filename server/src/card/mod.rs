@@ -38,7 +38,7 @@ use crate::sheet;
 use crate::time::Time;
 use crate::vessels;
 use crate::work_orders;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_magnetics::field::field;
 use binnacle_magnetics::position::Position;
@@ -51,7 +51,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(card_json))
         .routes(routes!(card_pdf))
@@ -216,7 +220,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
             own_limit_deg: settings.alerts.deviation_deg,
             now,
         };
-        make(basis).map_err(Error::NoCard)
+        make(basis).map_err(Error::from)
     });
     made.await?
 }

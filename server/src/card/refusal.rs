@@ -1,8 +1,11 @@
 //! Why there is no card although there is a model.
 
+use crate::error::{DomainProblem, Error};
 use crate::sheet::words::heading;
 use crate::time::Time;
+use axum::http::StatusCode;
 use binnacle_magnetics::deviation::DeviationError;
+use serde_json::Map;
 
 /// Samples older than this make no card, days: by the drift that is usual
 /// (docs/science.md, table of (9)) a ship's permanent field has then wandered by so
@@ -51,7 +54,7 @@ pub enum Refusal {
 
 impl Refusal {
     /// The last word of the problem's type, and its title.
-    pub(crate) fn kind(&self) -> (&'static str, &'static str) {
+    fn kind(&self) -> (&'static str, &'static str) {
         match self {
             Refusal::TooOld { .. } => ("model-too-old", "The model is too old for a card"),
             Refusal::BandTooWide { .. } => {
@@ -63,5 +66,19 @@ impl Refusal {
             Refusal::NoHeadings(_) => ("headings-ambiguous", "Headings are ambiguous"),
             Refusal::CompassSuspected { .. } => ("compass-suspected", "The compass is suspected"),
         }
+    }
+}
+
+impl From<Refusal> for Error {
+    fn from(refusal: Refusal) -> Error {
+        let (kind, title) = refusal.kind();
+        let problem = DomainProblem {
+            status: StatusCode::CONFLICT,
+            kind,
+            title,
+            detail: refusal.to_string(),
+            extra: Map::new(),
+        };
+        problem.into()
     }
 }

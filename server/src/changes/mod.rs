@@ -18,13 +18,17 @@ use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Params};
 use crate::ids::VesselId;
 use crate::vessels;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use timeline::{Timeline, timeline};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(list_changes))
 }
 

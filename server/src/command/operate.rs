@@ -6,6 +6,7 @@ use crate::config::{Database, Serve};
 use crate::db::Db;
 use crate::mail::Mailer;
 use crate::peer::Peer;
+use crate::state::ServerState;
 use crate::tls::TlsListener;
 use crate::{
     alerts, analysis, audit, events, http, notifications, operations, outbox, reports, schedule,
@@ -69,6 +70,7 @@ where
     L: Listener<Addr = SocketAddr>,
     Peer: for<'a> Connected<IncomingStream<'a, L>>,
 {
+    let state = ServerState::new(app.clone());
     let mailer = Mailer::new(&app.config.mail)?;
     let mut parts = JoinSet::new();
     let line = events::Line::open(&app.db).await?;
@@ -83,7 +85,7 @@ where
     if app.config.analysis_workers > 0 {
         parts.spawn(alerts::watch(app.clone()));
         parts.spawn(audit::watch(app.clone()));
-        parts.spawn(schedule::run(app.clone()));
+        parts.spawn(schedule::run(app.clone(), state.plan_slots.clone()));
         parts.spawn(work_orders::watch(app.clone()));
         parts.spawn(notifications::watch(app.clone()));
         parts.spawn(reports::watch(app.clone()));
@@ -104,7 +106,7 @@ where
     }
     parts.spawn(stop_on_signal(app.clone()));
     let stopping = app.stopping.clone();
-    let service = http::router(app.clone()).into_make_service_with_connect_info::<Peer>();
+    let service = http::router(state).into_make_service_with_connect_info::<Peer>();
     let serving =
         axum::serve(listener, service).with_graceful_shutdown(stopping.clone().cancelled_owned());
     let deadline = async {

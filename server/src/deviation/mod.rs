@@ -13,7 +13,7 @@ use crate::ids::{CompassId, ModelId, VesselId};
 use crate::models;
 use crate::time::Time;
 use crate::vessels;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
@@ -23,7 +23,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(find_deviation))
 }
 

@@ -21,7 +21,7 @@ use crate::sheet::{self, About};
 use crate::time::Time;
 use crate::vessels;
 use axum::body::{Body, Bytes};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_magnetics::time::Timestamp;
 use entry::Entry;
@@ -38,7 +38,11 @@ use utoipa_axum::routes;
 const MOST_PRINTED: usize = 5_000;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_book))
         .routes(routes!(book_csv))

@@ -5,11 +5,13 @@
 //! installation; code and token are stored only as hashes. A token that was revoked is
 //! never known again.
 
+mod agent;
 mod store;
 
-pub use store::{find_agent, open_stream, revoke};
+pub use agent::Agent;
+pub use store::{open_stream, revoke};
 
-use crate::access::{Agent, Reader, Writer};
+use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
@@ -17,7 +19,7 @@ use crate::http::{Id, Json, Page, Valid, text};
 use crate::ids::{AgentId, CompassId, VesselId};
 use crate::time::Time;
 use crate::{secret, vessels};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_wire::messages::{EnrolAnswer, EnrolRequest, NewToken};
 use serde::{Deserialize, Serialize};
@@ -34,14 +36,22 @@ const DEFAULT_VALID_FOR_S: u32 = 3 * 86_400;
 const LONGEST_VALID_FOR_S: u32 = 14 * 86_400;
 
 /// The routes that people use.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_agents, create_code))
         .routes(routes!(revoke_agent))
 }
 
 /// The routes that agents use.
-pub fn agent_router() -> OpenApiRouter<App> {
+pub fn agent_router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(enrol))
         .routes(routes!(propose_token, replace_token))

@@ -1,7 +1,7 @@
 //! Codes, agents and their streams in the database.
 
+use super::Agent;
 use super::{Aboard, AgentStream, LinkWeek};
-use crate::access::Agent;
 use crate::alerts;
 use crate::audit;
 use crate::compasses::Compass;
@@ -137,7 +137,11 @@ pub async fn open_stream(tx: &mut Tx, agent: Agent, now: Time) -> Result<StreamI
 }
 
 /// The agent that a token belongs to.
-pub async fn find_agent(db: &Db, vessel: VesselId, token_hash: &[u8]) -> Result<Option<Agent>> {
+pub(super) async fn find_agent(
+    db: &Db,
+    vessel: VesselId,
+    token_hash: &[u8],
+) -> Result<Option<Agent>> {
     row!(
         db,
         Agent,

@@ -17,7 +17,7 @@ use crate::app::App;
 use crate::error::{Problem, Result};
 use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::HeaderMap;
 use axum::response::sse::{Event as Sent, KeepAlive, Sse};
 use futures_util::stream::{self, Stream};
@@ -33,7 +33,11 @@ use utoipa_axum::routes;
 use uuid::Uuid;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(follow_events))
 }
 

@@ -21,7 +21,7 @@ use crate::ids::{FirmId, OperatorId};
 use crate::operators::{self, NewCompany};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -29,7 +29,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_firms, create_firm))
         .routes(routes!(find_firm))

@@ -13,7 +13,7 @@ use crate::http::{Id, Json, Valid, text};
 use crate::ids::{FirmId, OperatorId};
 use crate::time::Time;
 use crate::{schedule, session};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_schedule::input::{self, ServedPort};
 use binnacle_schedule::ports::Port;
@@ -29,7 +29,11 @@ use utoipa_axum::routes;
 /// No list in terms is longer.
 const MOST: usize = 1000;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_terms))
         .routes(routes!(set_terms, end_terms))

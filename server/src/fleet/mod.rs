@@ -18,6 +18,7 @@ use crate::models::StoredModel;
 use crate::time::Time;
 use crate::vessels::LastPosition;
 use axum::extract;
+use axum::extract::FromRef;
 use binnacle_magnetics::field::{FieldModel, field};
 use binnacle_schedule::ports::{self, PortCode};
 use serde::{Deserialize, Serialize};
@@ -31,7 +32,11 @@ use utoipa_axum::routes;
 const MOST_WITH_TRACKS: usize = 200;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(find_fleet))
 }
 

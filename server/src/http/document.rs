@@ -6,8 +6,28 @@
 
 use axum::http::StatusCode;
 use std::mem;
+use utoipa::ToSchema;
 use utoipa::openapi::path::{Operation, ParameterIn};
+use utoipa::openapi::schema::Schema;
 use utoipa::openapi::{OpenApi, RefOr, Response};
+
+/// Adds the fields that one domain's problems carry to the schema `Problem`.
+///
+/// # Panics
+/// When `T` is no struct, or the document has no `Problem`: a mistake in the code.
+pub(super) fn add_problem_fields<T: ToSchema>(document: &mut OpenApi) {
+    let RefOr::T(Schema::Object(fields)) = T::schema() else {
+        panic!("only a struct has fields");
+    };
+    let mut referenced = Vec::new();
+    T::schemas(&mut referenced);
+    let schemas = &mut document.components.get_or_insert_default().schemas;
+    schemas.extend(referenced);
+    let Some(RefOr::T(Schema::Object(problem))) = schemas.get_mut("Problem") else {
+        panic!("the document has no problem");
+    };
+    problem.properties.extend(fields.properties);
+}
 
 /// Adds it.
 pub(super) fn complete(document: &mut OpenApi) {

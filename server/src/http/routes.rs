@@ -1,7 +1,9 @@
 //! Every route, the document that describes them, and what surrounds them.
 
 use super::{cross_site, headers};
-use crate::app::App;
+use crate::models::NoModelFields;
+use crate::state::ServerState;
+use crate::work_orders::NotAdjustableFields;
 use crate::{
     alerts, audit, binnacles, calendar, card, changes, compasses, dashboard, deviation,
     deviation_book, enrolment, error, events, firms, fleet, logbook, mail, models, needs,
@@ -72,14 +74,14 @@ impl utoipa::Modify for Security {
 }
 
 /// What ships talk to: no headers but the needed, they cross the satellite link.
-fn for_agents() -> OpenApiRouter<App> {
+fn for_agents() -> OpenApiRouter<ServerState> {
     OpenApiRouter::new()
         .merge(enrolment::agent_router())
         .merge(streams::router())
         .merge(logbook::agent_router())
 }
 
-fn for_people() -> OpenApiRouter<App> {
+fn for_people() -> OpenApiRouter<ServerState> {
     OpenApiRouter::new()
         .merge(session::router())
         .merge(oidc::router())
@@ -122,7 +124,11 @@ pub fn openapi() -> utoipa::openapi::OpenApi {
 }
 
 /// The routes of agents, those of people, and the document of both.
-fn parts() -> (Router<App>, Router<App>, utoipa::openapi::OpenApi) {
+fn parts() -> (
+    Router<ServerState>,
+    Router<ServerState>,
+    utoipa::openapi::OpenApi,
+) {
     let (people, described) = OpenApiRouter::with_openapi(Document::openapi())
         .nest("/api/v1", for_people())
         .merge(operations::router())
@@ -132,6 +138,8 @@ fn parts() -> (Router<App>, Router<App>, utoipa::openapi::OpenApi) {
         .split_for_parts();
     let mut document = described;
     document.merge(more);
+    super::document::add_problem_fields::<NoModelFields>(&mut document);
+    super::document::add_problem_fields::<NotAdjustableFields>(&mut document);
     super::document::complete(&mut document);
     let people = people
         .route("/api/openapi.json", get(super::docs::document))
@@ -164,7 +172,8 @@ fn span(request: &Request) -> Span {
 }
 
 /// The whole server.
-pub fn router(app: App) -> Router {
+pub fn router(state: ServerState) -> Router {
+    let app = state.app.clone();
     let (agents, mut people, _) = parts();
     if app.config.is_on_https() {
         people = people.layer(axum::middleware::from_fn(headers::add_https_only));
@@ -186,5 +195,5 @@ pub fn router(app: App) -> Router {
         .layer(CatchPanicLayer::custom(panicked))
         .layer(axum::middleware::from_fn(operations::measure))
         .layer(TraceLayer::new_for_http().make_span_with(span))
-        .with_state(app)
+        .with_state(state)
 }

@@ -3,19 +3,23 @@
 use super::entry::NewEntry;
 use super::schema::{BoardAnswerSchema, BoardReportSchema};
 use super::store::{self, Author, Change};
-use crate::access::Agent;
 use crate::app::App;
+use crate::enrolment::Agent;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
 use crate::ids::EntryId;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_wire::logbook::reporter;
 use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The route that agents use.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(put_report))
 }
 

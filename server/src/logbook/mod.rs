@@ -27,7 +27,7 @@ use crate::idempotency::{self, Key};
 use crate::ids::{EntryId, VesselId};
 use crate::vessels;
 use amendment::{Amendment, AmendmentSchema};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use entry::{Filter, LogbookEntry, LogbookList, NewEntry, RevisedEntry, Withdrawal};
 use store::{Author, Change};
@@ -35,7 +35,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_logbook, report_entry))
         .routes(routes!(find_entry, amend_entry))

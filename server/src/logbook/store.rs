@@ -1,10 +1,10 @@
 //! Logbook entries in the database.
 
 use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
-use crate::access::Agent;
 use crate::analysis;
 use crate::app::App;
 use crate::db::{Db, Tx, execute, row, rows};
+use crate::enrolment::Agent;
 use crate::error::{Error, Result};
 use crate::events::{self, Kind};
 use crate::ids::{CompassId, EntryId, UserId, VesselId};

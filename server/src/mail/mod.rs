@@ -33,14 +33,18 @@ use crate::http::{Id, Json, Page, Params, Valid};
 use crate::idempotency::{self, Key};
 use crate::ids::{DeliveryId, RecipientId};
 use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter, Kind, Message};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use recipient::{ChangedRecipient, NewRecipient, Recipient, RecipientList};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_recipients, create_recipient))
         .routes(routes!(find_recipient, change_recipient, delete_recipient))

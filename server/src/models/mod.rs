@@ -6,7 +6,7 @@ mod news;
 mod schema;
 mod store;
 
-pub use missing::NoModel;
+pub use missing::{NoModel, NoModelFields};
 pub use schema::{IdentifiableSchema, ModelJson, ModelSchema, ParametersSchema};
 pub use store::{
     StoredModel, card_withdrawn, current, current_of_fleet, current_of_vessel, foretold, in_force,
@@ -17,12 +17,12 @@ use crate::access::Reader;
 use crate::app::App;
 use crate::compasses::{self, WhichCompass};
 use crate::deviation::{HandbookSchema, Worst};
-use crate::error::{Error, Problem, Result};
+use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Page, Params};
 use crate::ids::{CompassId, ModelId, OrderId, VesselId};
 use crate::time::Time;
 use crate::{analysis, vessels};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_magnetics::handbook::Handbook;
 use binnacle_magnetics::ship::EarthField;
 use binnacle_wire::messages::CardWithdrawn;
@@ -32,7 +32,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(current_model))
         .routes(routes!(list_models))
@@ -155,17 +159,18 @@ async fn list_models(
 /// The current model, or why there is none.
 ///
 /// # Errors
-/// [`Error::NoModelYet`] with what is missing.
+/// [`NoModel`] with what is missing.
 pub async fn must_have(app: &App, vessel: VesselId, compass: CompassId) -> Result<StoredModel> {
     if let Some(model) = current(&app.db, vessel, compass).await? {
         return Ok(model);
     }
     let (refusal, left_out) = analysis::refusal(&app.db, vessel, compass).await?;
-    Err(Error::NoModelYet(NoModel {
+    Err(NoModel {
         refusal,
         left_out,
         card_withdrawn: card_withdrawn(&app.db, vessel, compass).await?,
-    }))
+    }
+    .into())
 }
 
 impl StoredModel {

@@ -23,7 +23,7 @@ use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Page, Params};
 use crate::ids::{CompassId, OperatorId, VesselId};
 use crate::{schedule, vessels};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_schedule::needs::{Terms, due};
 use binnacle_schedule::rules::shipped;
 use chrono::{Datelike, NaiveDate};
@@ -32,7 +32,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_needs))
         .routes(routes!(list_vessel_needs))

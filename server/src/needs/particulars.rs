@@ -11,7 +11,7 @@ use crate::http::{Id, Json, Valid, optional_text};
 use crate::ids::VesselId;
 use crate::time::Time;
 use crate::{schedule, session, vessels};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_schedule::needs::{Ship, Transit};
 use binnacle_schedule::rules::{Canal, DeviationRecord, Flag, Trade};
 use chrono::NaiveDate;
@@ -24,7 +24,11 @@ use utoipa_axum::routes;
 const MOST_TRANSITS: usize = 50;
 const MOST_TONNAGE: u32 = 1_000_000;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(find_particulars, set_particulars))
 }
 

@@ -27,7 +27,7 @@ use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone};
 use crate::ids::{AlertId, NotificationId, OrderId, VesselId};
 use crate::session::Role;
 use crate::time::Time;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use kind::Way;
 use serde::{Deserialize, Serialize};
@@ -38,7 +38,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_notifications))
         .routes(routes!(mark_notifications_read))

@@ -15,7 +15,7 @@ use crate::session::throttle::{self, Subjects};
 use crate::session::{self, User, normal_email};
 use crate::time::Time;
 use crate::{password, second_factor, secret};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::header::{LOCATION, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use binnacle_magnetics::time::Timestamp;
@@ -32,7 +32,11 @@ pub const CALLBACK: &str = "/api/v1/session/provider/callback";
 const SIGN_IN_PAGE: &str = "/?sign-in=";
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(find_provider))
         .routes(routes!(go_to_provider))

@@ -33,7 +33,7 @@ use crate::ids::{CallId, OperatorId, VesselId};
 use crate::time::Time;
 use crate::vessels;
 use crate::work_orders::{calls_come, calls_move};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_schedule::calls::overlap;
 use call::{Amendment, AmendmentSchema, CallList, Filter, NewCall, RevisedCall, Withdrawal};
@@ -42,7 +42,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_port_calls))
         .routes(routes!(list_vessel_port_calls, enter_port_call))

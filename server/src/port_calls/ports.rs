@@ -4,6 +4,7 @@ use crate::access::PartyReader;
 use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params};
+use axum::extract::FromRef;
 use binnacle_schedule::ports::{self, PortCode};
 use binnacle_schedule::zone::Zone;
 use serde::{Deserialize, Serialize};
@@ -14,7 +15,11 @@ use utoipa_axum::routes;
 const DEFAULT_LIMIT: usize = 20;
 const MOST: usize = 100;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(search_ports))
 }
 

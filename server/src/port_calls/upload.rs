@@ -14,7 +14,7 @@ use crate::time::Time;
 use crate::vessels;
 use crate::work_orders::{calls_come, calls_move};
 use axum::body::Body;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_schedule::calls::{FileErrors, csv, ics};
 use binnacle_schedule::time::Instant;
@@ -24,7 +24,11 @@ use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(upload_fleet_csv))
         .routes(routes!(export_csv, upload_csv))

@@ -17,7 +17,7 @@ use crate::app::App;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params, file, file_name};
 use crate::sheet::{self, About};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::response::Response;
 use chrono::{Datelike, NaiveDate};
 use report::Report;
@@ -30,7 +30,11 @@ use utoipa_axum::routes;
 const LONGEST_DAYS: i64 = 3660;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(find_report))
         .routes(routes!(report_csv))

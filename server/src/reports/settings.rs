@@ -13,7 +13,7 @@ use crate::mail;
 use crate::outbox::{self, Channel};
 use crate::session;
 use crate::time::Time;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -24,7 +24,11 @@ const MOST_RECIPIENTS: usize = 20;
 const MOST_EUR: f64 = 1e6;
 const LONGEST_SWING_H: f64 = 72.0;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(find_report_settings, set_report_settings))
 }
 

@@ -10,12 +10,16 @@ use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Params};
 use crate::ids::VesselId;
 use crate::vessels;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use schema::CoverageSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(find_coverage))
 }
 

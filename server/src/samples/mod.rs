@@ -13,7 +13,7 @@ use crate::http::{Id, Json, Page, Params, time};
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
 use crate::vessels;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_magnetics::analyse::SampleDiagnostic;
 use picture::SamplePicture;
@@ -23,7 +23,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_samples))
         .routes(routes!(samples_csv))

@@ -9,6 +9,7 @@
 //! - Solving holds no transaction, and of two who solve at once the second begins anew.
 
 mod at_risk;
+mod concurrency;
 mod gather;
 mod offer;
 mod orders;
@@ -18,14 +19,14 @@ mod schema;
 mod settings;
 mod solve;
 mod store;
-mod turns;
+
 mod worker;
 
+pub use concurrency::PlanSlots;
 pub use orders::{link, linked_port};
 pub use plan::Plan;
 pub use settings::terms;
 pub use store::ask;
-pub use turns::Turns;
 pub use worker::{run, step};
 
 use crate::access::{Reader, Writer};
@@ -34,7 +35,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page};
 use crate::ids::OperatorId;
 use crate::time::Time;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use serde::Serialize;
@@ -43,7 +44,12 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    PlanSlots: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(find_schedule))
         .routes(routes!(solve_schedule))
@@ -129,8 +135,12 @@ async fn current(app: &App, operator: OperatorId, plan: Option<Plan>) -> Result<
     responses((status = 200, body = Current), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 409, description = "Others make it at the same time, or the fleet is too large", body = Problem)))]
-async fn solve_schedule(State(app): State<App>, writer: Writer) -> Result<Json<Current>> {
-    let plan = solve::solve(&app, writer.operator).await?;
+async fn solve_schedule(
+    State(app): State<App>,
+    State(slots): State<PlanSlots>,
+    writer: Writer,
+) -> Result<Json<Current>> {
+    let plan = solve::solve(&app, &slots, writer.operator).await?;
     current(&app, writer.operator, Some(plan)).await
 }
 

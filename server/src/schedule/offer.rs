@@ -14,7 +14,7 @@ use crate::firms::{self, Terms};
 use crate::http::{Json, Valid, optional_text};
 use crate::ids::{CompassId, FirmId, OrderId};
 use crate::work_orders::{self, NewOffer, NewOrder};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_schedule::input::JobState;
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,11 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(offer_job))
 }
 

@@ -12,7 +12,7 @@ use crate::http::{Id, Json, Valid, optional_text};
 use crate::ids::{CallId, CompassId, FirmId, OperatorId, VesselId};
 use crate::time::Time;
 use crate::{firms, port_calls, session};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_schedule::ports;
 use binnacle_schedule::time::Instant;
@@ -22,7 +22,11 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_pins, pin))
         .routes(routes!(unpin))

@@ -7,7 +7,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
 use crate::ids::OperatorId;
 use crate::session;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_schedule::input::Weights;
 use binnacle_schedule::needs::Terms;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,11 @@ use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(find_schedule_settings, set_settings))
 }
 

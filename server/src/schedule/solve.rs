@@ -4,11 +4,11 @@
 //! from, or not at all; who comes second gathers and solves anew.
 
 use super::at_risk::{aside, at_risk};
+use super::concurrency::{PlanLock, PlanSlots};
 use super::gather::{Agreed, Gathered, Names, gather};
 use super::orders;
 use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled};
 use super::store;
-use super::turns::Turn;
 use crate::alerts;
 use crate::app::App;
 use crate::error::{Error, Result};
@@ -31,21 +31,32 @@ use uuid::Uuid;
 const MOST_TRIES: usize = 5;
 
 /// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
-/// meanwhile waits for their turn, and takes no place of other operators'.
-pub(super) async fn solve(app: &App, operator: OperatorId) -> Result<Plan> {
-    let turn = app.schedules.turn_of(operator).await;
-    solve_in_turn(app, operator, Arc::new(turn)).await
+/// meanwhile waits for the operator's lock, and takes no slot of other operators'.
+pub(super) async fn solve(app: &App, slots: &PlanSlots, operator: OperatorId) -> Result<Plan> {
+    let lock = slots.lock_of(operator).await;
+    solve_locked(app, slots, operator, Arc::new(lock)).await
 }
 
 /// The same, unless somebody is at it.
-pub(super) async fn solve_unless_busy(app: &App, operator: OperatorId) -> Result<Option<Plan>> {
-    match app.schedules.free_turn_of(operator) {
-        Some(turn) => solve_in_turn(app, operator, Arc::new(turn)).await.map(Some),
+pub(super) async fn solve_unless_busy(
+    app: &App,
+    slots: &PlanSlots,
+    operator: OperatorId,
+) -> Result<Option<Plan>> {
+    match slots.try_lock_of(operator) {
+        Some(lock) => solve_locked(app, slots, operator, Arc::new(lock))
+            .await
+            .map(Some),
         None => Ok(None),
     }
 }
 
-async fn solve_in_turn(app: &App, operator: OperatorId, turn: Arc<Turn>) -> Result<Plan> {
+async fn solve_locked(
+    app: &App,
+    slots: &PlanSlots,
+    operator: OperatorId,
+    lock: Arc<PlanLock>,
+) -> Result<Plan> {
     for _ in 0..MOST_TRIES {
         let gathered = gather(app, operator, &BTreeSet::new()).await?;
         if let Some(former) = &gathered.former
@@ -56,7 +67,7 @@ async fn solve_in_turn(app: &App, operator: OperatorId, turn: Arc<Turn>) -> Resu
             return Ok(former);
         }
         let begun = Instant::now();
-        let (schedule, gathered) = settled(app, operator, gathered, &turn).await?;
+        let (schedule, gathered) = settled(app, slots, operator, gathered, &lock).await?;
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
         let plan = named(schedule, &gathered, app.clock.now().into(), took_s)?;
@@ -75,12 +86,13 @@ async fn solve_in_turn(app: &App, operator: OperatorId, turn: Arc<Turn>) -> Resu
 /// until somebody cancels it; and what that plan was made from.
 async fn settled(
     app: &App,
+    slots: &PlanSlots,
     operator: OperatorId,
     mut gathered: Gathered,
-    turn: &Arc<Turn>,
+    lock: &Arc<PlanLock>,
 ) -> Result<(Schedule, Gathered)> {
     let mut moved = BTreeSet::new();
-    let mut schedule = run(app, gathered.text.clone(), turn).await?;
+    let mut schedule = run(slots, gathered.text.clone(), lock).await?;
     loop {
         let more = moved_away(&schedule, &gathered)?;
         if more.is_empty() {
@@ -88,7 +100,7 @@ async fn settled(
         }
         moved.extend(more);
         gathered = gather(app, operator, &moved).await?;
-        let mut next = run(app, gathered.text.clone(), turn).await?;
+        let mut next = run(slots, gathered.text.clone(), lock).await?;
         // Why a job moved is what moved it first, not that its order is in its way now.
         for change in &mut next.changes {
             let mut known = schedule.changes.iter();
@@ -130,14 +142,14 @@ pub(super) async fn forget_asks(
     Ok(())
 }
 
-async fn run(app: &App, text: String, turn: &Arc<Turn>) -> Result<Schedule> {
-    let place = app.schedules.place().await?;
-    // A request that is given up leaves its plan at work: until that ends it has the turn.
-    let turn = Arc::clone(turn);
+async fn run(slots: &PlanSlots, text: String, lock: &Arc<PlanLock>) -> Result<Schedule> {
+    let slot = slots.acquire().await?;
+    // A request that is given up leaves its plan at work, which keeps the lock until it ends.
+    let lock = Arc::clone(lock);
     let done = tokio::task::spawn_blocking(move || {
         let checked = read(&text).context("what was gathered does not hang together")?;
         let schedule = plan(&checked);
-        drop((place, turn));
+        drop((slot, lock));
         anyhow::Ok(schedule)
     });
     Ok(done.await??)

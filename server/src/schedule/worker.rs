@@ -4,6 +4,7 @@
 //! storm of changes makes one schedule, half a minute after the first of them; a plan is
 //! never older than a day.
 
+use super::concurrency::PlanSlots;
 use super::gather::gather;
 use super::{solve, store};
 use crate::app::App;
@@ -25,9 +26,9 @@ const LEASE_S: f64 = 600.0;
 const FIRST_RETRY_S: f64 = 60.0;
 
 /// Works until the server stops.
-pub async fn run(app: App) {
+pub async fn run(app: App, slots: PlanSlots) {
     while !app.stopping.is_cancelled() {
-        match step(&app).await {
+        match step(&app, &slots).await {
             Ok(Some(_)) => continue,
             Ok(None) => {}
             Err(error) => error!(
@@ -47,7 +48,7 @@ pub async fn run(app: App) {
 /// # Errors
 /// When the database cannot be reached; a schedule that cannot be made is not an error
 /// here.
-pub async fn step(app: &App) -> anyhow::Result<Option<OperatorId>> {
+pub async fn step(app: &App, slots: &PlanSlots) -> anyhow::Result<Option<OperatorId>> {
     let now: Time = app.clock.now().into();
     ask_for_outdated(app, now).await?;
     let before = Time(now.0.plus_seconds(-WAIT_S));
@@ -58,7 +59,7 @@ pub async fn step(app: &App) -> anyhow::Result<Option<OperatorId>> {
     let Some(attempts) = in_words(store::claim(&app.db, operator, now, until).await)? else {
         return Ok(None);
     };
-    let made = in_words(make(app, operator).await);
+    let made = in_words(make(app, slots, operator).await);
     if let Ok(Made::Elsewhere) = made {
         in_words(store::put_off(&app.db, operator, Time(now.0.plus_seconds(WAIT_S))).await)?;
         return Ok(Some(operator));
@@ -83,13 +84,13 @@ enum Made {
 }
 
 /// Who plans with no firm has no use for a plan until it is asked for.
-async fn make(app: &App, operator: OperatorId) -> crate::error::Result<Made> {
+async fn make(app: &App, slots: &PlanSlots, operator: OperatorId) -> crate::error::Result<Made> {
     let gathered = gather(app, operator, &BTreeSet::new()).await?;
     if !gathered.has_firms && gathered.former.is_none() {
         solve::forget_asks(app, operator, &gathered).await?;
         return Ok(Made::Here);
     }
-    let made = solve::solve_unless_busy(app, operator).await?;
+    let made = solve::solve_unless_busy(app, slots, operator).await?;
     Ok(made.map_or(Made::Elsewhere, |_| Made::Here))
 }
 

@@ -17,7 +17,7 @@ use crate::ids::UserId;
 use crate::peer::Origin;
 use crate::secret;
 use crate::session;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_magnetics::time::Timestamp;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
@@ -29,7 +29,11 @@ use utoipa_axum::routes;
 const RECOVERY_CODES: usize = 10;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(begin_second_factor))
         .routes(routes!(confirm_second_factor))

@@ -19,10 +19,15 @@ pub(crate) use user::user_sql;
 pub use user::{Role, User, normal_email};
 
 use crate::app::App;
+use axum::extract::FromRef;
 use utoipa_axum::router::OpenApiRouter;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .merge(sign_in::router())
         .merge(own::router())

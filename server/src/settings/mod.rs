@@ -16,7 +16,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
 use crate::ids::VesselId;
 use crate::vessels;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use binnacle_magnetics::analyse::AnalysisSettings;
 use binnacle_wire::messages::Settings;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(find_settings, change_settings))
 }
 

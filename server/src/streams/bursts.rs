@@ -5,8 +5,8 @@
 //! change nothing. A message that cannot be read keeps no other back.
 
 use super::take;
-use crate::access::Agent;
 use crate::db::{Db, row};
+use crate::enrolment::Agent;
 use crate::error::{Error, Result};
 use crate::ids::VesselId;
 use crate::time::Time;

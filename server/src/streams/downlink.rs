@@ -1,8 +1,8 @@
 //! What goes back to the ship: only what it does not have.
 
-use crate::access::Agent;
 use crate::app::App;
 use crate::db::row;
+use crate::enrolment::Agent;
 use crate::error::{Error, Result};
 use crate::models::{self, ModelSchema, StoredModel};
 use crate::settings::{self, AgentSettings};

@@ -17,17 +17,17 @@ mod store;
 
 pub use bursts::{Imported, Incomplete, Refused, import};
 
-use crate::access::Agent;
 use crate::app::App;
 use crate::db::Tx;
 use crate::enrolment;
+use crate::enrolment::Agent;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Params};
 use crate::time::Time;
 use crate::{alerts, analysis, events};
 use axum::body::Bytes;
 use axum::extract::rejection::BytesRejection;
-use axum::extract::{DefaultBodyLimit, State};
+use axum::extract::{DefaultBodyLimit, FromRef, State};
 use axum::http::StatusCode;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::codec::MAX_BYTES;
@@ -47,7 +47,11 @@ const SEQ_END: u64 = 1 << 53;
 const LONGEST_WAIT: Duration = Duration::from_secs(55);
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(put_batch))
         .layer(DefaultBodyLimit::max(MAX_BYTES))

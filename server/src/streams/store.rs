@@ -1,12 +1,14 @@
 //! Batches in the database.
 
-use crate::access::Agent;
 use crate::db::{Result as DbResult, Tx, execute, row};
-use crate::error::{Error, Result};
+use crate::enrolment::Agent;
+use crate::error::{DomainProblem, Error, Result};
 use crate::ids::VesselId;
 use crate::time::Time;
+use axum::http::StatusCode;
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::Batch;
+use serde_json::Map;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use uuid::Uuid;
@@ -60,7 +62,7 @@ pub(super) async fn insert(
         return if known == hash {
             Ok(false)
         } else {
-            Err(Error::StreamForked(batch.seq))
+            Err(forked(batch.seq))
         };
     }
     let first = batch.samples.first().map(|sample| Time(sample.time));
@@ -187,4 +189,19 @@ async fn note_on_vessel(tx: &mut Tx, vessel: VesselId, batch: &Batch, now: Time)
         latest
     )?;
     Ok(())
+}
+
+/// Refusal of a batch whose number is taken by other bytes.
+fn forked(seq: u64) -> Error {
+    let problem = DomainProblem {
+        status: StatusCode::CONFLICT,
+        kind: "stream-forked",
+        title: "The stream has forked",
+        detail: format!(
+            "batch {seq} of this stream is stored with other bytes; open a new stream and number \
+             anew"
+        ),
+        extra: Map::new(),
+    };
+    problem.into()
 }

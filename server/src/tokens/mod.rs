@@ -14,7 +14,7 @@ use crate::http::{Id, Json, Listed, Page, Valid};
 use crate::ids::TokenId;
 use crate::secret;
 use crate::time::Time;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -25,7 +25,11 @@ use utoipa_axum::routes;
 pub const PREFIX: &str = "bna_";
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_tokens, create_token))
         .routes(routes!(delete_token))

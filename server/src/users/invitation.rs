@@ -13,7 +13,7 @@ use crate::ids::{FirmId, OperatorId, UserId};
 use crate::tenants::Tenant;
 use crate::time::Time;
 use crate::{calendar, oidc, password, second_factor, secret, session, tokens};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -22,7 +22,11 @@ use utoipa_axum::routes;
 
 const VALID_FOR_S: f64 = 7.0 * 86_400.0;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(invite_again))
         .routes(routes!(accept_invitation))

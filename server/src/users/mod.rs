@@ -18,7 +18,7 @@ use crate::ids::UserId;
 use crate::second_factor;
 use crate::session::{Role, normal_email};
 use crate::time::Time;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use invitation::Invitation;
 use lettre::Address;
@@ -28,7 +28,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_users, invite_user))
         .routes(routes!(change_user, remove_user))

@@ -23,7 +23,7 @@ use crate::ids::{OperatorId, VesselId};
 use crate::models::{self, ModelSummary, StoredModel};
 use crate::time::Time;
 use amendment::{Amendment, AmendmentSchema};
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
@@ -31,7 +31,11 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_vessels, create_vessel))
         .routes(routes!(find_vessel, amend_vessel))

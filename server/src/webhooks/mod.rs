@@ -25,7 +25,7 @@ use crate::idempotency::{self, Key};
 use crate::ids::{DeliveryId, WebhookId};
 use crate::outbox::{self, Channel, Delivery, DeliveryList, Filter, Kind, Message};
 use crate::secret;
-use axum::extract::State;
+use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde_json::json;
 use utoipa_axum::router::OpenApiRouter;
@@ -36,7 +36,11 @@ use webhook::{MadeWebhook, NewWebhook, Webhook, WebhookList};
 const SECRET_PREFIX: &str = "bns_";
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(list_webhooks, create_webhook))
         .routes(routes!(find_webhook, change_webhook, delete_webhook))

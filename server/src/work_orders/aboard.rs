@@ -12,11 +12,15 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json};
 use crate::ids::OrderId;
 use crate::models::{self, ModelVersion};
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(find_model))
         .routes(routes!(find_order_binnacle))

@@ -20,7 +20,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
 use crate::idempotency::Key;
 use crate::ids::OrderId;
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use binnacle_magnetics::adjust::{AgainForm, Learnt, Part, ReadingForm};
 use binnacle_magnetics::binnacle::Setting;
 use serde::{Deserialize, Serialize};
@@ -140,7 +140,11 @@ struct AgainSchema {
     compass_deg: Option<f64>,
 }
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(read_field_again))
 }
 

@@ -14,12 +14,16 @@ use crate::http::{Id, Json, Valid, ValidOrNone};
 use crate::idempotency::Key;
 use crate::ids::{OrderId, VesselId};
 use crate::tenants::Tenant;
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(offer_work_order))
         .routes(routes!(accept_work_order))

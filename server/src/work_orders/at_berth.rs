@@ -6,6 +6,7 @@ use super::entry::Content;
 use super::order::{Order, State};
 use super::plan::{Choice, Planned, calculate, must_be_without_cargo, must_still_hold, offer};
 use super::reading::{Read, check, must_be_numbers};
+use super::refusal::not_adjustable;
 use super::schema::OfferSchema;
 use super::second::is_explained_by;
 use super::steps::{Moved, Stand, StepRead, judge, learn_anew};
@@ -20,7 +21,7 @@ use crate::idempotency::Key;
 use crate::ids::OrderId;
 use crate::port_calls;
 use crate::time::Time;
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use binnacle_magnetics::adjust::{Outcome, ReadingForm};
 use binnacle_magnetics::angle::wrap_180;
 use utoipa_axum::router::OpenApiRouter;
@@ -36,7 +37,11 @@ const AT_BERTH: [State; 4] = [
     State::Adjusting,
 ];
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(read_berth))
         .routes(routes!(find_plan, choose_plan))
@@ -94,7 +99,7 @@ async fn read_berth(
         change.commit().await?;
     }
     match refusal {
-        Some(refusal) => Err(Error::NotAdjustable(vec![refusal])),
+        Some(refusal) => Err(not_adjustable(vec![refusal])),
         None => shown(&app, writer.tenant, id).await,
     }
 }
@@ -106,7 +111,7 @@ fn must_not_be_refused(whole: &Whole, entry: Uuid) -> Result<()> {
         Content::BerthReading(read) => read.refusal.clone(),
         _ => None,
     });
-    refusal.map_or(Ok(()), |refusal| Err(Error::NotAdjustable(vec![refusal])))
+    refusal.map_or(Ok(()), |refusal| Err(not_adjustable(vec![refusal])))
 }
 
 /// The model knows the correctors as they stood: what was moved since spoils a reading.

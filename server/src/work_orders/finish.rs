@@ -21,7 +21,7 @@ use crate::ids::{OrderId, PhotoId};
 use crate::vessels;
 use axum::body::{Body, Bytes};
 use axum::extract::rejection::BytesRejection;
-use axum::extract::{DefaultBodyLimit, State as Shared};
+use axum::extract::{DefaultBodyLimit, FromRef, State as Shared};
 use axum::http::header::{CONTENT_DISPOSITION, CONTENT_SECURITY_POLICY, CONTENT_TYPE};
 use axum::response::{IntoResponse, Response};
 use utoipa_axum::router::OpenApiRouter;
@@ -39,7 +39,11 @@ const WITH_PHOTOS: [State; 8] = [
     State::Failed,
 ];
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(add_photo))
         .layer(DefaultBodyLimit::max(MAX_BYTES))

@@ -15,14 +15,18 @@ use crate::idempotency::Key;
 use crate::ids::{FirmId, OrderId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new().routes(routes!(list_messages, send_message))
 }
 

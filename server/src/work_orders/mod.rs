@@ -58,7 +58,7 @@ pub use done::{Done, Span, done};
 pub use moved::{Alongside, CallFit, Moving, calls_move};
 pub use offering::NewOffer;
 pub use order::{NewOrder, State};
-pub use refusal::{Cure, Refusal};
+pub use refusal::{Cure, NotAdjustableFields, Refusal};
 pub use store::{is_any_under_way, lock_compass, must_not_be_adjusting};
 pub use verification::{adjusted_at, after_analysis, alert};
 
@@ -74,7 +74,7 @@ use crate::ids::{OperatorId, OrderId, VesselId};
 use crate::session;
 use crate::tenants::Tenant;
 use crate::vessels;
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use axum::http::StatusCode;
 use change::{Change, Request};
 use completion::write_binnacle;
@@ -89,7 +89,11 @@ use utoipa_axum::routes;
 use uuid::Uuid;
 
 /// The routes of this part.
-pub fn router() -> OpenApiRouter<App> {
+pub fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     finish::router()
         .routes(routes!(list_work_orders, create_work_order))
         .routes(routes!(find_work_order))

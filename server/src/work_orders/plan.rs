@@ -2,7 +2,7 @@
 
 use super::basis::Prepared;
 use super::order::Summary;
-use super::refusal::{Cure, Refusal};
+use super::refusal::{Cure, Refusal, not_adjustable};
 use super::standing::Standing;
 use crate::alerts::{self, Cause};
 use crate::app::App;
@@ -162,14 +162,14 @@ pub(super) async fn must_be_without_cargo(
 /// Refuses what is foretold beyond the order's limits, however it came to be followed.
 ///
 /// # Errors
-/// [`Error::NotAdjustable`] with what would cure it.
+/// `not-adjustable` with what would cure it.
 pub(super) fn must_keep_to_limits(standing: &Standing) -> Result<()> {
     let basis = standing.read.as_ref().and_then(|read| read.basis.as_ref());
     let followed = standing.plan.as_ref().zip(basis);
     let beyond =
         followed.and_then(|(plan, basis)| plan.plan.beyond(&standing.limits, &basis.waters));
     match beyond {
-        Some(refused) => Err(Error::NotAdjustable(vec![Refusal::from(&refused)])),
+        Some(refused) => Err(not_adjustable(vec![Refusal::from(&refused)])),
         None => Ok(()),
     }
 }
@@ -212,7 +212,7 @@ pub(super) async fn must_have_turned(
 /// or by what the compass showed at them, which leaves more open.
 ///
 /// # Errors
-/// [`Error::NotAdjustable`] where what is left open is beyond the order's limits.
+/// `not-adjustable` where what is left open is beyond the order's limits.
 pub(super) async fn foretold(app: &App, standing: &Standing) -> Result<Learnt> {
     if let Some(learnt) = standing.learnt() {
         return Ok(learnt.clone());
@@ -230,13 +230,13 @@ pub(super) async fn foretold(app: &App, standing: &Standing) -> Result<Learnt> {
         refusal.words
     );
     refusal.cures.insert(0, Cure::ReadAgain);
-    Err(Error::NotAdjustable(vec![refusal]))
+    Err(not_adjustable(vec![refusal]))
 }
 
 /// What the planner offers, or why it offers nothing.
 ///
 /// # Errors
-/// [`Error::NotAdjustable`] with what would cure it.
+/// `not-adjustable` with what would cure it.
 pub(super) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> Result<Outcome> {
     let (vessel, compass) = (summary.vessel_id, summary.compass_id);
     let alerts = alerts::in_force(&app.db, vessel, compass).await?;
@@ -256,7 +256,7 @@ pub(super) async fn offer(app: &App, summary: &Summary, prepared: Prepared) -> R
     let told = told.map(|alert| format!("an alert about this compass is open: {}", alert.summary));
     outcome.notes.splice(0..0, told);
     if outcome.plans.is_empty() {
-        return Err(Error::NotAdjustable(refusals(&outcome)));
+        return Err(not_adjustable(refusals(&outcome)));
     }
     Ok(outcome)
 }

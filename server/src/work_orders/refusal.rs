@@ -1,7 +1,10 @@
 //! Why there is no plan, or a reading is not taken, and what would cure it.
 
+use crate::error::{DomainProblem, Error};
+use axum::http::StatusCode;
 use binnacle_magnetics::adjust::{Cure as Cured, Refused};
 use serde::{Deserialize, Serialize};
+use serde_json::Map;
 use utoipa::ToSchema;
 
 /// Why there is no plan, or a reading is not taken.
@@ -45,6 +48,14 @@ pub enum Cure {
 }
 
 impl Refusal {
+    /// Returns what is wrong, and the mistakes that would explain it, as one sentence.
+    fn with_explanations(&self) -> String {
+        match self.could_be.join(", or ").as_str() {
+            "" => self.words.clone(),
+            explained => format!("{}; it could be that {explained}", self.words),
+        }
+    }
+
     /// The same, a doubt of the place before all else that could explain it.
     pub(super) fn doubted(mut self, doubt: Option<Refusal>) -> Refusal {
         if let Some(doubt) = doubt {
@@ -82,4 +93,29 @@ impl From<Cured> for Cure {
             Cured::Swing => Cure::Swing,
         }
     }
+}
+
+/// Fields of the problem `not-adjustable`.
+#[derive(Serialize, ToSchema)]
+pub struct NotAdjustableFields {
+    /// What is wrong at the berth and what would cure it; only in `not-adjustable`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(required = false)]
+    refusals: Option<Vec<Refusal>>,
+}
+
+/// Returns the problem `not-adjustable`: there is no plan, or a reading is not taken.
+pub(super) fn not_adjustable(refusals: Vec<Refusal>) -> Error {
+    let detail = refusals.iter().map(Refusal::with_explanations);
+    let problem = DomainProblem {
+        status: StatusCode::UNPROCESSABLE_ENTITY,
+        kind: "not-adjustable",
+        title: "No plan as it stands",
+        detail: detail.collect::<Vec<_>>().join("; "),
+        extra: Map::new(),
+    };
+    let fields = NotAdjustableFields {
+        refusals: Some(refusals),
+    };
+    problem.with(&fields).into()
 }

@@ -25,13 +25,17 @@ use crate::port_calls;
 use crate::schedule;
 use crate::tenants::Tenant;
 use crate::time::Time;
-use axum::extract::State as Shared;
+use axum::extract::{FromRef, State as Shared};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
-pub(super) fn router() -> OpenApiRouter<App> {
+pub(super) fn router<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
     OpenApiRouter::new()
         .routes(routes!(propose_retime))
         .routes(routes!(accept_retime))

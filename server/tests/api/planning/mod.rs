@@ -16,6 +16,7 @@ mod withdrawn;
 use crate::port_calls;
 use crate::support::{Answer, Person, Shore};
 use binnacle_server::ids::OperatorId;
+use binnacle_server::schedule::PlanSlots;
 use binnacle_server::time::Time;
 use binnacle_server::{firms as all_firms, schedule};
 use reqwest::Method;
@@ -89,7 +90,9 @@ pub(crate) async fn solve(person: &Person) -> Value {
 /// Lets time go by until what has changed is due, and has the worker make a schedule.
 pub(crate) async fn follow(shore: &Shore) -> Option<OperatorId> {
     shore.advance(31.0);
-    schedule::step(&shore.app).await.unwrap()
+    schedule::step(&shore.app, &PlanSlots::default())
+        .await
+        .unwrap()
 }
 
 /// The first job of a plan: port, day, firm.

@@ -6,7 +6,7 @@ use crate::port_calls;
 use crate::support::{Person, Shore};
 use binnacle_schedule::{input, plan};
 use binnacle_server::db::Db;
-use binnacle_server::schedule;
+use binnacle_server::schedule::{self, PlanSlots};
 use serde_json::{Value, json};
 
 on_both!(
@@ -148,13 +148,26 @@ async fn a_storm_of_changes_makes_one_plan_after_half_a_minute(shore: Shore) {
         enter(&ada, &nao, "NLRTM", day).await;
     }
     shore.advance(20.0);
-    assert_eq!(schedule::step(&shore.app).await.unwrap(), None);
+    assert_eq!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap(),
+        None
+    );
     let second = shore.second().await;
     shore.advance(11.0);
-    let (one, other) = tokio::join!(schedule::step(&shore.app), schedule::step(&second));
+    let (one, other) = tokio::join!(
+        schedule::step(&shore.app, &PlanSlots::default()),
+        schedule::step(&second, &PlanSlots::default())
+    );
     // Two servers, one schedule.
     assert!(one.unwrap().is_some() != other.unwrap().is_some());
-    assert_eq!(schedule::step(&shore.app).await.unwrap(), None);
+    assert_eq!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap(),
+        None
+    );
     assert_eq!(current(&ada).await["plan"]["version"], 1);
     second.db.close().await;
     shore.finish().await;
@@ -167,9 +180,19 @@ async fn a_plan_is_made_anew_each_day(shore: Shore) {
     enter(&ada, &nao, "NLRTM", 8).await;
     assert!(follow(&shore).await.is_some());
     shore.advance(86_000.0);
-    assert_eq!(schedule::step(&shore.app).await.unwrap(), None);
+    assert_eq!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap(),
+        None
+    );
     shore.advance(500.0);
-    assert!(schedule::step(&shore.app).await.unwrap().is_some());
+    assert!(
+        schedule::step(&shore.app, &PlanSlots::default())
+            .await
+            .unwrap()
+            .is_some()
+    );
     let ada = Person::sign_in(&shore, ada.operator, &ada.email).await;
     let plan = current(&ada).await["plan"].clone();
     assert_eq!(plan["version"], 2);

@@ -1,0 +1,40 @@
+//! The agent as a caller: an extractor that a handler names in its arguments.
+
+use super::store;
+use crate::access::bearer;
+use crate::app::App;
+use crate::error::{Error, Result};
+use crate::ids::{AgentId, CompassId, VesselId};
+use crate::{audit, secret};
+use axum::extract::{FromRef, FromRequestParts};
+use axum::http::request::Parts;
+
+/// A ship's agent.
+#[derive(Clone, Copy, Debug, sqlx::FromRow)]
+pub struct Agent {
+    /// The ship.
+    pub vessel_id: VesselId,
+    /// The installation.
+    pub agent_id: AgentId,
+    /// The compass whose streams it may feed.
+    pub compass_id: CompassId,
+}
+
+impl<S> FromRequestParts<S> for Agent
+where
+    App: FromRef<S>,
+    S: Send + Sync,
+{
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Agent> {
+        let app = App::from_ref(state);
+        let token = bearer(parts).ok_or(Error::Unauthenticated)?;
+        let vessel = secret::vessel_of_token(token).ok_or(Error::Unauthenticated)?;
+        let agent = store::find_agent(&app.db, VesselId(vessel), &secret::hash(token))
+            .await?
+            .ok_or(Error::Unauthenticated)?;
+        audit::acts(&agent);
+        Ok(agent)
+    }
+}

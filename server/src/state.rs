@@ -1,0 +1,36 @@
+//! State of the whole server: the platform's, and what single capabilities need of it.
+
+use crate::app::App;
+use crate::schedule::PlanSlots;
+use axum::extract::FromRef;
+
+/// State of every route; each handler takes the part it needs by [`FromRef`].
+#[derive(Clone)]
+pub struct ServerState {
+    /// State of the platform.
+    pub app: App,
+    /// Slots for schedules being made.
+    pub plan_slots: PlanSlots,
+}
+
+impl ServerState {
+    /// State of a server with its capabilities idle.
+    pub fn new(app: App) -> ServerState {
+        ServerState {
+            app,
+            plan_slots: PlanSlots::default(),
+        }
+    }
+}
+
+impl FromRef<ServerState> for App {
+    fn from_ref(state: &ServerState) -> App {
+        state.app.clone()
+    }
+}
+
+impl FromRef<ServerState> for PlanSlots {
+    fn from_ref(state: &ServerState) -> PlanSlots {
+        state.plan_slots.clone()
+    }
+}
