@@ -11,7 +11,7 @@ use axum::Json;
 use axum::extract::rejection::{JsonRejection, PathRejection, QueryRejection};
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use binnacle_magnetics::fit::FitError;
+use binnacle_compass::result::FitError;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use tracing::error;

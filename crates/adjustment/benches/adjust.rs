@@ -11,8 +11,8 @@ mod adjusting;
 
 use adjusting::knowledge::{FLUXGATE, model, reading, waters};
 use adjusting::random::Random;
-use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, plan};
-use binnacle_magnetics::binnacle::{Binnacle, BinnacleForm, DesignForm};
+use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, plan};
+use binnacle_adjustment::binnacle::{Binnacle, BinnacleForm, DesignForm};
 use divan::Bencher;
 
 fn main() {

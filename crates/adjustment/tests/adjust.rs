@@ -12,8 +12,8 @@ mod tally;
 
 use adjusting::knowledge::{FLUXGATE, Instruments};
 use adjusting::random::Random;
-use binnacle_magnetics::adjust::{Adjustment, Circumstances, Limits, plan};
-use binnacle_magnetics::corrector::effect;
+use binnacle_adjustment::adjust::{Adjustment, Circumstances, Limits, plan};
+use binnacle_adjustment::corrector::effect;
 use tally::Tally;
 
 /// With no errors at all the formulas and the independent iron say the same.
@@ -112,7 +112,7 @@ fn the_berth_in_the_documentation_reads() {
     let page = include_str!("../../../docs/plan.md");
     let from = page.split("```json\n").nth(1).unwrap();
     let form = from.split("```").next().unwrap();
-    let form: binnacle_magnetics::adjust::BerthForm = serde_json::from_str(form).unwrap();
+    let form: binnacle_adjustment::adjust::BerthForm = serde_json::from_str(form).unwrap();
     let berth = form.read().unwrap();
     assert_eq!(berth.waters.len(), 2);
     assert!((22_000.0..27_000.0).contains(&berth.earth.h_nt));
@@ -139,7 +139,8 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
     let waters = adjusting::knowledge::waters(&mut rng, 0.15);
     let model = adjusting::knowledge::model(&mut rng, &truth, &waters);
     // The reading is hers, so that most of what is written does give a plan.
-    let page: binnacle_magnetics::adjust::BerthForm = serde_json::from_value(form.clone()).unwrap();
+    let page: binnacle_adjustment::adjust::BerthForm =
+        serde_json::from_value(form.clone()).unwrap();
     let there = page.read().unwrap();
     let place = (there.earth.h_nt, there.earth.z_nt);
     let [x, y, z] = truth.field(place, there.reading.magnetic().degrees());
@@ -164,7 +165,7 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
         for value in strange {
             let mut form = form.clone();
             *form.pointer_mut(field).unwrap() = serde_json::json!(value);
-            let form = serde_json::from_value::<binnacle_magnetics::adjust::BerthForm>(form);
+            let form = serde_json::from_value::<binnacle_adjustment::adjust::BerthForm>(form);
             let Ok(berth) = form
                 .map_err(drop)
                 .and_then(|form| form.read().map_err(drop))
@@ -174,7 +175,7 @@ fn nothing_that_is_written_of_a_berth_brings_the_planner_down() {
             let mut adjustment = berth.adjustment(&model, &binnacle);
             // Wider than anyone may ask for.
             (adjustment.limits.residual_deg, adjustment.limits.band_deg) = (60.0, 60.0);
-            let Ok(outcome) = binnacle_magnetics::adjust::plan(&adjustment) else {
+            let Ok(outcome) = binnacle_adjustment::adjust::plan(&adjustment) else {
                 continue;
             };
             planned += u32::from(!outcome.plans.is_empty());

@@ -3,13 +3,13 @@
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
-use binnacle_magnetics::angle::MagneticHeading;
-use binnacle_magnetics::berth::{
+use binnacle_adjustment::berth::{
     Alignment, BerthError, BerthReading, Estimated, ReadingErrors, lambda_at_berth,
     permanent_at_berth,
 };
-use binnacle_magnetics::model::{Covariance, Model, Parameters};
-use binnacle_magnetics::ship::{EarthField, ShipMagnetism};
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::{Covariance, Model, Parameters};
+use binnacle_compass::ship::{EarthField, ShipMagnetism};
 use nalgebra::SMatrix;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

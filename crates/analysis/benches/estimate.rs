@@ -8,13 +8,14 @@
 #[allow(dead_code)]
 mod voyages;
 
-use binnacle_magnetics::analyse::{AnalysisSettings, analyse};
-use binnacle_magnetics::angle::TrueHeading;
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::fit::{Observation, RobustOptions, fit_robust};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_analysis::fit::{Observation, RobustOptions, fit_robust};
+use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 use divan::Bencher;
 use voyages::{Faults, Variety, sail, sail_on};
 

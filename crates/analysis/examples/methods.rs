@@ -8,7 +8,7 @@
 //! taken off the product's band.
 //!
 //! Takes half an hour: `make methods`, or
-//! `cargo run --release -p binnacle-magnetics --example methods [SHIPS]`.
+//! `cargo run --release -p binnacle-analysis --example methods [SHIPS]`.
 
 #![allow(clippy::unwrap_used)] // a study, run by hand
 
@@ -16,11 +16,10 @@
 #[path = "../tests/voyages/mod.rs"]
 mod voyages;
 
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::fit::{
-    FitError, Observation, RobustOptions, fit_ols, fit_paper, fit_robust,
-};
-use binnacle_magnetics::model::Model;
+use binnacle_analysis::fit::{Observation, RobustOptions, fit_ols, fit_paper, fit_robust};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::model::Model;
+use binnacle_compass::result::FitError;
 use voyages::bound::{HEADINGS, bound, fair};
 use voyages::{Faults, Truth, Variety, Voyage, predicted, true_deviation};
 

@@ -11,9 +11,8 @@
 #[path = "../tests/voyages/mod.rs"]
 mod voyages;
 
-use binnacle_magnetics::fit::{
-    Observation, REFERENCE_CONSTANT_SD_DEG, RobustFit, RobustOptions, fit_robust,
-};
+use binnacle_analysis::fit::{Observation, RobustFit, RobustOptions, fit_robust};
+use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Instant;

@@ -3,7 +3,7 @@
 //! what becomes of both when ships or instruments are not as usual.
 //!
 //! Takes minutes: `make study`, or
-//! `cargo run --release -p binnacle-magnetics --example study [SHIPS]`, with the
+//! `cargo run --release -p binnacle-analysis --example study [SHIPS]`, with the
 //! number of ships of each kind.
 
 #![allow(clippy::unwrap_used)] // a study, run by hand
@@ -12,9 +12,9 @@
 #[path = "../tests/voyages/mod.rs"]
 mod voyages;
 
-use binnacle_magnetics::angle::{Deviation, wrap_180};
-use binnacle_magnetics::fit::fit_robust;
-use binnacle_magnetics::model::Model;
+use binnacle_analysis::fit::fit_robust;
+use binnacle_compass::angle::{Deviation, wrap_180};
+use binnacle_compass::model::Model;
 use voyages::bound::{HEADINGS, bound, fair};
 use voyages::tally::{Held, Tally, options};
 use voyages::{Faults, Truth, Variety, predicted, sail, true_deviation};

@@ -6,16 +6,14 @@
 #[allow(dead_code)]
 mod voyages;
 
-use binnacle_magnetics::advice::{
-    AdviceError, Band, HeadingRange, NOTICEABLE_DEG, Question, SailNext, advise,
-};
-use binnacle_magnetics::angle::{CompassHeading, Deviation};
-use binnacle_magnetics::coverage::{Coverage, coverage};
-use binnacle_magnetics::estimate::NoiseLevels;
-use binnacle_magnetics::fit::{Observation, RobustFit, RobustOptions, fit_robust};
-use binnacle_magnetics::model::{Model, Parameters};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_analysis::advice::{AdviceError, NOTICEABLE_DEG, Question, advise};
+use binnacle_analysis::fit::{Observation, RobustFit, RobustOptions, fit_robust};
+use binnacle_compass::angle::{CompassHeading, Deviation};
+use binnacle_compass::coverage::{Coverage, coverage};
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::position::Position;
+use binnacle_compass::result::{Band, HeadingRange, NoiseLevels, SailNext};
+use binnacle_compass::ship::EarthField;
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,13 +1,13 @@
 //! Whatever observations come, a fit ends in a finite model or a named refusal.
 
-use binnacle_magnetics::advice::{Question, advise};
-use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation};
-use binnacle_magnetics::coverage::coverage;
-use binnacle_magnetics::fit::{Observation, RobustOptions, fit_ols, fit_paper, fit_robust};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::ship::EarthField;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::advice::{Question, advise};
+use binnacle_analysis::fit::{Observation, RobustOptions, fit_ols, fit_paper, fit_robust};
+use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
+use binnacle_compass::coverage::coverage;
+use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use proptest::prelude::*;
 
 /// Any observation that the types allow, wild ones more often than at sea.

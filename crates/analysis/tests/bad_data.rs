@@ -6,13 +6,14 @@
 #[allow(dead_code, reason = "other tests use the rest")]
 mod voyages;
 
-use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
-use binnacle_magnetics::fit::{
-    FitError, HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, refer,
+use binnacle_analysis::fit::{
+    HeadingReading, Observation, RobustFit, RobustOptions, fit_robust, refer,
 };
-use binnacle_magnetics::model::Caution;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation, wrap_180};
+use binnacle_compass::model::Caution;
+use binnacle_compass::position::Position;
+use binnacle_compass::result::FitError;
+use binnacle_compass::time::Timestamp;
 use voyages::{Faults, Truth, Variety, Voyage, predicted, sail, true_deviation};
 
 fn fit(observations: &[Observation]) -> Result<RobustFit, FitError> {

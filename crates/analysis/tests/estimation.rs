@@ -5,10 +5,10 @@
 
 mod voyages;
 
-use binnacle_magnetics::angle::{CompassHeading, Deviation, wrap_180};
-use binnacle_magnetics::estimate::Prior;
-use binnacle_magnetics::fit::{Observation, RobustOptions, fit_known_ship, fit_robust};
-use binnacle_magnetics::model::{Caution, Model, Parameters};
+use binnacle_analysis::estimate::Prior;
+use binnacle_analysis::fit::{Observation, RobustOptions, fit_known_ship, fit_robust};
+use binnacle_compass::angle::{CompassHeading, Deviation, wrap_180};
+use binnacle_compass::model::{Caution, Model, Parameters};
 use voyages::tally::Tally;
 use voyages::{Faults, Truth, Variety, predicted, sail, true_deviation};
 
@@ -216,7 +216,7 @@ fn a_compass_that_is_bolted_down_askew_is_found_out() {
         let askew = 4.0;
         for observation in &mut voyage.observations {
             let compass = observation.compass.degrees() - askew;
-            observation.compass = binnacle_magnetics::angle::CompassHeading::new(compass).unwrap();
+            observation.compass = binnacle_compass::angle::CompassHeading::new(compass).unwrap();
             let deviation = observation.deviation.degrees_east() + askew;
             observation.deviation = Deviation::new(deviation).unwrap();
         }

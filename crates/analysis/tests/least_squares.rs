@@ -6,8 +6,9 @@
 #[allow(dead_code)]
 mod voyages;
 
-use binnacle_magnetics::angle::{CompassHeading, Deviation, wrap_180};
-use binnacle_magnetics::fit::{FitError, Observation, fit_ols, fit_paper};
+use binnacle_analysis::fit::{Observation, fit_ols, fit_paper};
+use binnacle_compass::angle::{CompassHeading, Deviation, wrap_180};
+use binnacle_compass::result::FitError;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use voyages::{Faults, Truth, Variety, gauss, predicted, sail, true_deviation};

@@ -3,19 +3,18 @@
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
-use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
-use binnacle_magnetics::deviation::Coefficients;
-use binnacle_magnetics::fit::{
-    FitError, Observation, RobustOptions, fit_ols, fit_paper, fit_robust,
-};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_analysis::fit::{Observation, RobustOptions, fit_ols, fit_paper, fit_robust};
+use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::Model;
+use binnacle_compass::result::FitError;
+use binnacle_compass::ship::EarthField;
 
 const NT_PER_GAUSS: f64 = 1e5;
 
 /// The table as it was printed.
 fn as_printed() -> Vec<Observation> {
-    let text = include_str!("../data/paper_table2.csv");
+    let text = include_str!("../../compass/data/paper_table2.csv");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     reader
         .records()

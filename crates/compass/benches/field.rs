@@ -1,9 +1,9 @@
 //! What an evaluation of the earth's field costs:
-//! `cargo bench -p binnacle-magnetics --bench field`.
+//! `cargo bench -p binnacle-compass --bench field`.
 
-use binnacle_magnetics::field::{FieldAt, FieldModel, field};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::field::{FieldAt, FieldModel, field};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use divan::{Bencher, black_box};
 
 fn main() {

@@ -46,7 +46,7 @@ pub enum AngleError {
 
 /// A number as a complaint quotes it: with an exponent where it would be a long one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Brief(pub(crate) f64);
+pub struct Brief(pub f64);
 
 impl fmt::Display for Brief {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

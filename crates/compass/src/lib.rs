@@ -1,5 +1,5 @@
-//! The magnetism of ships: the earth's field, deviation, and what a ship's own
-//! headings tell about her magnetism.
+//! The words and the physics that every part of Binnacle shares: angles, time and place,
+//! the earth's field, the deviation of a ship's compass, and what an analysis reads and finds.
 //!
 //! Pure: no input or output, no clock, no randomness. Everything here is a
 //! function of its arguments, so that an analysis can be repeated to the byte.
@@ -22,14 +22,7 @@ pub mod deviation;
 pub mod handbook;
 pub mod ship;
 
-pub mod binnacle;
-pub mod corrector;
-
-pub mod adjust;
-pub mod advice;
-pub mod analyse;
-pub mod berth;
-pub mod change;
 pub mod coverage;
-pub mod estimate;
-pub mod fit;
+pub mod logbook;
+pub mod result;
+pub mod settings;

@@ -4,14 +4,8 @@
 //! Entries may overlap, lie before the first sample or after the last, and stand
 //! in any order: an entry's effect depends on itself and on the sample alone.
 
-use super::SampleReason;
-use crate::sample::Sample;
 use crate::time::Timestamp;
 use serde::{Deserialize, Serialize};
-
-/// An open berth entry says nothing of a sample taken at this speed or more,
-/// knots: she has sailed, and nobody wrote it down.
-const UNDER_WAY_KN: f64 = 2.0;
 
 /// One entry of the magnetic logbook.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -108,21 +102,11 @@ impl LogbookEntry {
     }
 
     /// The entry as it stands at a time: what ends later goes on yet.
-    pub(super) fn as_of(&self, until: Timestamp) -> LogbookEntry {
+    pub fn as_of(&self, until: Timestamp) -> LogbookEntry {
         LogbookEntry {
             to: self.to.filter(|to| *to <= until),
             ..self.clone()
         }
-    }
-
-    /// Why a sample tells nothing of the ship alone, by this entry.
-    pub(super) fn excludes(&self, sample: &Sample) -> Option<SampleReason> {
-        let reason = self.kind.excludes()?;
-        let within = self.from <= sample.time && self.to.is_none_or(|to| sample.time <= to);
-        let has_sailed = self.kind == LogbookKind::Berth
-            && self.to.is_none()
-            && sample.sog_kn.is_some_and(|sog_kn| sog_kn >= UNDER_WAY_KN);
-        (within && !has_sailed).then_some(reason)
     }
 }
 
@@ -148,7 +132,7 @@ impl LogbookKind {
 
     /// Whether the iron of ship and binnacle is much what it was, so that what the
     /// epoch before tells of it still counts.
-    pub(super) fn leaves_the_iron(self) -> bool {
+    pub fn leaves_the_iron(self) -> bool {
         matches!(
             self,
             LogbookKind::Repair
@@ -159,7 +143,7 @@ impl LogbookKind {
     }
 
     /// As a sentence names it.
-    pub(super) fn in_words(self) -> &'static str {
+    pub fn in_words(self) -> &'static str {
         match self {
             LogbookKind::Adjustment => "the compass was adjusted",
             LogbookKind::CorrectorChange => "a corrector was moved",
@@ -173,15 +157,6 @@ impl LogbookKind {
             LogbookKind::MagneticCargo => "magnetic cargo",
             LogbookKind::Berth => "a berth",
             LogbookKind::Note => "a note",
-        }
-    }
-
-    /// Why samples taken during such an entry are left out; none when they are not.
-    pub(super) fn excludes(self) -> Option<SampleReason> {
-        match self {
-            LogbookKind::MagneticCargo => Some(SampleReason::MagneticCargo),
-            LogbookKind::Berth => Some(SampleReason::Berth),
-            _ => None,
         }
     }
 }

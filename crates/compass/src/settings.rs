@@ -1,8 +1,11 @@
 //! What an operator decides about how a vessel's samples are read.
 
 use crate::field::FieldModel;
-use crate::fit::{GyroSpeedError, REFERENCE_CONSTANT_SD_DEG};
 use serde::{Deserialize, Serialize};
+
+/// What is known beforehand of a reference's constant error: its standard
+/// deviation in degrees.
+pub const REFERENCE_CONSTANT_SD_DEG: f64 = 0.5;
 
 /// Settings of an analysis. They are part of its input: a change of settings
 /// makes a new analysis of the same samples.
@@ -27,4 +30,16 @@ impl Default for AnalysisSettings {
             reference_constant_sd_deg: REFERENCE_CONSTANT_SD_DEG,
         }
     }
+}
+
+/// Who takes out the error that a gyro has from the ship's own motion over the
+/// turning earth. It must be done once, never twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum GyroSpeedError {
+    /// The gyro does it itself.
+    #[default]
+    Corrected,
+    /// The gyro does not: it is taken out here, from speed and latitude.
+    Uncorrected,
 }

@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used)] // all of this is tests
 
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::deviation::Coefficients;
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 use serde_json::{Value, json};
 
 const PAGE: &str = include_str!("../../../docs/model.md");

@@ -2,7 +2,7 @@
 
 use crate::sheet::words::heading;
 use crate::time::Time;
-use binnacle_magnetics::deviation::DeviationError;
+use binnacle_compass::deviation::DeviationError;
 
 /// Samples older than this make no card, days: by the drift that is usual
 /// (docs/science.md, table of (9)) a ship's permanent field has then wandered by so

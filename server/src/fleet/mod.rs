@@ -18,7 +18,7 @@ use crate::models::StoredModel;
 use crate::time::Time;
 use crate::vessels::LastPosition;
 use axum::extract;
-use binnacle_magnetics::field::{FieldModel, field};
+use binnacle_compass::field::{FieldModel, field};
 use binnacle_schedule::ports::{self, PortCode};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;

@@ -1,7 +1,7 @@
 //! Why a compass has no model, and since when its last one holds no more.
 
 use crate::analysis::LeftOut;
-use binnacle_magnetics::fit::FitError;
+use binnacle_compass::result::FitError;
 use binnacle_wire::messages::CardWithdrawn;
 use std::fmt;
 

@@ -5,7 +5,7 @@ use crate::db::{Result as DbResult, Tx, execute, row};
 use crate::error::{Error, Result};
 use crate::ids::VesselId;
 use crate::time::Time;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::sample::Sample;
 use binnacle_wire::batch::Batch;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;

@@ -1,6 +1,6 @@
 //! Why there is no plan, or a reading is not taken, and what would cure it.
 
-use binnacle_magnetics::adjust::{Cure as Cured, Refused};
+use binnacle_adjustment::adjust::{Cure as Cured, Refused};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 

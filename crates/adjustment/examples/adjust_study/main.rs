@@ -4,7 +4,7 @@
 //! tell right from wrong; and what a berth notices of a ship that changed since the model.
 //!
 //! `make study-adjust`, or
-//! `cargo run --release -p binnacle-magnetics --example adjust_study [SHIPS] [PART]`
+//! `cargo run --release -p binnacle-adjustment --example adjust_study [SHIPS] [PART]`
 //! with `plans`, `changed`, `steps` or `sea` for one part alone.
 
 #[allow(dead_code)]

@@ -7,9 +7,9 @@
 use super::condition::Condition;
 use super::refusal::{Coefficient, Refusal, said};
 use super::{Adjustment, Learnt, Limits, Plan, PredictedTable, Refused, Water, spheres};
-use crate::deviation::Coefficients;
-use crate::model::Model;
-use crate::ship::EarthField;
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 
 /// What is wrong with residuals foretold by a model.
 pub(super) fn beyond_limits(

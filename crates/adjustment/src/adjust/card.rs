@@ -5,11 +5,11 @@
 //! read, whatever the model and the heading given are.
 
 use super::reading_of_card::heading_sd_deg;
-use crate::angle::{MagneticHeading, wrap_180, wrap_360};
 use crate::berth::{Alignment, BerthReading};
 use crate::binnacle::Binnacle;
 use crate::corrector::effect;
-use crate::ship::{EarthField, compass_rad};
+use binnacle_compass::angle::{MagneticHeading, wrap_180, wrap_360};
+use binnacle_compass::ship::{EarthField, compass_rad};
 use serde::{Deserialize, Serialize};
 
 /// Two-sided 99 % of a normal distribution, in standard deviations.

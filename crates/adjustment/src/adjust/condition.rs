@@ -11,9 +11,9 @@ use super::{AdjustError, Adjustment};
 use crate::berth::{BerthEstimate, JointCovariance, lambda_at_berth};
 use crate::binnacle::{BarSetting, Binnacle, Setting, Soft};
 use crate::corrector::{Effect, Iron, effect};
-use crate::deviation::DeviationError;
-use crate::model::{Covariance, Model, Parameters};
-use crate::ship::{EarthField, PARAMETERS, ShipMagnetism};
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::model::{Covariance, Model, Parameters};
+use binnacle_compass::ship::{EarthField, PARAMETERS, ShipMagnetism};
 
 const LAMBDA: usize = PARAMETERS + 1;
 

@@ -6,14 +6,14 @@
 
 use super::read::ReadingForm;
 use super::{Adjustment, AgainForm, Circumstances, Limits, VerticalReading, Water};
-use crate::angle::Variation;
 use crate::berth::{BerthError, BerthReading};
 use crate::binnacle::Binnacle;
-use crate::field::{Field, FieldModel, field};
-use crate::model::Model;
-use crate::position::Position;
-use crate::ship::EarthField;
-use crate::time::Timestamp;
+use binnacle_compass::angle::Variation;
+use binnacle_compass::field::{Field, FieldModel, field};
+use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// What is found at the berth, as it is written.

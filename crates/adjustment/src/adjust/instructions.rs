@@ -12,10 +12,10 @@ use super::places::stands;
 use super::reading_of_card::turn_sd_deg;
 use super::tolerance::errors_between;
 use super::{Adjustment, heeling};
-use crate::angle::{wrap_180, wrap_360};
 use crate::berth::Alignment;
 use crate::binnacle::{Axis, BarSetting, HeelingSetting, PairSetting, Setting, Side, Tray};
 use crate::corrector::{Effect, effect};
+use binnacle_compass::angle::{wrap_180, wrap_360};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -2,10 +2,10 @@
 
 use super::heeling::VerticalReading;
 use super::read::Unit;
-use crate::angle::MagneticHeading;
 use crate::berth::{Alignment, BerthReading, ReadingErrors, lambda_at_berth};
-use crate::model::Model;
-use crate::ship::EarthField;
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

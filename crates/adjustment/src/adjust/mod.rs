@@ -54,9 +54,9 @@ pub use verify::{Needed, Settled, Verification, verify};
 
 use crate::berth::{BerthError, BerthReading};
 use crate::binnacle::{Binnacle, Setting};
-use crate::deviation::DeviationError;
-use crate::model::Model;
-use crate::ship::EarthField;
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 use condition::Condition;
 use search::{Found, Front};
 use serde::{Deserialize, Serialize};

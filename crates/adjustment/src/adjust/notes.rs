@@ -3,7 +3,7 @@
 use super::condition::Condition;
 use super::reading_of_card::friction_deg;
 use super::{Adjustment, BerthCheck, Optimality, Plan, mistakes};
-use crate::estimate::CAUTION_H_NT;
+use binnacle_compass::ship::CAUTION_H_NT;
 
 /// All of it, the gravest first.
 pub(super) fn notes(

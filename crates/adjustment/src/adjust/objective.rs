@@ -8,7 +8,7 @@
 //! angle of north, with its sum, is a convex cone (docs/science.md, §11).
 
 use super::Water;
-use crate::ship::ShipMagnetism;
+use binnacle_compass::ship::ShipMagnetism;
 
 /// Headings on which a setting is judged: every 5°.
 const HEADINGS: usize = 72;

@@ -2,11 +2,11 @@
 
 use super::condition::Condition;
 use super::{AdjustError, Adjustment, Water};
-use crate::angle::CompassHeading;
 use crate::binnacle::Setting;
-use crate::deviation::DeviationError;
-use crate::model::Model;
-use crate::ship::EarthField;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
 /// One compass heading.

@@ -11,15 +11,14 @@ use super::card::Card;
 use super::mistakes::{Mistake, mistakes};
 use super::refusal::Refusal;
 use super::vertical::{Vertical, swapped};
-use crate::angle::{MagneticHeading, TrueHeading, Variation};
 use crate::berth::{
     Alignment, BerthError, BerthEstimate, BerthReading, ReadingErrors, lambda_at_berth,
 };
 use crate::binnacle::Binnacle;
-use crate::fit::WEAKEST_H_NT;
-use crate::model::Model;
-use crate::ship::EarthField;
-use crate::time::Timestamp;
+use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// What was read at the berth.

@@ -7,9 +7,9 @@ use super::places::{elsewhere, moved, replaced};
 use super::reading_of_card::turn_sd_deg;
 use super::strength::strength;
 use super::{AdjustError, Adjustment, Outcome, plan};
-use crate::angle::wrap_180;
 use crate::binnacle::{Axis, Binnacle, Setting};
-use crate::deviation::NORMAL_95;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::NORMAL_95;
 use serde::{Deserialize, Serialize};
 
 /// A card that turned by less may not have turned at all, degrees.

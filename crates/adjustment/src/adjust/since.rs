@@ -15,9 +15,9 @@ use super::{AdjustError, Adjustment};
 use crate::berth::{BerthEstimate, JointCovariance, USUAL_LAMBDA};
 use crate::binnacle::{Binnacle, Setting};
 use crate::corrector::{Effect, effect};
-use crate::estimate::NoiseLevels;
-use crate::ship::PARAMETERS;
-use crate::time::Timestamp;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::PARAMETERS;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// The days in which bx and by wander by their typical drift.

@@ -7,10 +7,10 @@
 //! every heading, until there is no other heading to sail. Samples within 15° of each
 //! other share the errors of one reference and count as one heading.
 
-use crate::angle::{CompassHeading, wrap_180};
-use crate::deviation::{DeviationError, NORMAL_95, linearised_at_compass};
-use crate::model::{Covariance, Model};
-use crate::ship::{EarthField, PARAMETERS};
+use binnacle_compass::angle::{CompassHeading, wrap_180};
+use binnacle_compass::deviation::{DeviationError, NORMAL_95, linearised_at_compass};
+use binnacle_compass::model::{Covariance, Model};
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 use serde::{Deserialize, Serialize};
 
 /// Off by more is an alarm, degrees; and with the band it is no pass.

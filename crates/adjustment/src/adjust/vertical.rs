@@ -12,8 +12,8 @@ use super::refusal::Refusal;
 use crate::berth::{BerthReading, lambda_at_berth};
 use crate::binnacle::Binnacle;
 use crate::corrector::effect;
-use crate::model::Model;
-use crate::ship::EarthField;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 
 /// What most ships add to the vertical field for good, nT: half a degree for each degree
 /// of heel, and more.

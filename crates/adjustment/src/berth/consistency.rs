@@ -5,9 +5,9 @@
 
 use super::field::{Expected, Vector, dot};
 use super::{BerthReading, ReadingErrors};
-use crate::angle::wrap_180;
-use crate::model::Covariance;
-use crate::ship::{EarthField, compass_rad};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::model::Covariance;
+use binnacle_compass::ship::{EarthField, compass_rad};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 

@@ -2,7 +2,7 @@
 
 use super::Consistency;
 use super::lambda::{GREATEST_LAMBDA, LEAST_LAMBDA};
-use crate::deviation::{DeviationError, ModelError};
+use binnacle_compass::deviation::{DeviationError, ModelError};
 
 /// A refusal; each says what is wrong.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,9 +2,9 @@
 //! calculated from it and the reading errs.
 
 use super::{Alignment, BerthError, BerthReading};
-use crate::deviation::Coefficients;
-use crate::model::{Covariance, Model, Parameters};
-use crate::ship::{EarthField, PARAMETERS};
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::{Covariance, Model, Parameters};
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 
 /// Seven parameters and the constant.
 pub(super) const UNKNOWNS: usize = PARAMETERS + 1;
@@ -79,7 +79,7 @@ impl Expected {
         let directive_force = coefficients.directive_force(magnetic_rad);
         if directive_force < LEAST_DIRECTIVE_FORCE {
             return Err(BerthError::NoDirectiveForce {
-                magnetic_deg: crate::angle::wrap_360(magnetic_rad.to_degrees()),
+                magnetic_deg: binnacle_compass::angle::wrap_360(magnetic_rad.to_degrees()),
                 directive_force,
             });
         }

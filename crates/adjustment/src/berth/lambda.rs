@@ -3,8 +3,8 @@
 use super::consistency::{Consistency, Verdict};
 use super::field::{Expected, Spread, UNKNOWNS, covariances, dot};
 use super::{BerthError, BerthReading, Estimated};
-use crate::model::{Covariance, Model, Parameters};
-use crate::ship::EarthField;
+use binnacle_compass::model::{Covariance, Model, Parameters};
+use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
 /// Less of the earth's field than this reaches no compass that was placed with any care.

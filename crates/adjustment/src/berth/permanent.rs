@@ -6,8 +6,8 @@
 use super::field::{Expected, Spread};
 use super::lambda::{GREATEST_LAMBDA, LEAST_LAMBDA};
 use super::{BerthError, BerthReading, Estimated};
-use crate::model::Model;
-use crate::ship::EarthField;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 
 /// The permanent horizontal field of a ship.

@@ -1,7 +1,7 @@
 //! What was read at the berth, and how well.
 
 use super::BerthError;
-use crate::angle::MagneticHeading;
+use binnacle_compass::angle::MagneticHeading;
 
 /// Three times the earth's strongest field: beyond it the unit is wrong.
 const GREATEST_FIELD_NT: f64 = 200_000.0;

@@ -1,8 +1,8 @@
 use super::*;
-use crate::angle::{MagneticHeading, TrueHeading, Variation};
-use crate::model::{Model, Parameters};
-use crate::ship::test_support::{random_earth, random_ship};
-use crate::ship::{EarthField, ShipMagnetism};
+use crate::test_support::{random_earth, random_ship};
+use binnacle_compass::angle::{MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::ship::{EarthField, ShipMagnetism};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -14,7 +14,7 @@ pub use magnet::{BarMagnet, MAGNETIC};
 pub use sphere::{KAPPA, Pair};
 
 use crate::binnacle::{Axis, BinnacleForm, HeelingSetting, Setting, Side, Soft, Tray};
-use crate::ship::ShipMagnetism;
+use binnacle_compass::ship::ShipMagnetism;
 
 /// A vector in ship axes: forward, starboard, down.
 pub type Vector = [f64; 3];

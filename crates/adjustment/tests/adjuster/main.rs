@@ -8,14 +8,14 @@ mod hand;
 mod handbook;
 mod world;
 
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     Adjustment, Circumstances, Limits, Plan, VerticalReading, Water, plan,
 };
-use binnacle_magnetics::angle::MagneticHeading;
-use binnacle_magnetics::berth::{Alignment, BerthReading, ReadingErrors};
-use binnacle_magnetics::binnacle::{Binnacle, SHIPPED};
-use binnacle_magnetics::model::{Model, Parameters};
-use binnacle_magnetics::ship::EarthField;
+use binnacle_adjustment::berth::{Alignment, BerthReading, ReadingErrors};
+use binnacle_adjustment::binnacle::{Binnacle, SHIPPED};
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::ship::EarthField;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use world::{Hardware, Lying, Ship, compass_deg};

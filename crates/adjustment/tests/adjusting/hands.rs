@@ -7,13 +7,13 @@ use super::adjusting::knowledge::{FLUXGATE, again};
 use super::adjusting::scene::Scene;
 use super::adjusting::wrap;
 use super::tally::{mean, quantile};
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     Adjustment, Done, Outcome, Place, PredictedTable, Recheck, Step, Unit, Verdict,
     VerticalReading, by_compass, plan, read_again, recheck,
 };
-use binnacle_magnetics::berth::BerthReading;
-use binnacle_magnetics::binnacle::{Axis, Binnacle, Setting, Tray};
-use binnacle_magnetics::model::Model;
+use binnacle_adjustment::berth::BerthReading;
+use binnacle_adjustment::binnacle::{Axis, Binnacle, Setting, Tray};
+use binnacle_compass::model::Model;
 use std::collections::BTreeMap;
 use std::fmt;
 

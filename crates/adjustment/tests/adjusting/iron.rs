@@ -1,7 +1,7 @@
 //! What correctors truly do: each is a little off what the catalogue says.
 
 use super::random::Random;
-use binnacle_magnetics::binnacle::{Axis, Binnacle, Setting, Side, Tray};
+use binnacle_adjustment::binnacle::{Axis, Binnacle, Setting, Side, Tray};
 
 type Vector = [f64; 3];
 

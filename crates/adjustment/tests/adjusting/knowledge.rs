@@ -2,10 +2,10 @@
 
 use super::random::Random;
 use super::{Place, Standing};
-use binnacle_magnetics::adjust::Water;
-use binnacle_magnetics::angle::MagneticHeading;
-use binnacle_magnetics::berth::{Alignment, BerthReading, ReadingErrors};
-use binnacle_magnetics::model::{Identifiable, Model, Parameters};
+use binnacle_adjustment::adjust::Water;
+use binnacle_adjustment::berth::{Alignment, BerthReading, ReadingErrors};
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::{Identifiable, Model, Parameters};
 use nalgebra::{SMatrix, SVector};
 
 /// How a ship and her instruments are measured.

@@ -10,7 +10,7 @@ pub(crate) mod knowledge;
 pub(crate) mod random;
 pub(crate) mod scene;
 
-use binnacle_magnetics::binnacle::{
+use binnacle_adjustment::binnacle::{
     Aboard, BarSetting, Binnacle, BinnacleForm, Design, DesignForm, HeelingSetting, Lot,
     PairSetting, Red, SHIPPED, Setting, Side, Tray, VERSION,
 };

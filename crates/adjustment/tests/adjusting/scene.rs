@@ -5,12 +5,12 @@ use super::knowledge::{
 };
 use super::random::Random;
 use super::{Place, Standing, Truth};
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     Adjustment, Circumstances, EarlierLambda, Limits, VerticalReading, Water,
 };
-use binnacle_magnetics::binnacle::Binnacle;
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_adjustment::binnacle::Binnacle;
+use binnacle_compass::model::Model;
+use binnacle_compass::time::Timestamp;
 
 /// How well a card is read before the bowl is taken out, with its friction, degrees.
 const CARD_SD_DEG: f64 = 0.4;

@@ -5,8 +5,8 @@
 use super::adjusting::knowledge::FLUXGATE;
 use super::adjusting::scene::Scene;
 use super::tally::quantile;
-use binnacle_magnetics::adjust::{Plan, Settled, Verification, plan, verify};
-use binnacle_magnetics::angle::CompassHeading;
+use binnacle_adjustment::adjust::{Plan, Settled, Verification, plan, verify};
+use binnacle_compass::angle::CompassHeading;
 use std::fmt;
 
 /// What a heading at sea is good for, degrees.

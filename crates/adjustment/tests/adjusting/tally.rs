@@ -5,7 +5,7 @@
 use super::adjusting::knowledge::Instruments;
 use super::adjusting::scene::Scene;
 use super::adjusting::wrap;
-use binnacle_magnetics::adjust::plan;
+use binnacle_adjustment::adjust::plan;
 use std::collections::BTreeMap;
 use std::fmt;
 

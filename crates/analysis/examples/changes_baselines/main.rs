@@ -5,7 +5,7 @@
 //! threshold set, on ships of their own, to the same rate of false alarms; and delays
 //! and false alarms of all are counted by the same code on ships that none was set on.
 //!
-//! `make bench-changes`, or `cargo run --release -p binnacle-magnetics --example
+//! `make bench-changes`, or `cargo run --release -p binnacle-analysis --example
 //! changes_baselines [SHIPS [PYTHON]]` with the number of ships of each kind and a
 //! Python that has `ruptures`, without which PELT is left out.
 

@@ -7,16 +7,15 @@
 use crate::score::median;
 use crate::voyages::fleet::{Event, Log, Name, Plan, sail_log};
 use crate::voyages::{Variety, lorden, predicted};
-use binnacle_magnetics::analyse::{AnalysisSettings, analyse};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::change::Change;
-use binnacle_magnetics::field::{FieldAt, FieldModel};
-use binnacle_magnetics::fit::{
-    HeadingReading, Observation, REFERENCE_CONSTANT_SD_DEG, RobustOptions, fit_robust, refer,
-};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_analysis::fit::{HeadingReading, Observation, RobustOptions, fit_robust, refer};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::model::Model;
+use binnacle_compass::result::Change;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::{AnalysisSettings, REFERENCE_CONSTANT_SD_DEG};
+use binnacle_compass::time::Timestamp;
 
 const DAY_S: f64 = 86_400.0;
 /// Days that all detectors learn from before they are watched.

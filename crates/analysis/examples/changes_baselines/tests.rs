@@ -7,8 +7,9 @@ use crate::voyages::bound::{fair, noise};
 use crate::voyages::fleet::{Event, Plan, sail_log};
 use crate::voyages::lorden::{Readings, Row, information};
 use crate::voyages::{Faults, Variety};
-use binnacle_magnetics::analyse::{AnalysisSettings, analyse};
-use binnacle_magnetics::sample::Sample;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
 use nalgebra::{DVector, Vector2};
 
 fn row(end: i64, shift_deg: f64) -> Row {

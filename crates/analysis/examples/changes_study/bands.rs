@@ -4,9 +4,9 @@
 use crate::voyages::fleet::{Event, Log, Name, Plan, START, sail_log};
 use crate::voyages::{deviation_by_compass, predicted, true_deviation};
 use crate::{DAY_S, HOUR_S, each, planned, quantile, run, seeds, share, variety};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 
 /// Sizes, nT.
 const SIZES: [f64; 4] = [2000.0, 4000.0, 8000.0, 12_000.0];

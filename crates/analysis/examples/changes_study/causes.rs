@@ -5,9 +5,8 @@ use crate::voyages::lorden::nats_while_laden;
 use crate::{
     DAY_S, HOUR_S, alarms, each, planned, run, seeds, share, telling, variety, was_withdrawn,
 };
-use binnacle_magnetics::analyse::Analysis;
-use binnacle_magnetics::change::{Cause, Change, Elsewhere, in_fleet};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::result::{Analysis, Cause, Change, Elsewhere, in_fleet};
+use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
 
 /// Ships of a fleet, which meet the same storms.
@@ -180,7 +179,7 @@ fn elsewhere(fleet: &[(Log, Analysis)], but: usize) -> Vec<Elsewhere> {
     told.collect()
 }
 
-fn position(log: &Log, at: Timestamp) -> Option<binnacle_magnetics::position::Position> {
+fn position(log: &Log, at: Timestamp) -> Option<binnacle_compass::position::Position> {
     let next = log.samples.partition_point(|s| s.time < at);
     log.samples.get(next).map(|s| s.position)
 }

@@ -4,10 +4,9 @@
 use crate::voyages::fleet::{Event, Log, Plan, sail_log};
 use crate::voyages::{Truth, gauss, predicted, true_deviation};
 use crate::{DAY_S, HOUR_S, each, run, seeds, share, variety};
-use binnacle_magnetics::analyse::Analysis;
-use binnacle_magnetics::angle::{CompassHeading, wrap_180};
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, wrap_180};
+use binnacle_compass::result::{Analysis, Cause, Change};
+use binnacle_compass::time::Timestamp;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;

@@ -3,7 +3,7 @@
 use crate::returns::{Then, after};
 use crate::voyages::fleet::{Event, Name, Plan, sail_log};
 use crate::{DAY_S, HOUR_S, alarms, each, planned, quantile, seeds, share, variety};
-use binnacle_magnetics::change::Cause;
+use binnacle_compass::result::Cause;
 
 /// Sizes, nT.
 const SIZES: [f64; 5] = [4000.0, 6000.0, 8000.0, 12_000.0, 20_000.0];
@@ -49,7 +49,7 @@ pub(crate) fn large(ships: u64) {
             let delay_s = told
                 .first()
                 .map_or(f64::INFINITY, |c| c.detected_at.seconds_since(from));
-            let near = |c: &&binnacle_magnetics::change::Change| {
+            let near = |c: &&binnacle_compass::result::Change| {
                 c.confirmed && c.from.seconds_since(from).abs() < 3.0 * HOUR_S
             };
             let a_day_after = day.analysis.changes.iter().find(near);

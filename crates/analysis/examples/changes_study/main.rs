@@ -1,7 +1,7 @@
 //! The tables of `docs/science.md` §9 and BENCHMARKS.md on changes: false alarms, delay,
 //! date, cause and return, on simulated ships.
 //!
-//! Takes a while: `make study-changes`, or `cargo run --release -p binnacle-magnetics
+//! Takes a while: `make study-changes`, or `cargo run --release -p binnacle-analysis
 //! --example changes_study [SHIPS] [PART]`, with the number of ships of each kind.
 //! `SEEDS=7000` takes other ships: what was tuned on some is to be judged on others.
 
@@ -20,10 +20,11 @@ mod references;
 mod returns;
 mod steps;
 
-use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, analyse};
-use binnacle_magnetics::change::Change;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::result::{Analysis, Change};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 use voyages::Variety;
 use voyages::fleet::{Event, Happened, Log, Name};
 

@@ -2,7 +2,7 @@
 
 use crate::voyages::fleet::{Event, Happened, Name, Plan, sail_log};
 use crate::{HOUR_S, each, near, run, seeds, variety, was_withdrawn};
-use binnacle_magnetics::change::{Cause, Change};
+use binnacle_compass::result::{Cause, Change};
 
 pub(crate) fn quiet(ships: u64) {
     let found = each(seeds(100_000, ships), |seed| {

@@ -4,10 +4,9 @@
 use crate::voyages::fleet::{Event, Plan, sail_log};
 use crate::voyages::{Truth, predicted, true_deviation};
 use crate::{DAY_S, each, run, seeds, variety};
-use binnacle_magnetics::analyse::Analysis;
-use binnacle_magnetics::angle::{TrueHeading, wrap_180};
-use binnacle_magnetics::change::Cause;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::angle::{TrueHeading, wrap_180};
+use binnacle_compass::result::{Analysis, Cause};
+use binnacle_compass::sample::Sample;
 
 /// The last look, and the days between looks.
 const DAYS: u32 = 120;
@@ -143,8 +142,7 @@ fn look(seed: u64, case: &Case, day: u32) -> Look {
         told: certain().map(|c| c.cause).collect(),
         faults: faults
             .map(|c| {
-                let at =
-                    |t: binnacle_magnetics::time::Timestamp| t.seconds_since(log.start) / DAY_S;
+                let at = |t: binnacle_compass::time::Timestamp| t.seconds_since(log.start) / DAY_S;
                 format!(
                     "{:.1}..{:.1?} {:?}",
                     at(c.from),

@@ -4,10 +4,12 @@ use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, START, sail_log};
 use crate::voyages::lorden::nats_of_discharge;
 use crate::voyages::{gauss, predicted, true_deviation};
 use crate::{DAY_S, HOUR_S, alarms, each, near, planned, run, seeds, share, variety};
-use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookEntry, LogbookKind, analyse};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::change::Cause;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::result::{Analysis, Cause};
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -5,7 +5,7 @@ use crate::{
     DAY_S, HOUR_S, alarms, each, planned, quantile, run, seeds, settled_hours, share, variety,
 };
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// What became of one step.
 struct Found {
@@ -126,7 +126,7 @@ pub(crate) fn gyro_alone(ships: u64) {
         }
         let named = analysis.changes.iter().any(|c| {
             c.confirmed
-                && c.cause == binnacle_magnetics::change::Cause::ReferenceFault
+                && c.cause == binnacle_compass::result::Cause::ReferenceFault
                 && crate::near(&fault, c)
         });
         Some((!false_alarms.is_empty(), named))

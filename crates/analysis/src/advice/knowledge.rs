@@ -3,11 +3,12 @@
 //! What always holds: learning never widens a band, and the reference's
 //! constant error, which no heading can show, is never learnt.
 
-use super::{AdviceError, Band};
-use crate::coverage::HEADING_STEP_DEG;
-use crate::deviation::{DeviationError, NORMAL_95, linearised_at_compass};
-use crate::model::Model;
-use crate::ship::{EarthField, PARAMETERS};
+use super::AdviceError;
+use binnacle_compass::coverage::HEADING_STEP_DEG;
+use binnacle_compass::deviation::{DeviationError, NORMAL_95, linearised_at_compass};
+use binnacle_compass::model::Model;
+use binnacle_compass::result::Band;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// Sectors of heading.

@@ -11,25 +11,23 @@
 //! What always holds: no watch widens a band, and none narrows it below what
 //! the reference's own constant error leaves, which no heading can show.
 
-mod answer;
 mod knowledge;
 mod ranges;
 mod rank;
 mod watch;
 
-pub use answer::{
-    Advice, Band, HeadingRange, HeadingSuggestion, LatitudeSuggestion, NOTICEABLE_DEG, SailNext,
-};
 pub use watch::{WATCH_HOURS, WATCHES};
 
-use crate::analyse::Analysis;
-use crate::coverage::Coverage;
-use crate::deviation::DeviationError;
-use crate::estimate::NoiseLevels;
-use crate::model::Model;
-use crate::ship::EarthField;
+use binnacle_compass::coverage::Coverage;
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::model::Model;
+use binnacle_compass::result::{Analysis, NoiseLevels, SailNext};
+use binnacle_compass::ship::EarthField;
 use knowledge::{Knowledge, slopes};
 use rank::{heading_advice, latitude_advice, waters_elsewhere};
+
+/// A suggestion whose three watches narrow the band by less is not made, degrees.
+pub const NOTICEABLE_DEG: f64 = 0.05;
 
 /// What advice is asked about.
 #[derive(Clone, Copy, Debug)]

@@ -4,15 +4,13 @@
 use super::knowledge::{Knowledge, SECTORS, Slope, Visit, Waters, slopes};
 use super::ranges::{Ends, ranges};
 use super::watch::{WATCHES, errors_of_watches};
-use super::{
-    Advice, AdviceError, Band, HeadingRange, HeadingSuggestion, LatitudeSuggestion, NOTICEABLE_DEG,
-    Question,
-};
-use crate::coverage::{
+use super::{AdviceError, NOTICEABLE_DEG, Question};
+use binnacle_compass::coverage::{
     Coverage, HEADING_STEP_DEG, MAGNETIC_LATITUDE_STEP_DEG, magnetic_latitude_band_deg,
 };
-use crate::deviation::DeviationError;
-use crate::ship::EarthField;
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::result::{Advice, Band, HeadingRange, HeadingSuggestion, LatitudeSuggestion};
+use binnacle_compass::ship::EarthField;
 
 /// Bands of magnetic latitude that ships sail in, by their southern edges.
 const SAILED_DEG: std::ops::RangeInclusive<i16> = -60..=50;

@@ -3,11 +3,10 @@
 //!
 //! The processes are those of docs/science.md, §7; the means are eq. 16.
 
-use crate::coverage::magnetic_latitude_deg;
-use crate::estimate::{
-    COMPASS_SWING_S, NoiseLevels, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, VARIATION_NM,
-};
-use crate::ship::EarthField;
+use crate::estimate::{COMPASS_SWING_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, VARIATION_NM};
+use binnacle_compass::coverage::magnetic_latitude_deg;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::EarthField;
 use nalgebra::{Complex, Matrix3};
 
 /// A watch, hours.

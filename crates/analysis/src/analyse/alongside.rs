@@ -5,11 +5,11 @@
 //! there and is gone when she has sailed is told as the berth's.
 
 use super::reading::{Reading, heading_reading};
-use super::{Epoch, SampleReason};
-use crate::angle::wrap_180;
-use crate::change::{Cause, Change, Circumstances, What, causes};
-use crate::model::Model;
-use crate::time::Timestamp;
+use crate::change::{Circumstances, What, causes};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::model::Model;
+use binnacle_compass::result::{Cause, Change, Epoch, SampleReason};
+use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
 /// A ship that makes no more way than this lies somewhere, knots.

@@ -6,11 +6,11 @@
 
 use super::changes::Found;
 use super::course::Course;
-use super::logbook::{LogbookEntry, LogbookKind};
+use super::logbook::excludes;
 use super::reading::Reading;
-use super::{Epoch, SampleReason};
-use crate::change::Cause;
-use crate::time::Timestamp;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::result::{Cause, Epoch, SampleReason};
+use binnacle_compass::time::Timestamp;
 
 /// Cargo that was to show by now, if it moves the compass: days, and readings.
 const IDLE_DAYS: f64 = 21.0;
@@ -76,7 +76,7 @@ pub(super) fn take_idle(
     for reading in own {
         let sample = *reading.sample();
         let bears_out = |(entry, since): &(&LogbookEntry, Option<Timestamp>)| {
-            entry.excludes(&sample).is_some() && since.is_none_or(|since| sample.time < since)
+            excludes(entry, &sample).is_some() && since.is_none_or(|since| sample.time < since)
         };
         let is_laden = cargoes.iter().any(bears_out);
         let reason = &mut reading.diagnostic.reason;

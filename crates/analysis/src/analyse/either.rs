@@ -4,8 +4,8 @@
 //! What always holds: the band of what comes out is no narrower than it would have
 //! to be if either may be right, each as likely as it is held to be.
 
-use crate::model::{Model, Parameters};
-use crate::ship::PARAMETERS;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::ship::PARAMETERS;
 
 /// Mean and covariance of a ship that is `other` with a probability and `one`
 /// otherwise. What else a model says is the likelier one's. None unless both have

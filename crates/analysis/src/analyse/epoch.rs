@@ -1,19 +1,18 @@
 //! Intervals of constant magnetism, and the fit of each.
 
-use super::logbook::{LogbookEntry, LogbookKind};
 use super::one_course::open_along;
 use super::reading::Reading;
 use super::reading::heading_reading;
-use super::{Epoch, SampleReason};
-use crate::change::Cause;
 use crate::estimate::{Prior, unseen_sd_nt};
 use crate::fit::{
-    FitError, HeadingReading, Observation, REJECTED_BELOW, ReferenceCheck, RobustFit,
-    RobustOptions, fit_known_ship, fit_robust, refer,
+    HeadingReading, Observation, REJECTED_BELOW, RobustFit, RobustOptions, fit_known_ship,
+    fit_robust, refer,
 };
-use crate::model::Model;
-use crate::ship::PARAMETERS;
-use crate::time::Timestamp;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::model::Model;
+use binnacle_compass::result::{Cause, Epoch, FitError, ReferenceCheck, SampleReason};
+use binnacle_compass::ship::PARAMETERS;
+use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
 /// As many times as large as what has been seen a step that was no strike may be in what has

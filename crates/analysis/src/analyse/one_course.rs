@@ -4,7 +4,7 @@
 //! has sailed on account for, and never narrower.
 
 use crate::fit::{Observation, RobustFit};
-use crate::model::Model;
+use binnacle_compass::model::Model;
 
 /// Headings that are scattered about their mean by less than this are one course: how stiff
 /// the needle is as she yaws about it leans on errors of compass and reference as much as on

@@ -1,14 +1,15 @@
 //! Samples put in order, each with the earth's field around it.
 
-use super::logbook::LogbookEntry;
-use super::settings::AnalysisSettings;
-use super::{LastPlace, SampleDiagnostic, SampleReason};
-use crate::angle::{TrueHeading, Variation};
-use crate::field::{FieldAt, FieldModel};
-use crate::fit::{GyroSpeedError, HeadingReading, WEAKEST_H_NT, gyro_speed_error_deg};
-use crate::sample::Sample;
-use crate::ship::EarthField;
-use crate::time::Timestamp;
+use super::logbook::{excludes, exclusion};
+use crate::fit::{HeadingReading, gyro_speed_error_deg};
+use binnacle_compass::angle::{TrueHeading, Variation};
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::result::{LastPlace, SampleDiagnostic, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::{AnalysisSettings, GyroSpeedError};
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
+use binnacle_compass::time::Timestamp;
 use std::cmp::Ordering;
 
 const DAY_MICROS: i64 = 86_400_000_000;
@@ -51,7 +52,7 @@ pub(super) fn readings(
     let mut sorted = samples.to_vec();
     sorted.sort_by(in_order);
     sorted.dedup_by(|a, b| in_order(a, b) == Ordering::Equal);
-    let excluding = logbook.iter().filter(|e| e.kind.excludes().is_some());
+    let excluding = logbook.iter().filter(|e| exclusion(e.kind).is_some());
     // An end yet to come, or of a year mistaken, is none.
     let excluding: Vec<LogbookEntry> = sorted.last().map_or_else(Vec::new, |last| {
         excluding.map(|entry| entry.as_of(last.time)).collect()
@@ -62,7 +63,9 @@ pub(super) fn readings(
         .map(|sample| {
             let mut reading = reading(sample, &mut field, settings);
             // Of several reasons the first in their order, whatever the entries'.
-            let reported = excluding.iter().filter_map(|entry| entry.excludes(&sample));
+            let reported = excluding
+                .iter()
+                .filter_map(|entry| excludes(entry, &sample));
             let reason = &mut reading.diagnostic.reason;
             *reason = reason.or(reported.min());
             reading
@@ -149,7 +152,7 @@ impl DailyField {
         }
     }
 
-    fn at(&mut self, sample: &Sample) -> Option<crate::field::Field> {
+    fn at(&mut self, sample: &Sample) -> Option<binnacle_compass::field::Field> {
         let day = sample.time.micros().div_euclid(DAY_MICROS);
         if self.day != Some(day) {
             self.day = Some(day);

@@ -7,11 +7,10 @@
 //! steady course before the first turn are not held against the compass unless they are
 //! the same to the last.
 
-use super::SampleReason;
 use super::reading::Reading;
-use crate::angle::{TrueHeading, Variation, wrap_180};
-use crate::change::{Cause, CauseProbability, Change};
-use crate::sample::Sample;
+use binnacle_compass::angle::{TrueHeading, Variation, wrap_180};
+use binnacle_compass::result::{Cause, CauseProbability, Change, SampleReason};
+use binnacle_compass::sample::Sample;
 use std::ops::Range;
 
 /// Readings no further apart than this are the same. A sound compass wanders by more
@@ -305,9 +304,9 @@ fn told(readings: &[Reading], found: &Stuck) -> Change {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analyse::AnalysisSettings;
     use crate::analyse::reading::readings;
-    use crate::time::Timestamp;
+    use binnacle_compass::settings::AnalysisSettings;
+    use binnacle_compass::time::Timestamp;
 
     /// Readings ten minutes apart of what compass, gyro and satellite compass show, at 47
     /// degrees north and the longitude given.

@@ -7,7 +7,7 @@
 use super::filter::{Filter, Measurement, Noise};
 use super::upset::set_back;
 use crate::estimate::Unknowns;
-use crate::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// Calls and earlier states that are kept, the latest of each.
 const MOST: usize = 4;
@@ -319,7 +319,8 @@ impl Calls {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::{NoiseLevels, Prior};
+    use crate::estimate::Prior;
+    use binnacle_compass::result::NoiseLevels;
 
     fn ship() -> Filter {
         let noise = Noise::new(&NoiseLevels::TYPICAL);

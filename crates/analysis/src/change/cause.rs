@@ -5,7 +5,7 @@
 //! they can be argued with (docs/science.md, §9).
 
 use super::detect::What;
-use super::found::{Cause, CauseProbability};
+use binnacle_compass::result::{Cause, CauseProbability};
 
 /// Leads are of models that are only nearly right: they count for this much.
 const TEMPER: f64 = 0.5;

@@ -6,10 +6,10 @@
 
 use super::symmetric::{Symmetric, WIDE, dot};
 use crate::estimate::{
-    CONSTANT, NoiseLevels, POPULATION_SD, Prior, Station, Transition, UNKNOWNS, Unknowns, loss_of,
-    weight,
+    CONSTANT, POPULATION_SD, Prior, Station, Transition, UNKNOWNS, Unknowns, loss_of, weight,
 };
-use crate::ship::PARAMETERS;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::PARAMETERS;
 
 /// States: the seven parameters in population units, the constant, the gyro's
 /// leftover speed error, what is left of the references' usual difference; then

@@ -16,8 +16,6 @@ mod calls;
 mod cause;
 mod detect;
 mod filter;
-mod fleet;
-mod found;
 mod large;
 mod symmetric;
 mod upset;
@@ -27,5 +25,3 @@ pub(crate) use detect::{
     Event, Given, Loaded, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port, detect,
     rows_since,
 };
-pub use fleet::{Elsewhere, in_fleet};
-pub use found::{Cause, CauseProbability, Change, Step};

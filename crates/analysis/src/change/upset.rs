@@ -6,8 +6,8 @@
 use super::bank::Kind;
 use super::filter::{Burst, CONSTANT_STATE, Filter, Measurement, Noise, OFFSET, STATES, VARIATION};
 use crate::estimate::{OFFSET_SD_DEG, POPULATION_SD};
-use crate::model::Parameters;
-use crate::ship::PARAMETERS;
+use binnacle_compass::model::Parameters;
+use binnacle_compass::ship::PARAMETERS;
 
 /// Standard deviation of a step in bx and by, in population units (1500 nT), and
 /// in what is induced.
@@ -216,7 +216,8 @@ pub(super) fn calmed(now: &Filter, noise: &Noise) -> Filter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::{NoiseLevels, Prior};
+    use crate::estimate::Prior;
+    use binnacle_compass::result::NoiseLevels;
 
     #[test]
     fn a_ship_set_back_is_known_as_she_was_and_no_worse() {

@@ -4,10 +4,11 @@
 //! Restricted, because the unknowns are fitted to the same residuals; with a
 //! prior, because a few days cannot show what wanders over weeks.
 
-use super::noise::{LEVELS, NoiseLevels};
+use super::noise::LEVELS;
 use super::row::{Row, Station, UNKNOWNS};
 use super::slopes::{Slopes, slopes};
 use super::whiten::{Pass, whiten};
+use binnacle_compass::result::NoiseLevels;
 use nalgebra::{SMatrix, SVector};
 
 /// Standard deviations of the levels' logarithms over ships and instruments, in

@@ -36,14 +36,12 @@ mod start;
 mod untimed;
 mod whiten;
 
-pub use noise::NoiseLevels;
 pub(crate) use noise::{
     COMPASS_SWING_S, SCHULER_DAMPING, SCHULER_PER_S, SLOW_GYRO_S, Transition, VARIATION_NM,
 };
 pub(crate) use prior::POPULATION_SD;
 pub use prior::Prior;
 pub(crate) use prior::unseen_sd_nt;
-pub(crate) use quality::CAUTION_H_NT;
 pub(crate) use row::{
     CONSTANT, OFFSET_SD_DEG, Point, Row, Station, UNKNOWNS, USUAL_FUSION, Unknowns, row, stations,
 };

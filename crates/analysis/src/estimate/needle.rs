@@ -2,8 +2,8 @@
 //! parameters.
 
 use super::direction::Direction;
-use crate::model::Parameters;
-use crate::ship::{EarthField, PARAMETERS};
+use binnacle_compass::model::Parameters;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 
 /// The horizontal field at the compass, over λ, with the ship on one magnetic
 /// heading, in a form that never divides by zero.
@@ -65,7 +65,7 @@ impl Needle {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ship::compass_rad;
+    use binnacle_compass::ship::compass_rad;
 
     const EARTH: EarthField = EarthField {
         h_nt: 24e3,
@@ -104,7 +104,7 @@ mod tests {
             let [forward, starboard] = p.field_over_lambda(magnetic, EARTH);
             let compass = compass_rad(forward, starboard);
             let deviation = Needle::at(&p, Direction::of(magnetic), EARTH).deviation_rad();
-            assert!(crate::ship::wrap_pi(magnetic - deviation - compass).abs() < 1e-12);
+            assert!(binnacle_compass::ship::wrap_pi(magnetic - deviation - compass).abs() < 1e-12);
         }
     }
 

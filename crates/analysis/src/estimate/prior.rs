@@ -1,6 +1,6 @@
 //! What is known of a ship's magnetism before her first sample.
 
-use crate::ship::PARAMETERS;
+use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
 /// Standard deviations over ships of bx, χ13, by, χ23, χ11−χ22, χ12 and χ21,
@@ -34,10 +34,10 @@ const NORMAL_95: f64 = 1.959_964;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
     /// The seven parameters and the constant, in the order of
-    /// [`Covariance`](crate::model::Covariance).
+    /// [`Covariance`](binnacle_compass::model::Covariance).
     pub mean: [f64; 8],
     /// Their covariance in the same order.
-    pub covariance: crate::model::Covariance,
+    pub covariance: binnacle_compass::model::Covariance,
 }
 
 impl Prior {
@@ -61,7 +61,7 @@ impl Prior {
     /// the iron's shape induces is much as it was. None when the model has no
     /// covariance.
     pub fn after_upset(
-        model: &crate::model::Model,
+        model: &binnacle_compass::model::Model,
         reference_constant_sd_deg: f64,
     ) -> Option<Prior> {
         let mut covariance = model.covariance?;
@@ -88,7 +88,7 @@ impl Prior {
     pub(crate) fn by_turned_compass(&self, moved_deg: f64) -> Prior {
         let mut mean = self.mean;
         let parameters = std::array::from_fn(|j| mean[j]);
-        let turned = crate::model::Parameters::from_array(parameters)
+        let turned = binnacle_compass::model::Parameters::from_array(parameters)
             .by_turned_compass(-moved_deg.to_radians());
         mean[..PARAMETERS].copy_from_slice(&turned.to_array());
         mean[PARAMETERS] += moved_deg;

@@ -5,7 +5,6 @@
 //! was asked for; what is judged is the pass that told so.
 
 use super::levels::{Pull, Sought, fit_levels};
-use super::noise::NoiseLevels;
 use super::prior::{Prior, scales, tail};
 use super::products::Products;
 use super::quality::widely;
@@ -13,7 +12,8 @@ use super::row::{CONSTANT, Point, Row, Station, UNKNOWNS, Unknowns, row, station
 use super::untimed::{all_timed, cell_of, design_effect};
 use super::whiten::{Drift, Part, Pass, Whitening, whiten};
 use crate::fit::Observation;
-use crate::time::Timestamp;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::time::Timestamp;
 use nalgebra::{SMatrix, SVector};
 
 /// Gauss–Newton steps at most; three suffice near the solution, thirty where the

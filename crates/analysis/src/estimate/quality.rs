@@ -5,8 +5,8 @@ use super::direction::Direction;
 use super::needle::Needle;
 use super::prior::scales;
 use super::row::{CONSTANT, UNKNOWNS};
-use crate::model::{Caution, FromData, Identifiable, Parameters, Quality};
-use crate::ship::{EarthField, PARAMETERS};
+use binnacle_compass::model::{Caution, FromData, Identifiable, Parameters, Quality};
+use binnacle_compass::ship::{CAUTION_H_NT, EarthField, PARAMETERS};
 use nalgebra::{SMatrix, SVector};
 
 /// For judging what the data alone say, the population is taken this much wider.
@@ -14,8 +14,6 @@ const WIDER: f64 = 10.0;
 /// A parameter is the data's when they alone leave at most this part of the
 /// population's standard deviation.
 const DATA_DRIVEN: f64 = 0.5;
-/// A compass is used with caution where H is below this.
-pub(crate) const CAUTION_H_NT: f64 = 6_000.0;
 /// Where so many times the samples would tell a parameter, samples are what lacks.
 const MORE: f64 = 10.0;
 /// What is neither parameter nor told apart from A by headings.

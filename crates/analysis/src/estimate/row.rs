@@ -6,12 +6,12 @@ use super::needle::Needle;
 use super::noise::{STATES, Step, Transition};
 use super::prior::scales;
 use super::scatter::{Scatter, White};
-use crate::angle::wrap_180;
-use crate::deviation::Coefficients;
 use crate::fit::{Observation, northerly_speed_error_deg};
-use crate::model::Parameters;
-use crate::position::Position;
-use crate::ship::{EarthField, PARAMETERS};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::Parameters;
+use binnacle_compass::position::Position;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 use std::f64::consts::TAU;
 
 /// Unknowns that do not change: seven parameters, the constant, and nuisances.

@@ -107,7 +107,7 @@ fn of_windows(windows: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::angle::{CompassHeading, Deviation, Variation};
+    use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
 
     fn row(windows: u16, spread_deg: Option<f64>) -> Observation {
         Observation {

@@ -5,11 +5,12 @@
 //! loads, so that one step of arithmetic serves them all; covariances are symmetric,
 //! and only their lower triangle is kept.
 
-use super::noise::{LEVELS, NoiseLevels, STATES, Transition};
+use super::noise::{LEVELS, STATES, Transition, initial_variances};
 use super::products::Products;
 use super::row::{Row, Station, UNKNOWNS};
 use super::scatter::White;
 use super::whiten::{loss_slope, weight_among_many};
+use binnacle_compass::result::NoiseLevels;
 
 /// By how much a level's logarithm is nudged: far below what matters, far above
 /// what rounding does.
@@ -106,7 +107,7 @@ struct Innovation<const N: usize> {
 
 impl<const N: usize> Filters<N> {
     fn new(levels: &[NoiseLevels; N]) -> Filters<N> {
-        let initial = levels.map(|levels| levels.initial_variances());
+        let initial = levels.map(|levels| initial_variances(&levels));
         let mut covariance = [[[0.0; N]; STATES]; STATES];
         let mut stationary = [[0.0; N]; STATES];
         for s in 0..STATES {
@@ -275,11 +276,11 @@ impl<const N: usize> Sums<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::angle::{CompassHeading, Deviation, Variation};
     use crate::estimate::row::{Point, row, stations};
     use crate::estimate::whiten::whiten;
     use crate::fit::Observation;
-    use crate::time::Timestamp;
+    use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
+    use binnacle_compass::time::Timestamp;
 
     /// A ship that turns now and then, with a satellite compass and a wild reading.
     fn observations() -> Vec<Observation> {

@@ -2,7 +2,6 @@
 //! Gauss–Newton on whitened rows.
 
 use super::levels::{Sought, looked_at};
-use super::noise::NoiseLevels;
 use super::prior::{Prior, scales};
 use super::problem::{Matrix, Problem, Solution};
 use super::quality::{Evidence, quality};
@@ -10,8 +9,9 @@ use super::row::{CONSTANT, USUAL_FUSION, in_own_units, plain_residual};
 use super::start::start;
 use super::untimed::{all_timed, are_times_believed, cell_of};
 use crate::fit::Observation;
-use crate::model::{Caution, Covariance, Identifiable, Parameters, Quality};
-use crate::ship::EarthField;
+use binnacle_compass::model::{Caution, Covariance, Identifiable, Parameters, Quality};
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::EarthField;
 use std::borrow::Cow;
 
 /// The step, in population standard deviations, below which the parameters have

@@ -7,9 +7,9 @@
 //! part ρ of their variance in common a mean is known as by n/(1 + (n − 1) ρ) independent
 //! ones (the design effect of a sample of clusters \[Kish\]).
 
-use super::noise::NoiseLevels;
 use crate::fit::Observation;
-use crate::time::Timestamp;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::time::Timestamp;
 
 /// Headings are alike within this.
 const SECTOR_DEG: f64 = 15.0;

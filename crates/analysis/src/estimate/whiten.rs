@@ -4,9 +4,10 @@
 //! The filter's gain depends on the noise alone, so that one covariance serves
 //! the residual and every column.
 
-use super::noise::{DRIFT, NoiseLevels, STATES, Transition};
+use super::noise::{DRIFT, STATES, Transition, initial_variances};
 use super::products::Products;
 use super::row::{Row, Station, UNKNOWNS};
+use binnacle_compass::result::NoiseLevels;
 use nalgebra::{SMatrix, SVector};
 
 /// The residual (first), the columns, and a zero that makes their number even.
@@ -96,7 +97,7 @@ struct Whitened<const N: usize> {
 
 impl<const N: usize> Filter<N> {
     fn new(levels: &NoiseLevels) -> Filter<N> {
-        let stationary = levels.initial_variances();
+        let stationary = initial_variances(levels);
         let mut covariance = [[0.0; STATES]; STATES];
         for s in 0..STATES {
             covariance[s][s] = stationary[s];

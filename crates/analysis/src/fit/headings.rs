@@ -1,6 +1,7 @@
 //! Whether observations lie on enough headings, and on which they do not.
 
-use super::{FitError, Observation};
+use super::Observation;
+use binnacle_compass::result::FitError;
 
 /// Sectors of heading, of 15° each.
 const SECTORS: usize = 24;
@@ -64,13 +65,6 @@ fn missing(filled: &[bool; SECTORS]) -> Vec<(u32, u32)> {
     ranges
 }
 
-/// Ranges of headings for people.
-pub(super) fn ranges(missing: &[(u32, u32)]) -> String {
-    let range = |&(from, to): &(u32, u32)| format!("{from:03}-{:03}", (to - 1) % 360 + 1);
-    let ranges: Vec<String> = missing.iter().map(range).collect();
-    ranges.join(", ")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -83,7 +77,6 @@ mod tests {
         }
         let missing = missing(&filled);
         assert_eq!(missing, [(90, 135), (180, 195), (345, 390)]);
-        assert_eq!(ranges(&missing), "090-135, 180-195, 345-030");
-        assert_eq!(ranges(&super::missing(&[false; SECTORS])), "000-360");
+        assert_eq!(super::missing(&[false; SECTORS]), [(0, 360)]);
     }
 }

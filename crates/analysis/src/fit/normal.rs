@@ -1,10 +1,10 @@
 //! The normal equations of the two fits by ordinary least squares, and what
 //! follows from them when noise is held to be independent from row to row.
 
-use super::FitError;
 use crate::estimate::POPULATION_SD;
-use crate::model::{Covariance, Identifiable};
-use crate::ship::PARAMETERS;
+use binnacle_compass::model::{Covariance, Identifiable};
+use binnacle_compass::result::FitError;
+use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
 /// One more than there are unknowns, so that a residual is left.

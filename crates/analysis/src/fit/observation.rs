@@ -1,9 +1,9 @@
 //! One row of a fit: a compass heading with the deviation measured on it and
 //! the earth's field around it.
 
-use crate::angle::{CompassHeading, Deviation, Variation};
-use crate::position::Position;
-use crate::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, Deviation, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 
 /// A measured deviation, ready for any of the fits.
 ///

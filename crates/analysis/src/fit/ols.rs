@@ -6,14 +6,15 @@
 //! held to be independent from row to row, and nothing is known beforehand. The
 //! product's own fit is [`fit_robust`](super::fit_robust).
 
+use super::Observation;
 use super::headings::check_headings;
 use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::{check_field, is_usable};
-use super::{FitError, Observation};
-use crate::angle::wrap_180;
-use crate::deviation::linearised_at_compass;
-use crate::model::{Model, Parameters};
-use crate::ship::{EarthField, PARAMETERS};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::linearised_at_compass;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::result::FitError;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 
 /// Gauss–Newton needs five or six for a ship, more among wild outliers.
 const ITERATIONS: u32 = 100;

@@ -6,14 +6,15 @@
 //! noise is held to be independent. The product's own fit is
 //! [`fit_robust`](super::fit_robust).
 
+use super::Observation;
 use super::headings::check_headings;
 use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
 use super::robust::{check_field, is_usable};
-use super::{FitError, Observation};
-use crate::angle::wrap_180;
-use crate::deviation::Coefficients;
-use crate::model::{Model, Parameters};
-use crate::ship::{EarthField, PARAMETERS};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::result::FitError;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
 
 /// Fits eq. 11 by least squares. The model has no constant. Observations of weight
 /// zero, and those in a field too weak for a compass, are left out and counted as

@@ -1,24 +1,21 @@
 //! The product's fit: exact model, residuals in angle, robust weights, noise
 //! that remembers, and a prior for what headings cannot tell.
 
+use super::Observation;
 use super::headings::check_headings;
-use super::{FitError, Observation};
 use super::{soundness, stray};
-use crate::deviation::Coefficients;
-use crate::estimate::{NoiseLevels, Options, Prior, Rough, estimate, rough};
-use crate::model::{Model, Parameters};
-use crate::ship::EarthField;
+use crate::estimate::{Options, Prior, Rough, estimate, rough};
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::result::{FitError, NoiseLevels};
+use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 use std::borrow::Cow;
 
-/// What is known beforehand of a reference's constant error: its standard
-/// deviation in degrees.
-pub const REFERENCE_CONSTANT_SD_DEG: f64 = 0.5;
 /// Fewer samples than this carry no fit of eight unknowns worth having.
 const NEEDED_SAMPLES: u64 = 12;
 /// The same where the ship is known but for her permanent magnetism.
 const NEEDED_OF_A_KNOWN_SHIP: u64 = 6;
-/// Below this a compass is of no use.
-pub const WEAKEST_H_NT: f64 = 2_000.0;
 /// A row of less weight than this is counted as rejected.
 pub const REJECTED_BELOW: f64 = 0.5;
 

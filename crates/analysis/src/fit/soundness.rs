@@ -7,9 +7,8 @@
 //! residuals, which outliers do not move, and the noise that the estimator found,
 //! which is small where the ship herself changed with time.
 
-use super::FitError;
-use crate::estimate::NoiseLevels;
-use crate::model::Caution;
+use binnacle_compass::model::Caution;
+use binnacle_compass::result::{FitError, NoiseLevels};
 
 /// Usual instruments leave 0.5°, bad ones 1° ([`NoiseLevels`]); residuals are half
 /// as large again in weak fields. Beyond thrice the worst no instrument is believed.

@@ -1,8 +1,8 @@
 //! Rows far from the others in time: a wrong date, or a ship long not looked at.
 
 use super::Observation;
-use crate::model::Caution;
-use crate::time::Timestamp;
+use binnacle_compass::model::Caution;
+use binnacle_compass::time::Timestamp;
 
 /// Without a sample for so long the ship may be another.
 const LONG_S: f64 = 365.0 * 86_400.0;

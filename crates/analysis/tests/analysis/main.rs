@@ -5,16 +5,16 @@
 mod logbook;
 mod references;
 
-use binnacle_magnetics::analyse::{
-    Analysis, AnalysisSettings, Cargo, LogbookEntry, LogbookKind, SampleReason, analyse,
-};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::fit::FitError;
-use binnacle_magnetics::model::Parameters;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::logbook::{Cargo, LogbookEntry, LogbookKind};
+use binnacle_compass::model::Parameters;
+use binnacle_compass::position::Position;
+use binnacle_compass::result::{Analysis, FitError, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 
 const SHIP: Parameters = Parameters {
     bx_nt: 1800.0,

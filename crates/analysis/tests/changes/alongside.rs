@@ -3,12 +3,11 @@
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::voyages::{Truth, gauss, true_deviation};
 use crate::{HOUR_S, began, calm, is_sound, run};
-use binnacle_magnetics::analyse::{Analysis, SampleReason};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::field::{FieldAt, FieldModel};
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

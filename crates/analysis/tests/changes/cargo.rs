@@ -4,12 +4,12 @@ use crate::named::with_step;
 use crate::voyages::Variety;
 use crate::voyages::fleet::{Event, Happened, Log, Name, Plan, sail_log};
 use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::{
-    Analysis, AnalysisSettings, LogbookEntry, LogbookKind, SampleReason, analyse,
-};
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 
 #[test]
 fn after_discharge_the_base_model_is_resumed() {

@@ -3,10 +3,9 @@
 use crate::voyages::fleet::{Event, Log, sail_log};
 use crate::voyages::{predicted, true_deviation};
 use crate::{HOUR_S, calm, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::{Analysis, SampleReason};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::sample::Sample;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -50,7 +49,7 @@ fn a_jammed_card_that_trembles_is_a_stuck_compass() {
         let jammed_at = log.samples[first].time;
         let late_h = fault.from.seconds_since(jammed_at) / HOUR_S;
         assert!((-1.0..36.0).contains(&late_h), "seed {seed}: {late_h} h");
-        let is_stuck = |s: &binnacle_magnetics::analyse::SampleDiagnostic| {
+        let is_stuck = |s: &binnacle_compass::result::SampleDiagnostic| {
             s.reason == Some(SampleReason::CompassStuck)
         };
         let stuck = analysis.samples.iter().filter(|s| is_stuck(s)).count();

@@ -14,13 +14,13 @@ mod voyages;
 mod wild;
 mod work;
 
-use binnacle_magnetics::analyse::{
-    Analysis, AnalysisSettings, LogbookEntry, LogbookKind, SampleDiagnostic, SampleReason, analyse,
-};
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::result::{Analysis, Cause, Change, SampleDiagnostic, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 use voyages::fleet::{Event, Log, Name, Plan, sail_log};
 use voyages::{Faults, Variety};
 

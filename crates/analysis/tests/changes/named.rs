@@ -2,16 +2,18 @@
 
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookKind, SampleReason, analyse};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::logbook::LogbookKind;
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 
 const DAY_S: f64 = 86_400.0;
 
-fn with(log: &Log, logbook: &[binnacle_magnetics::analyse::LogbookEntry]) -> Analysis {
+fn with(log: &Log, logbook: &[binnacle_compass::logbook::LogbookEntry]) -> Analysis {
     analyse(&log.samples, logbook, &AnalysisSettings::default())
 }
 

@@ -3,11 +3,10 @@
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::voyages::gauss;
 use crate::{HOUR_S, began, calm, certain, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::SampleReason;
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::change::Cause;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::result::{Cause, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -4,11 +4,10 @@
 use crate::voyages::fleet::{Event, Name, Plan, START, sail_log};
 use crate::voyages::{Variety, predicted, true_deviation};
 use crate::{HOUR_S, began, calm, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::Analysis;
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::result::{Analysis, Cause, Change};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 
 const DAY_S: f64 = 86_400.0;
 

@@ -2,10 +2,9 @@
 
 use crate::voyages::fleet::{Event, Log, sail_log};
 use crate::{calm, certain, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::{Analysis, SampleReason};
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::time::Timestamp;
 
 const AN_HOUR: usize = 6;
 const HOUR_S: f64 = 3600.0;

@@ -2,10 +2,12 @@
 
 use crate::voyages::fleet::{Event, Log, Name, sail_log};
 use crate::{HOUR_S, began, calm, entry, is_sound, of_the_ship, run};
-use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookEntry, LogbookKind, analyse};
-use binnacle_magnetics::change::Cause;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::result::{Analysis, Cause};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 
 const DAY_S: f64 = 86_400.0;
 

@@ -5,9 +5,9 @@
 //! quite so easy.
 
 use super::{Faults, Variety, Voyage, needle, sail};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::fit::Observation;
-use binnacle_magnetics::model::Parameters;
+use binnacle_analysis::fit::Observation;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::model::Parameters;
 use nalgebra::{DMatrix, DVector, Matrix2, RowVector2, Vector2};
 use std::f64::consts::TAU;
 

@@ -5,12 +5,12 @@
 
 use super::kept::Kept;
 use super::{Errors, Faults, Passage, Truth, Variety, gauss, needle};
-use binnacle_magnetics::angle::{CompassHeading, wrap_180};
-use binnacle_magnetics::field::{FieldAt, FieldModel};
-use binnacle_magnetics::model::Parameters;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, wrap_180};
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::model::Parameters;
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;

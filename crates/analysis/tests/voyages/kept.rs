@@ -1,8 +1,8 @@
 //! What a ship's readings come to: one a minute, and means of ten.
 
 use super::{Faults, Mean, gauss};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::sample::Sample;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 

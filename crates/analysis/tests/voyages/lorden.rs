@@ -12,11 +12,11 @@
 use super::bound::swing;
 use super::fleet::{Log, Name};
 use super::{Faults, needle};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::field::{FieldAt, FieldModel};
-use binnacle_magnetics::model::Parameters;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::model::Parameters;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
 /// Schuler swing and rate, slow gyro error, compass's swing, crust, multipath, the

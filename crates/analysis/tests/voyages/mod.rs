@@ -17,11 +17,11 @@ pub(crate) mod lorden;
 mod passage;
 pub(crate) mod tally;
 
-use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
-use binnacle_magnetics::fit::Observation;
-use binnacle_magnetics::model::{Model, Parameters};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::fit::Observation;
+use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;

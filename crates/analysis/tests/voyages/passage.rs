@@ -1,7 +1,7 @@
 //! Where a ship sails: from port to port, in legs on courses that are about right.
 
 use super::{Variety, gauss};
-use binnacle_magnetics::angle::wrap_180;
+use binnacle_compass::angle::wrap_180;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 

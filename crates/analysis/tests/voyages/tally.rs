@@ -2,9 +2,10 @@
 //! the prediction was.
 
 use super::{Faults, Truth, Variety, Voyage, dipole, predicted, sail, true_deviation};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::fit::{REFERENCE_CONSTANT_SD_DEG, RobustOptions, fit_robust};
-use binnacle_magnetics::model::Model;
+use binnacle_analysis::fit::{RobustOptions, fit_robust};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::model::Model;
+use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
 
 /// Where else the band is looked at: latitude and longitude.
 const ELSEWHERE: [(f64, f64); 5] = [

@@ -10,8 +10,7 @@ mod check;
 mod model;
 
 pub use check::{ModelError, NAMES};
-pub(crate) use model::NORMAL_95;
-pub use model::Prediction;
+pub use model::{NORMAL_95, Prediction};
 
 use crate::angle::{CompassHeading, Deviation, MagneticHeading};
 use crate::model::Parameters;

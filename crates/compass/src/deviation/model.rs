@@ -12,7 +12,7 @@ use crate::ship::{EarthField, PARAMETERS};
 use serde::{Deserialize, Serialize};
 
 /// Two-sided 95 % of a normal distribution, in standard deviations.
-pub(crate) const NORMAL_95: f64 = 1.959_964;
+pub const NORMAL_95: f64 = 1.959_964;
 
 /// A foretold deviation with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

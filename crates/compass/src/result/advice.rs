@@ -2,9 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A suggestion whose three watches narrow the band by less is not made, degrees.
-pub const NOTICEABLE_DEG: f64 = 0.05;
-
 /// What to sail next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SailNext {

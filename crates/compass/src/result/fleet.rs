@@ -5,7 +5,7 @@
 //! as it was; without evidence so is everything; the probabilities add up to one. No
 //! ship is named, and no place.
 
-use super::found::{Cause, CauseProbability, Change};
+use super::change::{Cause, CauseProbability, Change};
 use crate::position::Position;
 use crate::time::Timestamp;
 

@@ -1,6 +1,5 @@
 //! Why no model came out of a set of observations.
 
-use super::headings::ranges;
 use serde::{Deserialize, Serialize};
 
 /// A refusal to fit; each says what is missing.
@@ -110,4 +109,23 @@ pub enum FitError {
          for days"
     )]
     NotConverged,
+}
+
+/// Ranges of headings for people.
+fn ranges(missing: &[(u32, u32)]) -> String {
+    let range = |&(from, to): &(u32, u32)| format!("{from:03}-{:03}", (to - 1) % 360 + 1);
+    let ranges: Vec<String> = missing.iter().map(range).collect();
+    ranges.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_of_missing_headings_run_through_north() {
+        let missing = [(90, 135), (180, 195), (345, 390)];
+        assert_eq!(ranges(&missing), "090-135, 180-195, 345-030");
+        assert_eq!(ranges(&[(0, 360)]), "000-360");
+    }
 }

@@ -8,6 +8,11 @@
 use crate::model::Parameters;
 use serde::{Deserialize, Serialize};
 
+/// Below this a compass is of no use.
+pub const WEAKEST_H_NT: f64 = 2_000.0;
+/// A compass is used with caution where H is below this.
+pub const CAUTION_H_NT: f64 = 6_000.0;
+
 /// How many numbers [`Parameters`] holds.
 pub const PARAMETERS: usize = 7;
 
@@ -80,7 +85,7 @@ impl Parameters {
     }
 
     /// The same of an earth's field in ship axes.
-    pub(crate) fn of_ship_axes(&self, [hx, hy, z]: [f64; 3]) -> [f64; 2] {
+    pub fn of_ship_axes(&self, [hx, hy, z]: [f64; 3]) -> [f64; 2] {
         let d = self.chi11_minus_chi22 / 2.0;
         [
             (1.0 + d) * hx + self.chi12 * hy + self.chi13 * z + self.bx_nt,
@@ -90,7 +95,7 @@ impl Parameters {
 
     /// The same ship by a compass whose zero moved so that it reads more by so much, radians:
     /// her iron lies as much further from its lubber line (docs/science.md, §9).
-    pub(crate) fn by_turned_compass(&self, rad: f64) -> Parameters {
+    pub fn by_turned_compass(&self, rad: f64) -> Parameters {
         let (sin, cos) = rad.sin_cos();
         let (sin_2, cos_2) = (2.0 * rad).sin_cos();
         let turned = |x: f64, y: f64| (x * cos + y * sin, y * cos - x * sin);

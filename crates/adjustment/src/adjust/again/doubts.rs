@@ -11,9 +11,9 @@ use super::super::instructions::{Corrector, NORMAL_99, Place, change_deg};
 use super::super::places::{moved, replaced, reversed, stands};
 use super::news::{Cause, EIGHT, Eight, News, Nt};
 use super::{Done, Slip};
-use crate::angle::wrap_180;
 use crate::binnacle::{Axis, Setting};
 use crate::corrector::{Effect, Iron, effect, tray_effect};
+use binnacle_compass::angle::wrap_180;
 use nalgebra::SMatrix;
 
 /// Belief beforehand that the magnets of a step went in with the wrong end.

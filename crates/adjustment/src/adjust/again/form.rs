@@ -1,7 +1,7 @@
 //! What the magnetometer read after the steps, as it is written (docs/plan.md).
 
 use super::super::read::{NumberError, ReadingForm, Unit};
-use crate::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// What the magnetometer of the first reading reads after the steps, in the same place and

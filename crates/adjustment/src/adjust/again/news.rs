@@ -12,7 +12,7 @@ use super::super::heeling::VerticalReading;
 use super::super::tolerance::errors_of;
 use crate::berth::{Alignment, BerthReading, slopes};
 use crate::corrector::Effect;
-use crate::ship::PARAMETERS;
+use binnacle_compass::ship::PARAMETERS;
 use nalgebra::{SMatrix, SVector};
 
 /// Seven parameters and the constant.

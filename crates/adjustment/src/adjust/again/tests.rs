@@ -6,7 +6,7 @@ use super::super::*;
 use super::*;
 use crate::binnacle::tests::class_a;
 use crate::corrector::effect;
-use crate::ship::ShipMagnetism;
+use binnacle_compass::ship::ShipMagnetism;
 
 /// What is read at the card's place with a setting, and of a ship, nT.
 fn field(
@@ -241,7 +241,7 @@ fn swapped_axes_are_named_where_the_compass_was_read_too() {
     let adjusted = Adjusted::new(70.0);
     let setting = &adjusted.plan.setting;
     let [x, y, z] = field(&ship(), &adjusted.case.binnacle, setting, 70.0);
-    let compass_deg = crate::angle::wrap_360((-y).atan2(x).to_degrees());
+    let compass_deg = binnacle_compass::angle::wrap_360((-y).atan2(x).to_degrees());
     let judged = |field_nt: [f64; 3], compass_deg: f64| {
         let again = adjusted.judge_with(field_nt, Some(compass_deg), Unit::Nanotesla);
         let Verdict::Unexplained { mistakes } = again.verdict else {
@@ -251,7 +251,7 @@ fn swapped_axes_are_named_where_the_compass_was_read_too() {
         mistakes
     };
     assert_eq!(judged([y, x, z], compass_deg), [Mistake::SwappedAxes]);
-    let stuck_deg = crate::angle::wrap_360(compass_deg + 60.0);
+    let stuck_deg = binnacle_compass::angle::wrap_360(compass_deg + 60.0);
     assert!(judged([x, y, z], stuck_deg).is_empty());
 }
 
@@ -381,7 +381,7 @@ fn the_second_reading_in_the_documentation_reads() {
     assert_eq!(there.reading.errors(), first.reading.errors());
     assert!((there.reading.field_nt()[0] - 15_100.0).abs() < 1e-6);
     let mut early = after.clone();
-    early.reading.at = crate::time::Timestamp::parse("2026-11-21T09:59:59Z").unwrap();
+    early.reading.at = binnacle_compass::time::Timestamp::parse("2026-11-21T09:59:59Z").unwrap();
     let refused = berth.read_after(&early).unwrap_err();
     assert_eq!(refused.field, "reading.at");
     let mut wild = after;

@@ -151,7 +151,7 @@ fn a_bound_is_never_above_what_it_bounds() {
     ];
     let compass = objective::Compass::new(0.7);
     for _ in 0..200 {
-        let ship = crate::ship::test_support::random_ship(&mut rng);
+        let ship = crate::test_support::random_ship(&mut rng);
         let objective = objective::Objective::new(&compass, &waters, |_| ship);
         let corner: [f64; 2] = std::array::from_fn(|_| rng.random_range(-9_000.0..9_000.0));
         let size: [f64; 2] = std::array::from_fn(|_| rng.random_range(0.0..4_000.0));

@@ -8,12 +8,12 @@ fn shown(case: &Case, magnetic_deg: f64) -> f64 {
     let there = effect(&case.binnacle, &case.binnacle.setting).as_ship(BISCAY.h_nt);
     let ship = sum(&case.bare, &there);
     let deviation = ship.deviation_rad(magnetic_deg.to_radians(), BISCAY);
-    crate::angle::wrap_360(magnetic_deg - deviation.to_degrees())
+    binnacle_compass::angle::wrap_360(magnetic_deg - deviation.to_degrees())
 }
 
 fn planned(case: &Case, compass_deg: f64) -> Outcome {
     let mut adjustment = case.adjustment();
-    adjustment.compass_deg = Some(crate::angle::wrap_360(compass_deg));
+    adjustment.compass_deg = Some(binnacle_compass::angle::wrap_360(compass_deg));
     plan(&adjustment).unwrap()
 }
 

@@ -12,13 +12,13 @@ mod strength;
 mod vertical;
 
 use super::*;
-use crate::angle::MagneticHeading;
 use crate::berth::{Alignment, ReadingErrors};
 use crate::binnacle::tests::class_a;
 use crate::binnacle::{Axis, BinnacleForm, DesignForm};
 use crate::corrector::effect;
-use crate::model::{Identifiable, Parameters};
-use crate::ship::ShipMagnetism;
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::{Identifiable, Parameters};
+use binnacle_compass::ship::ShipMagnetism;
 
 pub(super) const BISCAY: EarthField = EarthField {
     h_nt: 24_000.0,
@@ -45,7 +45,7 @@ pub(super) fn bare() -> ShipMagnetism {
     }
 }
 
-fn small_covariance() -> crate::model::Covariance {
+fn small_covariance() -> binnacle_compass::model::Covariance {
     let mut covariance = [[0.0; 8]; 8];
     for (index, sd) in [60.0_f64, 1.5e-3, 50.0, 1.5e-3, 2e-3, 2e-3, 2e-3, 0.3]
         .into_iter()

@@ -4,7 +4,7 @@ use super::super::*;
 use super::*;
 
 fn settled(model: &Model, compass_deg: f64, off_deg: f64) -> Settled {
-    let compass = crate::angle::CompassHeading::new(compass_deg).unwrap();
+    let compass = binnacle_compass::angle::CompassHeading::new(compass_deg).unwrap();
     let foretold = model.deviation(compass, BISCAY).unwrap().deviation;
     Settled {
         compass,

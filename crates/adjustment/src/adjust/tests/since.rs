@@ -2,7 +2,7 @@
 
 use super::super::*;
 use super::*;
-use crate::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// The berth read on this heading of a ship whose permanent field is more by so much along
 /// the needle and across it, nT, by somebody who says so of his heading.

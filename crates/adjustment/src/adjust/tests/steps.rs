@@ -21,7 +21,7 @@ fn after_the_last_step_the_ship_is_as_foretold_and_the_compass_as_each_step_says
                 let ship = sum(&case.bare, &there);
                 let deviation = ship.deviation_rad(magnetic_deg.to_radians(), BISCAY);
                 let compass = magnetic_deg - deviation.to_degrees();
-                let off = crate::angle::wrap_180(step.expected_compass_deg - compass);
+                let off = binnacle_compass::angle::wrap_180(step.expected_compass_deg - compass);
                 assert!(off.abs() < 1e-6, "{magnetic_deg} {}: {off}", step.words);
             }
             let berth = &plan.after[0];
@@ -29,7 +29,7 @@ fn after_the_last_step_the_ship_is_as_foretold_and_the_compass_as_each_step_says
                 &case.bare,
                 &effect(&case.binnacle, &plan.setting).as_ship(BISCAY.h_nt),
             );
-            let coefficients = crate::deviation::Coefficients::new(
+            let coefficients = binnacle_compass::deviation::Coefficients::new(
                 &ship.parameters_over_lambda().unwrap(),
                 BISCAY,
             );
@@ -125,7 +125,7 @@ fn a_step_is_confirmed_or_explained_and_the_plan_made_anew() {
     let step = magnets
         .max_by(|a, b| a.change_deg.abs().total_cmp(&b.change_deg.abs()))
         .unwrap();
-    let wrap = crate::angle::wrap_360;
+    let wrap = binnacle_compass::angle::wrap_360;
     let read = |change: f64| recheck(&adjustment, step, 50.0, wrap(50.0 + change)).unwrap();
     let confirmed = read(step.change_deg + 0.1);
     assert!(
@@ -252,7 +252,7 @@ fn what_each_step_hides_all_of_them_show() {
     let steps = plan(&adjustment).unwrap().plans.remove(0).steps;
     let last = &steps.last().unwrap().setting_after;
     let expected: f64 = steps.iter().map(|step| step.change_deg).sum();
-    let wrap = crate::angle::wrap_360;
+    let wrap = binnacle_compass::angle::wrap_360;
     let in_all = |off_deg: f64| {
         turned_in_all(&adjustment, 50.0, last, wrap(50.0 + expected + off_deg)).unwrap()
     };

@@ -25,7 +25,7 @@ fn step_of(adjustment: &Adjustment<'_>, corrector: Corrector) -> Step {
 
 /// What is made of a step that turned the compass by so many times what it should.
 fn read(adjustment: &Adjustment<'_>, step: &Step, times: f64) -> Recheck {
-    let after_deg = crate::angle::wrap_360(50.0 + times * step.change_deg);
+    let after_deg = binnacle_compass::angle::wrap_360(50.0 + times * step.change_deg);
     recheck(adjustment, step, 50.0, after_deg).unwrap()
 }
 
@@ -228,7 +228,7 @@ fn a_strength_is_learnt_anew_from_where_the_magnets_stand() {
     let step = step_of(&adjustment, Corrector::Athwartship);
     let (hole, setting, change_deg) = miscounted(&adjustment, &step, 3);
     let anew = |turned_deg: Option<f64>| {
-        let compass_deg = turned_deg.map(|turned| crate::angle::wrap_360(50.0 + turned));
+        let compass_deg = turned_deg.map(|turned| binnacle_compass::angle::wrap_360(50.0 + turned));
         recheck_elsewhere(&adjustment, &step, 50.0, &setting, compass_deg).unwrap()
     };
     // What the compass shows is what magnets as strong as was taken do there; and of what it

@@ -1,11 +1,10 @@
 //! Faults of a reference that the other one showed.
 
 use super::evidence::LASTED;
-use crate::analyse::Epoch;
 use crate::analyse::reading::{Reading, heading_reading};
-use crate::change::{Cause, CauseProbability, Change};
 use crate::fit::Observation;
-use crate::time::Timestamp;
+use binnacle_compass::result::{Cause, CauseProbability, Change, Epoch};
+use binnacle_compass::time::Timestamp;
 
 /// So many readings with a dropped reference among as many and one more are a fault. Wild
 /// readings come singly.

@@ -9,14 +9,14 @@ mod teller;
 pub(super) use fault::merge_faults;
 pub(super) use size::sharpen;
 
-use super::SampleReason;
 use super::epoch::Reference;
-use super::logbook::{LogbookEntry, LogbookKind};
 use super::reading::Reading;
-use crate::change::{Cause, Change, Given, Loaded, What, detect};
-use crate::estimate::{NoiseLevels, Prior};
+use crate::change::{Given, Loaded, What, detect};
+use crate::estimate::Prior;
 use crate::fit::Observation;
-use crate::time::Timestamp;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::result::{Cause, Change, NoiseLevels, SampleReason};
+use binnacle_compass::time::Timestamp;
 use fault::{Seen, faults};
 use teller::Teller;
 

@@ -1,12 +1,12 @@
 //! How large a change is: as a step of magnetism and as one of deviation.
 
-use crate::analyse::Epoch;
 use crate::analyse::reading::Reading;
-use crate::angle::wrap_180;
-use crate::change::{Cause, Change, Event, Snapshot, Step};
+use crate::change::{Event, Snapshot};
 use crate::fit::Observation;
-use crate::model::{Model, Parameters};
-use crate::ship::EarthField;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::result::{Cause, Change, Epoch, Step};
+use binnacle_compass::ship::EarthField;
 
 const HEADINGS: u32 = 36;
 
@@ -17,9 +17,9 @@ pub(super) fn worst_change(before: &Parameters, after: &Parameters, earth: Earth
             let magnetic = f64::from(k * 360 / HEADINGS).to_radians();
             let compass = |p: &Parameters| {
                 let [x, y] = p.field_over_lambda(magnetic, earth);
-                crate::ship::compass_rad(x, y)
+                binnacle_compass::ship::compass_rad(x, y)
             };
-            crate::ship::wrap_pi(compass(before) - compass(after)).abs()
+            binnacle_compass::ship::wrap_pi(compass(before) - compass(after)).abs()
         })
         .fold(0.0, f64::max)
         .to_degrees()
@@ -49,7 +49,7 @@ pub(super) fn astray(before: &Snapshot, readings: &[Observation]) -> Astray {
         let field = before
             .parameters
             .field_over_lambda(magnetic.to_radians(), earth);
-        let expected = crate::ship::compass_rad(field[0], field[1]).to_degrees();
+        let expected = binnacle_compass::ship::compass_rad(field[0], field[1]).to_degrees();
         let seen_deg = wrap_180(o.compass.degrees() - expected).abs();
         (seen_deg, seen_deg * o.h_nt / USUAL_H_NT)
     };

@@ -2,15 +2,16 @@
 
 use super::evidence::evidence;
 use super::{Begun, Ended, Misled, cause_of, size};
-use crate::analyse::logbook::LogbookEntry;
-use crate::angle::wrap_180;
 use crate::change::{
-    Cause, Change, Circumstances, Event, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port,
-    causes, rows_since,
+    Circumstances, Event, Perhaps, SAILED_SINCE, Snapshot, Unnoticed, What, at_port, causes,
+    rows_since,
 };
 use crate::fit::Observation;
-use crate::ship::{EarthField, PARAMETERS};
-use crate::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::result::{Cause, Change};
+use binnacle_compass::ship::{EarthField, PARAMETERS};
+use binnacle_compass::time::Timestamp;
 
 /// People write down when they noticed, not when it happened; cargo is not on board
 /// before it is loaded, but for the clerk's haste.

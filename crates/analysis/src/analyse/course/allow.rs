@@ -2,13 +2,13 @@
 //!
 //! What always holds: only the last epoch's model is made wider, and nothing is told by it.
 
-use super::{Course, Epoch};
+use super::Course;
 use crate::analyse::changes::{Begun, Ended, Misled};
 use crate::analyse::either::either;
 use crate::analyse::epoch::{Reference, empty_epoch};
 use crate::analyse::reading::Reading;
-use crate::change::{Cause, Change};
-use crate::ship::PARAMETERS;
+use binnacle_compass::result::{Cause, Change, Epoch};
+use binnacle_compass::ship::PARAMETERS;
 
 impl Course {
     /// Widens the last epoch's model where the ship may be again as she was in the

@@ -8,13 +8,12 @@ mod allow;
 use super::cargo::{Idle, is_laden, take_idle};
 use super::changes::{Found, Known, MISTIMED_S, find, sharpen};
 use super::epoch::{Reference, Stretch, empty_epoch, fit_epoch, prior, reference, refuse};
-use super::logbook::LogbookEntry;
 use super::reading::Reading;
-use super::settings::AnalysisSettings;
-use super::{Epoch, SampleReason};
-use crate::change::{Cause, CauseProbability, Change};
-use crate::time::Timestamp;
 use allow::zero_besides;
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::result::{Cause, CauseProbability, Change, Epoch, SampleReason};
+use binnacle_compass::settings::AnalysisSettings;
+use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
 /// So long after the time that the logbook has for work the samples are asked whether it

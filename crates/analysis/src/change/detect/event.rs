@@ -2,10 +2,11 @@
 
 use super::{Loaded, Unnoticed};
 use crate::change::filter::{CONSTANT_STATE, Filter};
-use crate::estimate::{NoiseLevels, POPULATION_SD, Prior};
-use crate::model::{Covariance, Parameters};
-use crate::ship::PARAMETERS;
-use crate::time::Timestamp;
+use crate::estimate::{POPULATION_SD, Prior};
+use binnacle_compass::model::{Covariance, Parameters};
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::PARAMETERS;
+use binnacle_compass::time::Timestamp;
 
 /// What the search is told beside the rows.
 pub(crate) struct Given<'a> {

@@ -1,9 +1,10 @@
 //! The sizes of noise, learnt from the rows so far.
 
 use crate::change::filter::{Filter, Noise};
-use crate::estimate::{NoiseLevels, Prior, Unknowns};
+use crate::estimate::{Prior, Unknowns};
 use crate::fit::{Observation, learn};
-use crate::ship::PARAMETERS;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::PARAMETERS;
 
 /// Days of data from which the sizes of noise are learnt, again and again.
 const LEARN_DAYS: [f64; 3] = [10.0, 30.0, 90.0];

@@ -3,7 +3,7 @@
 use super::Search;
 use crate::change::calls::Said;
 use crate::fit::Observation;
-use crate::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// People write down the day, or when the hatches were shut.
 const ABOUT_S: f64 = 12.0 * 3600.0;

@@ -30,11 +30,10 @@ use super::calls::Calls;
 use super::filter::{Filter, Measurement, Noise, measurement};
 use super::large::{fusion, relinearised};
 use super::upset::Earlier;
-use crate::estimate::{
-    NoiseLevels, Point, Prior, Station, Unknowns, are_times_believed, row, stations,
-};
+use crate::estimate::{Point, Prior, Station, Unknowns, are_times_believed, row, stations};
 use crate::fit::Observation;
-use crate::time::Timestamp;
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::time::Timestamp;
 use borne_out::Doubt;
 use faint::Faint;
 use learn::{Learnt, Lesson};

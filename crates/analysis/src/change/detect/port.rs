@@ -1,7 +1,7 @@
 //! Port calls, by where there are no rows.
 
-use crate::angle::wrap_180;
 use crate::fit::Observation;
+use binnacle_compass::angle::wrap_180;
 
 /// A port call is a gap of at least this without going further than that.
 const PORT_S: f64 = 3.0 * 3600.0;

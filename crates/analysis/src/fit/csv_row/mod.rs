@@ -3,11 +3,12 @@
 //! Reading the file is the caller's business; which columns there must be, and
 //! what a row says, is decided here.
 
-use super::{GyroSpeedError, HeadingReading, gyro_speed_error_deg};
-use crate::angle::{Brief, CompassHeading, TrueHeading, Variation};
-use crate::field::{FieldAt, FieldModel};
-use crate::position::Position;
-use crate::time::Timestamp;
+use super::{HeadingReading, gyro_speed_error_deg};
+use binnacle_compass::angle::{Brief, CompassHeading, TrueHeading, Variation};
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::position::Position;
+use binnacle_compass::settings::GyroSpeedError;
+use binnacle_compass::time::Timestamp;
 use std::cmp::Ordering;
 
 /// One row: every column that such a table may have.

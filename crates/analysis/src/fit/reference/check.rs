@@ -1,8 +1,8 @@
 //! How gyro and satellite compass compare, and the heading of both.
 
 use super::{HeadingReading, Trust};
-use crate::angle::{TrueHeading, wrap_180};
-use serde::{Deserialize, Serialize};
+use binnacle_compass::angle::{TrueHeading, wrap_180};
+use binnacle_compass::result::{FAILED_BEYOND_AT_MOST_DEG, ReferenceCheck};
 
 /// Fewer readings of both at once do not show how they differ.
 const NEEDED_PAIRS: usize = 12;
@@ -18,34 +18,9 @@ const SOUND_SHARE: f64 = 0.25;
 /// Where the two depart further from their usual difference one has failed: so
 /// many standard deviations, and within these limits.
 const FAILED_SD: f64 = 6.0;
-const FAILED_DEG: (f64, f64) = (2.0, 5.0);
+const FAILED_DEG: (f64, f64) = (2.0, FAILED_BEYOND_AT_MOST_DEG);
 /// The median of |x| of a Gaussian is this part of its standard deviation.
 const MEDIAN_TO_SD: f64 = 0.674_489_8;
-
-/// How a ship's two references compare over all her samples.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ReferenceCheck {
-    /// Samples with both.
-    pub pairs: u64,
-    /// Gyro less satellite compass, usually, degrees; none without enough pairs.
-    pub offset_deg: Option<f64>,
-    /// One of the two has failed where their difference departs further than
-    /// this from the usual, degrees.
-    #[serde(default = "widest_deg")]
-    pub failed_beyond_deg: f64,
-    /// Standard deviation of the constant error that is left in the reference.
-    pub constant_sd_deg: f64,
-    /// Samples whose gyro was dropped.
-    #[serde(default)]
-    pub gyro_dropped: u64,
-    /// Samples whose satellite compass was dropped.
-    #[serde(default)]
-    pub satellite_dropped: u64,
-}
-
-fn widest_deg() -> f64 {
-    FAILED_DEG.1
-}
 
 /// A true heading made of what there was.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,112 +49,114 @@ pub(super) fn difference_deg(gyro: TrueHeading, satellite: TrueHeading) -> f64 {
     wrap_180(gyro.degrees() - satellite.degrees())
 }
 
-impl ReferenceCheck {
-    /// From every difference of gyro and satellite compass, degrees.
-    pub(super) fn new(
-        differences: impl Iterator<Item = f64>,
-        one_constant_sd_deg: f64,
-    ) -> ReferenceCheck {
-        let all: Vec<f64> = differences.collect();
-        let pairs = all.len() as u64;
-        let sound: Vec<f64> = all
-            .iter()
-            .copied()
-            .filter(|d| d.abs() < SOUND_DEG)
-            .collect();
-        let enough = (all.len() as f64 * SOUND_SHARE).max(NEEDED_PAIRS as f64);
-        let telling = if sound.len() as f64 >= enough {
-            sound
-        } else {
-            all
-        };
-        ReferenceCheck {
-            pairs,
-            ..ReferenceCheck::of_sound(&telling, one_constant_sd_deg)
+/// From every difference of gyro and satellite compass, degrees.
+pub(super) fn check_of(
+    differences: impl Iterator<Item = f64>,
+    one_constant_sd_deg: f64,
+) -> ReferenceCheck {
+    let all: Vec<f64> = differences.collect();
+    let pairs = all.len() as u64;
+    let sound: Vec<f64> = all
+        .iter()
+        .copied()
+        .filter(|d| d.abs() < SOUND_DEG)
+        .collect();
+    let enough = (all.len() as f64 * SOUND_SHARE).max(NEEDED_PAIRS as f64);
+    let telling = if sound.len() as f64 >= enough {
+        sound
+    } else {
+        all
+    };
+    ReferenceCheck {
+        pairs,
+        ..check_of_sound(&telling, one_constant_sd_deg)
+    }
+}
+
+/// From differences of references of which neither had failed for long, degrees.
+pub(super) fn check_of_sound(sound: &[f64], one_constant_sd_deg: f64) -> ReferenceCheck {
+    let mut check = ReferenceCheck {
+        pairs: sound.len() as u64,
+        offset_deg: None,
+        failed_beyond_deg: FAILED_DEG.1,
+        constant_sd_deg: one_constant_sd_deg,
+        gyro_dropped: 0,
+        satellite_dropped: 0,
+    };
+    if sound.len() < NEEDED_PAIRS {
+        return check;
+    }
+    let Some((offset, spread)) = median(sound.to_vec()).zip(robust_sd(sound)) else {
+        return check;
+    };
+    check.offset_deg = Some(offset);
+    check.failed_beyond_deg = (FAILED_SD * spread).clamp(FAILED_DEG.0, FAILED_DEG.1);
+    // The mean of two is better than one, but no better than their quarrel.
+    let variance = (one_constant_sd_deg.powi(2) / 2.0).max(offset.powi(2) / 4.0);
+    check.constant_sd_deg = variance.sqrt();
+    check
+}
+
+/// How far a difference departs from the usual, when one must have failed.
+pub(super) fn has_failed(check: &ReferenceCheck, difference_deg: f64) -> bool {
+    departure_deg(check, difference_deg).abs() > check.failed_beyond_deg
+}
+
+fn departure_deg(check: &ReferenceCheck, difference_deg: f64) -> f64 {
+    wrap_180(difference_deg - check.offset_deg.unwrap_or(0.0))
+}
+
+/// Either reference with half of the usual difference taken off.
+pub(super) fn centred(
+    check: &ReferenceCheck,
+    gyro: Option<TrueHeading>,
+    satellite: Option<TrueHeading>,
+) -> (Option<TrueHeading>, Option<TrueHeading>) {
+    let half = check.offset_deg.unwrap_or(0.0) / 2.0;
+    let moved = |heading: TrueHeading, by: f64| {
+        // A finite heading moved by a finite angle is a heading.
+        TrueHeading::new(heading.degrees() + by).unwrap_or(heading)
+    };
+    (
+        gyro.map(|gyro| moved(gyro, -half)),
+        satellite.map(|satellite| moved(satellite, half)),
+    )
+}
+
+/// The reference heading of what is believed; none when nothing is.
+pub(super) fn merge(
+    check: &ReferenceCheck,
+    gyro: Option<TrueHeading>,
+    satellite: Option<TrueHeading>,
+) -> Option<Reference> {
+    match centred(check, gyro, satellite) {
+        (None, None) => None,
+        (Some(gyro), None) => Some(Reference::of_gyro(gyro)),
+        (None, Some(heading)) => Some(Reference {
+            heading,
+            gyro_share: 0.0,
+            gyro_less_satellite_deg: None,
+        }),
+        (Some(gyro), Some(satellite)) => {
+            let ahead = difference_deg(gyro, satellite);
+            Some(Reference {
+                heading: TrueHeading::new(satellite.degrees() + GYRO_SHARE * ahead)?,
+                gyro_share: GYRO_SHARE,
+                gyro_less_satellite_deg: Some(ahead),
+            })
         }
     }
+}
 
-    /// From differences of references of which neither had failed for long, degrees.
-    pub(super) fn of_sound(sound: &[f64], one_constant_sd_deg: f64) -> ReferenceCheck {
-        let mut check = ReferenceCheck {
-            pairs: sound.len() as u64,
-            offset_deg: None,
-            failed_beyond_deg: FAILED_DEG.1,
-            constant_sd_deg: one_constant_sd_deg,
-            gyro_dropped: 0,
-            satellite_dropped: 0,
-        };
-        if sound.len() < NEEDED_PAIRS {
-            return check;
-        }
-        let Some((offset, spread)) = median(sound.to_vec()).zip(robust_sd(sound)) else {
-            return check;
-        };
-        check.offset_deg = Some(offset);
-        check.failed_beyond_deg = (FAILED_SD * spread).clamp(FAILED_DEG.0, FAILED_DEG.1);
-        // The mean of two is better than one, but no better than their quarrel.
-        let variance = (one_constant_sd_deg.powi(2) / 2.0).max(offset.powi(2) / 4.0);
-        check.constant_sd_deg = variance.sqrt();
-        check
-    }
-
-    /// How far a difference departs from the usual, when one must have failed.
-    pub(super) fn failed(&self, difference_deg: f64) -> bool {
-        self.departure_deg(difference_deg).abs() > self.failed_beyond_deg
-    }
-
-    fn departure_deg(&self, difference_deg: f64) -> f64 {
-        wrap_180(difference_deg - self.offset_deg.unwrap_or(0.0))
-    }
-
-    /// Either reference with half of the usual difference taken off.
-    pub(super) fn centred(
-        &self,
-        gyro: Option<TrueHeading>,
-        satellite: Option<TrueHeading>,
-    ) -> (Option<TrueHeading>, Option<TrueHeading>) {
-        let half = self.offset_deg.unwrap_or(0.0) / 2.0;
-        let moved = |heading: TrueHeading, by: f64| {
-            // A finite heading moved by a finite angle is a heading.
-            TrueHeading::new(heading.degrees() + by).unwrap_or(heading)
-        };
-        (
-            gyro.map(|gyro| moved(gyro, -half)),
-            satellite.map(|satellite| moved(satellite, half)),
-        )
-    }
-
-    /// The reference heading of what is believed; none when nothing is.
-    pub(super) fn merge(
-        &self,
-        gyro: Option<TrueHeading>,
-        satellite: Option<TrueHeading>,
-    ) -> Option<Reference> {
-        match self.centred(gyro, satellite) {
-            (None, None) => None,
-            (Some(gyro), None) => Some(Reference::of_gyro(gyro)),
-            (None, Some(heading)) => Some(Reference {
-                heading,
-                gyro_share: 0.0,
-                gyro_less_satellite_deg: None,
-            }),
-            (Some(gyro), Some(satellite)) => {
-                let ahead = difference_deg(gyro, satellite);
-                Some(Reference {
-                    heading: TrueHeading::new(satellite.degrees() + GYRO_SHARE * ahead)?,
-                    gyro_share: GYRO_SHARE,
-                    gyro_less_satellite_deg: Some(ahead),
-                })
-            }
-        }
-    }
-
-    /// Notes how often either reference was there and not believed.
-    pub(super) fn count_dropped(&mut self, readings: &[HeadingReading], trust: &[Trust]) {
-        for (reading, trust) in readings.iter().zip(trust) {
-            self.gyro_dropped += u64::from(reading.gyro.is_some() && !trust.gyro);
-            self.satellite_dropped += u64::from(reading.satellite.is_some() && !trust.satellite);
-        }
+/// Notes how often either reference was there and not believed.
+pub(super) fn count_dropped(
+    check: &mut ReferenceCheck,
+    readings: &[HeadingReading],
+    trust: &[Trust],
+) {
+    for (reading, trust) in readings.iter().zip(trust) {
+        check.gyro_dropped += u64::from(reading.gyro.is_some() && !trust.gyro);
+        check.satellite_dropped += u64::from(reading.satellite.is_some() && !trust.satellite);
     }
 }
 

@@ -15,14 +15,14 @@ mod speed_error;
 mod stuck;
 mod vote;
 
-pub use check::ReferenceCheck;
+pub use speed_error::gyro_speed_error_deg;
 pub(crate) use speed_error::northerly_speed_error_deg;
-pub use speed_error::{GyroSpeedError, gyro_speed_error_deg};
 
-use super::{FitError, Observation};
-use crate::angle::{CompassHeading, TrueHeading, Variation};
-use crate::position::Position;
-use crate::time::Timestamp;
+use super::Observation;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::result::{FitError, ReferenceCheck};
+use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
 /// Two references that differ so much throughout are no reference.
@@ -113,7 +113,7 @@ pub fn refer(readings: &[HeadingReading], one_constant_sd_deg: f64) -> Result<Re
     }
     vote::settle_stretches(readings, &order, &check, &stretches, &mut trust);
     vote::settle(readings, &order, &check, &mut trust);
-    check.count_dropped(readings, &trust);
+    check::count_dropped(&mut check, readings, &trust);
     let observations = readings
         .iter()
         .zip(&trust)
@@ -141,13 +141,13 @@ fn compare(
     let pairs = parted::pairs(readings, believed).unwrap_or_default();
     let Some(parted) = parted::part(&pairs) else {
         let all = differences(readings, trust).map(|(_, difference)| difference);
-        return (ReferenceCheck::new(all, one_constant_sd_deg), Vec::new());
+        return (check::check_of(all, one_constant_sd_deg), Vec::new());
     };
     let sound = parted.sound(&pairs).map(|pair| pair.difference_deg);
     let sound: Vec<f64> = sound.collect();
     let check = ReferenceCheck {
         pairs: pairs.len() as u64,
-        ..ReferenceCheck::of_sound(&sound, one_constant_sd_deg)
+        ..check::check_of_sound(&sound, one_constant_sd_deg)
     };
     let places = |stretch: &Range<usize>| pairs[stretch.clone()].iter().map(|p| p.index).collect();
     (check, parted.stretches.iter().map(places).collect())
@@ -186,7 +186,7 @@ impl HeadingReading {
 
 fn observe(reading: &HeadingReading, trust: Trust, check: &ReferenceCheck) -> Option<Observation> {
     let (gyro, satellite) = reading.believed(trust);
-    let reference = check.merge(gyro, satellite).or_else(|| {
+    let reference = check::merge(check, gyro, satellite).or_else(|| {
         // An unnamed reference may wander as a gyro does.
         let named = reading.gyro.or(reading.satellite);
         let unnamed = reading.unnamed.filter(|_| named.is_none())?;

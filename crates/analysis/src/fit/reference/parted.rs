@@ -6,8 +6,8 @@
 
 use super::HeadingReading;
 use super::check::{difference_deg, median, robust_sd};
-use crate::angle::wrap_180;
-use crate::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::time::Timestamp;
 use std::ops::Range;
 
 /// What two sound references differ by, variance in degrees².

@@ -1,23 +1,10 @@
 //! What a gyro does wrong because the ship moves over a turning earth.
 
-use crate::angle::TrueHeading;
-use serde::{Deserialize, Serialize};
+use binnacle_compass::angle::TrueHeading;
 
 /// Radius of the earth's turning, knots (speed error of a gyro: sin ε =
 /// V cos C / 902.5 cos φ).
 const EARTH_TURN_KN: f64 = 902.5;
-
-/// Who takes out the error that a gyro has from the ship's own motion over the
-/// turning earth. It must be done once, never twice.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum GyroSpeedError {
-    /// The gyro does it itself.
-    #[default]
-    Corrected,
-    /// The gyro does not: it is taken out here, from speed and latitude.
-    Uncorrected,
-}
 
 /// A gyro's speed error in degrees, to be taken off its reading: positive on
 /// northerly headings.

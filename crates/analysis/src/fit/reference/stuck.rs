@@ -7,7 +7,7 @@
 //! reference keeps steady, too, it is the compass that swings.
 
 use super::{HeadingReading, Trust};
-use crate::angle::{TrueHeading, wrap_180};
+use binnacle_compass::angle::{TrueHeading, wrap_180};
 
 /// So many readings in a row must be the same.
 const ROW: usize = 6;

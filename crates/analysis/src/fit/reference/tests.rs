@@ -1,4 +1,4 @@
-use super::check::Reference;
+use super::check::{Reference, check_of, merge};
 use super::*;
 
 fn heading(degrees: f64) -> TrueHeading {
@@ -42,8 +42,8 @@ fn a_lasting_difference_is_halved_and_widens_the_constant() {
     let referred = refer(&readings(200, |i| (4.0 + wobble(i), 0.0)), 0.5).unwrap();
     assert!((referred.check.offset_deg.unwrap() - 4.0).abs() < 0.11);
     assert!((referred.check.constant_sd_deg - 2.0).abs() < 0.06);
-    let check = ReferenceCheck::new((0..40).map(|_| 4.0), 0.5);
-    let merged = |gyro, satellite| check.merge(gyro, satellite).unwrap();
+    let check = check_of((0..40).map(|_| 4.0), 0.5);
+    let merged = |gyro, satellite| merge(&check, gyro, satellite).unwrap();
     for Reference { heading, .. } in [
         merged(Some(heading(1.0)), None),
         merged(None, Some(heading(357.0))),
@@ -54,7 +54,7 @@ fn a_lasting_difference_is_halved_and_widens_the_constant() {
 }
 
 fn wrap(degrees: f64) -> f64 {
-    crate::angle::wrap_180(degrees)
+    binnacle_compass::angle::wrap_180(degrees)
 }
 
 #[test]

@@ -1,12 +1,13 @@
 //! Which of two references has failed: the magnetic compass has the third vote.
 
-use super::check::median;
-use super::{HeadingReading, ReferenceCheck, Trust, differences, observe};
-use crate::angle::wrap_180;
-use crate::deviation::Coefficients;
+use super::check::{centred, has_failed, median};
+use super::{HeadingReading, Trust, differences, observe};
 use crate::fit::{Observation, RobustFit, RobustOptions, fit_robust};
-use crate::ship::EarthField;
-use crate::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::result::ReferenceCheck;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 
 /// Failures closer in time than this are one.
 const SPELL_S: f64 = 6.0 * 3600.0;
@@ -30,7 +31,7 @@ pub(super) fn settle(
 ) {
     let mut failed = vec![false; readings.len()];
     for (index, difference) in differences(readings, trust) {
-        failed[index] = check.failed(difference);
+        failed[index] = has_failed(check, difference);
     }
     let quarrels: Vec<usize> = order.iter().copied().filter(|&i| failed[i]).collect();
     if quarrels.is_empty() {
@@ -126,7 +127,7 @@ fn judge_stretch(
         let Some(by_compass) = heading_by_compass(reading, third) else {
             continue;
         };
-        if let (Some(gyro), Some(satellite)) = check.centred(reading.gyro, reading.satellite) {
+        if let (Some(gyro), Some(satellite)) = centred(check, reading.gyro, reading.satellite) {
             off.0.push(wrap_180(gyro.degrees() - by_compass));
             off.1.push(wrap_180(satellite.degrees() - by_compass));
         }
@@ -157,7 +158,7 @@ fn judge(
         let Some(by_compass) = heading_by_compass(reading, third) else {
             continue;
         };
-        if let (Some(gyro), Some(satellite)) = check.centred(reading.gyro, reading.satellite) {
+        if let (Some(gyro), Some(satellite)) = centred(check, reading.gyro, reading.satellite) {
             off.0.push(wrap_180(gyro.degrees() - by_compass).abs());
             off.1.push(wrap_180(satellite.degrees() - by_compass).abs());
         }
