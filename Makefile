@@ -56,7 +56,7 @@ soak: web ## The long tests: many kills, many voyages
 	@PHASES=examples,coverage,fuzzing,stateful CASES=200 scripts/fuzz-api
 
 bench: setup ## Run the benchmarks of BENCHMARKS.md
-	$(CARGO) bench --locked -p binnacle-magnetics -p binnacle-nmea -p binnacle-wire --bench '*'
+	$(CARGO) bench --locked -p binnacle-compass -p binnacle-analysis -p binnacle-adjustment -p binnacle-nmea -p binnacle-wire --bench '*'
 
 bench-link: setup ## Count the octets of a simulated month over a satellite, by profile
 	$(CARGO) build --locked --workspace
@@ -67,19 +67,19 @@ bench-formats: setup ## Compare frames with other formats, over stock HTTPS, and
 	scripts/bench-formats
 
 study: setup ## Measure the estimator on many voyages: coverage, error over the bound
-	$(CARGO) run --locked --release -p binnacle-magnetics --example study
+	$(CARGO) run --locked --release -p binnacle-analysis --example study
 
 study-adjust: setup ## Measure plans of adjustments on simulated ships and binnacles
-	$(CARGO) run --locked --release -p binnacle-magnetics --example adjust_study
+	$(CARGO) run --locked --release -p binnacle-adjustment --example adjust_study
 
 study-changes: setup ## Measure how changes are found on simulated fleets: delay, false alarms
-	$(CARGO) run --locked --release -p binnacle-magnetics --example changes_study
+	$(CARGO) run --locked --release -p binnacle-analysis --example changes_study
 
 study-losses: setup ## Measure what rounding and thinning cost the estimator
 	$(CARGO) run --locked --release -p binnacle-wire --example losses
 
 methods: setup ## Compare the published fit, least squares, Huber and Binnacle on voyages
-	$(CARGO) run --locked --release -p binnacle-magnetics --example methods
+	$(CARGO) run --locked --release -p binnacle-analysis --example methods
 
 bench-peer: setup ## Compare the fit with the same model in statsmodels and NumPy, in pairs
 	scripts/bench-peer

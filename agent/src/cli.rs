@@ -15,7 +15,7 @@ use crate::status::Status;
 use crate::uplink::{Shore, Trouble};
 use crate::whole_file::write_whole;
 use anyhow::Context;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use clap::{Parser, Subcommand, ValueEnum};
 use std::io::Write;
 use std::net::SocketAddr;

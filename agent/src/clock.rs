@@ -1,7 +1,7 @@
 //! The computer's clock: for the page and the uplink's pauses only. Samples
 //! carry the ship's own time (see [`crate::ship_time`]).
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// The time now, as the computer has it.
 #[allow(

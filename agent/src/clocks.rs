@@ -6,7 +6,7 @@
 //! its time with its power knows that it is later than it was. Where the two differed, as
 //! with instruments that are simulated, nothing is known.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// Two clocks that are the same.

@@ -5,13 +5,11 @@
 
 use crate::alert::Aboard;
 use crate::weak_field::LEAST_H_NT;
-use binnacle_magnetics::angle::{
-    CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
-};
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::ship::EarthField;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::position::Position;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use serde::{Deserialize, Serialize};
 
@@ -168,7 +166,7 @@ fn earth_at(from: Ingredients<'_>) -> Result<(EarthField, Variation), String> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use binnacle_magnetics::model::{Model, Parameters};
+    use binnacle_compass::model::{Model, Parameters};
     use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
     pub(crate) fn model(bx_nt: f64, constant_variance: Option<f64>) -> ModelDownlink {

@@ -4,11 +4,9 @@
 //! A value that the instrument left empty is absent here, never zero. The
 //! compass heading is always the raw reading, before any deviation.
 
-use binnacle_magnetics::angle::{
-    CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
-};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 
 /// One reading from one source.

@@ -8,9 +8,9 @@ use crate::config::{RolesConfig, SourceConfig};
 use crate::observation::{Observation, Reading};
 use crate::sentences;
 use crate::ship_time::{ShipClock, Step};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 
 /// What an instrument says, whichever source it came from.
@@ -428,7 +428,7 @@ gyro = [{ input = "a" }]
         let hdm = seen(
             "a",
             "HCHDM",
-            Reading::Magnetic(binnacle_magnetics::angle::MagneticHeading::new(7.0).unwrap()),
+            Reading::Magnetic(binnacle_compass::angle::MagneticHeading::new(7.0).unwrap()),
         );
         let mut plain = roles(r#"compass = [{ input = "a", talker = "HC" }]"#);
         assert_eq!(first(&mut plain, &hdm), None);

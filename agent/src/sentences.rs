@@ -9,7 +9,7 @@
 //! has mode V.
 
 use crate::corrected::Corrected;
-use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variation};
+use binnacle_compass::angle::{CompassHeading, Deviation, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
 

@@ -16,7 +16,7 @@
 //!   is asked, and a jump is a jump.
 
 use crate::clocks::Clocks;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use tokio::time::Instant;
 
 /// Two receivers, or two sentences, may differ by so much.

@@ -1,9 +1,9 @@
 //! Where the horizontal field is too weak to direct a magnetic compass: around
 //! the magnetic poles, of which the southern one lies at sea.
 
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 
 /// Some 12 % of what a compass has at mid-latitudes.
 pub(crate) const LEAST_H_NT: f64 = 2_000.0;

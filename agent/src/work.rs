@@ -5,7 +5,7 @@
 //! has a model of the ship since, or has refused or outlived the report.
 
 use crate::spool::{ReportStanding, StoredReport};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use serde_json::Value;
 
@@ -51,7 +51,7 @@ fn ends(model: &ModelDownlink, stored: &StoredReport, now: Timestamp) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::analyse::LogbookKind;
+    use binnacle_compass::logbook::LogbookKind;
     use binnacle_wire::logbook::Report;
     use binnacle_wire::messages::LogbookReport;
     use uuid::Uuid;

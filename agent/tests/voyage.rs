@@ -4,8 +4,8 @@
 
 mod common;
 
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::time::Timestamp;
 use binnacle_nmea::sentence::ThsMode;
 use binnacle_nmea::{Data, parse};
 use common::agent::Agent;

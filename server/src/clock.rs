@@ -1,6 +1,6 @@
 //! The one place where this program reads the time.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{SystemTime, UNIX_EPOCH};

@@ -5,7 +5,7 @@ use crate::ledger::{Spool, ensure_same_at_both_ends};
 use crate::satellite::{Certificates, INSTRUMENTS, SHORE, Satellite, Weather};
 use crate::{Ship, Shore, Voyage, eventually};
 use anyhow::{Context, Result};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use serde_json::Value;
 use std::path::Path;
 use std::time::Duration;

@@ -4,7 +4,7 @@
 //! way to an agent that died is lost, and the next one goes on from there.
 
 use anyhow::{Context, Result, bail};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 use tokio::io::{AsyncBufReadExt, AsyncRead, AsyncWriteExt, BufReader};

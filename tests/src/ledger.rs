@@ -5,7 +5,7 @@ use crate::database::Database;
 use crate::ship::Ship;
 use crate::shore::Shore;
 use anyhow::{Context, Result, ensure};
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::sample::Sample;
 use binnacle_wire::decode;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{Connection, PgConnection, SqliteConnection};

@@ -3,7 +3,7 @@
 use crate::feed::{Feed, Pace};
 use crate::program;
 use anyhow::{Context, Result, ensure};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use serde::Deserialize;
 use std::fs::File;
 use std::net::{IpAddr, Ipv4Addr};

@@ -3,10 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use binnacle_tests::{Engine, Shore, eventually};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::encode;

@@ -4,9 +4,9 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use binnacle_tests::at_sea::{PATIENCE, day};
 use binnacle_tests::gateway::Manners;
 use binnacle_tests::ledger::{Spool, clear_journal, ensure_same_at_both_ends, samples_ashore};

@@ -5,9 +5,9 @@
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
 use anyhow::{Context, Result, ensure};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use binnacle_tests::ledger::{Acknowledged, Spool, batch_log, checksum};
 use binnacle_tests::voyage::Place;
 use binnacle_tests::{Engine, Pace, Progress, Ship, Shore, Voyage, eventually, heard};

@@ -1,6 +1,6 @@
 //! An alert as it is kept aboard, and in words for the bridge.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
 use serde::{Deserialize, Serialize};
 

@@ -65,7 +65,7 @@ fn body(aboard: Option<&Aboard>) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_compass::time::Timestamp;
     use binnacle_wire::alert::ShipAlert;
     use uuid::Uuid;
 

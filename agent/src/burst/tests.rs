@@ -3,9 +3,9 @@
 use super::*;
 use crate::spool::Seal;
 use crate::spool::tests::{accepted, alert, identity, restless, sample};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
 use binnacle_wire::burst::{Ack, Joiner, write_ack};
 use std::path::Path;
 use tempfile::TempDir;

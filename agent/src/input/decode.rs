@@ -2,7 +2,7 @@
 
 use super::readings::{readings, timestamp};
 use crate::observation::{Observation, Reading};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_nmea::lines::Line;
 use binnacle_nmea::{Lines, Rejected, Tally, datagram};
 use std::sync::Arc;

@@ -10,11 +10,9 @@
 
 use super::stats::InputStats;
 use crate::observation::{Observation, Reading};
-use binnacle_magnetics::angle::{
-    CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
-};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use serde::Deserialize;
 use serde_json::Value;
 use std::borrow::Cow;

@@ -4,11 +4,9 @@
 //! another instrument without its status, and a course is never a heading.
 
 use crate::observation::Reading;
-use binnacle_magnetics::angle::{
-    CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
-};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use binnacle_nmea::Data;
 use binnacle_nmea::sentence::{self, Hdg, Rmc, Ths, ThsMode, Xdr};
 

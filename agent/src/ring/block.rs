@@ -15,9 +15,9 @@
 //! signed field, and the greatest of an unsigned one, stand for what was not there.
 
 use super::Second;
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 
 pub(super) const BLOCK_OCTETS: u64 = 4_096;
 pub(super) const HEAD_OCTETS: usize = 16;

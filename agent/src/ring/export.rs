@@ -2,9 +2,9 @@
 
 use super::{BLOCK_OCTETS, Second, block_at, number_at};
 use anyhow::Context;
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;

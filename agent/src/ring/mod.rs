@@ -16,9 +16,9 @@ mod export;
 pub(crate) use export::{Span, export};
 
 use crate::ship::{Latest, Readings};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use block::{BLOCK_OCTETS, Block, RECORDS};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};

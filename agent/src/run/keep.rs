@@ -7,7 +7,7 @@ use crate::clocks::Clocks;
 use crate::sampler::Tally;
 use crate::spool::{MOST_PENDING, Seal, is_want_of_room};
 use crate::uplink::LinkState;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::Settings;
 use tokio::time::Instant;
 

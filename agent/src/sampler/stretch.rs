@@ -4,10 +4,10 @@
 //! reference that drops out for part of the stretch then takes nothing from the
 //! mean of the others, and north is no edge.
 
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 
 /// Seconds in a window.
 pub(crate) const WINDOW_S: i64 = 10;

@@ -1,7 +1,7 @@
 //! The sampler on small made-up voyages.
 
 use super::*;
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
 use proptest::prelude::*;
 
 const START_S: i64 = 1_700_000_000;

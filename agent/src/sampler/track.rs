@@ -1,6 +1,6 @@
 //! One instrument's heading through the windows, unwound so that north is no edge.
 
-use binnacle_magnetics::angle::wrap_180;
+use binnacle_compass::angle::wrap_180;
 
 /// A heading as it was in one window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +94,7 @@ impl Track {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::angle::wrap_360;
+    use binnacle_compass::angle::wrap_360;
 
     #[test]
     fn a_mean_across_north_is_north() {

@@ -117,7 +117,7 @@ mod tests {
     use super::super::tests::{accepted, downlink, enrolled, identity, seal};
     use super::*;
     use crate::spool::Seal;
-    use binnacle_magnetics::sample::Sample;
+    use binnacle_compass::sample::Sample;
 
     /// Sends what waits to a shore that then says that it has come so far; what it was.
     async fn send(spool: &Spool, contiguous: u64) -> Vec<u64> {

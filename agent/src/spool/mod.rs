@@ -37,7 +37,7 @@ use crate::clocks::Clocks;
 use crate::hold::Hold;
 use crate::uplink::Account;
 use anyhow::Context;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::batch::StreamId;
 use binnacle_wire::messages::{CardWithdrawn, Downlink, ModelDownlink, Settings};
 use serde::de::DeserializeOwned;

@@ -5,7 +5,7 @@
 //! that was sent.
 
 use super::Spool;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::logbook::Report;
 use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
 use serde::{Deserialize, Serialize};

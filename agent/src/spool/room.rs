@@ -10,8 +10,8 @@
 
 use super::{Spool, THINNED, get, kept, put};
 use crate::uplink::REQUEST_OCTETS;
-use binnacle_magnetics::angle::TrueHeading;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::sample::Sample;
 use binnacle_wire::batch::Thinned;
 use sqlx::SqliteConnection;
 use std::collections::BTreeMap;
@@ -474,7 +474,7 @@ mod tests {
     fn each_level_keeps_the_headings_and_fewer_of_each() {
         let samples: Vec<Sample> = (0..48 * 60)
             .map(|minute| Sample {
-                gyro: binnacle_magnetics::angle::TrueHeading::new(
+                gyro: binnacle_compass::angle::TrueHeading::new(
                     10.0 * (minute / 8 % 36) as f64 + 5.0,
                 ),
                 ..sample(minute)

@@ -2,8 +2,8 @@
 
 use super::{ALERT, IDENTITY, Identity, NEXT_SEQ, Spool, THINNED, forget, get, put};
 use crate::alert::Aboard;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::ShipAlert;
 use binnacle_wire::batch::Batch;
 use binnacle_wire::codec;

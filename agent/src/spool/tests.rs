@@ -3,9 +3,9 @@
 mod alerts;
 
 use super::*;
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use std::collections::BTreeMap;
 use tempfile::TempDir;

@@ -33,7 +33,7 @@ use plan::{Budget, Class, Now};
 use shore::Have;
 
 use crate::spool::{Identity, Spool};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use rand::rngs::StdRng;
 use std::sync::Arc;
 use std::time::Duration;

@@ -14,7 +14,7 @@
 
 use super::shore::Line;
 use crate::burst;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::time::Duration;

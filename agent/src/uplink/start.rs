@@ -3,7 +3,7 @@
 use super::{Backoff, Budget, LinkStatus, Shore, Tell, Uplink};
 use crate::config::UplinkConfig;
 use crate::spool::Spool;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink, Settings};
 use rand::SeedableRng;
 use rand::rngs::StdRng;

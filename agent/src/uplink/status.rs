@@ -1,6 +1,6 @@
 //! How the link is, and what the shore decides, for the rest of the agent.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink, Settings};
 use serde::{Deserialize, Serialize};
 use tokio::sync::watch;

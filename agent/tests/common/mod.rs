@@ -6,8 +6,8 @@ pub(crate) mod agent;
 pub(crate) mod bridge;
 pub(crate) mod shore;
 
-use binnacle_magnetics::model::{Model, Parameters};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::ModelDownlink;
 use uuid::Uuid;
 

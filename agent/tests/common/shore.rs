@@ -6,7 +6,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post, put};
 use axum::{Json, Router};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::batch::Batch;
 use binnacle_wire::messages::{Downlink, EnrolRequest, ModelDownlink, Settings};
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@
 //! not negative. Money is counted in cents.
 
 use crate::zone::Zone;
-use binnacle_magnetics::time::{Timestamp, TimestampError};
+use binnacle_compass::time::{Timestamp, TimestampError};
 use chrono::{DateTime, FixedOffset, NaiveDate, NaiveTime, TimeDelta};
 use serde::{Deserialize, Serialize};
 use std::fmt;

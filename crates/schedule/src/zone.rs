@@ -8,7 +8,7 @@
 //! is the first instant after it.
 
 use crate::time::Instant;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use chrono::{Datelike, NaiveDate, NaiveDateTime, NaiveTime, TimeDelta, Timelike};
 use jiff::civil::DateTime;
 use jiff::tz::{AmbiguousOffset, Offset, TimeZone};

@@ -1,7 +1,7 @@
 //! Instants as sentences write them, without asking a calendar library: this is
 //! done for every position a fleet sends.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// UTC, rounded down to a hundredth of a second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,7 +6,7 @@
 use crate::fleet;
 use crate::voyage;
 use anyhow::Result;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_simulator::scenario::{Scenario, ShipPlan};
 use clap::{Args, Parser, Subcommand};
 use std::net::SocketAddr;

@@ -1,6 +1,6 @@
 //! The wall clock: the one place that reads it.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// Now.
 #[allow(clippy::disallowed_methods, reason = "this is the one clock function")]

@@ -8,7 +8,7 @@ use crate::poisson::{Field, Magnetism};
 use crate::process::Wander;
 use crate::random::Random;
 use crate::scenario::ShipPlan;
-use binnacle_magnetics::angle::wrap_180;
+use binnacle_compass::angle::wrap_180;
 
 /// The card follows the field's direction with this delay.
 const CARD_S: f64 = 5.0;

@@ -1,8 +1,8 @@
 //! The earth's field where the ship is, in the one place that asks for it.
 
-use binnacle_magnetics::field::{Field, FieldAt, FieldError, FieldModel};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::field::{Field, FieldAt, FieldError, FieldModel};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 
 /// The coefficients are made anew when they are this old; the field changes by
 /// less than a third of a nanotesla in that time.

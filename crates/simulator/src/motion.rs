@@ -5,8 +5,8 @@ use crate::passage::Order;
 use crate::process::{Swing, Wander};
 use crate::random::Random;
 use crate::scenario::ShipPlan;
-use binnacle_magnetics::angle::{wrap_180, wrap_360};
-use binnacle_magnetics::position::Position;
+use binnacle_compass::angle::{wrap_180, wrap_360};
+use binnacle_compass::position::Position;
 
 /// A turn that is over: by how much the course changed, starboard positive.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,8 +7,8 @@
 use crate::random::Random;
 use crate::rhumb;
 use crate::scenario::{RoutePoint, ShipPlan};
-use binnacle_magnetics::angle::wrap_360;
-use binnacle_magnetics::position::Position;
+use binnacle_compass::angle::wrap_360;
+use binnacle_compass::position::Position;
 use std::sync::Arc;
 
 /// Near enough to a point to go on to the next.

@@ -5,7 +5,7 @@
 //! card settles along the horizontal part of `B`. This is the simulator's own
 //! code on purpose: what it says must not rest on what the estimator believes.
 
-use binnacle_magnetics::angle::wrap_180;
+use binnacle_compass::angle::wrap_180;
 use serde::Serialize;
 
 /// A ship's magnetism at one compass.

@@ -2,8 +2,8 @@
 //!
 //! Bowditch, The American Practical Navigator, "The Sailings": Mercator sailing.
 
-use binnacle_magnetics::angle::{wrap_180, wrap_360};
-use binnacle_magnetics::position::Position;
+use binnacle_compass::angle::{wrap_180, wrap_360};
+use binnacle_compass::position::Position;
 
 /// The steady course, degrees true, and the distance, nautical miles.
 #[derive(Clone, Copy, Debug, PartialEq)]

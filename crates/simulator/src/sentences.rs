@@ -5,8 +5,8 @@
 //! reader would hide itself. Nothing is allocated once the buffer has grown.
 
 use crate::calendar::CalendarTime;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 
 /// `$HCHDG`: the raw reading; the instrument knows neither deviation nor variation.
 pub(crate) fn hchdg(out: &mut Vec<u8>, compass_deg: f64) {

@@ -13,10 +13,10 @@ use crate::random::Random;
 use crate::satellite::Satellite;
 use crate::scenario::{Event, Scenario, ShipPlan};
 use crate::variation::Surroundings;
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::field::FieldError;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::field::FieldError;
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 
 const MINUTE_S: f64 = 60.0;
 

@@ -5,7 +5,7 @@ use crate::random::Random;
 use crate::scenario::{LineFaults, Scenario, Timing};
 use crate::sentences;
 use crate::ship::{Reading, SatelliteReading, Ship};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 const ROLL_EVERY_S: f64 = 10.0;
 const DATE_EVERY_S: f64 = 600.0;

@@ -3,8 +3,8 @@
 use crate::poisson::Magnetism;
 use crate::scenario::{Anomaly, Event, Scenario, Storm};
 use crate::ship::{Ship, magnetism_at};
-use binnacle_magnetics::angle::{wrap_180, wrap_360};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{wrap_180, wrap_360};
+use binnacle_compass::time::Timestamp;
 use serde::Serialize;
 
 /// Headings of the final table, degrees apart.

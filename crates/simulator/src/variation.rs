@@ -11,9 +11,9 @@ use crate::process::Wander;
 use crate::random::Random;
 use crate::rhumb;
 use crate::scenario::{Anomaly, Scenario, Storm};
-use binnacle_magnetics::field::{self, FieldError};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::field::{self, FieldError};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 
 const CRUST_DEG: f64 = 0.2;
 const CRUST_NM: f64 = 60.0;

@@ -4,7 +4,7 @@ use crate::cli::{self, BadInput, VoyageArgs};
 use crate::clock;
 use crate::line::{TcpLine, send_datagrams};
 use anyhow::{Context, Result};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_simulator::ship::Ship;
 use binnacle_simulator::talk::Talker;
 use binnacle_simulator::truth::Log;

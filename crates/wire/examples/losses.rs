@@ -8,14 +8,14 @@
 #![allow(clippy::unwrap_used)] // a study, run by hand
 
 #[allow(dead_code)]
-#[path = "../../magnetics/tests/voyages/mod.rs"]
+#[path = "../../analysis/tests/voyages/mod.rs"]
 mod voyages;
 
-use binnacle_magnetics::analyse::{AnalysisSettings, analyse};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
-use binnacle_magnetics::fit::REFERENCE_CONSTANT_SD_DEG;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
+use binnacle_analysis::analyse::analyse;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::{AnalysisSettings, REFERENCE_CONSTANT_SD_DEG};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::{decode, encode};
 use std::collections::BTreeMap;

@@ -3,7 +3,7 @@
 //! What always holds: an alert keeps its id for life, and its revision rises with
 //! each change. Whoever gets revisions in another order keeps the highest.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 

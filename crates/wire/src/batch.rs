@@ -1,7 +1,7 @@
 //! The batch: samples of one stream, sealed, numbered and never changed again.
 
 use crate::alert::ShipAlert;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::sample::Sample;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;

@@ -4,8 +4,8 @@
 //! logbook: it lies in this era and does not begin in the future, ends no earlier than it
 //! begins, and its words are trimmed, few, and without control characters.
 
-use binnacle_magnetics::analyse::{Cargo, LogbookEntry, LogbookError, LogbookKind};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::logbook::{Cargo, LogbookEntry, LogbookError, LogbookKind};
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// Longest name of a hatch or a port, and of a person, in characters.

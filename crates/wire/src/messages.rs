@@ -4,8 +4,8 @@
 use crate::batch::StreamId;
 use crate::logbook::Report;
 pub use crate::settings::Settings;
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::model::Model;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 

@@ -4,10 +4,10 @@
 
 mod support;
 
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::{Batch, StreamId, Thinned};
 use binnacle_wire::codec::{MAX_BYTES, MAX_SAMPLES};

@@ -7,9 +7,9 @@
 
 mod support;
 
-use binnacle_magnetics::angle::TrueHeading;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
 use binnacle_wire::batch::{Batch, Thinned};
 use binnacle_wire::{DecodeError, decode, encode};
 use serde_json::{Value, json};

@@ -17,7 +17,7 @@ use crate::events::Event;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
 use crate::work_orders;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
 
 /// What has been quiet for so long is over, seconds: compass and gyro that part at the
@@ -269,7 +269,7 @@ fn words(alert: &ShipAlert) -> (&'static str, &'static str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_compass::time::Timestamp;
     use uuid::Uuid;
 
     fn said(gyro: Option<f64>, satellite: Option<f64>) -> AlertWanted {

@@ -11,8 +11,8 @@ use super::findings::{Findings, FoundChange};
 use super::limits::AlertLimits;
 use super::wanted::sinking_slack_deg;
 use crate::time::Time;
-use binnacle_magnetics::change;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::result;
+use binnacle_compass::time::Timestamp;
 use std::fmt::Write as _;
 
 /// A change of deviation of this size is to be acted on, degrees.
@@ -98,19 +98,19 @@ pub(super) fn became(cause: Cause, since: Time, findings: &Findings) -> Option<B
     (own.is_empty() && others.iter().any(|found| stays(&found))).then_some(Became::Renamed)
 }
 
-fn cause_of(cause: change::Cause) -> Cause {
+fn cause_of(cause: result::Cause) -> Cause {
     match cause {
-        change::Cause::LightningOrShock => Cause::LightningOrShock,
-        change::Cause::MagneticCargo => Cause::MagneticCargo,
-        change::Cause::Drift => Cause::Drift,
-        change::Cause::CompassFault => Cause::CompassFault,
-        change::Cause::ReferenceFault => Cause::ReferenceFault,
-        change::Cause::Alignment => Cause::Alignment,
-        change::Cause::LocalAnomaly => Cause::LocalAnomaly,
-        change::Cause::MagneticStorm => Cause::MagneticStorm,
-        change::Cause::BerthSteel => Cause::BerthSteel,
+        result::Cause::LightningOrShock => Cause::LightningOrShock,
+        result::Cause::MagneticCargo => Cause::MagneticCargo,
+        result::Cause::Drift => Cause::Drift,
+        result::Cause::CompassFault => Cause::CompassFault,
+        result::Cause::ReferenceFault => Cause::ReferenceFault,
+        result::Cause::Alignment => Cause::Alignment,
+        result::Cause::LocalAnomaly => Cause::LocalAnomaly,
+        result::Cause::MagneticStorm => Cause::MagneticStorm,
+        result::Cause::BerthSteel => Cause::BerthSteel,
         // Work that nobody reported is not known to be work.
-        change::Cause::AdjustmentOrRepair | change::Cause::Unknown => Cause::UnknownChange,
+        result::Cause::AdjustmentOrRepair | result::Cause::Unknown => Cause::UnknownChange,
     }
 }
 
@@ -155,7 +155,7 @@ fn holds(found: &FoundChange, stage: Stage, findings: &Findings) -> bool {
 fn dated(found: &FoundChange, findings: &Findings) -> Dated {
     let at = found.change.from;
     let kind =
-        |cause: change::Cause| (cause.is_the_ships(), cause == change::Cause::ReferenceFault);
+        |cause: result::Cause| (cause.is_the_ships(), cause == result::Cause::ReferenceFault);
     let others = findings.changes.iter().map(|other| &other.change);
     let others = others.filter(|other| kind(other.cause) == kind(found.change.cause));
     let (before, after): (Vec<Timestamp>, Vec<Timestamp>) = others
@@ -210,7 +210,7 @@ fn severity(
     limits: &AlertLimits,
     was: Option<Severity>,
 ) -> Severity {
-    if found.change.cause == change::Cause::CompassFault {
+    if found.change.cause == result::Cause::CompassFault {
         return Severity::Critical;
     }
     let ahead_deg = found.size_ahead_deg.unwrap_or(0.0);
@@ -218,7 +218,7 @@ fn severity(
     let by_size = if size_deg >= limits.deviation_deg - sinking_slack_deg(was, Severity::Critical) {
         Severity::Critical
     } else if size_deg >= WARN_DEG - sinking_slack_deg(was, Severity::Warning)
-        || found.change.cause == change::Cause::ReferenceFault
+        || found.change.cause == result::Cause::ReferenceFault
     {
         Severity::Warning
     } else {
@@ -232,11 +232,11 @@ fn severity(
     }
 }
 
-fn words(cause: change::Cause) -> &'static str {
+fn words(cause: result::Cause) -> &'static str {
     match cause {
-        change::Cause::AdjustmentOrRepair => "work on ship or compass that nobody reported",
-        change::Cause::Unknown => "something unknown",
-        change::Cause::ReferenceFault => "a fault of gyro or satellite compass",
+        result::Cause::AdjustmentOrRepair => "work on ship or compass that nobody reported",
+        result::Cause::Unknown => "something unknown",
+        result::Cause::ReferenceFault => "a fault of gyro or satellite compass",
         known => cause_of(known).words(),
     }
 }
@@ -251,7 +251,7 @@ fn summary(found: &FoundChange, stage: Stage) -> String {
     let change = &found.change;
     let since = Time(change.from).to_the_minute();
     let cause = words(change.cause);
-    if change.cause == change::Cause::CompassFault {
+    if change.cause == result::Cause::CompassFault {
         return format!("Since about {since} the compass does not follow the ship.");
     }
     let mut size = found
@@ -287,9 +287,9 @@ const COMPASS_OR_GYRO: &str = "Compass or gyro swings, and there is no third to 
 const HERS_SUSPECTED: f64 = 0.05;
 
 /// Whether a fault of the only reference may as well be one of the compass.
-fn is_compass_or_gyro(change: &change::Change) -> bool {
-    let of_the_compass = change::Cause::CompassFault;
-    change.cause == change::Cause::ReferenceFault
+fn is_compass_or_gyro(change: &result::Change) -> bool {
+    let of_the_compass = result::Cause::CompassFault;
+    change.cause == result::Cause::ReferenceFault
         && change
             .causes
             .iter()
@@ -301,24 +301,24 @@ const WHICH_IS_OPEN: &str = "Compass or reference is astray, and the samples do 
      logbook what may have happened.";
 
 /// Whether what looks like a reference's fault may as well be a change of the ship.
-fn may_be_hers(change: &change::Change) -> bool {
+fn may_be_hers(change: &result::Change) -> bool {
     let hers = change.causes.iter().filter(|c| c.cause.is_the_ships());
-    change.cause == change::Cause::ReferenceFault
+    change.cause == result::Cause::ReferenceFault
         && hers.map(|c| c.probability).sum::<f64>() > HERS_SUSPECTED
 }
 
-fn advice(cause: change::Cause, stage: Stage) -> &'static str {
+fn advice(cause: result::Cause, stage: Stage) -> &'static str {
     match (cause, stage) {
-        (change::Cause::CompassFault, _) => {
+        (result::Cause::CompassFault, _) => {
             "Do not use the compass. Steer by gyro or satellite compass; look at bowl, pivot and \
              liquid, and at the sensor and its cable. The samples taken meanwhile are left out of \
              the model."
         }
-        (change::Cause::ReferenceFault, _) => {
+        (result::Cause::ReferenceFault, _) => {
             "Check gyro and satellite compass against an azimuth. The magnetic compass itself is \
              not suspected."
         }
-        (change::Cause::Alignment, _) => {
+        (result::Cause::Alignment, _) => {
             "Use no card from before: the compass is off by the same on every heading. Steer by \
              gyro, satellite compass or the corrected heading and take an azimuth. Look whether \
              the bowl, the lubber line or the sensor has shifted against the ship's head; put it \
@@ -333,12 +333,12 @@ fn advice(cause: change::Cause, stage: Stage) -> &'static str {
             "Steer by gyro or satellite compass until it is over. Nothing needs to be adjusted: \
              the samples taken meanwhile are left out of the model."
         }
-        (change::Cause::MagneticCargo, Stage::NoModel) => {
+        (result::Cause::MagneticCargo, Stage::NoModel) => {
             "No card holds with this cargo. Steer by gyro or satellite compass, take an azimuth \
              once a watch and after each large alteration of course, and report the cargo in the \
              logbook. The model from before is used again once it is discharged."
         }
-        (change::Cause::MagneticCargo, _) => {
+        (result::Cause::MagneticCargo, _) => {
             "Use no card from before loading. Steer by gyro, satellite compass or the corrected \
              heading, which knows the cargo, take an azimuth once a watch, and report the cargo in \
              the logbook. The model from before is used again once it is discharged."

@@ -7,11 +7,11 @@ pub use found::FoundChange;
 
 use crate::analysis::LeftOut;
 use crate::deviation::{self, Worst};
-use binnacle_magnetics::analyse::{Analysis, Epoch, LastPlace, LogbookEntry, SampleDiagnostic};
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::fit::FitError;
-use binnacle_magnetics::ship::EarthField;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::result::{Analysis, Epoch, FitError, LastPlace, SampleDiagnostic};
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use found::found_changes;
 use serde::{Deserialize, Serialize};
 

@@ -12,7 +12,7 @@ use super::limits::AlertLimits;
 use crate::analysis::LeftOut;
 use crate::deviation::Worst;
 use crate::time::Time;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// An open alert stays until the figure is so far below its limit, degrees.
 const SLACK_DEG: f64 = 0.5;

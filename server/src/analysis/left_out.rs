@@ -1,7 +1,7 @@
 //! Samples that the logbook keeps out of the current epoch's model: an entry that nobody
 //! ended may keep out all.
 
-use binnacle_magnetics::analyse::{Analysis, SampleReason};
+use binnacle_compass::result::{Analysis, SampleReason};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use utoipa::ToSchema;

@@ -8,7 +8,7 @@
 use crate::db::{Db, Result, Tx, execute, rows};
 use crate::ids::{JobId, VesselId};
 use crate::time::Time;
-use binnacle_magnetics::analyse::ESTIMATOR;
+use binnacle_compass::result::ESTIMATOR;
 
 /// Attempts before a job is given up.
 pub(super) const MOST_ATTEMPTS: i64 = 5;

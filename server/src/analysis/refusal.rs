@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 #[derive(Serialize, ToSchema)]
 #[serde(tag = "reason", rename_all = "snake_case")]
 #[schema(as = Refusal)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::fit::FitError")]
+#[allow(dead_code, reason = "describes binnacle_compass::result::FitError")]
 pub enum RefusalSchema {
     /// No sample has a gyro's or a satellite compass's heading.
     NoReference {

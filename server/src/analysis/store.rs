@@ -10,11 +10,11 @@ use crate::events::{self, Event, Kind};
 use crate::ids::{CompassId, ModelId, VesselId};
 use crate::models::{self, ModelJson, StoredModel};
 use crate::time::Time;
-use binnacle_magnetics::advice::SailNext;
-use binnacle_magnetics::analyse::{Analysis, Epoch, SampleDiagnostic};
-use binnacle_magnetics::coverage::Coverage;
-use binnacle_magnetics::fit::{FitError, ReferenceCheck};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::coverage::Coverage;
+use binnacle_compass::result::{
+    Analysis, Epoch, FitError, ReferenceCheck, SailNext, SampleDiagnostic,
+};
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -110,7 +110,7 @@ pub async fn coverage(db: &Db, vessel: VesselId, compass: CompassId) -> Result<C
     )?;
     let Some((text,)) = found else {
         return Ok(Covered {
-            coverage: binnacle_magnetics::coverage::coverage([]),
+            coverage: binnacle_compass::coverage::coverage([]),
             sail_next: None,
             references: None,
         });

@@ -4,7 +4,7 @@
 //! has one place for each twelve hours in which there were samples, the last one there,
 //! of the month before the last sample.
 
-use binnacle_magnetics::analyse::SampleDiagnostic;
+use binnacle_compass::result::SampleDiagnostic;
 use serde::{Deserialize, Serialize};
 
 const STEP_MICROS: i64 = 12 * 3_600 * 1_000_000;

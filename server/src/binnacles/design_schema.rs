@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 #[schema(as = CompassClass)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::CompassKind"
+    reason = "describes binnacle_adjustment::binnacle::CompassKind"
 )]
 pub(super) enum CompassKindSchema {
     ClassA,
@@ -22,7 +22,7 @@ pub(super) enum CompassKindSchema {
 #[schema(as = MagnetKind)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::MagnetKind"
+    reason = "describes binnacle_adjustment::binnacle::MagnetKind"
 )]
 pub(super) struct MagnetKindSchema {
     /// What they are called.
@@ -39,7 +39,7 @@ pub(super) struct MagnetKindSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = MagnetCarrier)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Carrier")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Carrier")]
 enum CarrierSchema {
     Hole,
     Tray,
@@ -48,7 +48,7 @@ enum CarrierSchema {
 /// Where the magnets of one axis may stand.
 #[derive(ToSchema)]
 #[schema(as = MagnetRack)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Rack")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Rack")]
 pub(super) struct RackSchema {
     /// What magnets are put into.
     carrier: CarrierSchema,
@@ -71,7 +71,7 @@ pub(super) struct RackSchema {
 /// A numbered height below the card.
 #[derive(ToSchema)]
 #[schema(as = NumberedHeight)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Hole")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Hole")]
 struct HeightSchema {
     /// From 1, at the bottom, upwards.
     number: u16,
@@ -84,7 +84,7 @@ struct HeightSchema {
 #[schema(as = QuadrantalBrackets)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::Quadrantal"
+    reason = "describes binnacle_adjustment::binnacle::Quadrantal"
 )]
 pub(super) struct QuadrantalSchema {
     /// Sizes that fit the brackets.
@@ -99,7 +99,10 @@ pub(super) struct QuadrantalSchema {
 /// One size of a pair.
 #[derive(ToSchema)]
 #[schema(as = IronSize)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::IronSize")]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_adjustment::binnacle::IronSize"
+)]
 struct IronSizeSchema {
     /// What it is called.
     name: String,
@@ -115,7 +118,7 @@ struct IronSizeSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = IronShape)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Shape")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Shape")]
 enum ShapeSchema {
     Sphere,
     Box,
@@ -125,7 +128,7 @@ enum ShapeSchema {
 /// A position of the pair.
 #[derive(ToSchema)]
 #[schema(as = BracketMark)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Mark")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Mark")]
 struct MarkSchema {
     /// What the scale says, mm.
     mark_mm: f64,
@@ -136,7 +139,10 @@ struct MarkSchema {
 /// The holder of the Flinders bar.
 #[derive(ToSchema)]
 #[schema(as = FlindersHolder)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Flinders")]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_adjustment::binnacle::Flinders"
+)]
 pub(super) struct FlindersSchema {
     /// Diameter of the bar, mm.
     diameter_mm: f64,
@@ -157,7 +163,7 @@ pub(super) struct FlindersSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = BarSide)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Side")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Side")]
 pub(super) enum SideSchema {
     /// Before the card.
     Forward,
@@ -168,7 +174,7 @@ pub(super) enum SideSchema {
 /// The bucket of the vertical magnets.
 #[derive(ToSchema)]
 #[schema(as = HeelingBucket)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Heeling")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Heeling")]
 pub(super) struct HeelingHolderSchema {
     /// The kind of magnets that fits, upright.
     magnet: String,

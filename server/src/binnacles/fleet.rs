@@ -10,7 +10,7 @@ use crate::http::{Json, Page};
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
 use axum::extract::{FromRef, State};
-use binnacle_magnetics::binnacle::{Aboard, Binnacle};
+use binnacle_adjustment::binnacle::{Aboard, Binnacle};
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;

@@ -29,7 +29,7 @@ use crate::vessels;
 use crate::work_orders;
 use axum::extract::{FromRef, State};
 use axum::http::header::{CONTENT_DISPOSITION, HeaderName};
-use binnacle_magnetics::binnacle::{Binnacle, BinnacleError, BinnacleForm};
+use binnacle_adjustment::binnacle::{Binnacle, BinnacleError, BinnacleForm};
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;

@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 #[schema(as = Binnacle)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::BinnacleForm"
+    reason = "describes binnacle_adjustment::binnacle::BinnacleForm"
 )]
 pub struct BinnacleSchema {
     /// Of this form: 1.
@@ -38,7 +38,7 @@ pub struct BinnacleSchema {
 #[schema(as = BinnacleDesign)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::DesignForm"
+    reason = "describes binnacle_adjustment::binnacle::DesignForm"
 )]
 pub(super) struct DesignSchema {
     /// Of this form: 1.
@@ -73,7 +73,7 @@ pub(super) struct DesignSchema {
 /// Correctors on board, those in use included.
 #[derive(ToSchema)]
 #[schema(as = CorrectorsAboard)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Aboard")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Aboard")]
 pub(super) struct AboardSchema {
     /// Magnets by their kind.
     magnets: Vec<LotSchema>,
@@ -88,7 +88,7 @@ pub(super) struct AboardSchema {
 /// Magnets of one kind on board.
 #[derive(ToSchema)]
 #[schema(as = MagnetLot)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Lot")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Lot")]
 struct LotSchema {
     /// Their kind.
     #[schema(example = "200 mm")]
@@ -106,7 +106,7 @@ struct LotSchema {
 /// How every corrector stands; an empty list or null is none.
 #[derive(ToSchema)]
 #[schema(as = CorrectorSetting)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Setting")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Setting")]
 pub struct SettingSchema {
     /// Fore-and-aft magnets, a hole each.
     #[schema(required = false)]
@@ -128,7 +128,7 @@ pub struct SettingSchema {
 /// Magnets in one hole or tray.
 #[derive(Serialize, ToSchema)]
 #[schema(as = MagnetsInHole)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Tray")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Tray")]
 pub struct TraySchema {
     /// Number of the hole, from the bottom.
     hole: u16,
@@ -145,7 +145,7 @@ pub struct TraySchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = RedEnd)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::binnacle::Red")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::binnacle::Red")]
 pub(super) enum RedSchema {
     Forward,
     Aft,
@@ -160,7 +160,7 @@ pub(super) enum RedSchema {
 #[schema(as = PairSetting)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::PairSetting"
+    reason = "describes binnacle_adjustment::binnacle::PairSetting"
 )]
 pub struct PairSchema {
     /// Name of the size.
@@ -178,7 +178,7 @@ pub struct PairSchema {
 #[schema(as = BarSetting)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::BarSetting"
+    reason = "describes binnacle_adjustment::binnacle::BarSetting"
 )]
 pub struct BarSchema {
     /// Length of all its pieces, mm.
@@ -195,7 +195,7 @@ pub struct BarSchema {
 #[schema(as = HeelingSetting)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::binnacle::HeelingSetting"
+    reason = "describes binnacle_adjustment::binnacle::HeelingSetting"
 )]
 pub struct BucketSchema {
     /// Number of its position, from the bottom.

@@ -7,7 +7,7 @@ use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json};
 use anyhow::Context;
 use axum::extract::FromRef;
-use binnacle_magnetics::binnacle::{Design, SHIPPED};
+use binnacle_adjustment::binnacle::{Design, SHIPPED};
 use serde::Serialize;
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;

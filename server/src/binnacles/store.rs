@@ -6,7 +6,7 @@ use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::Result;
 use crate::ids::{BinnacleId, CompassId, OperatorId, VesselId};
 use crate::time::Time;
-use binnacle_magnetics::binnacle::Binnacle;
+use binnacle_adjustment::binnacle::Binnacle;
 use uuid::Uuid;
 
 /// A row of `binnacles`.

@@ -1,6 +1,6 @@
 //! How a binnacle's correctors stand, in words.
 
-use binnacle_magnetics::binnacle::{Red, Setting, Shape, Side, Tray};
+use binnacle_adjustment::binnacle::{Red, Setting, Shape, Side, Tray};
 
 /// What a corrector is, and how it stands; a line for each there may be.
 pub fn in_words(setting: &Setting, shape: Option<Shape>) -> [(&'static str, String); 5] {
@@ -82,7 +82,7 @@ fn red(red: Red) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::binnacle::{BarSetting, PairSetting};
+    use binnacle_adjustment::binnacle::{BarSetting, PairSetting};
 
     #[test]
     fn slewed_iron_says_which_way() {

@@ -5,7 +5,7 @@
 
 use super::contents::NextDue;
 use crate::time::Time;
-use binnacle_magnetics::analyse::{LogbookEntry, LogbookKind};
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_schedule::needs::{self, Event, Predicted, Side, Terms, due};
 use binnacle_schedule::rules::{EventKind, Flag, Limit, shipped};
 use binnacle_schedule::time::Instant;
@@ -92,7 +92,7 @@ fn event(entry: &LogbookEntry) -> Option<Event> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_compass::time::Timestamp;
 
     fn time(text: &str) -> Time {
         Time(Timestamp::parse(text).unwrap())

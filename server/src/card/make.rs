@@ -17,9 +17,9 @@ use crate::deviation::{self, Row};
 use crate::models::StoredModel;
 use crate::time::Time;
 use crate::work_orders::CompletedOrder;
-use binnacle_magnetics::analyse::{LogbookEntry, LogbookKind};
-use binnacle_magnetics::deviation::{Coefficients as Exact, DeviationError};
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::ship::EarthField;
 
 /// Degrees of compass heading between points of the curve.
 const CURVE_STEP_DEG: f64 = 5.0;

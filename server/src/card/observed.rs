@@ -2,10 +2,10 @@
 
 use crate::error::Result;
 use crate::time::Time;
-use binnacle_magnetics::analyse::SampleReason;
-use binnacle_magnetics::angle::{CompassHeading, wrap_180};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::{CompassHeading, wrap_180};
+use binnacle_compass::model::Model;
+use binnacle_compass::result::SampleReason;
+use binnacle_compass::ship::EarthField;
 use serde::Deserialize;
 
 /// Degrees of compass heading from one line of a card to the next.
@@ -106,7 +106,7 @@ fn sector(compass_deg: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_compass::time::Timestamp;
 
     fn from(text: &str) -> Time {
         Time(Timestamp::parse(text).unwrap())

@@ -4,7 +4,7 @@ use crate::error::{DomainProblem, Error};
 use crate::sheet::words::heading;
 use crate::time::Time;
 use axum::http::StatusCode;
-use binnacle_magnetics::deviation::DeviationError;
+use binnacle_compass::deviation::DeviationError;
 use serde_json::Map;
 
 /// Samples older than this make no card, days: by the drift that is usual

@@ -11,9 +11,9 @@ use crate::db::{Db, Result as DbResult, Tx, execute, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
-use binnacle_magnetics::change::{Elsewhere, in_fleet};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::position::Position;
+use binnacle_compass::result::{Elsewhere, in_fleet};
+use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
 
 /// No disturbance lasts longer, seconds.

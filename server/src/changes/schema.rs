@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = ChangeCause)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::change::Cause")]
+#[allow(dead_code, reason = "describes binnacle_compass::result::Cause")]
 pub(super) enum CauseSchema {
     /// A strike, or a heavy blow to the hull.
     LightningOrShock,
@@ -39,7 +39,7 @@ pub(super) enum CauseSchema {
 #[schema(as = CauseProbability)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::change::CauseProbability"
+    reason = "describes binnacle_compass::result::CauseProbability"
 )]
 pub(super) struct CauseProbabilitySchema {
     cause: CauseSchema,
@@ -54,7 +54,7 @@ pub(super) struct CauseProbabilitySchema {
 #[allow(
     dead_code,
     clippy::struct_field_names,
-    reason = "describes binnacle_magnetics::change::Step"
+    reason = "describes binnacle_compass::result::Step"
 )]
 pub(super) struct StepSchema {
     /// Fore and aft, forward positive.

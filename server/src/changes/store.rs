@@ -5,11 +5,10 @@ use crate::db::{Db, row, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
-use binnacle_magnetics::analyse::LogbookKind;
-use binnacle_magnetics::change::Cause;
-use binnacle_magnetics::fit::FitError;
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::logbook::LogbookKind;
+use binnacle_compass::model::Model;
+use binnacle_compass::result::{Cause, FitError};
+use binnacle_compass::time::Timestamp;
 use serde::Deserialize;
 
 /// The last analysis of a compass, as far as it tells of changes.

@@ -11,10 +11,9 @@ use crate::deviation::{self, Row};
 use crate::ids::CompassId;
 use crate::logbook::LogbookKindSchema;
 use crate::time::Time;
-use binnacle_magnetics::analyse::{LastPlace, LogbookKind};
-use binnacle_magnetics::change::{Cause, CauseProbability, Step};
-use binnacle_magnetics::fit::FitError;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::logbook::LogbookKind;
+use binnacle_compass::result::{Cause, CauseProbability, FitError, LastPlace, Step};
+use binnacle_compass::ship::EarthField;
 use serde::Serialize;
 use utoipa::ToSchema;
 

@@ -2,12 +2,15 @@
 
 use super::{BadInput, answer, input, json, logbook};
 use crate::config::Analyse;
-use binnacle_magnetics::advice::{SailNext, sail_next};
-use binnacle_magnetics::analyse::{Analysis, AnalysisSettings, LogbookEntry, analyse as run};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::fit::{CsvRow, readings_from_csv};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
+use binnacle_analysis::advice::sail_next;
+use binnacle_analysis::analyse::analyse as run;
+use binnacle_analysis::fit::{CsvRow, readings_from_csv};
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::position::Position;
+use binnacle_compass::result::{Analysis, SailNext};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
 use serde::Serialize;
 use std::process::ExitCode;
 

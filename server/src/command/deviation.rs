@@ -3,10 +3,10 @@
 use super::{BadInput, answer, input, json, table};
 use crate::config::Deviation;
 use crate::deviation::{Row, table as predict};
-use binnacle_magnetics::deviation::DeviationError;
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 use serde_json::json;
 use std::process::ExitCode;
 

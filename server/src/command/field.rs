@@ -2,7 +2,7 @@
 
 use super::{BadInput, answer, input, json};
 use crate::config::{Field, FieldModel};
-use binnacle_magnetics::field::{FieldModel as Model, field as evaluate};
+use binnacle_compass::field::{FieldModel as Model, field as evaluate};
 use serde::Serialize;
 use std::process::ExitCode;
 
@@ -34,8 +34,8 @@ fn find(arguments: &Field) -> Result<Answer, BadInput> {
     };
     let field = evaluate(model, position, arguments.altitude_m, time).map_err(|error| {
         let option = match error {
-            binnacle_magnetics::field::FieldError::DateOutside { .. } => "--date",
-            binnacle_magnetics::field::FieldError::Altitude(_) => "--altitude-m",
+            binnacle_compass::field::FieldError::DateOutside { .. } => "--date",
+            binnacle_compass::field::FieldError::Altitude(_) => "--altitude-m",
         };
         BadInput::option(option, error)
     })?;

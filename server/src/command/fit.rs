@@ -2,15 +2,16 @@
 
 use super::{BadInput, answer, input, json, table};
 use crate::config::{Fit, Method};
-use binnacle_magnetics::advice::{HeadingRange, Question, SailNext, advise};
-use binnacle_magnetics::coverage::coverage;
-use binnacle_magnetics::deviation::NAMES;
-use binnacle_magnetics::fit::{
-    FitError, Observation, REFERENCE_CONSTANT_SD_DEG, ReferenceCheck, RobustFit, RobustOptions,
-    fit_ols, fit_paper, fit_robust, readings_from_csv, refer,
+use binnacle_analysis::advice::{Question, advise};
+use binnacle_analysis::fit::{
+    Observation, RobustFit, RobustOptions, fit_ols, fit_paper, fit_robust, readings_from_csv, refer,
 };
-use binnacle_magnetics::model::{Model, Quality};
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::coverage::coverage;
+use binnacle_compass::deviation::NAMES;
+use binnacle_compass::model::{Model, Quality};
+use binnacle_compass::result::{FitError, HeadingRange, ReferenceCheck, SailNext};
+use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
+use binnacle_compass::ship::EarthField;
 use std::process::ExitCode;
 
 /// What was found.

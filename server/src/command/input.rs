@@ -1,9 +1,9 @@
 //! Reading the commands' input: options, JSON files and tables of samples.
 
 use super::BadInput;
-use binnacle_magnetics::fit::{CsvRow, CsvRowError};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_analysis::fit::{CsvRow, CsvRowError};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use csv::{ReaderBuilder, StringRecord};
 use serde::de::DeserializeOwned;
 use std::fs::File;
@@ -171,7 +171,7 @@ fn check_header(path: &str, header: &StringRecord) -> Result<(), BadInput> {
             )));
         }
     }
-    binnacle_magnetics::fit::check_columns(names)
+    binnacle_analysis::fit::check_columns(names)
         .map_err(|error| BadInput(format!("{path}:1: {error}")))
 }
 

@@ -7,7 +7,7 @@
 
 use super::BadInput;
 use super::input::{json_complaint, text_file};
-use binnacle_magnetics::analyse::LogbookEntry;
+use binnacle_compass::logbook::LogbookEntry;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, IgnoredAny};
 use serde_json::value::RawValue;

@@ -6,11 +6,11 @@
 
 use super::{BadInput, answer, input, json};
 use crate::config::Plan;
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     AdjustError, Adjustment, AfterForm, BerthForm, Done, Outcome, plan as find_plans, read_again,
 };
-use binnacle_magnetics::binnacle::Binnacle;
-use binnacle_magnetics::model::Model;
+use binnacle_adjustment::binnacle::Binnacle;
+use binnacle_compass::model::Model;
 use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;

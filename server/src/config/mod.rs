@@ -332,7 +332,7 @@ pub enum GyroSpeedError {
     Uncorrected,
 }
 
-impl From<GyroSpeedError> for binnacle_magnetics::fit::GyroSpeedError {
+impl From<GyroSpeedError> for binnacle_compass::settings::GyroSpeedError {
     fn from(said: GyroSpeedError) -> Self {
         match said {
             GyroSpeedError::Corrected => Self::Corrected,

@@ -1,11 +1,10 @@
 //! What a model says about every heading at one place.
 
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::deviation::DeviationError;
-use binnacle_magnetics::fit::WEAKEST_H_NT;
-use binnacle_magnetics::handbook::Handbook;
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::deviation::DeviationError;
+use binnacle_compass::handbook::Handbook;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -44,7 +43,7 @@ pub struct Worst {
 #[allow(
     dead_code,
     non_snake_case,
-    reason = "describes binnacle_magnetics::handbook::Handbook"
+    reason = "describes binnacle_compass::handbook::Handbook"
 )]
 pub struct HandbookSchema {
     /// Constant; includes alignment, reference and variation offsets.

@@ -6,10 +6,10 @@ use crate::models::StoredModel;
 use crate::samples::SampleReasonSchema;
 use crate::time::Time;
 use crate::work_orders::CompletedOrder;
-use binnacle_magnetics::analyse::{SampleDiagnostic, SampleReason};
-use binnacle_magnetics::angle::{TrueHeading, wrap_180};
-use binnacle_magnetics::deviation::Prediction;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::{TrueHeading, wrap_180};
+use binnacle_compass::deviation::Prediction;
+use binnacle_compass::result::{SampleDiagnostic, SampleReason};
+use binnacle_compass::ship::EarthField;
 use serde::Serialize;
 use utoipa::ToSchema;
 

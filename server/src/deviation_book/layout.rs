@@ -6,7 +6,7 @@ use crate::card;
 use crate::sheet::words::{east_west, heading_to_a_tenth, latitude, longitude, signed};
 use crate::sheet::{A4, Face, MARGIN, Pen, Sheet, Style, cut, wrap};
 use crate::time::Time;
-use binnacle_magnetics::analyse::SampleReason;
+use binnacle_compass::result::SampleReason;
 
 const WIDTH: f32 = A4.1;
 const HEIGHT: f32 = A4.0;

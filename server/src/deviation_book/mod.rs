@@ -23,7 +23,7 @@ use crate::vessels;
 use axum::body::{Body, Bytes};
 use axum::extract::{FromRef, State};
 use axum::response::Response;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use entry::Entry;
 use futures_util::{StreamExt, stream};
 use layout::Book;

@@ -4,8 +4,8 @@
 //! What always holds: what is chosen of a watch depends on that watch's samples alone,
 //! so that a book read in parts is the book read whole; no two entries have one time.
 
-use binnacle_magnetics::analyse::SampleDiagnostic;
-use binnacle_magnetics::angle::wrap_180;
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::result::SampleDiagnostic;
 use serde::Serialize;
 use utoipa::ToSchema;
 

@@ -9,7 +9,7 @@ use crate::logbook;
 use crate::models;
 use crate::time::Time;
 use crate::work_orders::{self, CompletedOrder};
-use binnacle_magnetics::analyse::SampleDiagnostic;
+use binnacle_compass::result::SampleDiagnostic;
 use std::collections::VecDeque;
 
 /// A compass's book over a range of time, being read.

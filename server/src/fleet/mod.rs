@@ -19,7 +19,7 @@ use crate::time::Time;
 use crate::vessels::LastPosition;
 use axum::extract;
 use axum::extract::FromRef;
-use binnacle_magnetics::field::{FieldModel, field};
+use binnacle_compass::field::{FieldModel, field};
 use binnacle_schedule::ports::{self, PortCode};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;

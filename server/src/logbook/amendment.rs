@@ -5,7 +5,7 @@ use super::schema::{CargoSchema, KindSchema};
 use crate::http::Amended;
 use crate::ids::CompassId;
 use crate::time::Time;
-use binnacle_magnetics::analyse::{Cargo, LogbookKind};
+use binnacle_compass::logbook::{Cargo, LogbookKind};
 use binnacle_wire::logbook::Report;
 use serde::Deserialize;
 use utoipa::ToSchema;

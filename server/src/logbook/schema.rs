@@ -33,10 +33,7 @@ pub(super) struct ReportSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = LogbookKind)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_magnetics::analyse::LogbookKind"
-)]
+#[allow(dead_code, reason = "describes binnacle_compass::logbook::LogbookKind")]
 pub enum KindSchema {
     /// The compass was adjusted.
     Adjustment,
@@ -68,7 +65,7 @@ pub enum KindSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = CargoKind)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::analyse::Cargo")]
+#[allow(dead_code, reason = "describes binnacle_compass::logbook::Cargo")]
 pub(super) enum CargoSchema {
     /// Plates, coils, pipes, rails.
     Steel,

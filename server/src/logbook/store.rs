@@ -11,7 +11,6 @@ use crate::ids::{CompassId, EntryId, UserId, VesselId};
 use crate::session;
 use crate::time::Time;
 use anyhow::Context;
-use binnacle_magnetics::analyse;
 use binnacle_wire::logbook::Report;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -139,7 +138,7 @@ pub struct Adjusted<'a> {
 pub async fn write_adjustment(tx: &mut Tx, adjusted: &Adjusted<'_>) -> Result<()> {
     let entry = NewEntry {
         report: Report {
-            kind: analyse::LogbookKind::Adjustment,
+            kind: binnacle_compass::logbook::LogbookKind::Adjustment,
             from: adjusted.at.0,
             to: None,
             cargo: None,
@@ -373,7 +372,7 @@ pub async fn of_compass(
     db: &Db,
     vessel: VesselId,
     compass: CompassId,
-) -> Result<Vec<analyse::LogbookEntry>> {
+) -> Result<Vec<binnacle_compass::logbook::LogbookEntry>> {
     let found = rows!(
         db,
         Row,

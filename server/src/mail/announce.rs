@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use crate::alerts::{Cause, Evidence, State};
     use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_compass::time::Timestamp;
 
     fn news(kind: Kind, compass: CompassId, severity: Severity) -> AlertNews {
         let at = Time(Timestamp::parse("2026-11-21T07:00:00Z").unwrap());

@@ -4,7 +4,7 @@ use crate::analysis::{LeftOut, RefusalSchema};
 use crate::error::{DomainProblem, Error};
 use crate::streams::CardWithdrawnSchema;
 use axum::http::StatusCode;
-use binnacle_magnetics::fit::FitError;
+use binnacle_compass::result::FitError;
 use binnacle_wire::messages::CardWithdrawn;
 use serde::Serialize;
 use std::fmt;

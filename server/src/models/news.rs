@@ -5,8 +5,8 @@
 //! would see or that is three days younger than hers.
 
 use super::StoredModel;
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::model::Model;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::model::Model;
 
 /// A card is read to half a degree, a heading to a tenth.
 const LEAST_DEG: f64 = 0.1;
@@ -91,7 +91,7 @@ mod tests {
     use crate::ids::{CompassId, ModelId, VesselId};
     use crate::models::ModelJson;
     use crate::time::Time;
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_compass::time::Timestamp;
     use serde_json::json;
 
     /// A model of half a month of data, with a band of a degree.

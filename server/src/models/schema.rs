@@ -2,7 +2,7 @@
 //! crate's.
 
 use crate::time::Time;
-use binnacle_magnetics::model::Model;
+use binnacle_compass::model::Model;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -22,7 +22,7 @@ impl TryFrom<String> for ModelJson {
 /// A fitted model.
 #[derive(ToSchema)]
 #[schema(as = Model)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::model::Model")]
+#[allow(dead_code, reason = "describes binnacle_compass::model::Model")]
 pub struct ModelSchema {
     /// The version of this form: 1. Not to be confused with the count of the
     /// compass's models.
@@ -51,7 +51,7 @@ pub struct ModelSchema {
 /// What a model rests on.
 #[derive(ToSchema)]
 #[schema(as = Quality)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::model::Quality")]
+#[allow(dead_code, reason = "describes binnacle_compass::model::Quality")]
 pub(super) struct QualitySchema {
     /// How many samples with independent errors would tell the deviation, where
     /// the ship was last, as well as all her samples together.
@@ -69,7 +69,7 @@ pub(super) struct QualitySchema {
 /// For each parameter and the constant: 0 rests on ships at large, 1 on the data.
 #[derive(ToSchema)]
 #[schema(as = FromData)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::model::FromData")]
+#[allow(dead_code, reason = "describes binnacle_compass::model::FromData")]
 pub(super) struct FromDataSchema {
     bx_nt: f64,
     chi13: f64,
@@ -85,7 +85,7 @@ pub(super) struct FromDataSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(tag = "caution", rename_all = "snake_case")]
 #[schema(as = Caution)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::model::Caution")]
+#[allow(dead_code, reason = "describes binnacle_compass::model::Caution")]
 pub(super) enum CautionSchema {
     /// Only the sums bx + χ13 Z and by + χ23 Z are known.
     OneMagneticLatitude,
@@ -115,7 +115,7 @@ pub(super) enum CautionSchema {
 /// Poisson's parameters over the shielding factor.
 #[derive(ToSchema)]
 #[schema(as = ParametersOverLambda)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::model::Parameters")]
+#[allow(dead_code, reason = "describes binnacle_compass::model::Parameters")]
 pub struct ParametersSchema {
     /// Fore-and-aft permanent field, nT, forward positive.
     bx_nt: f64,
@@ -137,7 +137,7 @@ pub struct ParametersSchema {
 #[allow(
     dead_code,
     clippy::struct_excessive_bools,
-    reason = "describes binnacle_magnetics::model::Identifiable"
+    reason = "describes binnacle_compass::model::Identifiable"
 )]
 pub struct IdentifiableSchema {
     bx_nt: bool,

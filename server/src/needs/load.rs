@@ -13,7 +13,7 @@ use crate::models::{self, StoredModel};
 use crate::port_calls;
 use crate::time::Time;
 use crate::work_orders::State;
-use binnacle_magnetics::analyse::LogbookKind;
+use binnacle_compass::logbook::LogbookKind;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;

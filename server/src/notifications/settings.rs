@@ -236,7 +236,7 @@ impl Digest {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_compass::time::Timestamp;
     use serde_json::json;
 
     fn settings(value: serde_json::Value) -> Settings {

@@ -8,7 +8,7 @@ use super::http::Http;
 use super::refusal::Refusal;
 use crate::app::App;
 use anyhow::Context;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use openidconnect::IssuerUrl;
 use openidconnect::core::CoreProviderMetadata;
 use std::sync::Arc;

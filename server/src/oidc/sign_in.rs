@@ -18,7 +18,7 @@ use crate::{password, second_factor, secret};
 use axum::extract::{FromRef, State};
 use axum::http::header::{LOCATION, SET_COOKIE};
 use axum::http::{HeaderMap, HeaderValue, StatusCode};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use openidconnect::RedirectUrl;
 use serde::{Deserialize, Serialize};
 use tracing::info;

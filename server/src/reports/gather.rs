@@ -12,7 +12,7 @@ use crate::needs::{Facts, need, of_fleet};
 use crate::schedule;
 use crate::time::Time;
 use crate::work_orders::{self, Done, Span, State};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use chrono::{Days, NaiveDate, NaiveTime};
 use std::collections::{BTreeMap, BTreeSet};
 use uuid::Uuid;

@@ -14,7 +14,7 @@ use crate::ids::{DeliveryId, OperatorId, RecipientId};
 use crate::mail;
 use crate::outbox::{self, Kind, Message};
 use crate::time::Time;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use chrono::{DateTime, Datelike, Days, NaiveDate, NaiveTime, Timelike, Utc};
 use std::time::Duration;
 use tracing::error;

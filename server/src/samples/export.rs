@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
-use binnacle_magnetics::analyse::SampleDiagnostic;
+use binnacle_compass::result::SampleDiagnostic;
 
 /// Not `weight`, which `fit` takes for one known beforehand: it would weight the
 /// samples twice.

@@ -15,7 +15,7 @@ use crate::time::Time;
 use crate::vessels;
 use axum::extract::{FromRef, State};
 use axum::response::Response;
-use binnacle_magnetics::analyse::SampleDiagnostic;
+use binnacle_compass::result::SampleDiagnostic;
 use picture::SamplePicture;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
@@ -55,7 +55,7 @@ struct Range {
 #[schema(as = Sample)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::analyse::SampleDiagnostic"
+    reason = "describes binnacle_compass::result::SampleDiagnostic"
 )]
 struct SampleSchema {
     /// The middle of the stretch.
@@ -114,10 +114,7 @@ struct SampleSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = SampleReason)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_magnetics::analyse::SampleReason"
-)]
+#[allow(dead_code, reason = "describes binnacle_compass::result::SampleReason")]
 pub enum SampleReasonSchema {
     /// Neither gyro nor satellite compass.
     NoReference,

@@ -3,8 +3,8 @@
 //! What always holds: the means and counts are of all samples; only the dots are picked.
 
 use crate::time::Time;
-use binnacle_magnetics::analyse::SampleDiagnostic;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::result::SampleDiagnostic;
+use binnacle_compass::time::Timestamp;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use utoipa::ToSchema;

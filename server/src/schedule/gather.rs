@@ -17,7 +17,7 @@ use crate::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::needs::{self, Facts, Need};
 use crate::port_calls::{self, Earlier, heading};
 use crate::time::Time;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_schedule::input::{self, Declined, Input, JobState, Vessel};
 use binnacle_schedule::time::Instant;
 pub(super) use firms::NO_TERMS;

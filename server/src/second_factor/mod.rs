@@ -19,7 +19,7 @@ use crate::secret;
 use crate::session;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use percent_encoding::{NON_ALPHANUMERIC, utf8_percent_encode};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;

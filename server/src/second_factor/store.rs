@@ -5,7 +5,7 @@ use crate::db::{Db, Result, Tx, execute, row};
 use crate::ids::UserId;
 use crate::secret;
 use crate::time::Time;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// Before every step there is.
 const NEVER: i64 = -1;

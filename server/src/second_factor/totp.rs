@@ -4,7 +4,7 @@
 //! What always holds: a code is of one step of time, and whoever asks says after which
 //! step it must be, so that a code that was seen once is worth nothing.
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use ring::hmac;
 
 /// Octets of a secret: as long as the hash (RFC 4226, section 4, requirement 6).

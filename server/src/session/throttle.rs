@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::peer::Origin;
 use crate::secret;
 use crate::time::Time;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 
 /// Wrong passwords that cost an e-mail nothing.
 const FREE_FOR_EMAIL: i64 = 5;

@@ -17,7 +17,7 @@ use crate::http::{Id, Json, Valid};
 use crate::ids::VesselId;
 use crate::vessels;
 use axum::extract::{FromRef, State};
-use binnacle_magnetics::analyse::AnalysisSettings;
+use binnacle_compass::settings::AnalysisSettings;
 use binnacle_wire::messages::Settings;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
@@ -72,7 +72,7 @@ pub struct AgentSettings {
 #[derive(ToSchema)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::analyse::AnalysisSettings"
+    reason = "describes binnacle_compass::settings::AnalysisSettings"
 )]
 pub struct ReadingSettings {
     /// The model of the earth's field.
@@ -91,7 +91,7 @@ pub struct ReadingSettings {
 #[schema(as = GyroSpeedError)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::analyse::GyroSpeedError"
+    reason = "describes binnacle_compass::settings::GyroSpeedError"
 )]
 pub enum GyroSpeedErrorSchema {
     /// It does.
@@ -104,7 +104,7 @@ pub enum GyroSpeedErrorSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 #[schema(as = FieldModel)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::field::FieldModel")]
+#[allow(dead_code, reason = "describes binnacle_compass::field::FieldModel")]
 pub enum FieldModelSchema {
     /// International Geomagnetic Reference Field, 1900 to 2030.
     Igrf14,

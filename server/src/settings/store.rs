@@ -6,7 +6,7 @@ use crate::db::{Db, Tx, execute, row};
 use crate::error::Result;
 use crate::ids::VesselId;
 use crate::time::Time;
-use binnacle_magnetics::analyse::AnalysisSettings;
+use binnacle_compass::settings::AnalysisSettings;
 use binnacle_wire::messages::Settings;
 
 /// The vessel's settings, or the defaults.

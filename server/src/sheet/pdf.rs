@@ -3,7 +3,7 @@
 use super::font::Face;
 use super::{Mark, Pen, Point, Sheet};
 use anyhow::{Result, anyhow};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use krilla::Document;
 use krilla::color::luma;
 use krilla::geom::{PathBuilder, Point as PdfPoint};

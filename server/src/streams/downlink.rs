@@ -10,7 +10,7 @@ use crate::time::Time;
 use axum::Json;
 use axum::body::Body;
 use axum::response::{IntoResponse, Response};
-use binnacle_magnetics::model::Model;
+use binnacle_compass::model::Model;
 use binnacle_wire::downlink::{self, FORM, card_tag};
 use binnacle_wire::messages::{Downlink, ModelDownlink};
 use serde::Deserialize;

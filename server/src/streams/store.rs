@@ -6,7 +6,7 @@ use crate::error::{DomainProblem, Error, Result};
 use crate::ids::VesselId;
 use crate::time::Time;
 use axum::http::StatusCode;
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::sample::Sample;
 use binnacle_wire::batch::Batch;
 use serde_json::Map;
 use sha2::{Digest, Sha256};

@@ -21,8 +21,8 @@ use crate::http::{Id, Json, Valid};
 use crate::idempotency::Key;
 use crate::ids::OrderId;
 use axum::extract::{FromRef, State as Shared};
-use binnacle_magnetics::adjust::{AgainForm, Learnt, Part, ReadingForm};
-use binnacle_magnetics::binnacle::Setting;
+use binnacle_adjustment::adjust::{AgainForm, Learnt, Part, ReadingForm};
+use binnacle_adjustment::binnacle::Setting;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 use utoipa_axum::router::OpenApiRouter;
@@ -105,7 +105,7 @@ pub enum AgainVerdict {
 #[allow(
     dead_code,
     clippy::struct_field_names,
-    reason = "describes binnacle_magnetics::adjust::Part"
+    reason = "describes binnacle_adjustment::adjust::Part"
 )]
 struct PartSchema {
     /// What was foretold.
@@ -120,7 +120,7 @@ struct PartSchema {
 #[schema(as = SecondReading, example = json!({
     "at": "2026-11-22T10:05:00Z", "forward": 15.1, "starboard": 17.7, "unit": "microtesla"
 }))]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::AgainForm")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::AgainForm")]
 struct AgainSchema {
     /// When it was read.
     at: crate::time::Time,

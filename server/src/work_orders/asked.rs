@@ -15,7 +15,7 @@ use utoipa::ToSchema;
 }))]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::adjust::ReadingForm"
+    reason = "describes binnacle_adjustment::adjust::ReadingForm"
 )]
 pub(super) struct BerthReadingSchema {
     /// When it was read.
@@ -80,7 +80,7 @@ pub(super) struct BerthReadingSchema {
 /// A unit of the magnetic field.
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Unit")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Unit")]
 pub(super) enum FieldUnit {
     Nanotesla,
     Microtesla,
@@ -93,7 +93,7 @@ pub(super) enum FieldUnit {
 #[serde(rename_all = "snake_case")]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::adjust::HeadingFrom"
+    reason = "describes binnacle_adjustment::adjust::HeadingFrom"
 )]
 enum HeadingFrom {
     /// The gyro or satellite compass that the model was fitted with.
@@ -107,7 +107,7 @@ enum HeadingFrom {
 #[serde(rename_all = "snake_case")]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::adjust::Magnetometer"
+    reason = "describes binnacle_adjustment::adjust::Magnetometer"
 )]
 enum Magnetometer {
     /// 0.1 µT.
@@ -123,7 +123,7 @@ enum Magnetometer {
 /// What a plan must keep to; what is left out is the usual.
 #[derive(ToSchema)]
 #[schema(as = PlanLimits, example = json!({ "residual_deg": 3.0, "band_deg": 1.5 }))]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Limits")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Limits")]
 pub(super) struct LimitsSchema {
     /// The greatest residual that may be foretold, band included, degrees; usually 3.
     #[schema(required = false, minimum = 0.5, maximum = 5)]

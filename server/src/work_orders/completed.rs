@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::ids::{CompassId, OrderId, VesselId};
 use crate::models::StoredModel;
 use crate::time::Time;
-use binnacle_magnetics::adjust::Verification;
+use binnacle_adjustment::adjust::Verification;
 use serde_json::Value;
 
 /// An adjustment that was completed.

@@ -19,9 +19,9 @@ use crate::ids::{BinnacleId, EntryId, FirmId, KeyId, ModelId};
 use crate::logbook;
 use crate::models::{self, ModelJson, StoredModel};
 use crate::time::Time;
-use binnacle_magnetics::adjust::Learnt;
-use binnacle_magnetics::binnacle::Setting;
-use binnacle_magnetics::model::Model;
+use binnacle_adjustment::adjust::Learnt;
+use binnacle_adjustment::binnacle::Setting;
+use binnacle_compass::model::Model;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -277,7 +277,7 @@ pub(super) async fn complete(
 /// Writes how the binnacle's correctors stand now.
 pub(super) async fn write_binnacle(
     change: &mut Change<'_>,
-    binnacle: &binnacle_magnetics::binnacle::Binnacle,
+    binnacle: &binnacle_adjustment::binnacle::Binnacle,
     what: &str,
 ) -> Result<()> {
     let author = binnacles::Author {

@@ -8,15 +8,15 @@ use crate::app::App;
 use crate::db::row;
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     Adjustment, Circumstances, EarlierLambda, Limits, ReadingForm, Water,
 };
-use binnacle_magnetics::analyse::{LogbookEntry, LogbookKind};
-use binnacle_magnetics::angle::Variation;
-use binnacle_magnetics::binnacle::{Binnacle, Setting};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::ship::EarthField;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_compass::angle::Variation;
+use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// λ at an earlier berth.

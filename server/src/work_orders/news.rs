@@ -18,7 +18,7 @@ use crate::outbox::{Kind, Message};
 use crate::tenants::Tenant;
 use crate::time::Time;
 use crate::webhooks;
-use binnacle_magnetics::adjust::Verification;
+use binnacle_adjustment::adjust::Verification;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 

@@ -9,7 +9,7 @@ use super::offers::{Between, OfferState};
 use super::order::Summary;
 use crate::mail;
 use crate::notifications::{Kind, News};
-use binnacle_magnetics::adjust::Verification;
+use binnacle_adjustment::adjust::Verification;
 use std::fmt::Write;
 
 /// Who reads it.

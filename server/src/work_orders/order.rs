@@ -18,9 +18,9 @@ use crate::http::{optional_text, text};
 use crate::ids::{CompassId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{Limits, ReadingForm, Step};
-use binnacle_magnetics::angle::wrap_360;
-use binnacle_magnetics::binnacle::Setting;
+use binnacle_adjustment::adjust::{Limits, ReadingForm, Step};
+use binnacle_adjustment::binnacle::Setting;
+use binnacle_compass::angle::wrap_360;
 use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 

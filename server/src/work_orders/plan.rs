@@ -11,10 +11,10 @@ use crate::error::{Error, Result};
 use crate::logbook;
 use crate::models;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     AdjustError, Learnt, Optimality, Outcome, Plan, by_compass, plan, turned_in_all,
 };
-use binnacle_magnetics::analyse::LogbookKind;
+use binnacle_compass::logbook::LogbookKind;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 

@@ -8,8 +8,8 @@ use super::basis::Basis;
 use super::refusal::Refusal;
 use crate::error::{Error, Result};
 use crate::time::Time;
-use binnacle_magnetics::adjust::ReadingForm;
-use binnacle_magnetics::berth::{BerthEstimate, BerthReading};
+use binnacle_adjustment::adjust::ReadingForm;
+use binnacle_adjustment::berth::{BerthEstimate, BerthReading};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 

@@ -10,8 +10,8 @@ use super::store::Whole;
 use crate::compasses::Compass;
 use crate::error::Result;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{HeelingPlan, Learnt};
-use binnacle_magnetics::binnacle::Binnacle;
+use binnacle_adjustment::adjust::{HeelingPlan, Learnt};
+use binnacle_adjustment::binnacle::Binnacle;
 use serde_json::json;
 
 /// Whose compass it is.

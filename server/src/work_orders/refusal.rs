@@ -2,7 +2,7 @@
 
 use crate::error::{DomainProblem, Error};
 use axum::http::StatusCode;
-use binnacle_magnetics::adjust::{Cure as Cured, Refused};
+use binnacle_adjustment::adjust::{Cure as Cured, Refused};
 use serde::{Deserialize, Serialize};
 use serde_json::Map;
 use utoipa::ToSchema;

@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 /// What the planner offers.
 #[derive(ToSchema)]
 #[schema(as = PlanOffer)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Outcome")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Outcome")]
 pub(super) struct OfferSchema {
     /// What the berth told, and how well each coefficient shows on this heading.
     #[schema(value_type = Option<Object>)]
@@ -58,7 +58,7 @@ struct InShortSchema {
 /// One way to set the correctors.
 #[derive(ToSchema)]
 #[schema(as = CorrectorPlan)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Plan")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Plan")]
 pub(super) struct PlanSchema {
     /// How they will stand.
     setting: SettingSchema,
@@ -87,7 +87,7 @@ pub(super) struct PlanSchema {
 #[schema(as = PredictedTable)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::adjust::PredictedTable"
+    reason = "describes binnacle_adjustment::adjust::PredictedTable"
 )]
 struct TableSchema {
     /// `berth`, or the name of a water.
@@ -118,7 +118,7 @@ struct TableSchema {
 #[allow(
     dead_code,
     clippy::struct_field_names,
-    reason = "describes binnacle_magnetics::adjust::PredictedRow"
+    reason = "describes binnacle_adjustment::adjust::PredictedRow"
 )]
 struct RowSchema {
     compass_deg: f64,
@@ -131,7 +131,7 @@ struct RowSchema {
 /// One movement, to be checked on the spot.
 #[derive(ToSchema)]
 #[schema(as = PlanStep)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Step")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Step")]
 pub(super) struct StepSchema {
     /// From 1.
     number: u32,
@@ -168,7 +168,7 @@ pub(super) struct StepSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = MovedCorrector)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Corrector")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Corrector")]
 enum CorrectorSchema {
     Flinders,
     Quadrantal,
@@ -181,7 +181,7 @@ enum CorrectorSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(rename_all = "snake_case")]
 #[schema(as = StepAction)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Action")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Action")]
 enum ActionSchema {
     Fit,
     TakeOut,
@@ -193,7 +193,7 @@ enum ActionSchema {
 #[derive(Serialize, ToSchema)]
 #[serde(tag = "place", rename_all = "snake_case")]
 #[schema(as = CorrectorPlace)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Place")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Place")]
 enum PlaceSchema {
     Magnets(TraySchema),
     Pair(PairSchema),
@@ -206,7 +206,7 @@ enum PlaceSchema {
 #[schema(as = HeelingPlan)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::adjust::HeelingPlan"
+    reason = "describes binnacle_adjustment::adjust::HeelingPlan"
 )]
 struct HeelingSchema {
     /// Degrees of heeling error for each degree of heel on north, at the berth, as it is;
@@ -223,7 +223,10 @@ struct HeelingSchema {
 /// How well the search knows that nothing is better.
 #[derive(ToSchema)]
 #[schema(as = PlanOptimality)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Optimality")]
+#[allow(
+    dead_code,
+    reason = "describes binnacle_adjustment::adjust::Optimality"
+)]
 struct OptimalitySchema {
     /// Whether every setting of the catalogue was gone through or excluded.
     proven: bool,
@@ -241,7 +244,7 @@ struct OptimalitySchema {
 #[schema(as = SeaVerdict)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::adjust::Verification"
+    reason = "describes binnacle_adjustment::adjust::Verification"
 )]
 pub(super) enum SeaVerdictSchema {
     /// They agree, and are enough.
@@ -274,7 +277,7 @@ pub(super) enum SeaVerdictSchema {
 /// Headings that are still needed.
 #[derive(Serialize, ToSchema)]
 #[schema(as = NeededHeadings)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::adjust::Needed")]
+#[allow(dead_code, reason = "describes binnacle_adjustment::adjust::Needed")]
 pub(super) struct NeededSchema {
     /// How many.
     count: usize,

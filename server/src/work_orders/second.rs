@@ -12,12 +12,12 @@ use super::standing::Standing;
 use super::steps::Moved;
 use crate::app::App;
 use crate::error::{Error, Result};
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     AdjustError, Again, AgainForm, Card, Corrector, Done, Learnt, ReadingForm, Slip, Verdict,
     read_again,
 };
-use binnacle_magnetics::berth::BerthReading;
-use binnacle_magnetics::binnacle::Binnacle;
+use binnacle_adjustment::berth::BerthReading;
+use binnacle_adjustment::binnacle::Binnacle;
 
 /// Parts of a reading that has the vertical one.
 pub(super) const WHOLE: usize = 3;

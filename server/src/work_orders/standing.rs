@@ -16,11 +16,11 @@ use super::second::WHOLE;
 use super::steps::{Moved, StepSaid, Verdict};
 use super::verification::Verified;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     Corrector, Done, Learnt, Limits, PredictedTable, Step, Verification,
 };
-use binnacle_magnetics::angle::wrap_180;
-use binnacle_magnetics::binnacle::{Binnacle, Setting};
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_compass::angle::wrap_180;
 
 /// How an order stands.
 #[derive(Clone, Debug)]

@@ -7,10 +7,10 @@ use super::standing::{Standing, Strength};
 use crate::app::App;
 use crate::error::Result;
 use crate::time::Time;
-use binnacle_magnetics::adjust::{
+use binnacle_adjustment::adjust::{
     AdjustError, Outcome, Recheck, Step, recheck, recheck_elsewhere, turned_in_all,
 };
-use binnacle_magnetics::binnacle::{Binnacle, Setting};
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 

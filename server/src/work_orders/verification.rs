@@ -16,9 +16,9 @@ use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CompassId, OrderId, VesselId};
 use crate::time::Time;
-use binnacle_magnetics::adjust::{Settled, Verification, verify};
-use binnacle_magnetics::analyse::{SampleDiagnostic, SampleReason};
-use binnacle_magnetics::ship::EarthField;
+use binnacle_adjustment::adjust::{Settled, Verification, verify};
+use binnacle_compass::result::{SampleDiagnostic, SampleReason};
+use binnacle_compass::ship::EarthField;
 use serde::{Deserialize, Serialize};
 use tracing::warn;
 use utoipa::ToSchema;
@@ -214,8 +214,8 @@ fn wanted(order: OrderId, at: Time, verified: &Verified) -> AlertWanted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::adjust::Needed;
-    use binnacle_magnetics::time::Timestamp;
+    use binnacle_adjustment::adjust::Needed;
+    use binnacle_compass::time::Timestamp;
 
     #[test]
     fn one_heading_agrees_and_several_agree() {

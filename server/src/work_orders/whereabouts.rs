@@ -11,9 +11,9 @@ use crate::error::{Error, Result};
 use crate::firms::port_meant;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
-use binnacle_magnetics::adjust::ReadingForm;
-use binnacle_magnetics::analyse::SampleDiagnostic;
-use binnacle_magnetics::position::Position;
+use binnacle_adjustment::adjust::ReadingForm;
+use binnacle_compass::position::Position;
+use binnacle_compass::result::SampleDiagnostic;
 
 /// The farthest berth of a port from where the list of ports has it, nautical miles.
 const FROM_PORT_NM: f64 = 60.0;

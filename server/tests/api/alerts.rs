@@ -2,7 +2,7 @@
 
 use crate::on_both;
 use crate::support::{Answer, Person, Ship, Shore, passage};
-use binnacle_magnetics::angle::TrueHeading;
+use binnacle_compass::angle::TrueHeading;
 use binnacle_server::alerts;
 use reqwest::Method;
 use serde_json::{Value, json};

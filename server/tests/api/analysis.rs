@@ -3,8 +3,8 @@
 use crate::commands::{good, run};
 use crate::on_both;
 use crate::support::{Shore, passage};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::ship::EarthField;
 use serde_json::{Value, json};
 
 on_both!(

@@ -2,7 +2,7 @@
 
 use crate::on_both;
 use crate::support::{Answer, Person, Shore};
-use binnacle_magnetics::binnacle::SHIPPED;
+use binnacle_adjustment::binnacle::SHIPPED;
 use reqwest::Method;
 use serde_json::{Value, json};
 

@@ -3,7 +3,7 @@
 use crate::commands::{assert_refused, run};
 use crate::on_both;
 use crate::support::{Ship, Shore, frame, passage};
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::sample::Sample;
 use binnacle_server::ids::VesselId;
 use binnacle_server::streams::{Imported, Incomplete, import};
 use binnacle_wire::burst::{read_ack, split};

@@ -4,10 +4,10 @@
 use crate::mail;
 use crate::on_both;
 use crate::support::{Person, Relay, Ship, Shore, days_at_sea, days_in, struck, truth};
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::model::Model;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::ship::EarthField;
 use serde_json::{Value, json};
 
 on_both!(

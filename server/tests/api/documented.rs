@@ -1,12 +1,12 @@
 //! The examples of docs/: they are read, and do what the pages say.
 
 use crate::commands::{good, run};
-use binnacle_magnetics::binnacle::Binnacle;
-use binnacle_magnetics::corrector::effect;
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::ship::ShipMagnetism;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_adjustment::binnacle::Binnacle;
+use binnacle_adjustment::corrector::effect;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::position::Position;
+use binnacle_compass::ship::ShipMagnetism;
+use binnacle_compass::time::Timestamp;
 use serde_json::{Value, json};
 
 const BINNACLE: &str = include_str!("../../../docs/binnacle.md");

@@ -2,9 +2,9 @@
 
 use crate::commands::{assert_refused, good, run, samples_csv};
 use crate::support::truth;
-use binnacle_magnetics::angle::MagneticHeading;
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
 use std::fmt::Write;
 
 const METHODS: [&str; 3] = ["paper", "ols", "robust"];

@@ -1,9 +1,9 @@
 //! `plan`, run as a user runs it.
 
 use crate::commands::{assert_refused, good, run};
-use binnacle_magnetics::binnacle::{Binnacle, SHIPPED, Setting};
-use binnacle_magnetics::corrector::effect;
-use binnacle_magnetics::ship::{EarthField, ShipMagnetism};
+use binnacle_adjustment::binnacle::{Binnacle, SHIPPED, Setting};
+use binnacle_adjustment::corrector::effect;
+use binnacle_compass::ship::{EarthField, ShipMagnetism};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Output;

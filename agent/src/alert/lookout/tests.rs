@@ -3,8 +3,8 @@
 use super::*;
 use crate::config::GyroError;
 use crate::corrected::foretell;
-use binnacle_magnetics::model::{Model, Parameters};
-use binnacle_magnetics::position::Position;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::position::Position;
 
 mod verdict;
 

@@ -17,7 +17,7 @@ use super::FileError;
 use super::csv::{MOST_CALLS, must_be_new};
 use super::{Located, PortCall};
 use crate::time::Instant;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use chrono::NaiveDateTime;
 use line::{Line, lines};
 use std::collections::BTreeMap;

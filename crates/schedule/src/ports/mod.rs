@@ -12,7 +12,7 @@
 //! digits; the table is sorted by it and names each once.
 
 use crate::zone::Zone;
-use binnacle_magnetics::position::Position;
+use binnacle_compass::position::Position;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::OnceLock;

@@ -16,7 +16,7 @@ use crate::clock;
 use crate::voyage::write_whole;
 use agent::Agents;
 use anyhow::{Context, Result};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_simulator::scenario::Scenario;
 use progress::Progress;
 use sailing::Sailing;

@@ -1,7 +1,7 @@
 //! How far the fleet has come, for those who wait.
 
 use super::shore::{Shore, Uploads};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use std::io::{IsTerminal, Write};
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::time::{Duration, Instant};

@@ -5,7 +5,7 @@ use crate::cli::BadInput;
 use crate::clock;
 use crate::line::TcpLine;
 use anyhow::Result;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_simulator::scenario::{Scenario, ShipPlan};
 use binnacle_simulator::ship::Ship;
 use binnacle_simulator::talk::Talker;

@@ -1,7 +1,7 @@
 //! The server's API, as an operator's administrator uses it.
 
 use anyhow::{Context, Result, ensure};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_simulator::scenario::ShipPlan;
 use binnacle_simulator::truth::Place;
 use reqwest::{Client, Method, RequestBuilder, StatusCode};

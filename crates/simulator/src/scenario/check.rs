@@ -7,7 +7,7 @@ use super::ship::{Routes, ship};
 use super::values::Checked;
 use super::{Anomaly, LineFaults, RoutePoint, Scenario, ShipPlan, Storm, Timing};
 use crate::earth::Chart;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use std::sync::Arc;
 use toml::Spanned;
 

@@ -14,8 +14,8 @@ mod values;
 pub use error::ScenarioError;
 
 use crate::poisson::Magnetism;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use super::values::{Checked, PERMANENT_NT};
 use super::{Event, GyroPlan, RoutePoint, SatellitePlan, ShipPlan};
 use crate::earth::Chart;
 use crate::poisson::{Field, Magnetism};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;

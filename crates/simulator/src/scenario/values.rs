@@ -3,7 +3,7 @@
 use super::ScenarioError;
 use super::error::Source;
 use super::raw::{Matrix, Number, Vector};
-use binnacle_magnetics::position::Position;
+use binnacle_compass::position::Position;
 use std::ops::RangeInclusive;
 
 pub(super) type Checked<T> = Result<T, ScenarioError>;

@@ -1,7 +1,7 @@
 //! Whether what goes over the line is what instruments send.
 
 use crate::support::{scenario, sentences, ship};
-use binnacle_magnetics::angle::wrap_180;
+use binnacle_compass::angle::wrap_180;
 use binnacle_nmea::sentence::Data;
 use binnacle_nmea::{Rejected, parse};
 use binnacle_simulator::ship::SatelliteReading;

@@ -1,7 +1,7 @@
 //! Whether ships do what the scenario says.
 
 use crate::support::{sail, scenario, sentences, ship};
-use binnacle_magnetics::angle::{CompassHeading, Deviation, Variation, wrap_180};
+use binnacle_compass::angle::{CompassHeading, Deviation, Variation, wrap_180};
 use binnacle_simulator::scenario::Scenario;
 use binnacle_simulator::ship::SatelliteReading;
 use binnacle_simulator::truth::{Log, place};

@@ -6,10 +6,10 @@
 
 use super::error::{DecodeError, EncodeError};
 use super::step::{Decimal, Step};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 
 /// Column ids, in the order of the frame.
 pub(super) const TIME: u64 = 1;

@@ -5,7 +5,7 @@ use super::bits::{BitReader, BitWriter, unzigzag, zigzag};
 use super::error::{DecodeError, EncodeError};
 use crate::alert::{ShipAlert, ShipAlertState};
 use crate::batch::Thinned;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use uuid::Uuid;
 
 /// Notes that one frame may have.

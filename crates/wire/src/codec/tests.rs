@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::batch::{Batch, StreamId};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use std::collections::BTreeMap;
 use uuid::Uuid;
 

@@ -12,7 +12,7 @@ mod model;
 
 use crate::codec::bits::{BitReader, BitWriter};
 use crate::messages::{CardWithdrawn, Downlink, Settings};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use uuid::Uuid;
 
 /// What an agent asks for that reads this form: `?form=1`.

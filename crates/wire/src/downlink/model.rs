@@ -8,7 +8,7 @@
 use super::{read_time, read_withdrawn, write_time, write_withdrawn};
 use crate::codec::bits::{BitReader, BitWriter};
 use crate::messages::ModelDownlink;
-use binnacle_magnetics::model::{Covariance, Identifiable, Model, Parameters};
+use binnacle_compass::model::{Covariance, Identifiable, Model, Parameters};
 use uuid::Uuid;
 
 const HAS_REPLACES: u64 = 1;

@@ -1,8 +1,8 @@
 use super::*;
 use crate::messages::ModelDownlink;
-use binnacle_magnetics::angle::CompassHeading;
-use binnacle_magnetics::model::{Covariance, Model};
-use binnacle_magnetics::ship::EarthField;
+use binnacle_compass::angle::CompassHeading;
+use binnacle_compass::model::{Covariance, Model};
+use binnacle_compass::ship::EarthField;
 use proptest::prelude::*;
 use serde_json::json;
 

@@ -3,10 +3,10 @@
 // Each program that includes this uses a part of it.
 #![allow(dead_code)]
 
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::reasons;

@@ -1,6 +1,6 @@
 use super::*;
-use binnacle_magnetics::change::{Cause as Found, CauseProbability, Change};
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::result::{Cause as Found, CauseProbability, Change};
+use binnacle_compass::time::Timestamp;
 
 fn at(text: &str) -> Timestamp {
     Timestamp::parse(text).unwrap()

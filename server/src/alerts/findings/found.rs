@@ -5,13 +5,13 @@
 //! tell, and else of where it was found. Ships mostly come back to where they were: the
 //! waters of the last weeks stand for those ahead.
 
-use binnacle_magnetics::analyse::{Analysis, LogbookEntry, SampleReason};
-use binnacle_magnetics::angle::{CompassHeading, wrap_180};
-use binnacle_magnetics::change::{Cause, Change};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::ship::EarthField;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, wrap_180};
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// People write down when they noticed, not when it happened, or what was planned, seconds.
@@ -182,9 +182,10 @@ impl Spoilt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use binnacle_magnetics::analyse::{AnalysisSettings, analyse};
-    use binnacle_magnetics::model::Parameters;
-    use binnacle_magnetics::sample::Sample;
+    use binnacle_analysis::analyse::analyse;
+    use binnacle_compass::model::Parameters;
+    use binnacle_compass::sample::Sample;
+    use binnacle_compass::settings::AnalysisSettings;
 
     /// Of a ship on the meridian of Greenwich.
     fn sample(time: &str, lat: f64) -> Sample {

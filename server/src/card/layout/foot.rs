@@ -7,7 +7,7 @@ use crate::card::contents::{Card, CargoAboard};
 use crate::sheet::words::signed;
 use crate::sheet::{A4, Face, MARGIN, Sheet, Style, wrap};
 use crate::time::Time;
-use binnacle_magnetics::handbook::Handbook;
+use binnacle_compass::handbook::Handbook;
 
 const SECOND: f32 = 262.0;
 /// Where the signatures begin, from the sheet's upper edge.

@@ -11,7 +11,7 @@ use crate::sheet::{About, Sheet, Style, pdf, svg};
 use crate::time::Time;
 use crate::work_orders::entry::sha256_hex;
 use anyhow::Context;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use serde_json::Value;
 
 /// The record as PDF.

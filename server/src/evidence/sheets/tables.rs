@@ -6,7 +6,7 @@ use crate::binnacles::in_words;
 use crate::sheet::paper::{LEFT, Paper, SIZE, VALUE};
 use crate::sheet::words::{east_west, heading, heading_to_a_tenth, signed};
 use crate::sheet::{Style, cut};
-use binnacle_magnetics::binnacle::{Binnacle, Setting, Shape};
+use binnacle_adjustment::binnacle::{Binnacle, Setting, Shape};
 use serde_json::Value;
 
 /// Where a figure of a table ends, from one to the next.

@@ -31,7 +31,7 @@ pub(super) struct CoverageSchema {
 #[schema(as = References)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::fit::ReferenceCheck"
+    reason = "describes binnacle_compass::result::ReferenceCheck"
 )]
 struct ReferencesSchema {
     /// Samples with both.
@@ -56,7 +56,7 @@ struct ReferencesSchema {
 #[schema(as = CoverageBand)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::coverage::CoverageBand"
+    reason = "describes binnacle_compass::coverage::CoverageBand"
 )]
 struct CoverageBandSchema {
     /// The band's southern edge, degrees of magnetic latitude.
@@ -73,7 +73,7 @@ struct CoverageBandSchema {
 #[schema(as = CoverageCell)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::coverage::CoverageCell"
+    reason = "describes binnacle_compass::coverage::CoverageCell"
 )]
 struct CoverageCellSchema {
     /// The sector's first compass heading, degrees.
@@ -87,7 +87,7 @@ struct CoverageCellSchema {
 /// watches are on three successive days.
 #[derive(ToSchema)]
 #[schema(as = SailNext)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::advice::SailNext")]
+#[allow(dead_code, reason = "describes binnacle_compass::result::SailNext")]
 struct SailNextSchema {
     /// Length of a watch, hours.
     watch_hours: f64,
@@ -105,7 +105,7 @@ struct SailNextSchema {
 /// The band where the ship is, and the headings that narrow it.
 #[derive(ToSchema)]
 #[schema(as = HeadingAdvice)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::advice::Advice")]
+#[allow(dead_code, reason = "describes binnacle_compass::result::Advice")]
 struct HeadingAdviceSchema {
     band: BandSchema,
     /// Nothing sailed can narrow the band's root mean square by more, degrees.
@@ -117,7 +117,7 @@ struct HeadingAdviceSchema {
 /// The band in other waters, and the magnetic latitudes that narrow it.
 #[derive(ToSchema)]
 #[schema(as = LatitudeAdvice)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::advice::Advice")]
+#[allow(dead_code, reason = "describes binnacle_compass::result::Advice")]
 struct LatitudeAdviceSchema {
     band: BandSchema,
     /// Nothing sailed can narrow the band's root mean square by more, degrees.
@@ -129,7 +129,7 @@ struct LatitudeAdviceSchema {
 /// Half the width of the 95 % band over all headings in some waters, degrees.
 #[derive(ToSchema)]
 #[schema(as = Band)]
-#[allow(dead_code, reason = "describes binnacle_magnetics::advice::Band")]
+#[allow(dead_code, reason = "describes binnacle_compass::result::Band")]
 struct BandSchema {
     /// Root mean square.
     rms_deg: f64,
@@ -141,10 +141,7 @@ struct BandSchema {
 /// and 0 to 360 is any heading.
 #[derive(ToSchema)]
 #[schema(as = HeadingRange)]
-#[allow(
-    dead_code,
-    reason = "describes binnacle_magnetics::advice::HeadingRange"
-)]
+#[allow(dead_code, reason = "describes binnacle_compass::result::HeadingRange")]
 struct HeadingRangeSchema {
     heading_from_deg: u16,
     heading_to_deg: u16,
@@ -155,7 +152,7 @@ struct HeadingRangeSchema {
 #[schema(as = HeadingSuggestion)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::advice::HeadingSuggestion"
+    reason = "describes binnacle_compass::result::HeadingSuggestion"
 )]
 struct HeadingSuggestionSchema {
     heading_from_deg: u16,
@@ -171,7 +168,7 @@ struct HeadingSuggestionSchema {
 #[schema(as = LatitudeSuggestion)]
 #[allow(
     dead_code,
-    reason = "describes binnacle_magnetics::advice::LatitudeSuggestion"
+    reason = "describes binnacle_compass::result::LatitudeSuggestion"
 )]
 struct LatitudeSuggestionSchema {
     /// Southern edge, degrees of magnetic latitude, north positive.

@@ -4,7 +4,7 @@ use super::{due_vessel, enter, put};
 use crate::logbook::A_WHILE_S;
 use crate::on_both;
 use crate::support::{Person, Ship, Shore, days_at_sea, truth};
-use binnacle_magnetics::model::Model;
+use binnacle_compass::model::Model;
 use binnacle_server::notifications::look;
 use serde_json::{Value, json};
 

@@ -14,7 +14,7 @@ pub(crate) use ship::{
     Ship, days_at_sea, days_in, exchange, frame, passage, sample, struck, truth,
 };
 
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::time::Timestamp;
 use binnacle_server::analysis::{self, Worked};
 use binnacle_server::app::App;
 use binnacle_server::clock::Clock;

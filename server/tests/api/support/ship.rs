@@ -1,12 +1,12 @@
 //! A ship with an agent, whose batches the test makes.
 
 use super::{Answer, Person, Shore};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::messages::{Downlink, EnrolAnswer};
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@ use super::{Job, foretold};
 use crate::alerts::limit;
 use crate::on_both;
 use crate::support::{Shore, days_at_sea};
-use binnacle_magnetics::sample::Sample;
+use binnacle_compass::sample::Sample;
 use serde_json::{Value, json};
 
 on_both!(

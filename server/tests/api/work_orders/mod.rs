@@ -14,14 +14,14 @@ pub(crate) use evidence::{PICTURE, hex};
 
 use crate::binnacles::{binnacle, put};
 use crate::support::{Answer, Person, Ship, Shore, days_at_sea, days_in, truth};
-use binnacle_magnetics::binnacle::{Binnacle, Setting};
-use binnacle_magnetics::corrector::effect;
-use binnacle_magnetics::field::{FieldModel, field};
-use binnacle_magnetics::model::Model;
-use binnacle_magnetics::position::Position;
-use binnacle_magnetics::sample::Sample;
-use binnacle_magnetics::ship::EarthField;
-use binnacle_magnetics::time::Timestamp;
+use binnacle_adjustment::binnacle::{Binnacle, Setting};
+use binnacle_adjustment::corrector::effect;
+use binnacle_compass::field::{FieldModel, field};
+use binnacle_compass::model::Model;
+use binnacle_compass::position::Position;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::ship::EarthField;
+use binnacle_compass::time::Timestamp;
 use reqwest::Method;
 use serde_json::{Value, json};
 

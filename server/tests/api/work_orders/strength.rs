@@ -3,7 +3,7 @@
 use super::{Job, read_again_after, reading_aboard};
 use crate::on_both;
 use crate::support::{Shore, truth};
-use binnacle_magnetics::model::Model;
+use binnacle_compass::model::Model;
 use serde_json::{Value, json};
 
 on_both!(

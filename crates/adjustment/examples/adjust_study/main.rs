@@ -1,0 +1,98 @@
+//! The tables of BENCHMARKS.md on adjusting at the berth: how often the band of a plan
+//! holds the true residual and how large the worst one is; what becomes of steps that are
+//! done wrong, with and without a second reading of the magnetometer; how soon headings at sea
+//! tell right from wrong; and what a berth notices of a ship that changed since the model.
+//!
+//! `make study-adjust`, or
+//! `cargo run --release -p binnacle-adjustment --example adjust_study [SHIPS] [PART]`
+//! with `plans`, `changed`, `steps` or `sea` for one part alone.
+
+#[allow(dead_code)]
+#[path = "../../tests/adjusting/mod.rs"]
+mod adjusting;
+
+#[allow(dead_code)]
+#[path = "../../tests/adjusting/hands.rs"]
+mod hands;
+
+#[allow(dead_code)]
+#[path = "../../tests/adjusting/sea.rs"]
+mod sea;
+
+#[allow(dead_code)]
+#[path = "../../tests/adjusting/tally.rs"]
+mod tally;
+
+use adjusting::knowledge::{FLUXGATE, Instruments, PHONE};
+use hands::{Ending, Hands, Slip};
+use sea::Sea;
+use tally::Tally;
+
+fn main() {
+    let ships = std::env::args().nth(1);
+    let ships: u64 = ships.map_or(500, |n| n.parse().expect("the number of ships"));
+    let part = std::env::args().nth(2);
+    let wanted = |name: &str| part.as_deref().is_none_or(|part| part == name);
+    if wanted("plans") {
+        for (name, instruments) in [("fluxgate", FLUXGATE), ("phone", PHONE)] {
+            for (design, which) in [("class A", 0), ("small", 1)] {
+                let tally = Tally::of(0..ships, which, instruments);
+                println!("{name}, {design}: {tally}");
+            }
+        }
+    }
+    if wanted("changed") {
+        changed(ships);
+    }
+    if wanted("steps") {
+        for slip in [
+            Slip::None,
+            Slip::WrongEnd,
+            Slip::Hole(1),
+            Slip::Hole(-3),
+            Slip::Moment(0.85),
+            Slip::Moment(0.7),
+        ] {
+            for ending in [Ending::ByCompass, Ending::ReadAgain] {
+                println!(
+                    "{slip:?}, {ending:?}: {}",
+                    Hands::of(0..ships, slip, ending)
+                );
+            }
+        }
+    }
+    if wanted("sea") {
+        let wrong_deg = [0.0, 1.0, 2.0, 3.0];
+        for (wrong_deg, sea) in wrong_deg.iter().zip(Sea::of(0..ships, &wrong_deg)) {
+            println!("wrong by {wrong_deg}: {sea}");
+        }
+    }
+}
+
+/// Class A: across the needle by what turns the field by 5° to 10°, by somebody who says how
+/// well he knows the heading, and who knows it so or to half a degree; and along it.
+fn changed(ships: u64) {
+    let nil = 0.0..0.0;
+    for told_deg in [1.0, 2.0, 3.0, 5.0] {
+        let said = Instruments {
+            heading_sd_deg: told_deg,
+            ..FLUXGATE
+        };
+        for (name, is) in [("half a degree", FLUXGATE), ("as said", said)] {
+            for across in [nil.clone(), 5.0..10.0] {
+                let tally =
+                    Tally::changed(0..ships, [nil.clone(), across.clone()], (is, said), None);
+                println!("heading said {told_deg}, is {name}, across {across:?}: {tally}");
+            }
+        }
+    }
+    for (name, instruments) in [("fluxgate", FLUXGATE), ("phone", PHONE)] {
+        for told_before in [None, Some(0.012)] {
+            for along in [nil.clone(), 5.0..10.0] {
+                let (by, changed) = ((instruments, instruments), [along.clone(), nil.clone()]);
+                let tally = Tally::changed(0..ships, changed, by, told_before);
+                println!("{name}, told before {told_before:?}, along {along:?}: {tally}");
+            }
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Ships and berths for tests of the planner.
+
+mod best;
+mod card;
+mod paper;
+mod refused;
+mod sea;
+mod since;
+
+mod steps;
+mod strength;
+mod vertical;
+
+use super::*;
+use crate::berth::{Alignment, ReadingErrors};
+use crate::binnacle::tests::class_a;
+use crate::binnacle::{Axis, BinnacleForm, DesignForm};
+use crate::corrector::effect;
+use binnacle_compass::angle::MagneticHeading;
+use binnacle_compass::model::{Identifiable, Parameters};
+use binnacle_compass::ship::ShipMagnetism;
+
+pub(super) const BISCAY: EarthField = EarthField {
+    h_nt: 24_000.0,
+    z_nt: 38_500.0,
+};
+
+/// A ship without correctors, and what is read and known of her with those of a binnacle.
+pub(super) struct Case {
+    pub(super) model: Model,
+    pub(super) reading: BerthReading,
+    pub(super) binnacle: Binnacle,
+    pub(super) waters: Vec<Water>,
+    bare: ShipMagnetism,
+}
+
+pub(super) fn bare() -> ShipMagnetism {
+    ShipMagnetism {
+        chi: [
+            [-0.06, 0.002, -0.021],
+            [0.003, -0.15, 0.002],
+            [0.0, 0.0, -0.05],
+        ],
+        b_nt: [-900.0, -700.0, 1_500.0],
+    }
+}
+
+fn small_covariance() -> binnacle_compass::model::Covariance {
+    let mut covariance = [[0.0; 8]; 8];
+    for (index, sd) in [60.0_f64, 1.5e-3, 50.0, 1.5e-3, 2e-3, 2e-3, 2e-3, 0.3]
+        .into_iter()
+        .enumerate()
+    {
+        covariance[index][index] = sd.powi(2);
+    }
+    covariance
+}
+
+impl Case {
+    pub(super) fn new(bare: ShipMagnetism, binnacle: Binnacle, magnetic_deg: f64) -> Case {
+        let waters = vec![
+            water("Biscay", BISCAY.h_nt, BISCAY.z_nt, 2.0),
+            water("Cape Town", 15_500.0, -20_000.0, 1.0),
+        ];
+        let mean_h = 3.0 / (2.0 / BISCAY.h_nt + 1.0 / 15_500.0);
+        let there = effect(&binnacle, &binnacle.setting);
+        let seen = sum(&bare, &there.as_ship(mean_h));
+        let model = Model {
+            parameters_over_lambda: seen.parameters_over_lambda().unwrap(),
+            constant_deg: 0.2,
+            covariance: Some(small_covariance()),
+            identifiable: None,
+            rms_deg: None,
+            samples_used: 100,
+            samples_rejected: 0,
+            quality: None,
+        };
+        // The magnetometer meets no needles.
+        let there = sum(&bare, &there.as_ship(f64::INFINITY));
+        let [x, y, _] = there.field_aboard(BISCAY.in_ship_axes(magnetic_deg.to_radians()));
+        let errors = ReadingErrors {
+            field_sd_nt: 150.0,
+            heading_sd_deg: 0.5,
+            alignment_sd_deg: 0.3,
+            tilt_sd_deg: 0.2,
+        };
+        let heading = MagneticHeading::new(magnetic_deg).unwrap();
+        Case {
+            model,
+            reading: BerthReading::new(heading, [x, y], errors, Alignment::Keel).unwrap(),
+            binnacle,
+            waters,
+            bare,
+        }
+    }
+
+    pub(super) fn adjustment(&self) -> Adjustment<'_> {
+        Adjustment {
+            model: &self.model,
+            earth: BISCAY,
+            reading: &self.reading,
+            scale_sd: 0.003,
+            compass_deg: None,
+            vertical: None,
+            binnacle: &self.binnacle,
+            now: None,
+            waters: &self.waters,
+            circumstances: Circumstances::default(),
+            limits: Limits {
+                residual_deg: 10.0,
+                band_deg: 5.0,
+                ..Limits::default()
+            },
+        }
+    }
+
+    pub(super) fn plan(&self) -> Outcome {
+        plan(&self.adjustment()).unwrap()
+    }
+}
+
+pub(super) fn water(name: &str, h_nt: f64, z_nt: f64, weight: f64) -> Water {
+    Water {
+        name: name.to_owned(),
+        h_nt,
+        z_nt,
+        weight,
+    }
+}
+
+pub(super) fn sum(one: &ShipMagnetism, other: &ShipMagnetism) -> ShipMagnetism {
+    ShipMagnetism {
+        chi: std::array::from_fn(|r| std::array::from_fn(|c| one.chi[r][c] + other.chi[r][c])),
+        b_nt: std::array::from_fn(|axis| one.b_nt[axis] + other.b_nt[axis]),
+    }
+}
+
+pub(super) fn case(magnetic_deg: f64) -> Case {
+    Case::new(bare(), class_a(), magnetic_deg)
+}
+
+/// A binnacle with so little in it that every setting can be tried.
+pub(super) fn little() -> Binnacle {
+    let mut form: BinnacleForm = class_a().into();
+    let mut design: DesignForm = form.design.into();
+    for rack in [&mut design.fore_and_aft, &mut design.athwartship] {
+        rack.holes.truncate(6);
+        rack.at_once = 1;
+        rack.magnets_each = 2;
+    }
+    let iron = design.quadrantal.as_mut().unwrap();
+    iron.marks
+        .retain(|mark| mark.mark_mm <= 280.0 || (mark.mark_mm - 320.0).abs() < 1e-9);
+    iron.slews_deg = vec![0.0];
+    form.aboard.flinders_pieces_mm = vec![225.0];
+    form.aboard.quadrantal = vec!["7 inch".to_owned()];
+    form.setting.athwartship[0].hole = 3;
+    form.design = design.try_into().unwrap();
+    Binnacle::try_from(form).unwrap()
+}
+
+#[test]
+fn an_outcome_comes_back_from_json_as_it_went() {
+    let outcome = case(60.0).plan();
+    let text = serde_json::to_string(&outcome).unwrap();
+    let again: Outcome = serde_json::from_str(&text).unwrap();
+    assert_eq!(again.plans[0].setting, outcome.plans[0].setting);
+    assert_eq!(again.plans[0].steps.len(), outcome.plans[0].steps.len());
+}
+
+#[test]
+fn the_parameters_before_are_those_of_the_model() {
+    // With nothing moved the model after is the model, and no corrector errs.
+    let case = case(60.0);
+    let adjustment = case.adjustment();
+    let condition = Condition::new(&adjustment).unwrap();
+    let same = condition.model_with(&case.binnacle.setting).unwrap();
+    let (old, new): (Parameters, Parameters) = (
+        case.model.parameters_over_lambda,
+        same.parameters_over_lambda,
+    );
+    for (old, new) in old.to_array().iter().zip(new.to_array()) {
+        assert!((old - new).abs() < 1e-9 * old.abs().max(1.0));
+    }
+    let (old, new) = (case.model.covariance.unwrap(), same.covariance.unwrap());
+    for row in 0..8 {
+        assert!((old[row][row] - new[row][row]).abs() < 1e-9 * old[row][row]);
+    }
+}

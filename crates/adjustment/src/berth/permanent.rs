@@ -1,0 +1,74 @@
+//! bx and by straight from a reading, with soft iron and λ as they were.
+//!
+//! For a ship whose magnets were moved after λ was found: iron keeps its shape,
+//! so that one reading tells what the magnets now do, without headings at sea.
+
+use super::field::{Expected, Spread};
+use super::lambda::{GREATEST_LAMBDA, LEAST_LAMBDA};
+use super::{BerthError, BerthReading, Estimated};
+use binnacle_compass::model::Model;
+use binnacle_compass::ship::EarthField;
+use serde::{Deserialize, Serialize};
+
+/// The permanent horizontal field of a ship.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Permanent {
+    /// Fore and aft, nT, forward positive; not over λ.
+    pub bx_nt: Estimated,
+    /// Athwartships, nT, starboard positive; not over λ.
+    pub by_nt: Estimated,
+}
+
+/// The permanent field that explains a reading, given λ from another one:
+/// b = B − λ(u − b'). Heading and alignment err by about |B| times their angle.
+///
+/// The errors of λ and of the model are taken as independent: of λ's, nearly
+/// all is its own reading's.
+///
+/// # Errors
+/// When the model or the earth's field is none, the model leaves no directive
+/// force on this heading, or λ or its standard error is none.
+pub fn permanent_at_berth(
+    model: &Model,
+    earth: EarthField,
+    reading: &BerthReading,
+    lambda: Estimated,
+) -> Result<Permanent, BerthError> {
+    if !(LEAST_LAMBDA..=GREATEST_LAMBDA).contains(&lambda.value) {
+        return Err(BerthError::Implausible(lambda.value));
+    }
+    if let Some(value) = lambda.standard_error
+        && !(0.0..=GREATEST_LAMBDA).contains(&value)
+    {
+        return Err(BerthError::Reading {
+            name: "lambda's standard error",
+            value,
+            least: 0.0,
+            greatest: GREATEST_LAMBDA,
+        });
+    }
+    let expected = Expected::new(model, earth, reading)?;
+    let p = &model.parameters_over_lambda;
+    let permanent = [p.bx_nt, p.by_nt];
+    let solve = |axis: usize| {
+        let others = expected.u[axis] - permanent[axis];
+        let mut by_b = [0.0; 2];
+        by_b[axis] = 1.0;
+        let by_u = by_b.map(|slope| -lambda.value * slope);
+        let mut spread: Spread = expected.spread(reading, earth, by_b, by_u);
+        // What the model thought of bx and by plays no part.
+        spread.by_unknown[0] = 0.0;
+        spread.by_unknown[2] = 0.0;
+        let standard_error = model.covariance.as_ref().zip(lambda.standard_error);
+        Estimated {
+            value: reading.field_nt()[axis] - lambda.value * others,
+            standard_error: standard_error.map(|(covariance, error)| {
+                spread.variance(covariance).sqrt().hypot(others * error)
+            }),
+        }
+    };
+    Ok(Permanent {
+        bx_nt: solve(0),
+        by_nt: solve(1),
+    })
+}

@@ -1,0 +1,405 @@
+//! Hands that carry out a plan step by step, rightly or with one slip, and do what the
+//! recheck of each step says; and that read the magnetometer once more at the end, or do not.
+
+#![allow(clippy::unwrap_used)] // a study
+
+use super::adjusting::knowledge::{FLUXGATE, again};
+use super::adjusting::scene::Scene;
+use super::adjusting::wrap;
+use super::tally::{mean, quantile};
+use binnacle_adjustment::adjust::{
+    Adjustment, Done, Outcome, Place, PredictedTable, Recheck, Step, Unit, Verdict,
+    VerticalReading, by_compass, plan, read_again, recheck,
+};
+use binnacle_adjustment::berth::BerthReading;
+use binnacle_adjustment::binnacle::{Axis, Binnacle, Setting, Tray};
+use binnacle_compass::model::Model;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// How well a card is read, degrees.
+const CARD_SD_DEG: f64 = 0.2;
+/// Then the adjuster gives up.
+const MOST_STEPS: usize = 40;
+/// So often the magnetometer is read in vain, and no more.
+const MOST_READINGS: usize = 4;
+
+/// What is done wrong in one of the steps with magnets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Slip {
+    /// Nothing.
+    None,
+    /// All magnets have this share of the moment that they are said to have.
+    Moment(f64),
+    /// The magnets go in with the wrong end.
+    WrongEnd,
+    /// The magnets go so many holes too high.
+    Hole(i32),
+}
+
+/// What is looked at when the steps are done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Ending {
+    /// Nothing more than the compass at each step.
+    ByCompass,
+    /// The magnetometer, once more.
+    ReadAgain,
+}
+
+/// What came of many adjustments.
+#[derive(Default)]
+pub(crate) struct Hands {
+    pub(crate) ships: u64,
+    /// Verdicts of second readings: rightly done, and with a slip that still stands.
+    pub(crate) again: [BTreeMap<&'static str, u64>; 2],
+    /// Verdicts on steps that were done rightly.
+    pub(crate) right: BTreeMap<&'static str, u64>,
+    /// Verdicts on slips, by how far the compass is from what was expected, in classes.
+    pub(crate) slips: BTreeMap<(usize, &'static str), u64>,
+    /// How they ended: at the end of a plan, refused, or sent to look for the cause.
+    pub(crate) ended: BTreeMap<&'static str, u64>,
+    pub(crate) held: Vec<f64>,
+    /// Mean half-width of the band, degrees.
+    pub(crate) half_width_deg: Vec<f64>,
+    pub(crate) worst_deg: Vec<f64>,
+}
+
+/// Upper ends of the classes of slips, degrees.
+pub(crate) const CLASSES_DEG: [f64; 5] = [0.5, 1.0, 2.0, 4.0, f64::INFINITY];
+
+/// What the hands believe and what is.
+struct Work {
+    binnacle: Binnacle,
+    standing: Setting,
+    /// The tray that stands otherwise than believed, and how it truly stands.
+    slipped: Option<(Axis, Tray, Tray)>,
+    slip: Slip,
+    /// The step that it is still to happen at.
+    slips_at: Option<u32>,
+    /// Steps that were taken for done.
+    done: Vec<Done>,
+    readings: usize,
+    /// The model after a second reading that called for another plan, and that reading.
+    learnt: Option<(Model, BerthReading, f64)>,
+}
+
+impl Work {
+    fn truly(&self, believed: &Setting) -> Setting {
+        let mut truly = believed.clone();
+        if let Some((axis, wrong, right)) = &self.slipped {
+            for tray in truly.trays_mut(*axis).iter_mut().filter(|t| *t == wrong) {
+                tray.clone_from(right);
+            }
+        }
+        truly
+    }
+
+    /// What is known, the correctors standing so.
+    fn adjustment<'a>(&'a self, scene: &'a Scene, now: &'a Setting) -> Adjustment<'a> {
+        let adjustment = Adjustment {
+            binnacle: &self.binnacle,
+            now: Some(now),
+            ..scene.adjustment()
+        };
+        let Some((model, reading, down_nt)) = &self.learnt else {
+            return adjustment;
+        };
+        let vertical = Some(VerticalReading { down_nt: *down_nt });
+        Adjustment {
+            model,
+            reading,
+            vertical,
+            ..adjustment
+        }
+    }
+
+    /// Whether a slip of this adjustment is still in what stands.
+    fn is_slipped(&self) -> bool {
+        self.truly(&self.standing) != self.standing
+    }
+}
+
+/// How an adjustment goes on.
+enum Next {
+    /// With the plan's next step.
+    Step,
+    /// With another plan.
+    Plan(Outcome),
+    /// It has ended.
+    Ended(&'static str),
+}
+
+impl Hands {
+    pub(crate) fn of(seeds: std::ops::Range<u64>, slip: Slip, ending: Ending) -> Hands {
+        let mut hands = Hands::default();
+        for seed in seeds {
+            hands.add(seed, slip, ending);
+        }
+        hands
+    }
+
+    fn add(&mut self, seed: u64, slip: Slip, ending: Ending) {
+        let share = if let Slip::Moment(share) = slip {
+            share
+        } else {
+            1.0
+        };
+        let mut scene = Scene::with_lot(seed, 0, FLUXGATE, share);
+        let outcome = plan(&scene.adjustment()).unwrap();
+        if outcome.plans.is_empty() {
+            return;
+        }
+        let magnets = outcome.plans[0].steps.iter();
+        let magnets = magnets.filter(|step| matches!(step.to, Some(Place::Magnets(_))));
+        let magnets: Vec<u32> = magnets.map(|step| step.number).collect();
+        let slips_at = match slip {
+            Slip::WrongEnd | Slip::Hole(_) => {
+                if magnets.is_empty() {
+                    return;
+                }
+                Some(magnets[scene.rng.below(magnets.len())])
+            }
+            Slip::None | Slip::Moment(_) => None,
+        };
+        self.ships += 1;
+        let mut work = Work {
+            binnacle: scene.binnacle.clone(),
+            standing: scene.binnacle.setting.clone(),
+            slipped: None,
+            slip,
+            slips_at,
+            done: Vec::new(),
+            readings: 0,
+            learnt: None,
+        };
+        let ended = self.carry_out(&mut scene, outcome, &mut work, ending);
+        *self.ended.entry(ended).or_default() += 1;
+    }
+
+    fn carry_out(
+        &mut self,
+        scene: &mut Scene,
+        mut outcome: Outcome,
+        work: &mut Work,
+        ending: Ending,
+    ) -> &'static str {
+        let mut at = 0;
+        for _ in 0..MOST_STEPS {
+            let next = if let Some(step) = outcome.plans[0].steps.get(at) {
+                at += 1;
+                self.step(scene, &step.clone(), work)
+            } else if ending == Ending::ReadAgain {
+                self.read_again(scene, work)
+            } else {
+                let standing = work.standing.clone();
+                let adjustment = work.adjustment(scene, &standing);
+                let learnt = by_compass(&adjustment, &work.done).unwrap();
+                self.end(scene, &learnt.after, work);
+                Next::Ended("done")
+            };
+            match next {
+                Next::Step => {}
+                Next::Plan(anew) if anew.plans.is_empty() => return "refused",
+                Next::Plan(anew) => (outcome, at) = (anew, 0),
+                Next::Ended(ended) => return ended,
+            }
+        }
+        "without end"
+    }
+
+    fn step(&mut self, scene: &mut Scene, step: &Step, work: &mut Work) -> Next {
+        let now = work.standing.clone();
+        let before_deg = shown(scene, &work.truly(&now));
+        let slips = work.slips_at == Some(step.number);
+        if slips {
+            work.slips_at = None;
+            work.slipped = slipped(&work.binnacle, step, work.slip);
+        }
+        let truly = work.truly(&step.setting_after);
+        let after_deg = shown(scene, &truly);
+        let adjustment = work.adjustment(scene, &now);
+        let found = recheck(&adjustment, step, before_deg, after_deg).unwrap();
+        let turned_deg = wrap(after_deg - before_deg);
+        let off_deg = wrap(turned_deg - step.change_deg).abs();
+        // Magnets of another moment make every step with them a slip.
+        let of_lot = matches!(work.slip, Slip::Moment(_))
+            && [&step.from, &step.to]
+                .iter()
+                .any(|place| matches!(place, Some(Place::Magnets(_))));
+        if slips || of_lot {
+            let class = CLASSES_DEG
+                .iter()
+                .position(|most| off_deg <= *most)
+                .unwrap();
+            *self.slips.entry((class, name(&found))).or_default() += 1;
+        } else if work.slips_at.is_some() || work.slip == Slip::None {
+            *self.right.entry(name(&found)).or_default() += 1;
+        }
+        let (setting, binnacle, anew) = match found {
+            Recheck::Confirmed { .. } | Recheck::NotSeen { .. } => {
+                work.standing = step.setting_after.clone();
+                let turned_deg = Some(turned_deg);
+                let step = step.clone();
+                work.done.push(Done { step, turned_deg });
+                return Next::Step;
+            }
+            Recheck::WrongEnd {
+                setting, outcome, ..
+            } => (setting, None, outcome),
+            Recheck::OtherStrength {
+                setting,
+                binnacle,
+                outcome,
+                ..
+            } => (setting, Some(binnacle), outcome),
+            Recheck::Unexplained { .. } => return Next::Ended("sent to look"),
+        };
+        if setting != step.setting_after {
+            // What stands the wrong way round is known now.
+            work.slipped = None;
+        }
+        work.standing = setting;
+        if let Some(binnacle) = binnacle {
+            work.binnacle = *binnacle;
+        }
+        work.slips_at = None;
+        Next::Plan(*anew)
+    }
+
+    fn read_again(&mut self, scene: &mut Scene, work: &mut Work) -> Next {
+        work.readings += 1;
+        if work.readings > MOST_READINGS {
+            return Next::Ended("never confirmed");
+        }
+        let truth = scene.truth.with(&work.truly(&work.standing));
+        let place = scene.place();
+        let (reading, down_nt) = again(&mut scene.rng, &truth, place, FLUXGATE, &scene.berthed);
+        let adjustment = work.adjustment(scene, &work.standing);
+        let vertical = Some(VerticalReading { down_nt });
+        let unit = Unit::Nanotesla;
+        let found = read_again(&adjustment, &work.done, &reading, vertical, None, unit);
+        let found = found.unwrap().verdict;
+        let slipped = usize::from(work.is_slipped());
+        let (word, next) = match found {
+            Verdict::AsPlanned { learnt } => {
+                self.end(scene, &learnt.after, work);
+                ("as planned", Next::Ended("done"))
+            }
+            Verdict::Replan {
+                learnt,
+                binnacle,
+                outcome,
+                ..
+            } => {
+                work.learnt = Some((learnt.model_after, reading, down_nt));
+                work.binnacle = *binnacle;
+                work.done.clear();
+                ("beyond limits", Next::Plan(*outcome))
+            }
+            Verdict::Slip { step, .. } => {
+                let suspected = work.done[step as usize - 1].step.to.clone();
+                let meant = work.slipped.as_ref().map(|(_, meant, _)| meant.clone());
+                let found = suspected == meant.map(Place::Magnets) && slipped == 1;
+                if found {
+                    // Whoever looks sees how they stand, and puts them right.
+                    work.slipped = None;
+                    ("the step suspected", Next::Step)
+                } else {
+                    ("another step suspected", Next::Ended("sent to look"))
+                }
+            }
+            Verdict::Unexplained { .. } => ("unexplained", Next::Ended("sent to look")),
+        };
+        *self.again[slipped].entry(word).or_default() += 1;
+        next
+    }
+
+    fn end(&mut self, scene: &Scene, after: &[PredictedTable], work: &Work) {
+        let adjusted = scene.truth.with(&work.truly(&work.standing));
+        let (mut held, mut headings, mut worst, mut widths) = (0_u32, 0_u32, 0.0_f64, 0.0);
+        for table in after {
+            let place = (table.h_nt, table.z_nt);
+            worst = worst.max(adjusted.worst_deg(place));
+            for row in &table.rows {
+                let residual = adjusted.deviation_deg(place, row.compass_deg);
+                headings += 1;
+                let off = wrap(residual - row.deviation_deg);
+                held += u32::from(off.abs() <= row.band95_deg.unwrap());
+                widths += row.band95_deg.unwrap();
+            }
+        }
+        self.held.push(f64::from(held) / f64::from(headings));
+        self.half_width_deg.push(widths / f64::from(headings));
+        self.worst_deg.push(worst);
+    }
+}
+
+/// What the card shows at the berth, degrees.
+fn shown(scene: &mut Scene, setting: &Setting) -> f64 {
+    let standing = scene.truth.with(setting);
+    let truly = standing.compass_deg(scene.place(), scene.berthed.magnetic_deg);
+    (truly + CARD_SD_DEG * scene.rng.gaussian()).rem_euclid(360.0)
+}
+
+/// Where the step's magnets are put instead; nowhere else where there is no such hole.
+fn slipped(binnacle: &Binnacle, step: &Step, slip: Slip) -> Option<(Axis, Tray, Tray)> {
+    let Some(Place::Magnets(meant)) = &step.to else {
+        return None;
+    };
+    let of = |axis: &Axis| step.setting_after.trays(*axis).contains(meant);
+    let axis = Axis::BOTH.into_iter().find(of)?;
+    let mut done = meant.clone();
+    match slip {
+        Slip::WrongEnd => done.red = done.red.reversed(),
+        Slip::Hole(higher) => {
+            done.hole = u16::try_from(i32::from(done.hole) + higher).ok()?;
+            let mut after = step.setting_after.clone();
+            for tray in after.trays_mut(axis).iter_mut().filter(|t| *t == meant) {
+                tray.clone_from(&done);
+            }
+            binnacle.with_setting(after).ok()?;
+        }
+        Slip::None | Slip::Moment(_) => return None,
+    }
+    Some((axis, meant.clone(), done))
+}
+
+fn name(found: &Recheck) -> &'static str {
+    match found {
+        Recheck::Confirmed { .. } => "confirmed",
+        Recheck::NotSeen { .. } => "not seen",
+        Recheck::WrongEnd { .. } => "wrong end",
+        Recheck::OtherStrength { .. } => "other strength",
+        Recheck::Unexplained { .. } => "unexplained",
+    }
+}
+
+impl fmt::Display for Hands {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let plans = self.held.len() as f64;
+        let held = mean(&self.held);
+        let squares: f64 = self.held.iter().map(|one| (one - held).powi(2)).sum();
+        let within = self.worst_deg.iter().filter(|worst| **worst <= 3.0).count() as f64;
+        write!(
+            f,
+            "{} adjustments, ended {:?}; band held {:.1} % (standard error {:.1}), mean half-width \
+             {:.2}, within 3 degrees {:.1} %; worst {:.2} / {:.2}; right steps {:?}; read again \
+             when right {:?}, when slipped {:?}; slips",
+            self.ships,
+            self.ended,
+            100.0 * held,
+            100.0 * squares.sqrt() / plans,
+            mean(&self.half_width_deg),
+            100.0 * within / plans,
+            quantile(&self.worst_deg, 0.5),
+            quantile(&self.worst_deg, 0.95),
+            self.right,
+            self.again[0],
+            self.again[1],
+        )?;
+        for ((class, verdict), count) in &self.slips {
+            write!(f, "; to {} degrees {verdict} {count}", CLASSES_DEG[*class])?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,174 @@
+//! Plans held against the truth.
+
+#![allow(clippy::unwrap_used)] // a study
+
+use super::adjusting::knowledge::Instruments;
+use super::adjusting::scene::Scene;
+use super::adjusting::wrap;
+use binnacle_adjustment::adjust::plan;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// What became of many ships.
+#[derive(Default)]
+pub(crate) struct Tally {
+    pub(crate) ships: u64,
+    pub(crate) planned: u64,
+    /// Refusals by their first words.
+    pub(crate) refused: BTreeMap<String, u64>,
+    /// Share of headings on which the band held, of each plan.
+    pub(crate) held: Vec<f64>,
+    /// Mean half-width of the band, of each plan, degrees.
+    pub(crate) half_width_deg: Vec<f64>,
+    /// Worst true residual of each plan, degrees.
+    pub(crate) worst_deg: Vec<f64>,
+    pub(crate) before_deg: Vec<f64>,
+    /// Heeling error at the berth as it was, as it is, and what is foretold less that,
+    /// degrees for each degree.
+    pub(crate) heel_before: Vec<f64>,
+    pub(crate) heel_after: Vec<f64>,
+    pub(crate) heel_off: Vec<f64>,
+    pub(crate) moves: Vec<f64>,
+    pub(crate) nodes: Vec<f64>,
+    pub(crate) unproven: u64,
+}
+
+impl Tally {
+    pub(crate) fn of(seeds: std::ops::Range<u64>, which: usize, instruments: Instruments) -> Tally {
+        let mut tally = Tally::default();
+        for seed in seeds {
+            tally.add(&Scene::new(seed, which, instruments));
+        }
+        tally
+    }
+
+    /// Ships whose permanent field has changed since the model, along the needle and across it,
+    /// by so much of the field that is read as these angles turn it by; their λ was told so
+    /// well at an earlier berth, if it was.
+    pub(crate) fn changed(
+        seeds: std::ops::Range<u64>,
+        [along_deg, across_deg]: [std::ops::Range<f64>; 2],
+        (instruments, said): (Instruments, Instruments),
+        told_before: Option<f64>,
+    ) -> Tally {
+        let mut tally = Tally::default();
+        for seed in seeds {
+            let mut scene = Scene::new(seed, 0, instruments);
+            let mut size = |of: &std::ops::Range<f64>| {
+                let sign = if scene.rng.unit() < 0.5 { -1.0 } else { 1.0 };
+                sign * scene.rng.between(of.start, of.end).to_radians().tan()
+            };
+            let [x, y] = scene.berthed.reading.field_nt();
+            let change = [size(&along_deg), size(&across_deg)].map(|share| share * x.hypot(y));
+            if let Some(error) = told_before {
+                scene.told_before(error);
+            }
+            tally.add(&scene.changed(change, instruments, said));
+        }
+        tally
+    }
+
+    fn add(&mut self, scene: &Scene) {
+        self.ships += 1;
+        let outcome = plan(&scene.adjustment()).unwrap();
+        if let Some(refused) = outcome.refusals.first() {
+            let why = serde_json::to_value(&refused.refusal).unwrap();
+            let why = why["refusal"].as_str().unwrap().to_owned();
+            *self.refused.entry(why).or_default() += 1;
+            return;
+        }
+        let best = &outcome.plans[0];
+        self.planned += 1;
+        self.moves.push(f64::from(best.moves));
+        let optimality = outcome.optimality.unwrap();
+        self.nodes.push(optimality.nodes as f64);
+        self.unproven += u64::from(!optimality.proven);
+        let berth = scene.place();
+        self.before_deg.push(scene.standing.worst_deg(berth));
+        let adjusted = scene.truth.with(&best.setting);
+        let (mut worst, mut held, mut widths, mut headings) = (0.0_f64, 0_u32, 0.0, 0_u32);
+        for table in &best.after {
+            let place = (table.h_nt, table.z_nt);
+            worst = worst.max(adjusted.worst_deg(place));
+            for row in &table.rows {
+                let residual = adjusted.deviation_deg(place, row.compass_deg);
+                let band = row.band95_deg.unwrap();
+                headings += 1;
+                held += u32::from(wrap(residual - row.deviation_deg).abs() <= band);
+                widths += band;
+            }
+        }
+        self.worst_deg.push(worst);
+        self.held.push(f64::from(held) / f64::from(headings));
+        self.half_width_deg.push(widths / f64::from(headings));
+        let after = adjusted.heeling_error(berth);
+        let foretold = best.heeling.after_deg_per_deg.unwrap();
+        let before = scene.standing.heeling_error(berth);
+        self.heel_before.push(before.abs());
+        self.heel_after.push(after.abs());
+        self.heel_off.push((foretold - after).abs());
+    }
+
+    /// Share of headings on which the band held, of an average plan.
+    pub(crate) fn coverage(&self) -> f64 {
+        mean(&self.held)
+    }
+
+    /// Standard error of that: headings of one plan err together.
+    pub(crate) fn coverage_sd(&self) -> f64 {
+        let average = self.coverage();
+        let squares: f64 = self.held.iter().map(|held| (held - average).powi(2)).sum();
+        squares.sqrt() / self.held.len() as f64
+    }
+
+    /// Share of plans whose worst true residual is 3° at most.
+    pub(crate) fn within_3_deg(&self) -> f64 {
+        let within = self.worst_deg.iter().filter(|worst| **worst <= 3.0);
+        within.count() as f64 / self.worst_deg.len() as f64
+    }
+}
+
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let index = (share * (sorted.len() as f64 - 1.0)).round() as usize;
+    sorted.get(index).copied().unwrap_or(f64::NAN)
+}
+
+impl fmt::Display for Tally {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let two = |values: &[f64]| {
+            format!(
+                "{:.2} / {:.2}",
+                quantile(values, 0.5),
+                quantile(values, 0.95)
+            )
+        };
+        write!(
+            f,
+            "{} ships, {} planned, refused {:?}; band held {:.1} % (standard error {:.1}), mean \
+             half-width {:.2}; worst true residual median / 95 % {} (before {}), within 3 degrees \
+             {:.1} %; heeling error median / 95 % {} (before {}), off what was foretold {}; \
+             moves {}; nodes {}; not proven {}",
+            self.ships,
+            self.planned,
+            self.refused,
+            100.0 * self.coverage(),
+            100.0 * self.coverage_sd(),
+            mean(&self.half_width_deg),
+            two(&self.worst_deg),
+            two(&self.before_deg),
+            100.0 * self.within_3_deg(),
+            two(&self.heel_after),
+            two(&self.heel_before),
+            two(&self.heel_off),
+            two(&self.moves),
+            two(&self.nodes),
+            self.unproven,
+        )
+    }
+}

@@ -1,0 +1,81 @@
+//! The whole analysis of one compass: from its samples and the ship's logbook
+//! to epochs and their models.
+//!
+//! What always holds: [`analyse`] is a pure function. The order of the samples
+//! and repeated samples change nothing, to the last bit; no sample is lost
+//! without a reason; and a set of samples that does not carry a model yields a
+//! refusal that says what is missing.
+
+mod alongside;
+mod cargo;
+mod changes;
+mod course;
+mod either;
+mod epoch;
+mod logbook;
+mod one_course;
+mod reading;
+mod stuck;
+
+use alongside::{berths, mark_alongside};
+use binnacle_compass::coverage::coverage;
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::result::{Analysis, ESTIMATOR, Epoch};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::AnalysisSettings;
+use cargo::notices;
+use changes::merge_faults;
+use course::Course;
+use epoch::epochs;
+use reading::{Reading, readings};
+use stuck::mark_stuck;
+
+/// Said where nothing can be watched for.
+const UNWATCHED: &str = "so far too little is known of the ship to tell a change of her \
+                         magnetism from her own: one would not be noticed. Steady courses on \
+                         more headings, by gyro or satellite compass, will tell";
+
+/// Analyses all samples of one compass.
+pub fn analyse(
+    samples: &[Sample],
+    logbook: &[LogbookEntry],
+    settings: &AnalysisSettings,
+) -> Analysis {
+    let mut readings = readings(samples, logbook, settings);
+    let mut course = Course::after(mark_stuck(&mut readings));
+    let stays = mark_alongside(&mut readings);
+    let mut begun = None;
+    for epoch in epochs(logbook) {
+        let from = begun.or(epoch.from);
+        begun = course.follow(Epoch { from, ..epoch }, &mut readings, logbook, settings);
+    }
+    let mut notices = notices(&readings, logbook, &course);
+    if course.is_unwatched {
+        notices.push(UNWATCHED.to_owned());
+    }
+    let Course {
+        epochs,
+        mut changes,
+        ..
+    } = course;
+    berths(&stays, &readings, &epochs, &mut changes);
+    changes.sort_by_key(|change| (change.from, change.detected_at));
+    merge_faults(&mut changes, &epochs);
+    let with_deviation = readings
+        .iter()
+        .filter(|r| r.diagnostic.deviation_deg.is_some());
+    let coverage = coverage(
+        with_deviation.filter_map(|r| r.earth.map(|e| (r.sample().compass, e.h_nt, e.z_nt))),
+    );
+    Analysis {
+        estimator: ESTIMATOR.to_owned(),
+        data_from: readings.first().map(|r| r.sample().time),
+        data_until: readings.last().map(|r| r.sample().time),
+        last_place: readings.iter().rev().find_map(Reading::place),
+        coverage,
+        epochs,
+        changes,
+        notices,
+        samples: readings.into_iter().map(|r| r.diagnostic).collect(),
+    }
+}

@@ -1,0 +1,193 @@
+//! Samples put in order, each with the earth's field around it.
+
+use super::logbook::{excludes, exclusion};
+use crate::fit::{HeadingReading, gyro_speed_error_deg};
+use binnacle_compass::angle::{TrueHeading, Variation};
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::logbook::LogbookEntry;
+use binnacle_compass::result::{LastPlace, SampleDiagnostic, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::settings::{AnalysisSettings, GyroSpeedError};
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
+use binnacle_compass::time::Timestamp;
+use std::cmp::Ordering;
+
+const DAY_MICROS: i64 = 86_400_000_000;
+
+/// A sample on its way through the analysis.
+#[derive(Clone)]
+pub(super) struct Reading {
+    /// The gyro's heading with its speed error taken out.
+    pub(super) gyro: Option<TrueHeading>,
+    pub(super) variation: Option<Variation>,
+    pub(super) earth: Option<EarthField>,
+    pub(super) diagnostic: SampleDiagnostic,
+}
+
+impl Reading {
+    pub(super) fn sample(&self) -> &Sample {
+        &self.diagnostic.sample
+    }
+
+    /// The field where it was taken; none outside the field model's years.
+    pub(super) fn place(&self) -> Option<LastPlace> {
+        let (variation, earth) = self.variation.zip(self.earth)?;
+        Some(LastPlace {
+            time: self.sample().time,
+            position: self.sample().position,
+            variation_deg: variation.degrees_east(),
+            h_nt: earth.h_nt,
+            z_nt: earth.z_nt,
+        })
+    }
+}
+
+/// All distinct samples in order of time, with the field and the reasons
+/// against their use that do not need a fit.
+pub(super) fn readings(
+    samples: &[Sample],
+    logbook: &[LogbookEntry],
+    settings: &AnalysisSettings,
+) -> Vec<Reading> {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(in_order);
+    sorted.dedup_by(|a, b| in_order(a, b) == Ordering::Equal);
+    let excluding = logbook.iter().filter(|e| exclusion(e.kind).is_some());
+    // An end yet to come, or of a year mistaken, is none.
+    let excluding: Vec<LogbookEntry> = sorted.last().map_or_else(Vec::new, |last| {
+        excluding.map(|entry| entry.as_of(last.time)).collect()
+    });
+    let mut field = DailyField::new(settings.field_model);
+    sorted
+        .into_iter()
+        .map(|sample| {
+            let mut reading = reading(sample, &mut field, settings);
+            // Of several reasons the first in their order, whatever the entries'.
+            let reported = excluding
+                .iter()
+                .filter_map(|entry| excludes(entry, &sample));
+            let reason = &mut reading.diagnostic.reason;
+            *reason = reason.or(reported.min());
+            reading
+        })
+        .collect()
+}
+
+fn reading(sample: Sample, field: &mut DailyField, settings: &AnalysisSettings) -> Reading {
+    let found = field.at(&sample);
+    let variation = found.map(|f| f.declination());
+    let earth = found.map(|f| f.for_ship());
+    let reason = match earth {
+        _ if sample.gyro.is_none() && sample.satellite.is_none() => Some(SampleReason::NoReference),
+        None => Some(SampleReason::OutsideFieldModel),
+        Some(earth) if earth.h_nt < WEAKEST_H_NT => Some(SampleReason::FieldTooWeak),
+        Some(_) => None,
+    };
+    Reading {
+        gyro: corrected_gyro(&sample, settings.gyro_speed_error),
+        variation,
+        earth,
+        diagnostic: SampleDiagnostic {
+            sample,
+            variation_deg: variation.map(Variation::degrees_east),
+            h_nt: earth.map(|e| e.h_nt),
+            z_nt: earth.map(|e| e.z_nt),
+            deviation_deg: None,
+            predicted_deg: None,
+            residual_deg: None,
+            weight: 0.0,
+            used: false,
+            reason,
+        },
+    }
+}
+
+fn corrected_gyro(sample: &Sample, speed_error: GyroSpeedError) -> Option<TrueHeading> {
+    let gyro = sample.gyro?;
+    let (GyroSpeedError::Uncorrected, Some(sog_kn)) = (speed_error, sample.sog_kn) else {
+        return Some(gyro);
+    };
+    let error = gyro_speed_error_deg(gyro, sog_kn, sample.position.lat_deg());
+    TrueHeading::new(gyro.degrees() - error).or(Some(gyro))
+}
+
+/// What the reading says of headings; none without a reference or a field.
+pub(super) fn heading_reading(reading: &Reading) -> Option<HeadingReading> {
+    let sample = reading.sample();
+    let (variation, earth) = reading.variation.zip(reading.earth)?;
+    if reading.gyro.is_none() && sample.satellite.is_none() {
+        return None;
+    }
+    Some(HeadingReading {
+        time: Some(sample.time),
+        position: Some(sample.position),
+        compass: sample.compass,
+        gyro: reading.gyro,
+        satellite: sample.satellite,
+        unnamed: None,
+        variation,
+        h_nt: earth.h_nt,
+        z_nt: earth.z_nt,
+        sog_kn: sample.sog_kn,
+        windows: sample.windows,
+        spread_deg: sample.spread_deg,
+        weight: 1.0,
+    })
+}
+
+/// The field model at noon of the day that was asked for last: over half a day
+/// the field changes by far less than the model is good for.
+struct DailyField {
+    model: FieldModel,
+    day: Option<i64>,
+    at_noon: Option<FieldAt>,
+}
+
+impl DailyField {
+    fn new(model: FieldModel) -> DailyField {
+        DailyField {
+            model,
+            day: None,
+            at_noon: None,
+        }
+    }
+
+    fn at(&mut self, sample: &Sample) -> Option<binnacle_compass::field::Field> {
+        let day = sample.time.micros().div_euclid(DAY_MICROS);
+        if self.day != Some(day) {
+            self.day = Some(day);
+            self.at_noon = Timestamp::from_micros(day * DAY_MICROS + DAY_MICROS / 2)
+                .ok()
+                .and_then(|noon| FieldAt::time(self.model, noon).ok());
+        }
+        self.at_noon.as_ref()?.at(sample.position, 0.0).ok()
+    }
+}
+
+/// By time, and where times are equal by everything else, so that the order in
+/// which samples arrived leaves no trace.
+fn in_order(a: &Sample, b: &Sample) -> Ordering {
+    let numbers = |s: &Sample| {
+        // Nothing sorts before anything.
+        let or_first = |x: Option<f64>| x.unwrap_or(f64::NEG_INFINITY);
+        [
+            s.position.lat_deg(),
+            s.position.lon_deg(),
+            s.compass.degrees(),
+            or_first(s.gyro.map(TrueHeading::degrees)),
+            or_first(s.satellite.map(TrueHeading::degrees)),
+            or_first(s.sog_kn),
+            or_first(s.rate_of_turn_deg_min),
+            or_first(s.spread_deg),
+            f64::from(s.windows),
+        ]
+    };
+    let by_number = || {
+        let pairs = numbers(a).into_iter().zip(numbers(b));
+        pairs
+            .map(|(a, b)| a.total_cmp(&b))
+            .find(|o| o.is_ne())
+            .unwrap_or(Ordering::Equal)
+    };
+    a.time.cmp(&b.time).then_with(by_number)
+}

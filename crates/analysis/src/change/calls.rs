@@ -1,0 +1,383 @@
+//! Port calls at which a ship may have become what she was before a step: cargo
+//! is discharged where it was loaded, in port.
+//!
+//! What always holds: at most [`MOST`] calls and [`BASES`] earlier states are kept,
+//! and what has become unlikely is given up, so that the work a row is bounded.
+
+use super::filter::{Filter, Measurement, Noise};
+use super::upset::set_back;
+use crate::estimate::Unknowns;
+use binnacle_compass::time::Timestamp;
+
+/// Calls and earlier states that are kept, the latest of each.
+const MOST: usize = 4;
+const BASES: usize = 3;
+/// A return that trails by more than this is given up, nats.
+const HOPELESS_NATS: f64 = 16.0;
+/// Leads are of models that are only nearly right: they count for this much.
+const TEMPER: f64 = 0.5;
+/// How likely a ship is to become herself again at a port call after a change at sea.
+const RETURN_AFTER_SEA: f64 = 0.01;
+/// A change that began at a port call is cargo with this probability; little cargo is noticed
+/// late, so that one that is dated days after a call may be, too, and the rather where the rows
+/// fit one at the call as well.
+const IS_CARGO: f64 = 0.84;
+const IS_CARGO_NOTICED_LATE: f64 = 0.6;
+const IS_CARGO_SOON_AFTER: f64 = 0.25;
+/// Cargo is discharged at any one call with this probability.
+const DISCHARGED: f64 = 0.6;
+
+/// She is herself again so likely at a call at which the logbook says that her cargo was
+/// discharged: it is believed at once. And so likely where it says that it stayed.
+const SAID_DISCHARGED: f64 = 0.95;
+const SAID_ON_BOARD: f64 = 0.05;
+/// And so likely where it says so of an hour when she was under way, or where what may have
+/// been the cargo was dated after she had sailed with it: the rows are to tell.
+const SAID_UNDER_WAY: f64 = 0.5;
+const SAID_NOTICED_AT_SEA: f64 = 0.7;
+
+/// What the logbook tells of cargo at a port call.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Said {
+    Nothing,
+    /// Cargo that had been loaded not before a time was discharged, and none stayed.
+    Discharged {
+        loaded: Timestamp,
+        /// Whether she lay somewhere then, as far as the rows tell.
+        at_port: bool,
+    },
+    /// Some stayed on board.
+    OnBoard,
+}
+
+/// Where a step happened, as far as the rows tell.
+pub(super) enum Began {
+    AtPort,
+    /// At sea, so soon after cargo came on board by the logbook that it may be that.
+    SaidLoaded,
+    /// At a port call, or at sea in the days after it.
+    NoticedLate,
+    /// At sea, soon after a port call, from which she had sailed so: if it was cargo, it was
+    /// on board by then.
+    SoonAfter(Box<Filter>),
+    AtSea,
+}
+
+/// The ship as she was before a step.
+pub(super) struct Base {
+    /// The step's place in the list of events.
+    pub(super) event: usize,
+    pub(super) filter: Filter,
+    pub(super) began: Began,
+    /// When the step happened at the latest.
+    pub(super) latest: Option<Timestamp>,
+    /// Port calls since.
+    pub(super) calls: i32,
+}
+
+impl Base {
+    /// How likely the ship is herself again at the next port call: what has stayed
+    /// through many was no cargo.
+    fn chance(&self) -> f64 {
+        let is_cargo = match self.began {
+            Began::AtPort | Began::SaidLoaded => IS_CARGO,
+            Began::NoticedLate => IS_CARGO_NOTICED_LATE,
+            Began::SoonAfter(_) => IS_CARGO_SOON_AFTER,
+            Began::AtSea => return RETURN_AFTER_SEA,
+        };
+        let still = is_cargo * (1.0 - DISCHARGED).powi(self.calls);
+        DISCHARGED * still / (still + 1.0 - is_cargo)
+    }
+
+    /// What began at sea may end there.
+    pub(super) fn began_at_port(&self) -> bool {
+        matches!(self.began, Began::AtPort)
+    }
+
+    /// Whether it came on board with cargo, as far as logbook and rows tell.
+    pub(super) fn came_on_board(&self) -> bool {
+        matches!(self.began, Began::AtPort | Began::SaidLoaded)
+    }
+
+    /// The ship without what changed her.
+    pub(super) fn unladen(&self) -> &Filter {
+        match &self.began {
+            Began::SoonAfter(sailed) => sailed,
+            _ => &self.filter,
+        }
+    }
+}
+
+/// A port call after a step.
+struct Call {
+    /// The first row after it.
+    at: usize,
+    returns: Vec<Return>,
+}
+
+/// What the filter would be, were the ship herself again since a call.
+struct Return {
+    event: usize,
+    prior_odds: f64,
+    filter: Filter,
+}
+
+/// A return that may have been.
+#[derive(Clone, Debug)]
+pub(super) struct Candidate {
+    /// The step that it would be the end of.
+    pub(super) event: usize,
+    /// The first row after it.
+    pub(super) at: usize,
+    /// By how much it is likelier than none by the rows alone.
+    pub(super) nats: f64,
+    /// How likely the ship is again what she was before that step, at whatever call, and how
+    /// likely any return is.
+    pub(super) probability: f64,
+    pub(super) any: f64,
+    pub(super) filter: Filter,
+}
+
+#[derive(Default)]
+pub(super) struct Calls {
+    /// From the earliest step to the latest.
+    pub(super) bases: Vec<Base>,
+    calls: Vec<Call>,
+}
+
+impl Calls {
+    pub(super) fn step(&mut self, base: Base) {
+        if self.bases.len() == BASES {
+            // The first is the ship without any cargo, and stays.
+            self.bases.remove(1);
+        }
+        self.bases.push(base);
+    }
+
+    /// The ship lay in port before row `at`; `now` is the filter there, and the
+    /// bases are those of steps before `until`, a place in the list of events.
+    pub(super) fn call(&mut self, at: usize, now: &Filter, until: usize, said: Said) {
+        let unladen = match said {
+            Said::Discharged { loaded, at_port } => self.before_loading(loaded, at_port),
+            _ => None,
+        };
+        let before = self.bases.iter_mut().filter(|base| base.event < until);
+        let returns: Vec<Return> = before
+            .map(|base| {
+                let chance = match (said, unladen) {
+                    (_, Some((event, chance))) if event == base.event => chance,
+                    (Said::OnBoard, _) => SAID_ON_BOARD * base.chance(),
+                    _ => base.chance(),
+                };
+                base.calls += 1;
+                Return {
+                    event: base.event,
+                    prior_odds: chance / (1.0 - chance),
+                    filter: set_back(now, base.unladen()),
+                }
+            })
+            .collect();
+        if returns.is_empty() {
+            return;
+        }
+        self.calls.retain(|call| call.at != at);
+        if self.calls.len() == MOST {
+            self.calls.remove(0);
+        }
+        self.calls.push(Call { at, returns });
+    }
+
+    /// The ship as she was before the first step since her cargo came on board: the step's
+    /// place in the list of events, and how likely she is that again. What struck her at sea
+    /// does not leave with the cargo, but cargo that moves the compass by little may be
+    /// noticed at sea only.
+    fn before_loading(&self, loaded: Timestamp, at_port: bool) -> Option<(usize, f64)> {
+        let since = |base: &&Base| base.latest.is_some_and(|latest| latest >= loaded);
+        let mut since = self.bases.iter().filter(since);
+        let first = since.next()?;
+        if !since.all(Base::came_on_board) {
+            return None;
+        }
+        let chance = match (first.came_on_board(), at_port) {
+            (true, true) => SAID_DISCHARGED,
+            (true, false) => SAID_UNDER_WAY,
+            (false, _) => SAID_NOTICED_AT_SEA,
+        };
+        Some((first.event, chance))
+    }
+
+    /// Takes in a row, linearised at what each return has of the ship.
+    pub(super) fn take(
+        &mut self,
+        measure: impl Fn(&Unknowns) -> Measurement,
+        noise: &Noise,
+        null: &Filter,
+    ) {
+        for call in &mut self.calls {
+            for back in &mut call.returns {
+                let m = measure(&back.filter.unknowns());
+                back.filter.take(&m, noise, None);
+            }
+            call.returns
+                .retain(|back| back.filter.log_likelihood > null.log_likelihood - HOPELESS_NATS);
+        }
+        self.calls.retain(|call| !call.returns.is_empty());
+    }
+
+    /// The same for calls at row `first` and later, which are being retraced.
+    pub(super) fn take_since(
+        &mut self,
+        first: usize,
+        measure: impl Fn(&Unknowns) -> Measurement,
+        noise: &Noise,
+    ) {
+        for call in self.calls.iter_mut().filter(|call| call.at >= first) {
+            for back in &mut call.returns {
+                let m = measure(&back.filter.unknowns());
+                back.filter.take(&m, noise, None);
+            }
+        }
+    }
+
+    /// The likeliest return. `rival` is by how much the likeliest passing disturbance leads;
+    /// while one goes on that was told, `is_astray`, the rows speak for no return, but not
+    /// against one either, for both may be.
+    pub(super) fn likeliest(
+        &self,
+        null: &Filter,
+        rival: f64,
+        is_astray: bool,
+    ) -> Option<Candidate> {
+        let odds = |back: &Return| {
+            let nats = back.filter.log_likelihood - null.log_likelihood;
+            let beside = if is_astray {
+                nats.min(0.0)
+            } else {
+                f64::NEG_INFINITY
+            };
+            let told = (nats - rival).max(beside);
+            (nats, back.prior_odds * (TEMPER * told).exp())
+        };
+        let each = || {
+            let calls = self.calls.iter();
+            calls.flat_map(|call| call.returns.iter().map(move |back| (call.at, back)))
+        };
+        let of_event = |event: usize| -> f64 {
+            let same = each().filter(|(_, back)| back.event == event);
+            same.map(|(_, back)| odds(back).1).sum()
+        };
+        let sum: f64 = each().map(|(_, back)| odds(back).1).sum();
+        // Which call it was matters less than whether she is the ship she was.
+        let event = self
+            .bases
+            .iter()
+            .map(|base| base.event)
+            .max_by(|a, b| of_event(*a).total_cmp(&of_event(*b)))?;
+        let (at, back) = each()
+            .filter(|(_, back)| back.event == event)
+            .max_by(|a, b| odds(a.1).1.total_cmp(&odds(b.1).1))?;
+        Some(Candidate {
+            event,
+            at,
+            nats: odds(back).0,
+            probability: of_event(event) / (1.0 + sum),
+            any: sum / (1.0 + sum),
+            filter: back.filter.clone(),
+        })
+    }
+
+    /// A reference's error changed, or is again what it was: `now` does that to each return,
+    /// and each is likelier by what the filter gained by it.
+    pub(super) fn change_reference(&mut self, gained: f64, now: impl Fn(&Filter) -> Filter) {
+        let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
+        for back in returns {
+            back.filter = now(&back.filter);
+            back.filter.log_likelihood += gained;
+        }
+    }
+
+    /// The filter, `null`, is likelier by `gained` now that it knows of a disturbance that
+    /// passed. So would a return be, but by no more than that it leads no longer: what it led
+    /// by may be what the disturbance explains.
+    pub(super) fn credit(&mut self, null: &Filter, gained: f64) {
+        let returns = self.calls.iter_mut().flat_map(|call| &mut call.returns);
+        for back in returns {
+            let led = back.filter.log_likelihood - null.log_likelihood;
+            let leads = led.min(0.0).max(led - gained);
+            back.filter.log_likelihood = null.log_likelihood + gained + leads;
+        }
+    }
+
+    /// The ship is as she was before `event`, or it was no step of hers: later ones are of the
+    /// past.
+    pub(super) fn forget(&mut self, event: usize) {
+        self.bases.retain(|base| base.event < event);
+        self.calls.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Prior;
+    use binnacle_compass::result::NoiseLevels;
+
+    fn ship() -> Filter {
+        let noise = Noise::new(&NoiseLevels::TYPICAL);
+        Filter::new(&Prior::population(0.5), &noise)
+    }
+
+    /// A ship that was laden at a call, and has lain at two since; by how much her being
+    /// herself again leads from each.
+    fn after_two_calls(leads: [f64; 2]) -> Calls {
+        let mut calls = Calls::default();
+        calls.step(Base {
+            event: 0,
+            filter: ship(),
+            began: Began::AtPort,
+            latest: None,
+            calls: 0,
+        });
+        for at in [10, 20] {
+            calls.call(at, &ship(), usize::MAX, Said::Nothing);
+        }
+        for (call, nats) in calls.calls.iter_mut().zip(leads) {
+            call.returns[0].filter.log_likelihood = nats;
+        }
+        calls
+    }
+
+    #[test]
+    fn that_she_is_herself_again_is_as_likely_as_all_calls_of_it_together() {
+        let both = after_two_calls([3.0, 3.0]);
+        let both = both.likeliest(&ship(), 0.0, false).unwrap();
+        let one = after_two_calls([3.0, -30.0]);
+        let one = one.likeliest(&ship(), 0.0, false).unwrap();
+        assert!(both.probability > one.probability + 0.05, "{both:?}");
+        assert!((both.probability - both.any).abs() < 1e-12);
+        assert_eq!(both.at, 10, "the first call is the likelier beforehand");
+    }
+
+    #[test]
+    fn a_disturbance_that_was_told_speaks_neither_for_a_return_nor_against_it() {
+        let calls = after_two_calls([5.0, -30.0]);
+        let probability = |is_astray: bool| {
+            let likeliest = calls.likeliest(&ship(), 60.0, is_astray);
+            likeliest.unwrap().probability
+        };
+        assert!(probability(false) < 1e-6);
+        let beforehand = probability(true);
+        assert!((beforehand - 0.504).abs() < 0.001, "{beforehand}");
+    }
+
+    #[test]
+    fn what_passed_leaves_a_return_as_likely_as_it_was_but_lends_it_no_lead() {
+        let null = ship();
+        for (led, gained, leads) in [(5.0, 20.0, 0.0), (-3.0, 20.0, -3.0), (5.0, 2.0, 3.0)] {
+            let mut calls = after_two_calls([led, led]);
+            calls.credit(&null, gained);
+            let now = calls.calls[0].returns[0].filter.log_likelihood - gained;
+            assert!((now - leads).abs() < 1e-9, "{led}, {gained}: {now}");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! What the search is told, and what it tells.
+
+use super::{Loaded, Unnoticed};
+use crate::change::filter::{CONSTANT_STATE, Filter};
+use crate::estimate::{POPULATION_SD, Prior};
+use binnacle_compass::model::{Covariance, Parameters};
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::PARAMETERS;
+use binnacle_compass::time::Timestamp;
+
+/// What the search is told beside the rows.
+pub(crate) struct Given<'a> {
+    pub(crate) prior: &'a Prior,
+    /// The sizes of noise as they were before the rows, where that is known.
+    pub(crate) levels: Option<&'a NoiseLevels>,
+    /// Times at which people say that something happened.
+    pub(crate) reported: &'a [Timestamp],
+    /// What people say of cargo that moves the compass.
+    pub(crate) cargo: &'a [Loaded],
+}
+
+/// The ship's seven parameters as a filter had them.
+#[derive(Clone, Debug)]
+pub(crate) struct Snapshot {
+    pub(crate) parameters: Parameters,
+    pub(crate) constant_deg: f64,
+    /// Of the parameters and the constant.
+    pub(crate) covariance: Covariance,
+}
+
+/// What an event is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum What {
+    Step,
+    /// The compass's own zero moved.
+    Alignment,
+    /// The ship's magnetism drifts.
+    Drift,
+    Reference,
+    Burst,
+    /// The ship is again as she was before the event of this place in the list.
+    Return(usize),
+}
+
+impl What {
+    /// Whether the deviation is another after it, so that an epoch begins.
+    pub(crate) fn is_lasting(self) -> bool {
+        matches!(self, What::Step | What::Alignment | What::Drift)
+    }
+}
+
+/// Something that happened, found among the rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Event {
+    pub(crate) what: What,
+    /// The first row after it, and the first and last that may be.
+    pub(crate) first: usize,
+    pub(crate) between: (usize, usize),
+    /// The row that told.
+    pub(crate) told: usize,
+    /// Leads over nothing having happened, nats, by kind.
+    pub(crate) leads: [f64; 4],
+    /// Before and when it was told.
+    pub(crate) before: Snapshot,
+    pub(crate) after: Snapshot,
+    /// The last row of a burst, once it is over.
+    pub(crate) last: Option<usize>,
+    /// Whether it is certain.
+    pub(crate) confirmed: bool,
+    /// The row that told that a step was none after all.
+    pub(crate) withdrawn: Option<usize>,
+    /// Whether a burst was at first told as a step.
+    pub(crate) was_step: bool,
+    /// By how much it is likelier than the step for which it was first taken, nats.
+    pub(crate) over_step: f64,
+    /// By how much a zero that moved is likelier than the step, nats, where that is open.
+    pub(crate) zero_over_step: Option<f64>,
+    /// Whether it is dated at a port call, but was seen days after only: it may have happened
+    /// at sea.
+    pub(crate) is_late: bool,
+}
+
+impl Event {
+    /// What was told as the ship's or her compass's was gone again before row `end`.
+    pub(super) fn pass(&mut self, end: usize) {
+        let [step, reference, burst, back] = self.leads;
+        self.what = What::Burst;
+        self.last = Some(end.saturating_sub(1).max(self.first));
+        self.leads = [0.0, reference, burst.max(step), back];
+        self.was_step = true;
+        self.over_step = 0.0;
+    }
+}
+
+/// Takes those out that are `gone`; the places of the others, which are told of returns
+/// here, move with them. Where the event of a place is then.
+pub(super) fn take_out(
+    events: &mut Vec<Event>,
+    gone: Vec<bool>,
+) -> impl Fn(usize) -> usize + use<> {
+    let mut each = gone.iter();
+    events.retain(|_| each.next() != Some(&true));
+    let moved = move |place: usize| place - gone[..place].iter().filter(|gone| **gone).count();
+    for event in events {
+        if let What::Return(of) = &mut event.what {
+            *of = moved(*of);
+        }
+    }
+    moved
+}
+
+/// What the rows tell.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Told {
+    pub(crate) events: Vec<Event>,
+    /// A return that may have been, and is not among the events.
+    pub(crate) perhaps: Option<Perhaps>,
+    /// A step that may have been, and is not among them either.
+    pub(crate) unnoticed: Option<Unnoticed>,
+    /// What bx and by may each be off by beyond what the model knows, while a large step is
+    /// neither certain nor out of question, variance in nT².
+    pub(crate) open_nt2: Option<f64>,
+    /// Whether a change would be among them: not of a ship of whom too little is known.
+    pub(crate) is_watched: bool,
+}
+
+/// Something that is as yet neither likely enough to be believed nor unlikely
+/// enough to be forgotten.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Perhaps {
+    /// The event that would have ended.
+    pub(crate) of: usize,
+    /// The first row after its end.
+    pub(crate) first: usize,
+    pub(crate) probability: f64,
+}
+
+pub(super) fn snapshot(filter: &Filter) -> Snapshot {
+    let mut scale = [1.0; PARAMETERS + 1];
+    scale[..PARAMETERS].copy_from_slice(&POPULATION_SD);
+    let mut parameters = [0.0; PARAMETERS];
+    let mut covariance = [[0.0; PARAMETERS + 1]; PARAMETERS + 1];
+    for i in 0..=PARAMETERS {
+        if i < PARAMETERS {
+            parameters[i] = filter.mean[i] * scale[i];
+        }
+        for j in 0..=PARAMETERS {
+            covariance[i][j] = filter.covariance.at(i, j) * scale[i] * scale[j];
+        }
+    }
+    Snapshot {
+        parameters: Parameters::from_array(parameters),
+        constant_deg: filter.mean[CONSTANT_STATE],
+        covariance,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::change::filter::Noise;
+
+    fn event(what: What) -> Event {
+        let known = Filter::new(&Prior::population(0.5), &Noise::new(&NoiseLevels::TYPICAL));
+        Event {
+            what,
+            first: 0,
+            between: (0, 0),
+            told: 0,
+            leads: [0.0; 4],
+            before: snapshot(&known),
+            after: snapshot(&known),
+            last: None,
+            confirmed: true,
+            withdrawn: None,
+            was_step: false,
+            over_step: 0.0,
+            zero_over_step: None,
+            is_late: false,
+        }
+    }
+
+    #[test]
+    fn a_fault_that_goes_on_is_found_where_it_is_when_earlier_events_are_taken_out() {
+        let told = [What::Step, What::Step, What::Reference, What::Return(2)];
+        let mut events: Vec<Event> = told.into_iter().map(event).collect();
+        let moved = take_out(&mut events, vec![false, true, false, false]);
+        assert_eq!(events.len(), 3);
+        assert_eq!(events[moved(2)].what, What::Reference);
+        assert_eq!(events[2].what, What::Return(moved(2)));
+        assert_eq!(moved(0), 0);
+    }
+}

@@ -1,0 +1,114 @@
+//! The sizes of noise, learnt from the rows so far.
+
+use crate::change::filter::{Filter, Noise};
+use crate::estimate::{Prior, Unknowns};
+use crate::fit::{Observation, learn};
+use binnacle_compass::result::NoiseLevels;
+use binnacle_compass::ship::PARAMETERS;
+
+/// Days of data from which the sizes of noise are learnt, again and again.
+const LEARN_DAYS: [f64; 3] = [10.0, 30.0, 90.0];
+
+/// What a stretch of rows told.
+#[derive(Clone, Copy)]
+pub(super) struct Learnt {
+    pub(super) levels: NoiseLevels,
+    pub(super) noise: Noise,
+    pub(super) unknowns: Unknowns,
+    /// Rows that it was of.
+    pub(super) until: usize,
+}
+
+impl Learnt {
+    /// What was known `before`, or else from the first days that suffice: what happened in
+    /// them would be learnt with them.
+    pub(super) fn first(
+        observations: &[Observation],
+        prior: &Prior,
+        before: Option<&NoiseLevels>,
+    ) -> Option<Learnt> {
+        if let Some(levels) = before {
+            return Some(Learnt::beforehand(levels, prior));
+        }
+        LEARN_DAYS.iter().find_map(|days| {
+            let until = rows_within(observations, 0, *days);
+            Learnt::of(observations, 0..until, prior, None)
+        })
+    }
+
+    fn beforehand(levels: &NoiseLevels, prior: &Prior) -> Learnt {
+        let noise = noise(levels);
+        Learnt {
+            levels: *levels,
+            noise,
+            unknowns: Filter::new(prior, &noise).unknowns(),
+            until: 0,
+        }
+    }
+
+    /// From `rows`, beginning with the levels learnt before.
+    pub(super) fn of(
+        observations: &[Observation],
+        rows: std::ops::Range<usize>,
+        prior: &Prior,
+        before: Option<&NoiseLevels>,
+    ) -> Option<Learnt> {
+        let until = rows.end;
+        let rough = learn(&observations[rows], prior, before)?;
+        let noise = noise(&rough.levels);
+        let mut mean = [rough.constant_deg; PARAMETERS + 1];
+        mean[..PARAMETERS].copy_from_slice(&rough.parameters.to_array());
+        let known = Prior {
+            mean,
+            covariance: prior.covariance,
+        };
+        Some(Learnt {
+            levels: rough.levels,
+            noise,
+            unknowns: Filter::new(&known, &noise).unknowns(),
+            until,
+        })
+    }
+}
+
+/// A ship may drift more than she has yet.
+fn noise(levels: &NoiseLevels) -> Noise {
+    Noise::new(&NoiseLevels {
+        drift_nt: levels.drift_nt.max(NoiseLevels::TYPICAL.drift_nt),
+        ..*levels
+    })
+}
+
+/// When levels are learnt again.
+#[derive(Clone, Copy)]
+pub(super) struct Lesson {
+    /// At this row.
+    pub(super) at: usize,
+    /// From so many days.
+    pub(super) days: f64,
+}
+
+impl Lesson {
+    /// The next after row `k`, of at least so many days since row `from`; one that
+    /// never comes when there is none.
+    pub(super) fn next(observations: &[Observation], from: usize, k: usize, days: f64) -> Lesson {
+        let long = LEARN_DAYS.iter().filter(|long| **long >= days);
+        let mut lessons = long.map(|&days| Lesson {
+            at: rows_within(observations, from, days),
+            days,
+        });
+        lessons.find(|lesson| lesson.at > k).unwrap_or(Lesson {
+            at: usize::MAX,
+            days,
+        })
+    }
+}
+
+/// The row after the last within `days` of row `from`.
+fn rows_within(observations: &[Observation], from: usize, days: f64) -> usize {
+    let start = observations.get(from).and_then(|o| o.time);
+    from + observations[from..].partition_point(|o| match (o.time, start) {
+        (Some(time), Some(start)) => time.seconds_since(start) <= days * 86_400.0,
+        _ => true,
+    })
+}

@@ -1,0 +1,100 @@
+//! What the logbook tells of cargo where the ship lay, or may have.
+
+use super::Search;
+use crate::change::calls::Said;
+use crate::fit::Observation;
+use binnacle_compass::time::Timestamp;
+
+/// People write down the day, or when the hatches were shut.
+const ABOUT_S: f64 = 12.0 * 3600.0;
+/// What nobody closed was discharged by then, and forgotten.
+const OPEN_S: f64 = 21.0 * 86_400.0;
+/// A step that is dated after so many rows or more of sailing since was not the loading:
+/// half of it for what people write, half for dating.
+pub(crate) const SAILED_SINCE: usize = 36;
+
+/// Cargo that moves the compass, as the logbook has it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Loaded {
+    pub(crate) from: Timestamp,
+    /// When it was discharged; none where nobody wrote that down.
+    pub(crate) to: Option<Timestamp>,
+}
+
+impl Search<'_> {
+    /// What the logbook tells of the cargo on board after the time between a row and the
+    /// one before.
+    pub(super) fn said_at(&self, k: usize) -> Said {
+        let Some((before, after)) = self.around(k) else {
+            return Said::Nothing;
+        };
+        let stays = |loaded: &&Loaded| {
+            loaded.from.seconds_since(before) < -ABOUT_S
+                && loaded
+                    .to
+                    .is_some_and(|to| to.seconds_since(after) > ABOUT_S)
+        };
+        if self.cargo.iter().any(|loaded| stays(&loaded)) {
+            return Said::OnBoard;
+        }
+        let ended = self.cargo.iter().filter(|loaded| {
+            let is_about = |to: Timestamp| {
+                to.seconds_since(before) > -ABOUT_S && to.seconds_since(after) < ABOUT_S
+            };
+            loaded.to.is_some_and(is_about)
+        });
+        let from = ended.map(|loaded| loaded.from).min();
+        from.map_or(Said::Nothing, |from| Said::Discharged {
+            loaded: from.plus_seconds(-ABOUT_S),
+            at_port: self.is_call(k),
+        })
+    }
+
+    /// Whether the logbook has it that cargo came on board when a step happened.
+    pub(super) fn is_said_loaded(&self, (earliest, latest): (usize, usize)) -> bool {
+        let sailed = &self.observations[..earliest];
+        let earliest = self.around(earliest).map(|around| around.0);
+        let Some((earliest, latest)) = earliest.zip(self.observations[latest].time) else {
+            return false;
+        };
+        self.cargo.iter().any(|loaded| {
+            loaded.from.seconds_since(earliest) > -2.0 * ABOUT_S
+                && loaded.from.seconds_since(latest) < ABOUT_S
+                && rows_since(sailed, loaded.from) < SAILED_SINCE
+        })
+    }
+
+    /// Whether the logbook has it that cargo was on board when a row was read.
+    pub(super) fn is_said_on_board(&self, k: usize) -> bool {
+        let Some(time) = self.observations[k].time else {
+            return false;
+        };
+        let on_board = |loaded: &Loaded| {
+            let until = loaded.to.unwrap_or(loaded.from.plus_seconds(OPEN_S));
+            (loaded.from..=until).contains(&time)
+        };
+        self.cargo.iter().any(on_board)
+    }
+
+    /// Whether the logbook has it that cargo was discharged between a row and the one
+    /// before, whether or not she seems to have lain there.
+    pub(super) fn is_said_discharged(&self, k: usize) -> bool {
+        let Some((before, after)) = self.around(k) else {
+            return false;
+        };
+        let ends = self.cargo.iter().filter_map(|loaded| loaded.to);
+        ends.into_iter().any(|to| before < to && to <= after)
+    }
+
+    /// The time between a row and the one before.
+    fn around(&self, k: usize) -> Option<(Timestamp, Timestamp)> {
+        let before = self.observations[k.checked_sub(1)?].time?;
+        Some((before, self.observations[k].time?))
+    }
+}
+
+/// Rows after a time, of rows in order of time.
+pub(crate) fn rows_since(rows: &[Observation], time: Timestamp) -> usize {
+    let before = rows.partition_point(|row| row.time.is_none_or(|row| row <= time));
+    rows.len() - before
+}

@@ -1,0 +1,18 @@
+//! Port calls, by where there are no rows.
+
+use crate::fit::Observation;
+use binnacle_compass::angle::wrap_180;
+
+/// A port call is a gap of at least this without going further than that.
+const PORT_S: f64 = 3.0 * 3600.0;
+const PORT_NM: f64 = 40.0;
+
+/// Whether the ship lay somewhere just before the row.
+pub(crate) fn at_port(observations: &[Observation], row: usize) -> Option<bool> {
+    let (a, b) = (&observations[row.checked_sub(1)?], &observations[row]);
+    let gap_s = b.time?.seconds_since(a.time?);
+    let (a, b) = (a.position?, b.position?);
+    let north = a.lat_deg() - b.lat_deg();
+    let east = wrap_180(a.lon_deg() - b.lon_deg()) * a.lat_deg().to_radians().cos();
+    Some(gap_s > PORT_S && 60.0 * north.hypot(east) < PORT_NM)
+}

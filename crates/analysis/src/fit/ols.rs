@@ -1,0 +1,132 @@
+//! Ordinary least squares, for comparison: what a careful user of today's tools
+//! would do with the same samples.
+//!
+//! The deviation is the exact one and residuals are in angle, but every sample
+//! counts alike, rows are taken at the compass heading as it was read, noise is
+//! held to be independent from row to row, and nothing is known beforehand. The
+//! product's own fit is [`fit_robust`](super::fit_robust).
+
+use super::Observation;
+use super::headings::check_headings;
+use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
+use super::robust::{check_field, is_usable};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::linearised_at_compass;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::result::FitError;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
+
+/// Gauss–Newton needs five or six for a ship, more among wild outliers.
+const ITERATIONS: u32 = 100;
+/// A step that is no better after this many halvings leads nowhere.
+const HALVINGS: u32 = 30;
+/// A step that moves the samples' predictions by less, root mean square, is none.
+const SETTLED_DEG: f64 = 1e-9;
+/// Near the end a step changes the sum of squares by less than its rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Fits the exact deviation to observations by least squares in angle.
+///
+/// The unknowns are the seven ratios. The constant is held at zero: no set of
+/// headings tells it from A = (χ21 − χ12)/2 (docs/science.md, §3), so that
+/// χ12 and χ21 take it up with nothing lost from the deviation.
+///
+/// An observation's weight divides the variance of its noise; those of weight
+/// zero, and those in a field too weak for a compass, are left out and counted as
+/// rejected.
+///
+/// # Errors
+/// When there are too few samples or headings, all lie at one magnetic
+/// latitude, the fitted ship's headings are ambiguous at a sample's field, or
+/// the iteration does not settle.
+pub fn fit_ols(observations: &[Observation]) -> Result<Model, FitError> {
+    check_field(observations)?;
+    let mut rows = observations.to_vec();
+    rows.retain(is_usable);
+    let found = rows.len() as u64;
+    check_number(found)?;
+    check_headings(&rows)?;
+    let weights: f64 = rows.iter().map(|o| o.weight).sum();
+
+    let (parameters, at) = settle(&rows, weights)?;
+    let freedom = (rows.len() - PARAMETERS) as f64;
+    let covariance = covariance(&invert(&at.normal)?, at.squares / freedom);
+    Ok(Model {
+        parameters_over_lambda: parameters,
+        constant_deg: 0.0,
+        covariance: Some(covariance),
+        identifiable: Some(identifiable(&covariance)),
+        rms_deg: Some((at.squares / weights).sqrt()),
+        samples_used: found,
+        samples_rejected: observations.len() as u64 - found,
+        quality: None,
+    })
+}
+
+/// The normal equations at a ship.
+struct Linearised {
+    normal: Matrix,
+    /// What the step has to answer.
+    score: Vector,
+    /// Weighted squares of the residuals, degrees².
+    squares: f64,
+}
+
+/// Gauss–Newton with halved steps, from a ship without magnetism.
+fn settle(rows: &[Observation], weights: f64) -> Result<(Parameters, Linearised), FitError> {
+    let mut parameters = Parameters::from_array([0.0; PARAMETERS]);
+    let mut at = linearise(rows, &parameters)?;
+    for _ in 0..ITERATIONS {
+        let step = invert(&at.normal)? * at.score;
+        let moves_deg = (step.dot(&at.score).max(0.0) / weights).sqrt();
+        if moves_deg < SETTLED_DEG {
+            return Ok((parameters, at));
+        }
+        (parameters, at) = downhill(rows, &parameters, &at, step)?;
+    }
+    Err(FitError::NotConverged)
+}
+
+/// The first of the step, its half, its quarter, … that is no worse.
+fn downhill(
+    rows: &[Observation],
+    from: &Parameters,
+    at: &Linearised,
+    mut step: Vector,
+) -> Result<(Parameters, Linearised), FitError> {
+    let no_worse = at.squares * (1.0 + ROUNDING);
+    let mut why = FitError::NotConverged;
+    for _ in 0..HALVINGS {
+        let tried = Parameters::from_array((Vector::from(from.to_array()) + step).into());
+        match linearise(rows, &tried) {
+            Ok(there) if there.squares <= no_worse => return Ok((tried, there)),
+            Ok(_) => why = FitError::NotConverged,
+            Err(ambiguous) => why = ambiguous,
+        }
+        step /= 2.0;
+    }
+    Err(why)
+}
+
+/// The rows' residuals and slopes in degrees (docs/science.md, eq. 8 and 10).
+fn linearise(rows: &[Observation], parameters: &Parameters) -> Result<Linearised, FitError> {
+    let mut sums = Linearised {
+        normal: Matrix::zeros(),
+        score: Vector::zeros(),
+        squares: 0.0,
+    };
+    for o in rows {
+        let earth = EarthField {
+            h_nt: o.h_nt,
+            z_nt: o.z_nt,
+        };
+        let (predicted, gradient) = linearised_at_compass(parameters, o.compass.radians(), earth)
+            .map_err(|_| FitError::AmbiguousHeadings { h_nt: o.h_nt })?;
+        let residual = wrap_180(o.deviation.degrees_east() - predicted.to_degrees());
+        let slopes = Vector::from(gradient.map(f64::to_degrees));
+        sums.normal += slopes * slopes.transpose() * o.weight;
+        sums.score += slopes * (o.weight * residual);
+        sums.squares += o.weight * residual * residual;
+    }
+    Ok(sums)
+}

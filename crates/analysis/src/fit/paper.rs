@@ -1,0 +1,95 @@
+//! The fit as it was published, for comparison: Basterretxea-Iribar, Sotés &
+//! Uriarte 2016, J. Navigation 69, eq. 11.
+//!
+//! Ordinary least squares in force: every sample counts alike whatever the
+//! earth's field, the row is taken at the compass heading as it was read, and
+//! noise is held to be independent. The product's own fit is
+//! [`fit_robust`](super::fit_robust).
+
+use super::Observation;
+use super::headings::check_headings;
+use super::normal::{Matrix, Vector, check_number, covariance, identifiable, invert};
+use super::robust::{check_field, is_usable};
+use binnacle_compass::angle::wrap_180;
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::result::FitError;
+use binnacle_compass::ship::{EarthField, PARAMETERS};
+
+/// Fits eq. 11 by least squares. The model has no constant. Observations of weight
+/// zero, and those in a field too weak for a compass, are left out and counted as
+/// rejected; all others count alike.
+///
+/// # Errors
+/// When there are too few samples or headings, or all lie at one magnetic
+/// latitude, where eq. 11 has no unique solution.
+pub fn fit_paper(observations: &[Observation]) -> Result<Model, FitError> {
+    check_field(observations)?;
+    let mut rows = observations.to_vec();
+    rows.retain(is_usable);
+    let found = rows.len() as u64;
+    check_number(found)?;
+    check_headings(&rows)?;
+    let mut normal = Matrix::zeros();
+    let mut right = Vector::zeros();
+    let mut squares = 0.0;
+    for o in &rows {
+        let (row, force) = equation_11(o);
+        normal += row * row.transpose();
+        right += row * force;
+        squares += force * force;
+    }
+    let inverse = invert(&normal)?;
+    let solution = inverse * right;
+    let freedom = (rows.len() - PARAMETERS) as f64;
+    let variance = ((squares - solution.dot(&right)) / freedom).max(0.0);
+
+    let parameters = Parameters::from_array(solution.into());
+    let covariance = covariance(&inverse, variance);
+    Ok(Model {
+        parameters_over_lambda: parameters,
+        constant_deg: 0.0,
+        covariance: Some(covariance),
+        identifiable: Some(identifiable(&covariance)),
+        rms_deg: Some(rms_deg(&parameters, &rows)?),
+        samples_used: found,
+        samples_rejected: observations.len() as u64 - found,
+        quality: None,
+    })
+}
+
+/// Eq. 11's row for M/λ and its right side H sin δ, nT.
+fn equation_11(o: &Observation) -> (Vector, f64) {
+    let (sin, cos) = o.compass.radians().sin_cos();
+    let deviation = o.deviation.degrees_east().to_radians();
+    let (sin2, cos2) = (2.0 * o.compass.radians() + deviation).sin_cos();
+    let half = o.h_nt / 2.0;
+    let row = Vector::from([
+        sin,
+        o.z_nt * sin,
+        cos,
+        o.z_nt * cos,
+        half * sin2,
+        half * (cos2 - deviation.cos()),
+        half * (cos2 + deviation.cos()),
+    ]);
+    (row, o.h_nt * deviation.sin())
+}
+
+/// Measured less predicted on the compass heading, root mean square.
+fn rms_deg(p: &Parameters, observations: &[Observation]) -> Result<f64, FitError> {
+    let mut squares = 0.0;
+    for o in observations {
+        let ambiguous = FitError::AmbiguousHeadings { h_nt: o.h_nt };
+        let earth = EarthField {
+            h_nt: o.h_nt,
+            z_nt: o.z_nt,
+        };
+        let predicted = Coefficients::new(p, earth)
+            .ok()
+            .and_then(|coefficients| coefficients.deviation_at_compass_rad(o.compass.radians()))
+            .ok_or(ambiguous)?;
+        squares += wrap_180(o.deviation.degrees_east() - predicted.to_degrees()).powi(2);
+    }
+    Ok((squares / observations.len() as f64).sqrt())
+}

@@ -1,0 +1,224 @@
+//! The product's fit: exact model, residuals in angle, robust weights, noise
+//! that remembers, and a prior for what headings cannot tell.
+
+use super::Observation;
+use super::headings::check_headings;
+use super::{soundness, stray};
+use crate::estimate::{Options, Prior, Rough, estimate, rough};
+use binnacle_compass::deviation::Coefficients;
+use binnacle_compass::model::{Model, Parameters};
+use binnacle_compass::result::{FitError, NoiseLevels};
+use binnacle_compass::settings::REFERENCE_CONSTANT_SD_DEG;
+use binnacle_compass::ship::{EarthField, WEAKEST_H_NT};
+use std::borrow::Cow;
+
+/// Fewer samples than this carry no fit of eight unknowns worth having.
+const NEEDED_SAMPLES: u64 = 12;
+/// The same where the ship is known but for her permanent magnetism.
+const NEEDED_OF_A_KNOWN_SHIP: u64 = 6;
+/// A row of less weight than this is counted as rejected.
+pub const REJECTED_BELOW: f64 = 0.5;
+
+/// What a robust fit starts from beside the observations.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobustOptions {
+    /// What is known of the ship; ships at large when nothing is.
+    pub prior: Prior,
+    /// Standard deviation of the reference's constant error, degrees.
+    pub reference_constant_sd_deg: f64,
+}
+
+impl RobustOptions {
+    /// For a ship of which nothing is known yet.
+    pub fn of_any_ship(reference_constant_sd_deg: f64) -> RobustOptions {
+        RobustOptions {
+            prior: Prior::population(reference_constant_sd_deg),
+            reference_constant_sd_deg,
+        }
+    }
+}
+
+impl Default for RobustOptions {
+    fn default() -> RobustOptions {
+        RobustOptions::of_any_ship(REFERENCE_CONSTANT_SD_DEG)
+    }
+}
+
+/// A model with what became of every observation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RobustFit {
+    /// The model.
+    pub model: Model,
+    /// How large the estimator found each kind of noise.
+    pub noise: NoiseLevels,
+    /// One for each observation, in the order given.
+    pub rows: Vec<RowOutcome>,
+}
+
+/// What a fit made of one observation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowOutcome {
+    /// Measured less predicted, degrees; none where the row was not looked at.
+    pub residual_deg: Option<f64>,
+    /// Its weight, 0 to 1: 0 where the field is too weak for a compass.
+    pub weight: f64,
+}
+
+/// Fits a model to observations; their order does not matter.
+///
+/// # Errors
+/// When the observations cannot carry a model, with what is missing.
+pub fn fit_robust(
+    observations: &[Observation],
+    options: &RobustOptions,
+) -> Result<RobustFit, FitError> {
+    let usable = usable(observations);
+    let rows = chosen(observations, &usable);
+    check_field(observations)?;
+    check_number(&rows, NEEDED_SAMPLES)?;
+    check_headings(&rows)?;
+    fit_usable(observations, &usable, &rows, options)
+}
+
+/// Fits a model of a ship of which much is known beforehand, so that few
+/// observations on few headings do: the prior says the rest, and the band how well.
+///
+/// # Errors
+/// When the observations cannot carry a model, with what is missing.
+pub fn fit_known_ship(
+    observations: &[Observation],
+    options: &RobustOptions,
+) -> Result<RobustFit, FitError> {
+    let usable = usable(observations);
+    let rows = chosen(observations, &usable);
+    check_field(observations)?;
+    check_number(&rows, NEEDED_OF_A_KNOWN_SHIP)?;
+    fit_usable(observations, &usable, &rows, options)
+}
+
+/// The levels of noise, and about what the parameters are, where [`fit_robust`] would
+/// fit a model; `before` are levels from which there is not far to go.
+pub(crate) fn learn(
+    observations: &[Observation],
+    prior: &Prior,
+    before: Option<&NoiseLevels>,
+) -> Option<Rough> {
+    let mut rows = observations.to_vec();
+    rows.retain(is_usable);
+    check_number(&rows, NEEDED_SAMPLES).ok()?;
+    check_headings(&rows).ok()?;
+    let learnt = rough(&rows, prior, before)?;
+    check_needle(&learnt.parameters, &rows).ok()?;
+    Some(learnt)
+}
+
+/// Those that a fit may take.
+fn usable(observations: &[Observation]) -> Vec<usize> {
+    let mut usable: Vec<usize> = (0..observations.len())
+        .filter(|&i| is_usable(&observations[i]))
+        .collect();
+    stray::leave_out_early(observations, &mut usable);
+    usable
+}
+
+/// Those in these places, which are in order.
+fn chosen<'a>(observations: &'a [Observation], places: &[usize]) -> Cow<'a, [Observation]> {
+    if places.len() == observations.len() {
+        return Cow::Borrowed(observations);
+    }
+    places.iter().map(|&i| observations[i]).collect()
+}
+
+/// In a field that a compass can work in, and not left out by its weight.
+pub(super) fn is_usable(o: &Observation) -> bool {
+    o.h_nt >= WEAKEST_H_NT && o.weight > 0.0
+}
+
+fn fit_usable(
+    observations: &[Observation],
+    usable: &[usize],
+    rows: &[Observation],
+    options: &RobustOptions,
+) -> Result<RobustFit, FitError> {
+    let fitted = estimate(
+        rows,
+        &Options {
+            prior: &options.prior,
+            reference_constant_sd_deg: options.reference_constant_sd_deg,
+        },
+    )
+    .ok_or(FitError::NotConverged)?;
+    let residuals = fitted.rows.iter().map(|row| row.residual_deg);
+    let caution = soundness::judge(residuals, &fitted.levels)?;
+    check_needle(&fitted.parameters, rows)?;
+    let mut quality = fitted.quality;
+    quality.cautions.extend(caution);
+    quality.cautions.extend(stray::long_gap(rows));
+
+    let mut outcomes = vec![
+        RowOutcome {
+            residual_deg: None,
+            weight: 0.0
+        };
+        observations.len()
+    ];
+    for (&index, row) in usable.iter().zip(&fitted.rows) {
+        outcomes[index] = RowOutcome {
+            residual_deg: Some(row.residual_deg),
+            weight: row.weight,
+        };
+    }
+    let used = fitted.rows.iter().filter(|r| r.weight >= REJECTED_BELOW);
+    let squares: f64 = used.clone().map(|r| r.residual_deg.powi(2)).sum();
+    let samples_used = used.count() as u64;
+    let model = Model {
+        parameters_over_lambda: fitted.parameters,
+        constant_deg: fitted.constant_deg,
+        covariance: Some(fitted.covariance),
+        identifiable: Some(fitted.identifiable),
+        rms_deg: Some((squares / samples_used.max(1) as f64).sqrt()),
+        samples_used,
+        samples_rejected: observations.len() as u64 - samples_used,
+        quality: Some(quality),
+    };
+    Ok(RobustFit {
+        model,
+        noise: fitted.levels,
+        rows: outcomes,
+    })
+}
+
+/// Refuses observations of which none has weight and a field for a compass.
+pub(super) fn check_field(all: &[Observation]) -> Result<(), FitError> {
+    let weighed = all.iter().filter(|o| o.weight > 0.0).map(|o| o.h_nt);
+    match weighed.reduce(f64::max) {
+        Some(strongest_nt) if strongest_nt < WEAKEST_H_NT => Err(FitError::FieldTooWeak {
+            strongest_nt,
+            needed_nt: WEAKEST_H_NT,
+        }),
+        None if !all.is_empty() => Err(FitError::NoWeight {
+            samples: all.len() as u64,
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn check_number(rows: &[Observation], needed: u64) -> Result<(), FitError> {
+    let found = rows.len() as u64;
+    if found >= needed {
+        return Ok(());
+    }
+    Err(FitError::TooFewSamples { found, needed })
+}
+
+/// One compass heading must stand for one course where the ship is mostly.
+fn check_needle(p: &Parameters, rows: &[Observation]) -> Result<(), FitError> {
+    let mut fields: Vec<(f64, f64)> = rows.iter().map(|o| (o.h_nt, o.z_nt)).collect();
+    let middle = fields.len() / 2;
+    let (_, &mut (h_nt, z_nt), _) =
+        fields.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let earth = EarthField { h_nt, z_nt };
+    Coefficients::new(p, earth)
+        .and_then(|coefficients| coefficients.check_unambiguous())
+        .map_err(|_| FitError::AmbiguousHeadings { h_nt })
+}

@@ -1,0 +1,15 @@
+//! What a ship's own headings tell about her magnetism: estimation, changes, the whole
+//! analysis of a compass, and advice what to sail next.
+//!
+//! Pure: no input or output, no clock, no randomness. Everything here is a
+//! function of its arguments, so that an analysis can be repeated to the byte.
+//! The conventions are those of [`binnacle_compass`].
+
+pub mod estimate;
+pub mod fit;
+
+pub mod change;
+
+pub mod analyse;
+
+pub mod advice;

@@ -1,0 +1,142 @@
+//! Samples taken alongside, by iron that stays there.
+
+use crate::voyages::fleet::{Event, Log, Name, sail_log};
+use crate::voyages::{Truth, gauss, true_deviation};
+use crate::{HOUR_S, began, calm, is_sound, run};
+use binnacle_compass::angle::{CompassHeading, TrueHeading};
+use binnacle_compass::field::{FieldAt, FieldModel};
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+/// The first port call after day 25: the places of the samples before and after it.
+fn call(log: &Log) -> (usize, usize) {
+    let is_past = |k: &usize| log.samples[*k].time.seconds_since(log.start) > 25.0 * 86_400.0;
+    let gap_s = |k: usize| log.samples[k].time.seconds_since(log.samples[k - 1].time);
+    let mut rows = (1..log.samples.len()).filter(is_past);
+    let sailed = rows.find(|k| gap_s(*k) > 10.0 * HOUR_S).unwrap();
+    (sailed - 1, sailed)
+}
+
+/// Samples all through that call, the compass off by so much: by the ship as she was until
+/// some time, and as she is from then on.
+fn lie_alongside(log: &mut Log, steel_deg: f64, ship: impl Fn(Timestamp) -> Truth) {
+    const HEADING: f64 = 70.0;
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let (arrived, sailed) = call(log);
+    let (first, last) = (log.samples[arrived], log.samples[sailed]);
+    let field = FieldAt::time(FieldModel::Igrf14, first.time).unwrap();
+    let here = field.at(first.position, 0.0).unwrap();
+    let minutes = last.time.seconds_since(first.time) / 60.0;
+    let lying = (3..(minutes / 10.0) as i32 - 3).map(|k| {
+        let time = first.time.plus_seconds(600.0 * f64::from(k));
+        let deviation = true_deviation(&ship(time), HEADING, here.h_nt(), here.z_nt);
+        let heading = HEADING + deviation + here.declination().degrees_east();
+        let off = steel_deg + 0.1 * gauss(&mut rng);
+        Sample {
+            time,
+            compass: CompassHeading::new(HEADING + off).unwrap(),
+            gyro: TrueHeading::new(heading + 0.1 * gauss(&mut rng)),
+            satellite: TrueHeading::new(heading + 0.1 * gauss(&mut rng)),
+            sog_kn: Some(0.1),
+            ..first
+        }
+    });
+    let lying: Vec<Sample> = lying.collect();
+    log.samples.splice(sailed..sailed, lying);
+}
+
+fn confirmed(analysis: &Analysis) -> Vec<&Change> {
+    analysis.changes.iter().filter(|c| c.confirmed).collect()
+}
+
+fn taken_alongside(analysis: &Analysis) -> usize {
+    let of_berth = analysis.samples.iter();
+    of_berth
+        .filter(|s| s.reason == Some(SampleReason::Berth))
+        .count()
+}
+
+#[test]
+fn what_comes_with_a_berth_and_is_left_there_is_its_steel() {
+    for (seed, steel_deg) in [(70, 4.0), (71, -4.0), (72, 6.0)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let truth = log.truth;
+        lie_alongside(&mut log, steel_deg, |_| truth);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = confirmed(&analysis);
+        let causes: Vec<Cause> = told.iter().map(|c| c.cause).collect();
+        assert_eq!(causes, [Cause::BerthSteel], "seed {seed}: {told:?}");
+        assert!(told[0].causes[0].probability > 0.8, "{told:?}");
+        let (arrived, sailed) = (log.samples[call_before(&log, told[0])].time, told[0].ended);
+        assert!(told[0].from > arrived && sailed.is_some());
+        assert!(told[0].evidence.iter().all(|line| !line.contains("at sea")));
+        assert!(taken_alongside(&analysis) > 50);
+        assert_eq!(analysis.epochs.len(), 1);
+    }
+}
+
+/// The last sample under way before a change.
+fn call_before(log: &Log, change: &Change) -> usize {
+    let before = log.samples.partition_point(|s| s.time < change.from);
+    let is_under_way = |k: &usize| log.samples[*k].sog_kn.is_some_and(|kn| kn > 5.0);
+    (0..before).rev().find(is_under_way).unwrap()
+}
+
+#[test]
+fn a_berth_without_steel_is_not_told() {
+    for seed in 70..73 {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let truth = log.truth;
+        lie_alongside(&mut log, 0.0, |_| truth);
+        let analysis = run(&log.samples);
+        assert_eq!(confirmed(&analysis).len(), 0, "{:?}", analysis.changes);
+        assert!(taken_alongside(&analysis) > 50);
+    }
+}
+
+#[test]
+fn while_she_lies_there_it_may_be_the_berths_or_hers() {
+    let mut log = sail_log(70, &calm(Event::Nothing));
+    let truth = log.truth;
+    lie_alongside(&mut log, 5.0, |_| truth);
+    let lying = log.samples.iter().rposition(|s| s.sog_kn == Some(0.1));
+    let analysis = run(&log.samples[..=lying.unwrap()]);
+    is_sound(&analysis);
+    assert_eq!(confirmed(&analysis).len(), 0);
+    let told = analysis.changes.last().unwrap();
+    let share = |cause: Cause| {
+        let of = told.causes.iter().find(|c| c.cause == cause);
+        of.map_or(0.0, |c| c.probability)
+    };
+    assert!(share(Cause::BerthSteel) > 0.3, "{told:?}");
+    assert!(share(Cause::MagneticCargo) > 0.1, "{told:?}");
+    assert!(told.ended.is_none());
+}
+
+#[test]
+fn cargo_that_comes_on_board_among_samples_is_loaded_in_port() {
+    for seed in [40, 41, 44] {
+        let mut log = sail_log(seed, &calm(Event::Cargo));
+        let loaded = began(&log, Name::Cargo).plus_seconds(5.0 * HOUR_S);
+        let [before, after] = log.changed.unwrap();
+        let truth = log.truth;
+        lie_alongside(&mut log, 0.0, |time| Truth {
+            parameters: if time < loaded { before } else { after },
+            ..truth
+        });
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = confirmed(&analysis);
+        let causes: Vec<Cause> = told.iter().map(|c| c.cause).collect();
+        assert_eq!(causes, [Cause::MagneticCargo], "seed {seed}: {told:?}");
+        assert!(
+            told[0]
+                .evidence
+                .contains(&"it began at a port call".to_owned())
+        );
+    }
+}

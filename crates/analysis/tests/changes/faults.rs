@@ -1,0 +1,438 @@
+//! Instruments that fail: none of it is the ship's magnetism.
+
+use crate::voyages::fleet::{Event, Log, sail_log};
+use crate::voyages::{predicted, true_deviation};
+use crate::{HOUR_S, calm, is_sound, of_the_ship, run};
+use binnacle_compass::angle::{CompassHeading, TrueHeading, wrap_180};
+use binnacle_compass::result::{Analysis, Cause, Change, SampleReason};
+use binnacle_compass::sample::Sample;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+fn day(log: &Log, sample: &Sample) -> f64 {
+    sample.time.seconds_since(log.start) / 86_400.0
+}
+
+fn certain(analysis: &Analysis) -> Vec<&Change> {
+    analysis.changes.iter().filter(|c| c.confirmed).collect()
+}
+
+fn turned(heading: TrueHeading, degrees: f64) -> TrueHeading {
+    TrueHeading::new(heading.degrees() + degrees).unwrap()
+}
+
+#[test]
+fn a_jammed_card_that_trembles_is_a_stuck_compass() {
+    for (seed, trembles_deg) in [(61, 0.1), (62, 0.3), (64, 0.3)] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let first = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 25.0)
+            .unwrap();
+        let last = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 30.0)
+            .unwrap();
+        let jammed = log.samples[first].compass.degrees();
+        for sample in &mut log.samples[first..last] {
+            let off = trembles_deg * (2.0 * rng.random::<f64>() - 1.0);
+            sample.compass = CompassHeading::new(jammed + off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        assert_eq!(told, [Cause::CompassFault], "seed {seed}");
+        let fault = certain(&analysis)[0];
+        let jammed_at = log.samples[first].time;
+        let late_h = fault.from.seconds_since(jammed_at) / HOUR_S;
+        assert!((-1.0..36.0).contains(&late_h), "seed {seed}: {late_h} h");
+        let is_stuck = |s: &binnacle_compass::result::SampleDiagnostic| {
+            s.reason == Some(SampleReason::CompassStuck)
+        };
+        let stuck = analysis.samples.iter().filter(|s| is_stuck(s)).count();
+        assert!(stuck > (last - first) / 2, "seed {seed}: {stuck}");
+        let before = analysis.samples[..first].iter().filter(|s| is_stuck(s));
+        assert!(before.count() < 3, "seed {seed}");
+    }
+}
+
+#[test]
+fn a_gyro_that_is_wild_now_and_then_makes_no_stuck_compass_of_a_steady_one() {
+    let mut plan = calm(Event::Nothing);
+    plan.faults.satellite = false;
+    let mut log = sail_log(63, &plan);
+    for sample in log.samples.iter_mut().step_by(9) {
+        sample.gyro = sample.gyro.map(|gyro| turned(gyro, 12.0));
+    }
+    let analysis = run(&log.samples);
+    let mut causes = analysis.changes.iter().map(|c| c.cause);
+    assert!(causes.all(|cause| cause != Cause::CompassFault));
+}
+
+/// On a steady course the gyro is off by 9° from when on, and the satellite compass drops out
+/// soon after: by the only one that is left the ship turned.
+#[test]
+fn a_gyros_fault_while_the_satellite_compass_is_silent_makes_no_stuck_compass() {
+    for seed in [61, 62, 64] {
+        let log = sail_log(seed, &calm(Event::Nothing));
+        let is_steady = |course: &[Sample]| {
+            let first = course[0].compass.degrees();
+            let off = |s: &Sample| wrap_180(s.compass.degrees() - first).abs();
+            day(&log, &course[0]) > 25.0 && course.iter().all(|s| off(s) < 0.8)
+        };
+        let steady = log.samples.windows(10).position(is_steady).unwrap();
+        let mut samples = log.samples.clone();
+        for (place, sample) in samples.iter_mut().enumerate().skip(steady + 4) {
+            sample.gyro = sample.gyro.map(|gyro| turned(gyro, 9.0));
+            if place < steady + 9 {
+                sample.satellite = None;
+            }
+        }
+        samples.truncate(steady + 150);
+        let analysis = run(&samples);
+        let found = certain(&analysis);
+        assert!(
+            found.iter().all(|c| c.cause != Cause::CompassFault),
+            "seed {seed}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn a_compass_whose_zero_moved_is_no_struck_ship() {
+    for (seed, moved_deg) in [(60, 3.0), (61, -4.0), (62, 3.0)] {
+        let (log, moved) = zero_moved(seed, moved_deg);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = of_the_ship(&analysis);
+        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        assert_eq!(told[0].cause, Cause::Alignment);
+        assert!(told[0].evidence[0].contains("the compass's own zero moved"));
+        assert!(told[0].step.is_none());
+        let off_h = told[0].from.seconds_since(log.samples[moved].time) / HOUR_S;
+        assert!(off_h.abs() < 36.0, "seed {seed}: {off_h} h");
+        let size_deg = told[0].deviation_change_deg.unwrap();
+        assert!((size_deg - moved_deg.abs()).abs() < 0.7, "{size_deg}");
+        let constant = |i: usize| analysis.epochs[i].model.as_ref().unwrap().constant_deg;
+        let learnt = constant(1) - constant(0);
+        assert!((learnt + moved_deg).abs() < 0.7, "seed {seed}: {learnt}");
+    }
+}
+
+/// A calm voyage whose compass is off by so much on every heading from day 25 on.
+fn zero_moved(seed: u64, moved_deg: f64) -> (Log, usize) {
+    let mut log = sail_log(seed, &calm(Event::Nothing));
+    let is_past = |s: &Sample| day(&log, s) > 25.0;
+    let moved = log.samples.iter().position(is_past).unwrap();
+    for sample in &mut log.samples[moved..] {
+        let compass = sample.compass.degrees() + moved_deg;
+        sample.compass = CompassHeading::new(compass).unwrap();
+    }
+    (log, moved)
+}
+
+#[test]
+fn by_one_reference_a_zero_that_moved_may_be_either_and_the_band_holds_both() {
+    for seed in 60..64 {
+        let moved_deg = 5.0;
+        let mut plan = calm(Event::Nothing);
+        plan.faults.satellite = false;
+        let mut log = sail_log(seed, &plan);
+        let is_past = |s: &Sample| day(&log, s) > 25.0;
+        let moved = log.samples.iter().position(is_past).unwrap();
+        for sample in &mut log.samples[moved..] {
+            let compass = sample.compass.degrees() + moved_deg;
+            sample.compass = CompassHeading::new(compass).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = certain(&analysis);
+        let fault = told.iter().find(|c| c.cause == Cause::ReferenceFault);
+        let fault = fault.unwrap_or_else(|| panic!("seed {seed}: {told:?}"));
+        let share = |cause: Cause| {
+            let of = fault.causes.iter().find(|c| c.cause == cause);
+            of.map_or(0.0, |c| c.probability)
+        };
+        let [zero, reference] = [Cause::Alignment, Cause::ReferenceFault].map(share);
+        assert!(zero > 0.4 && reference > 0.4, "seed {seed}: {fault:?}");
+        assert!(
+            fault
+                .evidence
+                .iter()
+                .any(|line| line.contains("no other reference"))
+        );
+        let place = analysis.last_place.unwrap();
+        let model = analysis.current_epoch().unwrap().model.as_ref().unwrap();
+        let held = |shown_deg: f64, moved_deg: f64| {
+            let (h, z) = (place.h_nt, place.z_nt);
+            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
+            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(sound_deg - moved_deg - told_deg).abs() <= 1.96 * se_deg
+        };
+        let headings = || (0..36).map(|k| 10.0 * f64::from(k));
+        assert!(
+            headings().filter(|deg| held(*deg, moved_deg)).count() > 30,
+            "seed {seed}"
+        );
+        assert!(
+            headings().filter(|deg| held(*deg, 0.0)).count() > 30,
+            "seed {seed}"
+        );
+    }
+}
+
+#[test]
+fn by_one_reference_a_zero_that_moved_twice_may_be_off_by_both() {
+    for seed in 60..64 {
+        let mut plan = calm(Event::Nothing);
+        plan.faults.satellite = false;
+        let mut log = sail_log(seed, &plan);
+        let moves = [(22.0, 5.0), (30.0, 6.0)];
+        let days: Vec<f64> = log.samples.iter().map(|s| day(&log, s)).collect();
+        for (sample, day) in log.samples.iter_mut().zip(days) {
+            let moved = moves.iter().filter(|(from, _)| day > *from);
+            let off_deg: f64 = moved.map(|(_, deg)| deg).sum();
+            sample.compass = CompassHeading::new(sample.compass.degrees() + off_deg).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let place = analysis.last_place.unwrap();
+        let Some(model) = &analysis.current_epoch().unwrap().model else {
+            continue;
+        };
+        let held = |shown_deg: f64, moved_deg: f64| {
+            let (h, z) = (place.h_nt, place.z_nt);
+            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
+            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(sound_deg - moved_deg - told_deg).abs() <= 1.96 * se_deg
+        };
+        let headings = (0..36).map(|k| 10.0 * f64::from(k));
+        let count = headings.filter(|deg| held(*deg, 11.0)).count();
+        assert!(count > 30, "seed {seed}: {count}, {:?}", certain(&analysis));
+    }
+}
+
+#[test]
+fn a_zero_that_moved_by_much_is_told_once() {
+    for (seed, moved_deg) in [
+        (60, 8.0),
+        (61, -8.0),
+        (62, 12.0),
+        (63, 20.0),
+        (64, -20.0),
+        (65, 20.0),
+    ] {
+        let (log, _) = zero_moved(seed, moved_deg);
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        assert_eq!(told, [Cause::Alignment], "seed {seed}, {moved_deg} degrees");
+        let size_deg = certain(&analysis)[0].deviation_change_deg.unwrap();
+        assert!((size_deg - moved_deg.abs()).abs() < 1.0, "{size_deg}");
+    }
+}
+
+#[test]
+fn on_one_course_a_zero_that_moved_may_be_a_strike_and_the_band_holds_either() {
+    let (mut open, mut headings, mut held) = (0, 0, 0);
+    for seed in 60..66 {
+        let moved_deg = 12.0;
+        let (log, moved) = zero_moved(seed, moved_deg);
+        // What the compass shows three hours later, and what it showed before.
+        let analysis = run(&log.samples[..moved + 18]);
+        let told = certain(&analysis);
+        let zero = told.iter().flat_map(|c| &c.causes);
+        let zero = zero.filter(|c| c.cause == Cause::Alignment);
+        if zero.map(|c| c.probability).sum::<f64>() > 0.05 {
+            open += 1;
+        }
+        let place = analysis.last_place.unwrap();
+        let epoch = analysis.current_epoch().unwrap();
+        for k in 0..36 {
+            let shown_deg = 10.0 * f64::from(k);
+            let (h, z) = (place.h_nt, place.z_nt);
+            let sound_deg = true_deviation(&log.truth, shown_deg - moved_deg, h, z);
+            let (told_deg, se_deg) = predicted(epoch.model.as_ref().unwrap(), shown_deg, h, z);
+            let off_deg = wrap_180(sound_deg - moved_deg - told_deg).abs();
+            headings += 1;
+            held += usize::from(off_deg < 1.96 * se_deg);
+        }
+    }
+    assert!(open >= 5, "{open}");
+    assert!(10 * held > 9 * headings, "{held} of {headings}");
+}
+
+#[test]
+fn a_card_that_jams_for_hours_is_no_strike_for_all_that_she_turns_once() {
+    let mut told_as_stuck = 0;
+    for seed in 60..72 {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let is_past = |s: &Sample| day(&log, s) > 25.0;
+        let first = log.samples.iter().position(is_past).unwrap();
+        let jammed = log.samples[first].compass.degrees();
+        for sample in &mut log.samples[first..first + 36] {
+            let off = 0.3 * (2.0 * rng.random::<f64>() - 1.0);
+            sample.compass = CompassHeading::new(jammed + off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        let told = of_the_ship(&analysis);
+        assert!(told.is_empty(), "seed {seed}: {told:?}");
+        let mut causes = certain(&analysis).into_iter().map(|c| c.cause);
+        told_as_stuck += usize::from(causes.any(|cause| cause == Cause::CompassFault));
+    }
+    // Some have not turned meanwhile.
+    assert!(told_as_stuck >= 5, "{told_as_stuck}");
+}
+
+#[test]
+fn a_gyro_that_sticks_is_one_fault_that_goes_on_through_ports() {
+    for seed in [60, 61] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let first = log
+            .samples
+            .iter()
+            .position(|s| day(&log, s) > 25.0)
+            .unwrap();
+        let stuck = log.samples[first].gyro;
+        for sample in &mut log.samples[first..] {
+            sample.gyro = stuck;
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = certain(&analysis);
+        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        assert_eq!(told[0].cause, Cause::ReferenceFault);
+        assert_eq!(told[0].ended, None, "seed {seed}");
+    }
+}
+
+#[test]
+fn wild_readings_hours_apart_are_no_fault_of_the_gyro() {
+    let mut log = sail_log(10, &calm(Event::Nothing));
+    let middle = log.samples.len() / 2;
+    for row in [middle, middle + 5, middle + 10] {
+        let sample = &mut log.samples[row];
+        sample.gyro = sample.gyro.map(|gyro| turned(gyro, 12.0));
+    }
+    let analysis = run(&log.samples);
+    assert!(certain(&analysis).is_empty(), "{:?}", analysis.changes);
+}
+
+#[test]
+fn a_gyro_that_stays_wrong_is_not_right_again_with_the_end_of_a_worse_fault() {
+    for seed in [71, 72, 73] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let start = log.start;
+        for sample in &mut log.samples {
+            let at = sample.time.seconds_since(start) / 86_400.0;
+            let off = match at {
+                ..25.0 => 0.0,
+                32.0..32.2 => 13.5,
+                _ => 2.0,
+            };
+            sample.gyro = sample.gyro.map(|gyro| turned(gyro, off));
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told = certain(&analysis);
+        let faults: Vec<&&Change> = told
+            .iter()
+            .filter(|c| c.cause == Cause::ReferenceFault)
+            .collect();
+        assert_eq!(faults.len(), 1, "seed {seed}: {faults:?}");
+        assert_eq!(faults[0].ended, None, "seed {seed}: {:?}", faults[0]);
+    }
+}
+
+#[test]
+fn a_jammed_card_that_trembles_much_is_told_once() {
+    for seed in [61, 62, 64] {
+        let mut log = sail_log(seed, &calm(Event::Nothing));
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let is_in = |s: &Sample| (25.0..39.0).contains(&day(&log, s));
+        let first = log.samples.iter().position(is_in).unwrap();
+        let last = log.samples.iter().rposition(is_in).unwrap();
+        let jammed = log.samples[first].compass.degrees();
+        for sample in &mut log.samples[first..last] {
+            let off = (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;
+            sample.compass = CompassHeading::new(jammed + 0.5 * off).unwrap();
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        let told: Vec<Cause> = certain(&analysis).iter().map(|c| c.cause).collect();
+        let jams = told.iter().filter(|c| **c == Cause::CompassFault);
+        assert_eq!(jams.count(), 1, "seed {seed}: {told:?}");
+        // Its first hours may be taken for something that passes.
+        assert!(told.len() <= 2, "seed {seed}: {told:?}");
+        assert!(of_the_ship(&analysis).is_empty(), "seed {seed}: {told:?}");
+    }
+}
+
+#[test]
+fn that_a_ship_on_one_course_is_not_watched_is_said() {
+    let log = sail_log(65, &calm(Event::Nothing));
+    let course = log.samples[0].compass.degrees();
+    let samples = log.samples.iter().copied();
+    let one: Vec<Sample> = samples
+        .filter(|s| wrap_180(s.compass.degrees() - course).abs() < 10.0)
+        .collect();
+    let said = |samples: &[Sample]| {
+        let notices = run(samples).notices;
+        notices.iter().any(|n| n.contains("would not be noticed"))
+    };
+    assert!(said(&one), "{} samples", one.len());
+    assert!(!said(&log.samples));
+}
+
+/// By two or three degrees, with the gyro and the ship's own past against it.
+#[test]
+fn a_reference_off_for_good_is_told_and_bends_no_model() {
+    for (seed, gyro_deg, satellite_deg) in [
+        (60, 0.0, -3.0),
+        (61, 0.0, -2.0),
+        (62, 0.0, 2.0),
+        (61, 0.0, 3.0),
+        (60, 3.0, 0.0),
+        (62, -2.0, 0.0),
+    ] {
+        let mut plan = calm(Event::Nothing);
+        plan.days = 90.0;
+        plan.faults.gyro_constant_deg = 0.2;
+        let mut log = sail_log(seed, &plan);
+        let start = log.start;
+        let is_past = |s: &Sample| s.time.seconds_since(start) > 30.0 * 86_400.0;
+        for sample in log.samples.iter_mut().filter(|s| is_past(s)) {
+            sample.gyro = sample.gyro.map(|gyro| turned(gyro, gyro_deg));
+            sample.satellite = sample.satellite.map(|s| turned(s, satellite_deg));
+        }
+        let analysis = run(&log.samples);
+        is_sound(&analysis);
+        assert!(of_the_ship(&analysis).is_empty(), "seed {seed}");
+        let mut told = certain(&analysis);
+        told.retain(|c| c.cause == Cause::ReferenceFault);
+        assert_eq!(told.len(), 1, "seed {seed}: {told:?}");
+        assert_eq!(told[0].ended, None, "seed {seed}");
+        let failed = if satellite_deg == 0.0 {
+            "the gyro had failed"
+        } else {
+            "the satellite compass had failed"
+        };
+        let said = |line: &String| line.contains(failed);
+        assert!(told[0].evidence.iter().any(said), "seed {seed}: {told:?}");
+        let place = analysis.last_place.unwrap();
+        let model = analysis.current_epoch().unwrap().model.as_ref().unwrap();
+        let held = (0..36).filter(|k| {
+            let shown_deg = 10.0 * f64::from(*k);
+            let (h, z) = (place.h_nt, place.z_nt);
+            let true_deg = true_deviation(&log.truth, shown_deg, h, z);
+            let (told_deg, se_deg) = predicted(model, shown_deg, h, z);
+            wrap_180(true_deg - told_deg).abs() < 1.96 * se_deg
+        });
+        let held = held.count();
+        assert!(held >= 33, "seed {seed}: {held} of 36");
+    }
+}

@@ -1,0 +1,289 @@
+//! Deviation, exactly: from compass or magnetic heading, and back.
+//!
+//! The five coefficients are the exact ones of docs/science.md, §3, not the
+//! handbook's approximate ones; both directions are closed forms, so nothing
+//! here iterates. A ship on which some headings are ambiguous is refused by
+//! name: where this module answers, compass and magnetic headings correspond
+//! one to one.
+
+mod check;
+mod model;
+
+pub use check::{ModelError, NAMES};
+pub use model::{NORMAL_95, Prediction};
+
+use crate::angle::{CompassHeading, Deviation, MagneticHeading};
+use crate::model::Parameters;
+use crate::ship::{EarthField, PARAMETERS};
+
+/// The exact coefficients A to E at one place: dimensionless; × 57.3 they are
+/// near the handbook's degrees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coefficients {
+    /// (χ21 − χ12)/2λ: the same on every heading, everywhere.
+    pub a: f64,
+    /// (bx + χ13 Z)/λH.
+    pub b: f64,
+    /// (by + χ23 Z)/λH.
+    pub c: f64,
+    /// (χ11 − χ22)/2λ, the same everywhere.
+    pub d: f64,
+    /// (χ21 + χ12)/2λ, the same everywhere.
+    pub e: f64,
+}
+
+/// Why there is no deviation to tell.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum DeviationError {
+    /// The earth's field given is not one that a compass can point by.
+    #[error("horizontal field {h_nt} nT with vertical field {z_nt} nT is no field to steer by")]
+    NoField {
+        /// Horizontal field as given, nT.
+        h_nt: f64,
+        /// Vertical field as given, nT.
+        z_nt: f64,
+    },
+    /// The horizontal field is too weak for a compass, whatever the ship.
+    #[error("horizontal field of {h_nt:.0} nT; a compass needs at least {needed_nt:.0} nT")]
+    FieldTooWeak {
+        /// What it is.
+        h_nt: f64,
+        /// What there must be.
+        needed_nt: f64,
+    },
+    /// A parameter is NaN or infinite.
+    #[error("the ship's magnetic parameters are not all finite")]
+    NotFinite,
+    /// The ship overcomes the earth's field on some heading: one compass
+    /// heading then stands for several magnetic ones, or for none.
+    #[error(
+        "compass headings are ambiguous: on magnetic heading {magnetic_deg:.1} the directive \
+         force is {directive_force:.3} of its mean"
+    )]
+    Ambiguous {
+        /// The magnetic heading with the least directive force, degrees.
+        magnetic_deg: f64,
+        /// The directive force there as a share of its mean, λH.
+        directive_force: f64,
+    },
+}
+
+impl Coefficients {
+    /// The exact coefficients of a ship in a given field.
+    ///
+    /// # Errors
+    /// When the field is not finite with a positive horizontal part, or a
+    /// parameter is not finite. Ambiguity is not looked for here: see
+    /// [`Coefficients::check_unambiguous`].
+    pub fn new(parameters: &Parameters, earth: EarthField) -> Result<Coefficients, DeviationError> {
+        let EarthField { h_nt, z_nt } = earth;
+        if !(h_nt > 0.0 && h_nt.is_finite() && z_nt.is_finite()) {
+            return Err(DeviationError::NoField { h_nt, z_nt });
+        }
+        let p = parameters;
+        let coefficients = Coefficients {
+            a: (p.chi21 - p.chi12) / 2.0,
+            b: (p.bx_nt + p.chi13 * z_nt) / h_nt,
+            c: (p.by_nt + p.chi23 * z_nt) / h_nt,
+            d: p.chi11_minus_chi22 / 2.0,
+            e: f64::midpoint(p.chi21, p.chi12),
+        };
+        let Coefficients { a, b, c, d, e } = coefficients;
+        if ![a, b, c, d, e].iter().all(|value| value.is_finite()) {
+            return Err(DeviationError::NotFinite);
+        }
+        Ok(coefficients)
+    }
+
+    /// Makes sure that every compass heading stands for one magnetic heading.
+    ///
+    /// While the directive force is positive on every heading, deviation stays
+    /// within 90° and the field at the compass goes once around as the ship
+    /// does.
+    ///
+    /// # Errors
+    /// [`DeviationError::Ambiguous`] with the worst heading otherwise.
+    pub fn check_unambiguous(&self) -> Result<(), DeviationError> {
+        // The usual ship is clear of it by far, and this costs nothing.
+        if self.b.hypot(self.c) + self.d.hypot(self.e) < 1.0 {
+            return Ok(());
+        }
+        let (magnetic_rad, directive_force) = self.least_directive_force();
+        if directive_force > 0.0 {
+            return Ok(());
+        }
+        Err(DeviationError::Ambiguous {
+            magnetic_deg: magnetic_rad.to_degrees(),
+            directive_force,
+        })
+    }
+
+    /// Force towards magnetic north at the compass on a magnetic heading, as a
+    /// share of its mean over all headings, λH.
+    pub fn directive_force(&self, magnetic_rad: f64) -> f64 {
+        let (s1, c1) = magnetic_rad.sin_cos();
+        let (s2, c2) = (2.0 * magnetic_rad).sin_cos();
+        1.0 + self.b * c1 - self.c * s1 + self.d * c2 - self.e * s2
+    }
+
+    /// Deviation on a magnetic heading, radians (docs/science.md, eq. 7).
+    ///
+    /// Right for any ship whose field at the compass is not nil; unique
+    /// backwards only after [`Coefficients::check_unambiguous`].
+    pub fn deviation_at_magnetic_rad(&self, magnetic_rad: f64) -> f64 {
+        let (s1, c1) = magnetic_rad.sin_cos();
+        let (s2, c2) = (2.0 * magnetic_rad).sin_cos();
+        let east = self.a + self.b * s1 + self.c * c1 + self.d * s2 + self.e * c2;
+        let north = 1.0 + self.b * c1 - self.c * s1 + self.d * c2 - self.e * s2;
+        east.atan2(north)
+    }
+
+    /// Deviation on a compass heading, radians, in closed form
+    /// (docs/science.md, eq. 8); `None` where no or more than one magnetic
+    /// heading could give this reading.
+    pub fn deviation_at_compass_rad(&self, compass_rad: f64) -> Option<f64> {
+        let across = AtCompass::new(self, compass_rad)?;
+        let deviation =
+            (across.k3 / across.k1.hypot(across.k2)).asin() + across.k2.atan2(across.k1);
+        Some(crate::ship::wrap_pi(deviation))
+    }
+
+    /// Deviation on a compass heading.
+    ///
+    /// # Errors
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    pub fn deviation_at_compass(
+        &self,
+        compass: CompassHeading,
+    ) -> Result<Deviation, DeviationError> {
+        self.check_unambiguous()?;
+        let radians = self
+            .deviation_at_compass_rad(compass.radians())
+            .ok_or_else(|| self.ambiguous())?;
+        deviation_from(radians)
+    }
+
+    /// Deviation on a magnetic heading.
+    ///
+    /// # Errors
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    pub fn deviation_at_magnetic(
+        &self,
+        magnetic: MagneticHeading,
+    ) -> Result<Deviation, DeviationError> {
+        self.check_unambiguous()?;
+        deviation_from(self.deviation_at_magnetic_rad(magnetic.radians()))
+    }
+
+    /// The magnetic heading behind a compass heading.
+    ///
+    /// # Errors
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    pub fn magnetic(&self, compass: CompassHeading) -> Result<MagneticHeading, DeviationError> {
+        Ok(compass + self.deviation_at_compass(compass)?)
+    }
+
+    /// What the compass will read on a magnetic heading.
+    ///
+    /// # Errors
+    /// [`DeviationError::Ambiguous`] when some heading of this ship is.
+    pub fn compass(&self, magnetic: MagneticHeading) -> Result<CompassHeading, DeviationError> {
+        Ok(magnetic - self.deviation_at_magnetic(magnetic)?)
+    }
+
+    fn ambiguous(&self) -> DeviationError {
+        let (magnetic_rad, directive_force) = self.least_directive_force();
+        DeviationError::Ambiguous {
+            magnetic_deg: magnetic_rad.to_degrees(),
+            directive_force,
+        }
+    }
+
+    /// The magnetic heading, in [0, 2π), with the least directive force, and that force.
+    fn least_directive_force(&self) -> (f64, f64) {
+        const STEPS: u32 = 72;
+        let step = std::f64::consts::TAU / f64::from(STEPS);
+        let start = (0..STEPS)
+            .map(|index| f64::from(index) * step)
+            .min_by(|x, y| {
+                self.directive_force(*x)
+                    .total_cmp(&self.directive_force(*y))
+            })
+            .expect("there is at least one heading");
+        // A sum of two harmonics has one minimum between the neighbours of its
+        // least sample, so a ternary search finds it.
+        let (mut low, mut high) = (start - step, start + step);
+        for _ in 0..60 {
+            let third = (high - low) / 3.0;
+            if self.directive_force(low + third) < self.directive_force(high - third) {
+                high -= third;
+            } else {
+                low += third;
+            }
+        }
+        let heading = f64::midpoint(low, high);
+        let heading = heading.rem_euclid(std::f64::consts::TAU);
+        (heading, self.directive_force(heading))
+    }
+}
+
+/// The three sums that decide the deviation on a compass heading ζ: the force
+/// across the card is H (K3 + K2 cos δ − K1 sin δ), nil where it comes to rest.
+struct AtCompass {
+    k1: f64,
+    k2: f64,
+    k3: f64,
+    /// √(K1² + K2² − K3²): how firmly the heading is held, positive.
+    firmness: f64,
+}
+
+impl AtCompass {
+    fn new(coefficients: &Coefficients, compass_rad: f64) -> Option<AtCompass> {
+        let Coefficients { a, b, c, d, e } = *coefficients;
+        let (s1, c1) = compass_rad.sin_cos();
+        let (s2, c2) = (2.0 * compass_rad).sin_cos();
+        let k1 = 1.0 - d * c2 + e * s2;
+        let k2 = a + d * s2 + e * c2;
+        let k3 = b * s1 + c * c1;
+        let firmness_squared = k1 * k1 + k2 * k2 - k3 * k3;
+        (firmness_squared > 0.0).then(|| AtCompass {
+            k1,
+            k2,
+            k3,
+            firmness: firmness_squared.sqrt(),
+        })
+    }
+}
+
+/// Deviation on a compass heading, radians, and its gradient at that fixed
+/// compass heading in the order of [`Parameters`] (docs/science.md, eq. 10).
+///
+/// # Errors
+/// When the field is none to steer by or headings are ambiguous.
+pub fn linearised_at_compass(
+    parameters: &Parameters,
+    compass_rad: f64,
+    earth: EarthField,
+) -> Result<(f64, [f64; PARAMETERS]), DeviationError> {
+    let coefficients = Coefficients::new(parameters, earth)?;
+    coefficients.check_unambiguous()?;
+    let ambiguous = || coefficients.ambiguous();
+    let deviation = coefficients
+        .deviation_at_compass_rad(compass_rad)
+        .ok_or_else(ambiguous)?;
+    let firmness = AtCompass::new(&coefficients, compass_rad)
+        .ok_or_else(ambiguous)?
+        .firmness;
+    let [hx, hy, z] = earth.in_ship_axes(compass_rad + deviation);
+    let (sin, cos) = compass_rad.sin_cos();
+    let (s, c) = (sin / (earth.h_nt * firmness), cos / (earth.h_nt * firmness));
+    let gradient = [s, z * s, c, z * c, (hx * s - hy * c) / 2.0, hy * s, hx * c];
+    Ok((deviation, gradient))
+}
+
+fn deviation_from(radians: f64) -> Result<Deviation, DeviationError> {
+    Deviation::new(radians.to_degrees()).ok_or(DeviationError::NotFinite)
+}
+
+#[cfg(test)]
+mod tests;

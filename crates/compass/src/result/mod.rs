@@ -1,0 +1,19 @@
+//! The result of an analysis and its parts.
+
+mod advice;
+mod analysis;
+mod change;
+mod diagnostic;
+mod fleet;
+mod noise;
+mod references;
+mod refusal;
+
+pub use advice::{Advice, Band, HeadingRange, HeadingSuggestion, LatitudeSuggestion, SailNext};
+pub use analysis::{Analysis, ESTIMATOR, Epoch, LastPlace};
+pub use change::{Cause, CauseProbability, Change, Step};
+pub use diagnostic::{SampleDiagnostic, SampleReason};
+pub use fleet::{Elsewhere, in_fleet};
+pub use noise::{NOISE_LEVELS, NoiseLevels};
+pub use references::{FAILED_BEYOND_AT_MOST_DEG, ReferenceCheck};
+pub use refusal::FitError;
