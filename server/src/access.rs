@@ -7,11 +7,12 @@
 //! header `X-Binnacle-Request`, which another site's form cannot send.
 
 use crate::app::App;
+use crate::audit::{Actor, RequestContext};
 use crate::error::{Error, Result};
 use crate::ids::{AgentId, CompassId, FirmId, OperatorId, SessionId, TokenId, UserId, VesselId};
 use crate::session::{self, Role, User, cookie};
 use crate::tenants::Tenant;
-use crate::{audit, enrolment, secret, tokens};
+use crate::{enrolment, secret, tokens};
 use axum::extract::FromRequestParts;
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
@@ -195,6 +196,18 @@ impl Caller {
     }
 }
 
+impl From<&Caller> for Actor {
+    fn from(caller: &Caller) -> Actor {
+        Actor::from(&caller.user).with_token(caller.token)
+    }
+}
+
+impl From<&Agent> for Actor {
+    fn from(agent: &Agent) -> Actor {
+        Actor::agent(agent.agent_id, agent.vessel_id)
+    }
+}
+
 impl Auditor {
     /// The operator whose lines alone are to be seen.
     pub fn operator(&self) -> Option<OperatorId> {
@@ -223,7 +236,7 @@ impl FromRequestParts<App> for Caller {
 
     async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Caller> {
         let caller = Caller::find(parts, app).await?;
-        audit::acts(&caller);
+        RequestContext::of(parts)?.record_actor(&caller);
         Ok(caller)
     }
 }
@@ -381,7 +394,7 @@ impl FromRequestParts<App> for Agent {
         let agent = enrolment::find_agent(&app.db, VesselId(vessel), &secret::hash(token))
             .await?
             .ok_or(Error::Unauthenticated)?;
-        audit::acts(&agent);
+        RequestContext::of(parts)?.record_actor(&agent);
         Ok(agent)
     }
 }

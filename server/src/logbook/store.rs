@@ -4,6 +4,7 @@ use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
 use crate::access::Agent;
 use crate::analysis;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::events::{self, Kind};
@@ -74,8 +75,13 @@ pub(super) struct Change<'a> {
 }
 
 impl<'a> Change<'a> {
-    pub(super) async fn begin(app: &'a App, vessel: VesselId, now: Time) -> Result<Change<'a>> {
-        let tx = app.db.begin().await?;
+    pub(super) async fn begin(
+        app: &'a App,
+        request: &RequestContext,
+        vessel: VesselId,
+        now: Time,
+    ) -> Result<Change<'a>> {
+        let tx = request.begin().await?;
         Ok(Change {
             app,
             vessel,

@@ -30,6 +30,7 @@ pub use worker::{run, step};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page};
 use crate::ids::OperatorId;
@@ -129,8 +130,12 @@ async fn current(app: &App, operator: OperatorId, plan: Option<Plan>) -> Result<
     responses((status = 200, body = Current), (status = 401, body = Problem),
               (status = 403, body = Problem),
               (status = 409, description = "Others make it at the same time, or the fleet is too large", body = Problem)))]
-async fn solve_schedule(State(app): State<App>, writer: Writer) -> Result<Json<Current>> {
-    let plan = solve::solve(&app, writer.operator).await?;
+async fn solve_schedule(
+    State(app): State<App>,
+    request: RequestContext,
+    writer: Writer,
+) -> Result<Json<Current>> {
+    let plan = solve::solve(&app, &request, writer.operator).await?;
     current(&app, writer.operator, Some(plan)).await
 }
 

@@ -11,6 +11,8 @@ use super::store;
 use super::turns::Turn;
 use crate::alerts;
 use crate::app::App;
+use crate::audit::RequestContext;
+use crate::db::Tx;
 use crate::error::{Error, Result};
 use crate::events;
 use crate::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -32,27 +34,38 @@ const MOST_TRIES: usize = 5;
 
 /// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
 /// meanwhile waits for their turn, and takes no place of other operators'.
-pub(super) async fn solve(app: &App, operator: OperatorId) -> Result<Plan> {
+pub(super) async fn solve(
+    app: &App,
+    request: &RequestContext,
+    operator: OperatorId,
+) -> Result<Plan> {
     let turn = app.schedules.turn_of(operator).await;
-    solve_in_turn(app, operator, Arc::new(turn)).await
+    solve_in_turn(app, Some(request), operator, Arc::new(turn)).await
 }
 
 /// The same, unless somebody is at it.
 pub(super) async fn solve_unless_busy(app: &App, operator: OperatorId) -> Result<Option<Plan>> {
     match app.schedules.free_turn_of(operator) {
-        Some(turn) => solve_in_turn(app, operator, Arc::new(turn)).await.map(Some),
+        Some(turn) => solve_in_turn(app, None, operator, Arc::new(turn))
+            .await
+            .map(Some),
         None => Ok(None),
     }
 }
 
-async fn solve_in_turn(app: &App, operator: OperatorId, turn: Arc<Turn>) -> Result<Plan> {
+async fn solve_in_turn(
+    app: &App,
+    request: Option<&RequestContext>,
+    operator: OperatorId,
+    turn: Arc<Turn>,
+) -> Result<Plan> {
     for _ in 0..MOST_TRIES {
         let gathered = gather(app, operator, &BTreeSet::new()).await?;
         if let Some(former) = &gathered.former
             && former.input_sha256 == gathered.sha256
         {
             let former = former.clone();
-            forget_asks(app, operator, &gathered).await?;
+            forget_asks(begin(app, request).await?, operator, &gathered).await?;
             return Ok(former);
         }
         let begun = Instant::now();
@@ -60,7 +73,8 @@ async fn solve_in_turn(app: &App, operator: OperatorId, turn: Arc<Turn>) -> Resu
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
         let plan = named(schedule, &gathered, app.clock.now().into(), took_s)?;
-        if keep(app, operator, &plan, &gathered).await? {
+        let tx = begin(app, request).await?;
+        if keep(app, tx, operator, &plan, &gathered).await? {
             info!(%operator, version = plan.version, took_s, gap_percent = plan.gap_percent,
                   "a schedule was made");
             return Ok(plan);
@@ -69,6 +83,14 @@ async fn solve_in_turn(app: &App, operator: OperatorId, turn: Arc<Turn>) -> Resu
     Err(Error::WrongState(
         "others make the schedule at the same time; try again".to_owned(),
     ))
+}
+
+/// Begins a transaction, which carries the audit line of the request that asks for the plan.
+async fn begin(app: &App, request: Option<&RequestContext>) -> Result<Tx> {
+    Ok(match request {
+        Some(request) => request.begin().await?,
+        None => app.db.begin().await?,
+    })
 }
 
 /// The plan in which an order that a job was moved away from holds its team still, as it does
@@ -120,11 +142,10 @@ fn moved_away(schedule: &Schedule, gathered: &Gathered) -> Result<Vec<OrderId>> 
 
 /// Forgets what asked, for an operator that has no firms to plan with.
 pub(super) async fn forget_asks(
-    app: &App,
+    mut tx: Tx,
     operator: OperatorId,
     gathered: &Gathered,
 ) -> Result<()> {
-    let mut tx = app.db.begin().await?;
     store::answered(&mut tx, operator, &gathered.asks).await?;
     tx.commit().await?;
     Ok(())
@@ -143,8 +164,13 @@ async fn run(app: &App, text: String, turn: &Arc<Turn>) -> Result<Schedule> {
     Ok(done.await??)
 }
 
-async fn keep(app: &App, operator: OperatorId, plan: &Plan, gathered: &Gathered) -> Result<bool> {
-    let mut tx = app.db.begin().await?;
+async fn keep(
+    app: &App,
+    mut tx: Tx,
+    operator: OperatorId,
+    plan: &Plan,
+    gathered: &Gathered,
+) -> Result<bool> {
     if !store::keep(&mut tx, operator, plan, &gathered.text).await? {
         return Ok(false);
     }

@@ -19,6 +19,7 @@ pub use bursts::{Imported, Incomplete, Refused, import};
 
 use crate::access::Agent;
 use crate::app::App;
+use crate::audit::{self, RequestContext};
 use crate::db::Tx;
 use crate::enrolment;
 use crate::error::{Error, Problem, Result};
@@ -50,6 +51,7 @@ const LONGEST_WAIT: Duration = Duration::from_secs(55);
 pub fn router() -> OpenApiRouter<App> {
     OpenApiRouter::new()
         .routes(routes!(put_batch))
+        .route_layer(axum::middleware::from_fn(audit::leave_out))
         .layer(DefaultBodyLimit::max(MAX_BYTES))
         .routes(routes!(open_stream))
         .routes(routes!(downlink))
@@ -60,9 +62,10 @@ pub fn router() -> OpenApiRouter<App> {
     responses((status = 201, body = OpenStreamSchema), (status = 401, body = Problem)))]
 async fn open_stream(
     State(app): State<App>,
+    request: RequestContext,
     agent: Agent,
 ) -> Result<(StatusCode, Json<OpenStreamAnswer>)> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let stream = enrolment::open_stream(&mut tx, agent, app.clock.now().into()).await?;
     tx.commit().await?;
     Ok((StatusCode::CREATED, Json(OpenStreamAnswer { stream })))
@@ -84,6 +87,7 @@ async fn open_stream(
               (status = 413, body = Problem), (status = 422, body = Problem)))]
 async fn put_batch(
     State(app): State<App>,
+    request: RequestContext,
     agent: Agent,
     Id((stream, seq)): Id<(Uuid, u64)>,
     Params(has): Params<Has>,
@@ -92,7 +96,7 @@ async fn put_batch(
     let bytes = body.map_err(|rejection| too_large(&rejection))?;
     let batch = read(&bytes, StreamId(stream), seq)?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let delay_s = match has.wait {
         None => analysis_delay_s(&app, &batch),
         // No other follows.
