@@ -6,11 +6,12 @@
 //! header `X-Binnacle-Request`, which another site's form cannot send.
 
 use crate::app::App;
+use crate::audit::{Actor, RequestContext};
 use crate::error::{Error, Result};
 use crate::ids::{FirmId, OperatorId, SessionId, TokenId, UserId};
 use crate::session::{self, Role, User, cookie};
 use crate::tenants::Tenant;
-use crate::{audit, secret, tokens};
+use crate::{secret, tokens};
 use axum::extract::{FromRef, FromRequestParts};
 use axum::http::header::AUTHORIZATION;
 use axum::http::request::Parts;
@@ -183,6 +184,12 @@ impl Caller {
     }
 }
 
+impl From<&Caller> for Actor {
+    fn from(caller: &Caller) -> Actor {
+        Actor::from(&caller.user).with_token(caller.token)
+    }
+}
+
 impl Auditor {
     /// The operator whose lines alone are to be seen.
     pub fn operator(&self) -> Option<OperatorId> {
@@ -215,7 +222,7 @@ where
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Caller> {
         let caller = Caller::find(parts, &App::from_ref(state)).await?;
-        audit::acts(&caller);
+        RequestContext::of(parts)?.record_actor(&caller);
         Ok(caller)
     }
 }

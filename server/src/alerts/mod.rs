@@ -39,6 +39,7 @@ pub use wanted::{alerts_of, silence};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
 use crate::ids::AlertId;
@@ -104,13 +105,14 @@ async fn find_alert(
               (status = 410, description = "The alert is cleared", body = Problem)))]
 async fn acknowledge_alert(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<AlertId>,
     ValidOrNone(acknowledgement): ValidOrNone<Acknowledgement>,
 ) -> Result<Json<Alert>> {
     let note = acknowledgement.note.filter(|note| !note.trim().is_empty());
     let note = note.map(|note| text("note", &note)).transpose()?;
-    let alert = change(&app, writer, id, note, Kind::AlertAcknowledged).await?;
+    let alert = change(&app, &request, writer, id, note, Kind::AlertAcknowledged).await?;
     if alert.state == State::Cleared {
         return Err(Error::Gone("this alert is cleared"));
     }
@@ -127,19 +129,21 @@ async fn acknowledge_alert(
               (status = 403, body = Problem), (status = 404, body = Problem)))]
 async fn clear_alert(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<AlertId>,
     Valid(clearing): Valid<Clearing>,
 ) -> Result<Json<Alert>> {
     let reason = Some(text("reason", &clearing.reason)?);
     Ok(Json(
-        change(&app, writer, id, reason, Kind::AlertCleared).await?,
+        change(&app, &request, writer, id, reason, Kind::AlertCleared).await?,
     ))
 }
 
 /// Changes an alert in a person's name, if that changes anything.
 async fn change(
     app: &App,
+    request: &RequestContext,
     writer: Writer,
     id: AlertId,
     words: Option<String>,
@@ -148,7 +152,7 @@ async fn change(
     let alert = store::must_find(&app.db, writer.operator, id).await?;
     let now = app.clock.now().into();
     let vessel = alert.vessel_id;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let word = Word {
         by: session::name_of(&mut tx, writer.user).await?,
         text: words,

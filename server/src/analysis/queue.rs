@@ -5,7 +5,7 @@
 //! [`MOST_ATTEMPTS`] times waits for a person as `dead`, until a later analysis of
 //! the vessel succeeds.
 
-use crate::db::{Db, Result, Tx, execute, rows};
+use crate::db::{Connection, Db, Result, Tx, execute, rows};
 use crate::ids::{JobId, VesselId};
 use crate::time::Time;
 use binnacle_compass::result::ESTIMATOR;
@@ -116,8 +116,8 @@ pub async fn claim(db: &Db, now: Time) -> Result<Option<Job>> {
     }
     let lease_until = Time(now.0.plus_seconds(LEASE_S));
     let mut tx = db.begin().await?;
-    let job = match &mut tx {
-        Tx::Sqlite(tx) => {
+    let job = match tx.connection() {
+        Connection::Sqlite(tx) => {
             sqlx::query_as(claim_sql!(""))
                 .bind(now)
                 .bind(lease_until)
@@ -125,7 +125,7 @@ pub async fn claim(db: &Db, now: Time) -> Result<Option<Job>> {
                 .await?
         }
         // Workers of other processes take other jobs rather than wait for this one.
-        Tx::Postgres(tx) => {
+        Connection::Postgres(tx) => {
             sqlx::query_as(claim_sql!(" FOR UPDATE OF j SKIP LOCKED"))
                 .bind(now)
                 .bind(lease_until)

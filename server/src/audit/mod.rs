@@ -14,12 +14,16 @@
 //! Batches of samples are not in it: they are a log themselves.
 
 mod csv;
-mod look;
+mod middleware;
+mod query;
+mod request;
 mod store;
 mod trail;
 
-pub use look::router;
-pub use trail::{Actor, acts, by_command, concerns, concerns_vessel, keep, kept, write_with};
+pub use middleware::{leave_out, log_request};
+pub use query::router;
+pub use request::RequestContext;
+pub use trail::{Actor, FindVessel};
 
 use crate::app::App;
 use crate::ids::{OrderId, TokenId, VesselId};

@@ -1,9 +1,9 @@
 //! Lines in the database.
 
 use super::Line;
-use super::look::Wanted;
+use super::query::Wanted;
 use crate::db::{Db, Result, Tx, execute, row, rows};
-use crate::ids::{OperatorId, OrderId, VesselId};
+use crate::ids::{OperatorId, VesselId};
 use crate::time::Time;
 use uuid::Uuid;
 
@@ -86,17 +86,6 @@ pub(super) async fn remove_before(db: &Db, before: Time) -> Result<u64> {
     let removed = execute!(&mut tx, "DELETE FROM audit_lines WHERE at < $1", before)?;
     tx.commit().await?;
     Ok(removed)
-}
-
-/// The vessel of an order.
-pub(super) async fn vessel_of(tx: &mut Tx, order: OrderId) -> Result<Option<VesselId>> {
-    let found = row!(
-        in tx,
-        (VesselId,),
-        "SELECT vessel_id FROM work_orders WHERE id = $1 ORDER BY vessel_id",
-        order
-    )?;
-    Ok(found.map(|(vessel,)| vessel))
 }
 
 /// Whose a vessel is, and its name.

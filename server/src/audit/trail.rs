@@ -1,35 +1,19 @@
-//! What is known of a request while it is served, until it is a line.
+//! Facts of a request, gathered while it is served, until they are a line.
 
 use super::{ActorKind, Line, store};
-use crate::access::Caller;
-use crate::app::App;
-use crate::db::{self, Tx};
-use crate::enrolment::Agent;
-use crate::error::Error;
-use crate::ids::{OrderId, UserId, VesselId};
-use crate::oidc;
-use crate::peer::Origin;
-use crate::session::User;
+use crate::db::{self, CommitHook, Db, Tx};
+use crate::ids::{AgentId, OrderId, TokenId, UserId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use axum::extract::{FromRequestParts, MatchedPath, RawPathParams, Request, State};
-use axum::http::{HeaderValue, StatusCode};
-use axum::middleware::Next;
-use axum::response::{IntoResponse, Response};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use tracing::{Instrument, error, info_span};
+use axum::http::StatusCode;
+use futures_util::future::BoxFuture;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tracing::error;
 use uuid::Uuid;
 
-/// The header that names a request.
-const REQUEST_ID: &str = "x-request-id";
-/// What ships send is a log of its own.
-const BATCHES: &str = "/api/v1/streams/{stream}/batches/{seq}";
-/// What firms read of ships they read of an order.
-const ORDERS: &str = "/api/v1/work-orders/{id}";
-
-tokio::task_local! {
-    static TRAIL: Arc<Trail>;
-}
+/// Function that finds the vessel of a work order.
+pub type FindVessel =
+    for<'a> fn(&'a mut Tx, OrderId) -> BoxFuture<'a, db::Result<Option<VesselId>>>;
 
 /// Who does something.
 #[derive(Clone, Debug)]
@@ -37,7 +21,7 @@ pub struct Actor {
     kind: ActorKind,
     id: Option<Uuid>,
     name: String,
-    token: Option<crate::ids::TokenId>,
+    token: Option<TokenId>,
     tenant: Option<Tenant>,
     vessel: Option<VesselId>,
 }
@@ -55,208 +39,126 @@ impl Actor {
         }
     }
 
-    /// A person who signs in.
-    pub fn user(user: &User) -> Actor {
-        Actor::person(user.user_id, &user.name, user.tenant())
-    }
-}
-
-impl From<&Caller> for Actor {
-    fn from(caller: &Caller) -> Actor {
-        let kind = match caller.token {
+    /// The actor with the API token that stands for the person, if there is one.
+    #[must_use]
+    pub fn with_token(self, token: Option<TokenId>) -> Actor {
+        let kind = match token {
             Some(_) => ActorKind::Token,
-            None => ActorKind::User,
+            None => self.kind,
         };
         Actor {
             kind,
-            token: caller.token,
-            ..Actor::user(&caller.user)
+            token,
+            ..self
         }
     }
-}
 
-impl From<&Agent> for Actor {
-    fn from(agent: &Agent) -> Actor {
+    /// A vessel's agent.
+    pub fn agent(id: AgentId, vessel: VesselId) -> Actor {
         Actor {
             kind: ActorKind::Agent,
-            id: Some(agent.agent_id.0),
+            id: Some(id.0),
             name: String::new(),
             token: None,
             tenant: None,
-            vessel: Some(agent.vessel_id),
+            vessel: Some(vessel),
+        }
+    }
+
+    /// Someone at the server's own command line.
+    pub(super) fn command_line() -> Actor {
+        Actor {
+            kind: ActorKind::Command,
+            id: None,
+            name: "command line".to_owned(),
+            token: None,
+            tenant: None,
+            vessel: None,
         }
     }
 }
 
-/// Says who asks, as soon as that is known.
-pub fn acts(actor: impl Into<Actor>) {
-    let actor = actor.into();
-    let _ = TRAIL.try_with(|trail| trail.known().actor = Some(actor));
-}
-
-/// Says whom it concerns, where the path does not.
-pub fn concerns(tenant: Tenant) {
-    let _ = TRAIL.try_with(|trail| trail.known().concerns = Some(tenant));
-}
-
-/// Says which vessel, and which order of hers, it concerns, where the path does not.
-pub fn concerns_vessel(vessel: VesselId, order: Option<OrderId>) {
-    let _ = TRAIL.try_with(|trail| {
-        let mut known = trail.known();
-        known.vessel = Some(vessel);
-        known.order = order;
-    });
-}
-
-/// Writes the line of the request that is being served, if it is a change by someone who is
-/// known and has none yet; to be followed by [`kept`] once that is committed.
-pub async fn write_with(tx: &mut Tx) -> db::Result<bool> {
-    let Ok(trail) = TRAIL.try_with(Arc::clone) else {
-        return Ok(false);
-    };
-    if !trail.is_change || trail.known().kept {
-        return Ok(false);
-    }
-    trail.write(tx, None).await
-}
-
-/// Notes that what [`write_with`] wrote is on disk.
-pub fn kept() {
-    let _ = TRAIL.try_with(|trail| trail.known().kept = true);
-}
-
-/// Does the work of a command, with a line for what it changes.
-pub async fn by_command<T>(command: &str, now: Time, work: impl Future<Output = T>) -> T {
-    let actor = Actor {
-        kind: ActorKind::Command,
-        id: None,
-        name: "command line".to_owned(),
-        token: None,
-        tenant: None,
-        vessel: None,
-    };
-    let known = Known {
-        actor: Some(actor),
-        ..Known::default()
-    };
-    let trail = Trail {
-        id: Uuid::now_v7(),
-        at: now,
-        address: String::new(),
-        method: String::new(),
-        route: command.to_owned(),
-        path: command.to_owned(),
-        is_change: true,
-        known: Mutex::new(known),
-    };
-    TRAIL.scope(Arc::new(trail), work).await
-}
-
-/// Serves a request, and sees to it that what is to be noted of it is.
-pub async fn keep(State(app): State<App>, request: Request, next: Next) -> Response {
-    let (mut parts, body) = request.into_parts();
-    let route = parts.extensions.get::<MatchedPath>();
-    let route = route.map_or("", MatchedPath::as_str).to_owned();
-    let from = Origin::of_request(&parts, &app);
-    let is_ours = route.starts_with("/api/v1/") && route != BATCHES;
-    let trail = Arc::new(Trail {
-        id: Uuid::now_v7(),
-        at: app.clock.now().into(),
-        address: from.address_text(),
-        method: parts.method.as_str().to_owned(),
-        path: filled(&route, &mut parts).await,
-        // Whoever comes back from the provider signs in.
-        is_change: is_ours && (!parts.method.is_safe() || route == oidc::CALLBACK),
-        known: Mutex::default(),
-        route,
-    });
-    let span = info_span!("request", id = %trail.id);
-    let served = next.run(Request::from_parts(parts, body)).instrument(span);
-    let mut response = TRAIL.scope(Arc::clone(&trail), served).await;
-    match trail.finish(&app, response.status()).await {
-        // What goes over a satellite has no header that it does not need.
-        Ok(true) if !trail.is_of_agent() => {
-            if let Ok(id) = HeaderValue::try_from(trail.id.to_string()) {
-                response.headers_mut().insert(REQUEST_ID, id);
-            }
-        }
-        Ok(_) => {}
-        Err(cause) if response.status().is_success() => {
-            return Error::from(cause).into_response();
-        }
-        Err(cause) => error!(error = ?cause, "a refusal is missing in the audit log"),
-    }
-    response
-}
-
-/// The route with its ids and numbers; anything else in a path may be a mistake that is
-/// nobody's business.
-async fn filled(route: &str, parts: &mut axum::http::request::Parts) -> String {
-    let mut path = route.to_owned();
-    let Ok(given) = RawPathParams::from_request_parts(parts, &()).await else {
-        return path;
-    };
-    for (name, value) in &given {
-        let harmless = Uuid::parse_str(value).is_ok() || value.parse::<u64>().is_ok();
-        let shown = if harmless { value } else { "*" };
-        path = path.replace(&format!("{{{name}}}"), shown);
-    }
-    path
-}
-
-struct Trail {
-    id: Uuid,
-    at: Time,
-    address: String,
-    method: String,
-    route: String,
-    path: String,
-    is_change: bool,
-    known: Mutex<Known>,
+/// What is known of a request from the start, and the facts that come to light while it is
+/// served.
+pub(super) struct AuditTrail {
+    pub(super) id: Uuid,
+    pub(super) at: Time,
+    pub(super) address: String,
+    pub(super) method: String,
+    pub(super) route: String,
+    pub(super) path: String,
+    pub(super) facts: Mutex<Facts>,
 }
 
 #[derive(Clone, Default)]
-struct Known {
-    actor: Option<Actor>,
-    concerns: Option<Tenant>,
-    vessel: Option<VesselId>,
-    order: Option<OrderId>,
-    kept: bool,
+pub(super) struct Facts {
+    pub(super) actor: Option<Actor>,
+    pub(super) tenant: Option<Tenant>,
+    pub(super) vessel: Option<VesselId>,
+    pub(super) order: Option<OrderId>,
+    /// For an order that is known without its vessel.
+    pub(super) find_vessel: Option<FindVessel>,
+    /// Whether what is done is logged, in the transaction that does it.
+    pub(super) is_change: bool,
+    /// Whether a line is written of what a firm reads.
+    pub(super) logs_firms: bool,
+    /// Whether the line is on disk.
+    pub(super) is_written: bool,
 }
 
-impl Trail {
-    fn known(&self) -> MutexGuard<'_, Known> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+impl CommitHook for AuditTrail {
+    /// Writes the line, if this is a change by someone who is known and has none yet.
+    fn before_commit<'a>(&'a self, tx: &'a mut Tx) -> BoxFuture<'a, db::Result<bool>> {
+        Box::pin(async move {
+            let is_due = {
+                let facts = self.facts();
+                facts.is_change && !facts.is_written
+            };
+            if !is_due {
+                return Ok(false);
+            }
+            self.write(tx, None).await
+        })
     }
 
-    fn is_of_agent(&self) -> bool {
-        let known = self.known();
-        let actor = known.actor.as_ref();
+    fn committed(&self) {
+        self.facts().is_written = true;
+    }
+}
+
+impl AuditTrail {
+    pub(super) fn facts(&self) -> MutexGuard<'_, Facts> {
+        self.facts.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn is_of_agent(&self) -> bool {
+        let facts = self.facts();
+        let actor = facts.actor.as_ref();
         actor.is_some_and(|actor| actor.kind == ActorKind::Agent)
     }
 
-    /// Notes the answer; whether there is a line.
-    async fn finish(&self, app: &App, status: StatusCode) -> db::Result<bool> {
-        let known = self.known().clone();
+    /// Records the status of the response. Returns whether there is a line.
+    pub(super) async fn finish(&self, db: &Db, status: StatusCode) -> db::Result<bool> {
+        let facts = self.facts().clone();
         let code = i64::from(status.as_u16());
-        if known.kept {
+        if facts.is_written {
             // The line is there, and so is the change: the answer stands.
-            if let Err(cause) = store::answered(&app.db, self.id, code).await {
+            if let Err(cause) = store::answered(db, self.id, code).await {
                 error!(error = ?cause, id = %self.id, "a status is missing in the audit log");
             }
             return Ok(true);
         }
-        let Some(actor) = known.actor else {
+        let Some(actor) = facts.actor else {
             return Ok(false);
         };
         let is_read = status.is_success()
-            && self.route.starts_with(ORDERS)
+            && facts.logs_firms
             && matches!(actor.tenant, Some(Tenant::Firm(_)));
-        let is_tried = self.is_change && status != StatusCode::METHOD_NOT_ALLOWED;
+        let is_tried = facts.is_change && status != StatusCode::METHOD_NOT_ALLOWED;
         if !(is_read || is_tried) {
             return Ok(false);
         }
-        let mut tx = app.db.begin().await?;
+        let mut tx = db.begin().await?;
         let written = self.write(&mut tx, Some(status)).await?;
         tx.commit().await?;
         Ok(written)
@@ -264,26 +166,26 @@ impl Trail {
 
     /// Writes the line, if it is known who asks. Without a status what it tells of is done.
     async fn write(&self, tx: &mut Tx, status: Option<StatusCode>) -> db::Result<bool> {
-        let known = self.known().clone();
-        let Some(actor) = known.actor else {
+        let facts = self.facts().clone();
+        let Some(actor) = facts.actor else {
             return Ok(false);
         };
         let is_done = status.is_none_or(|status| status.is_success());
-        let order = known.order.or(self.id_after(ORDERS).map(OrderId));
-        let named = known.vessel.or(actor.vessel);
+        let order = facts.order;
+        let named = facts.vessel.or(actor.vessel);
         let mut vessel = named.or(self.id_after("/api/v1/vessels/{id}").map(VesselId));
         // Whoever is refused learns nothing here, and is in nobody's log but their own.
         let mut owner = None;
         if is_done {
-            if let (None, Some(order)) = (vessel, order) {
-                vessel = store::vessel_of(tx, order).await?;
+            if let (None, Some(order), Some(find)) = (vessel, order, facts.find_vessel) {
+                vessel = find(tx, order).await?;
             }
             if let Some(vessel) = vessel {
                 owner = store::owner_of(tx, vessel).await?;
             }
         }
         let owner_id = owner.as_ref().map(|(operator, _)| operator.0);
-        let (operator_id, firm_id) = match known.concerns.or(actor.tenant) {
+        let (operator_id, firm_id) = match facts.tenant.or(actor.tenant) {
             Some(Tenant::Operator(operator)) => (Some(operator.0), None),
             Some(Tenant::Firm(firm)) => (owner_id, Some(firm.0)),
             None => (

@@ -18,6 +18,7 @@ pub use words::in_words;
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, optional_text};
@@ -112,6 +113,7 @@ async fn find_binnacle(
               (status = 422, body = Problem)))]
 async fn put_binnacle(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((vessel, compass)): Id<(VesselId, CompassId)>,
     Params(why): Params<Why>,
@@ -119,15 +121,15 @@ async fn put_binnacle(
     Valid(form): Valid<BinnacleForm>,
 ) -> Result<Json<BinnacleRevision>> {
     must_be_of_fleet(&app, writer.operator, vessel, compass).await?;
-    let request = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
+    let request_hash = idempotency::request_hash(&format!("binnacle of {compass}"), &form)?;
     let reason = optional_text("reason", why.reason.as_deref())?;
     let binnacle = Binnacle::try_from(form)?;
     binnacle.must_be_credible()?;
     let now = app.clock.now().into();
     let wanted = BinnacleId::new();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let made = key
-        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
         work_orders::must_not_be_adjusting(&mut tx, vessel, compass).await?;

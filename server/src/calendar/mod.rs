@@ -12,6 +12,7 @@ pub use store::delete_all_of;
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Params, Valid, text};
 use crate::ids::{FeedId, VesselId};
@@ -123,6 +124,7 @@ async fn list_feeds(
               (status = 422, body = Problem)))]
 async fn create_feed(
     State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Valid(new): Valid<NewFeed>,
 ) -> Result<(StatusCode, Json<MadeFeed>)> {
@@ -134,7 +136,7 @@ async fn create_feed(
         vessels::must_be_in_fleet(&app.db, operator, vessel).await?;
     }
     let token = format!("{PREFIX}{}", secret::new_token());
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let about = Feed {
         id: FeedId::new(),
         name,
@@ -159,11 +161,11 @@ async fn create_feed(
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn delete_feed(
-    State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<FeedId>,
 ) -> Result<StatusCode> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     if !store::delete(&mut tx, writer.tenant, id).await? {
         return Err(Error::NotFound("calendar"));
     }

@@ -3,6 +3,7 @@
 
 use super::operate::block_on;
 use super::{BadInput, answer};
+use crate::audit::RequestContext;
 use crate::clock::Clock;
 use crate::config::{Admin, AdminCommand, Create, FleetRole, Person};
 use crate::db::{Db, Tx};
@@ -11,7 +12,7 @@ use crate::ids::{AgentId, FirmId, OperatorId, VesselId};
 use crate::session::{self, Role};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{audit, enrolment, firms, http, operators, password, secret, users};
+use crate::{enrolment, firms, http, operators, password, secret, users};
 use anyhow::Result;
 use serde_json::json;
 use std::io::Read;
@@ -28,7 +29,8 @@ pub fn admin(arguments: Admin) -> Result<ExitCode> {
         db.migrate().await?;
         let now = Clock::System.now().into();
         let name = name_of(&arguments.command);
-        let made = audit::by_command(name, now, run(&db, arguments.command, now)).await;
+        let request = RequestContext::of_command(&db, name, now);
+        let made = run(&request, arguments.command, now).await;
         db.close().await;
         answer(made?.map(|made| made.to_string()).map_err(BadInput))
     })
@@ -49,13 +51,13 @@ fn name_of(command: &AdminCommand) -> &'static str {
     }
 }
 
-async fn run(db: &Db, command: AdminCommand, now: Time) -> Made {
+async fn run(request: &RequestContext, command: AdminCommand, now: Time) -> Made {
     match command {
-        AdminCommand::Create { what } => create(db, what, now).await,
-        AdminCommand::ResetUser { email } => reset_user(db, &email, now).await,
+        AdminCommand::Create { what } => create(request, what, now).await,
+        AdminCommand::ResetUser { email } => reset_user(request, &email, now).await,
         AdminCommand::RevokeAgent { vessel, agent } => {
-            audit::concerns_vessel(VesselId(vessel), None);
-            revoke_agent(db, VesselId(vessel), AgentId(agent), now).await
+            request.concerns_vessel(VesselId(vessel), None);
+            revoke_agent(request, VesselId(vessel), AgentId(agent), now).await
         }
     }
 }
@@ -63,9 +65,9 @@ async fn run(db: &Db, command: AdminCommand, now: Time) -> Made {
 /// What was made, or what was wrong with the request.
 type Made = Result<Result<serde_json::Value, String>>;
 
-async fn create(db: &Db, what: Create, now: Time) -> Made {
+async fn create(request: &RequestContext, what: Create, now: Time) -> Made {
     match what {
-        Create::Operator { name } => create_operator(db, &name, now).await,
+        Create::Operator { name } => create_operator(request, &name, now).await,
         Create::User {
             operator,
             person,
@@ -76,51 +78,56 @@ async fn create(db: &Db, what: Create, now: Time) -> Made {
                 FleetRole::Viewer => Role::Viewer,
             };
             let operator = Tenant::Operator(OperatorId(operator));
-            create_user(db, Some(operator), &person, role, now).await
+            create_user(request, Some(operator), &person, role, now).await
         }
-        Create::Firm { name, operators } => create_firm(db, &name, &operators, now).await,
+        Create::Firm { name, operators } => create_firm(request, &name, &operators, now).await,
         Create::Adjuster { firm, person } => {
             let firm = Tenant::Firm(FirmId(firm));
-            create_user(db, Some(firm), &person, Role::Adjuster, now).await
+            create_user(request, Some(firm), &person, Role::Adjuster, now).await
         }
         Create::PlatformAdmin { person } => {
-            create_user(db, None, &person, Role::PlatformAdmin, now).await
+            create_user(request, None, &person, Role::PlatformAdmin, now).await
         }
     }
 }
 
-async fn reset_user(db: &Db, email: &str, now: Time) -> Made {
-    match users::reset(db, email, now).await? {
+async fn reset_user(request: &RequestContext, email: &str, now: Time) -> Made {
+    match users::reset(request, email, now).await? {
         Some((code, expires_at)) => Ok(Ok(json!({ "code": code, "expires_at": expires_at }))),
         None => Ok(Err(format!("--email: nobody signs in with {email:?}"))),
     }
 }
 
-async fn revoke_agent(db: &Db, vessel: VesselId, agent: AgentId, now: Time) -> Made {
-    match enrolment::revoke(db, vessel, agent, now).await {
+async fn revoke_agent(
+    request: &RequestContext,
+    vessel: VesselId,
+    agent: AgentId,
+    now: Time,
+) -> Made {
+    match enrolment::revoke(request, vessel, agent, now).await {
         Ok(_) => Ok(Ok(json!({ "vessel_id": vessel, "agent_id": agent }))),
         Err(Error::NotFound(_)) => Ok(Err(format!("--agent: vessel {vessel} has no {agent}"))),
         Err(error) => Err(error.into()),
     }
 }
 
-async fn create_operator(db: &Db, name: &str, now: Time) -> Made {
+async fn create_operator(request: &RequestContext, name: &str, now: Time) -> Made {
     let name = match http::text("--name", name) {
         Ok(name) => name,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     let id = operators::create(&mut tx, &name, now).await?;
     tx.commit().await?;
     Ok(Ok(json!({ "operator_id": id, "name": name })))
 }
 
-async fn create_firm(db: &Db, name: &str, operators: &[Uuid], now: Time) -> Made {
+async fn create_firm(request: &RequestContext, name: &str, operators: &[Uuid], now: Time) -> Made {
     let name = match http::text("--name", name) {
         Ok(name) => name,
         Err(error) => return Ok(Err(error.to_string())),
     };
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     let id = firms::create(&mut tx, &name, now).await?;
     for operator in operators {
         if !operators::exists(&mut tx, OperatorId(*operator)).await? {
@@ -146,7 +153,7 @@ async fn missing(tx: &mut Tx, tenant: Option<Tenant>) -> crate::db::Result<Optio
 }
 
 async fn create_user(
-    db: &Db,
+    request: &RequestContext,
     tenant: Option<Tenant>,
     person: &Person,
     role: Role,
@@ -166,13 +173,13 @@ async fn create_user(
         Err(message) => return Ok(Err(message)),
     };
     let hash = secret::hash_password(password.as_deref().unwrap_or_default())?;
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     if let Some(missing) = missing(&mut tx, tenant).await? {
         return Ok(Err(missing));
     }
     let created = session::create_user(&mut tx, tenant, &email, &name, role, &hash, now).await;
     if let Some(tenant) = tenant {
-        audit::concerns(tenant);
+        request.concerns(tenant);
     }
     let id = match created {
         Err(sqlx::Error::Database(error)) if error.is_unique_violation() => {

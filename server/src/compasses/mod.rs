@@ -7,6 +7,7 @@ pub use store::{ids, insert_standard, of_fleet, of_vessel};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::Db;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Valid, optional_text, text};
@@ -154,13 +155,14 @@ async fn list_compasses(
               (status = 422, body = Problem)))]
 async fn create_compass(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
     key: Key,
     Valid(new): Valid<NewCompass>,
 ) -> Result<(StatusCode, Json<Compass>)> {
     vessels::must_be_in_fleet(&app.db, writer.operator, id).await?;
-    let request = idempotency::request_hash(&format!("compass of {id}"), &new)?;
+    let request_hash = idempotency::request_hash(&format!("compass of {id}"), &new)?;
     let compass = Compass {
         id: CompassId::new(),
         vessel_id: id,
@@ -171,12 +173,12 @@ async fn create_compass(
         binnacle: optional_text("binnacle", new.binnacle.as_deref())?,
         created_at: app.clock.now().into(),
     };
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let made = key
         .once(
             &mut tx,
             writer.operator,
-            &request,
+            &request_hash,
             compass.id.0,
             compass.created_at,
         )
@@ -199,12 +201,13 @@ async fn create_compass(
               (status = 422, body = Problem)))]
 async fn amend_compass(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, CompassId)>,
     Valid(amendment): Valid<Amendment>,
 ) -> Result<Json<Compass>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let compass = store::lock(&mut tx, vessel, id)
         .await?
         .ok_or(Error::NotFound("compass"))?;

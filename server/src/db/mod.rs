@@ -5,7 +5,8 @@
 //! time, which takes the write lock before it reads anything, so that no
 //! transaction fails half-way for another's sake.
 //!
-//! A change that a request makes carries its line of the audit log in its transaction.
+//! A transaction may carry a [`CommitHook`], which writes into it last of all: so a change
+//! has its line in the audit log, and this module knows nothing of that log.
 //!
 //! The macros take the SQL as a literal and run it on whichever database is
 //! there: `rows!`, `row!` and `execute!`.
@@ -15,8 +16,9 @@ mod queries;
 
 pub(crate) use queries::{execute, row, rows};
 
-use crate::audit;
+use futures_util::future::BoxFuture;
 use sqlx::{PgPool, Postgres, Sqlite, SqlitePool, Transaction};
+use std::sync::Arc;
 
 /// A result from the database.
 pub type Result<T> = std::result::Result<T, sqlx::Error>;
@@ -36,20 +38,43 @@ pub enum Db {
 }
 
 /// A transaction; rolled back unless committed.
-pub enum Tx {
+pub struct Tx {
+    connection: Connection,
+    hook: Option<Arc<dyn CommitHook>>,
+}
+
+/// The open transaction of a [`Tx`], on whichever database is there.
+pub enum Connection {
     /// On SQLite.
     Sqlite(Transaction<'static, Sqlite>),
     /// On PostgreSQL.
     Postgres(Transaction<'static, Postgres>),
 }
 
+/// Work that a transaction carries to its commit.
+///
+/// A trait, so that the layers above can write into a transaction that code knows only as
+/// [`Tx`].
+pub trait CommitHook: Send + Sync {
+    /// Writes into the transaction. Returns whether [`CommitHook::committed`] is to be called.
+    fn before_commit<'a>(&'a self, tx: &'a mut Tx) -> BoxFuture<'a, Result<bool>>;
+
+    /// Notes that what was written is on disk.
+    fn committed(&self);
+}
+
 impl Db {
-    /// Begins a transaction that may write.
+    /// Begins a transaction that may write, for work that no request asked for. A request
+    /// begins its own by `audit::RequestContext::begin`.
     pub async fn begin(&self) -> Result<Tx> {
-        match self {
-            Db::Sqlite { writer, .. } => Ok(Tx::Sqlite(begin_sqlite(writer).await?)),
-            Db::Postgres(pool) => Ok(Tx::Postgres(pool.begin().await?)),
-        }
+        let connection = match self {
+            Db::Sqlite { writer, .. } => Connection::Sqlite(begin_sqlite(writer).await?),
+            Db::Postgres(pool) => Connection::Postgres(pool.begin().await?),
+        };
+        Ok(Tx {
+            connection,
+            hook: None,
+        })
     }
 
     /// Whether the database answers.
@@ -82,17 +107,39 @@ async fn begin_sqlite(writer: &SqlitePool) -> Result<Transaction<'static, Sqlite
 }
 
 impl Tx {
-    /// Makes everything durable, and visible to others, at once; with it the line that
-    /// the request behind it has in the audit log.
-    pub async fn commit(mut self) -> Result<()> {
-        let written = audit::write_with(&mut self).await?;
-        match self {
-            Tx::Sqlite(tx) => tx.commit().await?,
-            Tx::Postgres(tx) => tx.commit().await?,
+    /// The transaction with a hook that it carries to its commit.
+    #[must_use]
+    pub fn with_hook(self, hook: Arc<dyn CommitHook>) -> Tx {
+        Tx {
+            hook: Some(hook),
+            ..self
         }
+    }
+
+    /// The connection that statements of this transaction run on.
+    pub fn connection(&mut self) -> &mut Connection {
+        &mut self.connection
+    }
+
+    /// Makes everything durable, and visible to others, at once; with it what the hook writes.
+    pub async fn commit(mut self) -> Result<()> {
+        let Some(hook) = self.hook.take() else {
+            return self.connection.commit().await;
+        };
+        let written = hook.before_commit(&mut self).await?;
+        self.connection.commit().await?;
         if written {
-            audit::kept();
+            hook.committed();
         }
         Ok(())
+    }
+}
+
+impl Connection {
+    async fn commit(self) -> Result<()> {
+        match self {
+            Connection::Sqlite(tx) => tx.commit().await,
+            Connection::Postgres(tx) => tx.commit().await,
+        }
     }
 }

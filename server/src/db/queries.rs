@@ -4,10 +4,10 @@
 /// `rows!(db, Type, "SELECT …", binds…)`, or `rows!(in &mut tx, …)`.
 macro_rules! rows {
     (in $tx:expr, $row:ty, $sql:expr $(, $bind:expr)* $(,)?) => {
-        match $tx {
-            $crate::db::Tx::Sqlite(tx) => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
+        match $crate::db::Tx::connection($tx) {
+            $crate::db::Connection::Sqlite(tx) => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
                 $(.bind($bind))*.fetch_all(&mut **tx).await,
-            $crate::db::Tx::Postgres(tx) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
+            $crate::db::Connection::Postgres(tx) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
                 $(.bind($bind))*.fetch_all(&mut **tx).await,
         }
     };
@@ -24,10 +24,10 @@ macro_rules! rows {
 /// The first row of a query, if there is one; otherwise like [`rows!`].
 macro_rules! row {
     (in $tx:expr, $row:ty, $sql:expr $(, $bind:expr)* $(,)?) => {
-        match $tx {
-            $crate::db::Tx::Sqlite(tx) => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
+        match $crate::db::Tx::connection($tx) {
+            $crate::db::Connection::Sqlite(tx) => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
                 $(.bind($bind))*.fetch_optional(&mut **tx).await,
-            $crate::db::Tx::Postgres(tx) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
+            $crate::db::Connection::Postgres(tx) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
                 $(.bind($bind))*.fetch_optional(&mut **tx).await,
         }
     };
@@ -45,10 +45,10 @@ macro_rules! row {
 /// `execute!(&mut tx, "UPDATE …", binds…)`.
 macro_rules! execute {
     ($tx:expr, $sql:expr $(, $bind:expr)* $(,)?) => {
-        match $tx {
-            $crate::db::Tx::Sqlite(tx) => sqlx::query::<sqlx::Sqlite>($sql)
+        match $crate::db::Tx::connection($tx) {
+            $crate::db::Connection::Sqlite(tx) => sqlx::query::<sqlx::Sqlite>($sql)
                 $(.bind($bind))*.execute(&mut **tx).await.map(|done| done.rows_affected()),
-            $crate::db::Tx::Postgres(tx) => sqlx::query::<sqlx::Postgres>($sql)
+            $crate::db::Connection::Postgres(tx) => sqlx::query::<sqlx::Postgres>($sql)
                 $(.bind($bind))*.execute(&mut **tx).await.map(|done| done.rows_affected()),
         }
     };

@@ -3,9 +3,10 @@
 use super::store;
 use crate::access::bearer;
 use crate::app::App;
+use crate::audit::{Actor, RequestContext};
 use crate::error::{Error, Result};
 use crate::ids::{AgentId, CompassId, VesselId};
-use crate::{audit, secret};
+use crate::secret;
 use axum::extract::{FromRef, FromRequestParts};
 use axum::http::request::Parts;
 
@@ -34,7 +35,13 @@ where
         let agent = store::find_agent(&app.db, VesselId(vessel), &secret::hash(token))
             .await?
             .ok_or(Error::Unauthenticated)?;
-        audit::acts(&agent);
+        RequestContext::of(parts)?.record_actor(&agent);
         Ok(agent)
+    }
+}
+
+impl From<&Agent> for Actor {
+    fn from(agent: &Agent) -> Actor {
+        Actor::agent(agent.agent_id, agent.vessel_id)
     }
 }

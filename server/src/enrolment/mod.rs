@@ -13,6 +13,7 @@ pub use store::{open_stream, revoke};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Valid, text};
@@ -221,6 +222,7 @@ async fn list_agents(
               (status = 422, body = Problem)))]
 async fn create_code(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
     Valid(new): Valid<NewCode>,
@@ -237,7 +239,7 @@ async fn create_code(
     let now = app.clock.now();
     let expires_at = Time(now.plus_seconds(f64::from(valid_for_s)));
     let code = secret::new_code();
-    store::insert_code(&app.db, &code, &compass, now.into(), expires_at).await?;
+    store::insert_code(&request, &code, &compass, now.into(), expires_at).await?;
     Ok((
         StatusCode::CREATED,
         Json(EnrolmentCode { code, expires_at }),
@@ -254,11 +256,12 @@ async fn create_code(
               (status = 404, body = Problem)))]
 async fn revoke_agent(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((vessel, agent)): Id<(VesselId, AgentId)>,
 ) -> Result<StatusCode> {
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
-    if let Some(event) = store::revoke(&app.db, vessel, agent, app.clock.now().into()).await? {
+    if let Some(event) = store::revoke(&request, vessel, agent, app.clock.now().into()).await? {
         app.publish(event);
     }
     Ok(StatusCode::NO_CONTENT)
@@ -271,11 +274,12 @@ async fn revoke_agent(
               (status = 410, body = Problem)))]
 async fn enrol(
     State(app): State<App>,
-    Valid(request): Valid<EnrolRequest>,
+    request: RequestContext,
+    Valid(sent): Valid<EnrolRequest>,
 ) -> Result<Json<EnrolAnswer>> {
-    let version = text("agent_version", &request.agent_version)?;
+    let version = text("agent_version", &sent.agent_version)?;
     let now = app.clock.now();
-    let enrolled = store::enrol(&app.db, &request.code, &version, now.into()).await?;
+    let enrolled = store::enrol(&request, &sent.code, &version, now.into()).await?;
     Ok(Json(EnrolAnswer {
         token: enrolled.token,
         stream: enrolled.stream,
@@ -301,7 +305,7 @@ async fn propose_token(agent: Agent) -> Json<NewToken> {
     request_body = NewTokenSchema,
     responses((status = 204), (status = 401, body = Problem), (status = 422, body = Problem)))]
 async fn replace_token(
-    State(app): State<App>,
+    request: RequestContext,
     agent: Agent,
     Valid(new): Valid<NewToken>,
 ) -> Result<StatusCode> {
@@ -311,6 +315,6 @@ async fn replace_token(
             detail: "is not one that was made for this agent".to_owned(),
         });
     }
-    store::replace_token(&app.db, agent, &new.token).await?;
+    store::replace_token(&request, agent, &new.token).await?;
     Ok(StatusCode::NO_CONTENT)
 }

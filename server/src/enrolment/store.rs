@@ -3,7 +3,7 @@
 use super::Agent;
 use super::{Aboard, AgentStream, LinkWeek};
 use crate::alerts;
-use crate::audit;
+use crate::audit::RequestContext;
 use crate::compasses::Compass;
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::error::{self, Error};
@@ -15,13 +15,13 @@ use binnacle_wire::batch::StreamId;
 use uuid::Uuid;
 
 pub(super) async fn insert_code(
-    db: &Db,
+    request: &RequestContext,
     code: &str,
     compass: &Compass,
     now: Time,
     expires_at: Time,
 ) -> Result<()> {
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     execute!(
         &mut tx,
         "INSERT INTO enrolment_codes (code_hash, vessel_id, compass_id, created_at, expires_at)
@@ -54,13 +54,13 @@ struct Code {
 
 /// Uses up a code: a new agent with a first stream.
 pub(super) async fn enrol(
-    db: &Db,
+    request: &RequestContext,
     code: &str,
     agent_version: &str,
     now: Time,
 ) -> error::Result<Enrolled> {
     let code_hash = secret::hash(&secret::normal_code(code));
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     let found = row!(
         in &mut tx,
         Code,
@@ -109,7 +109,7 @@ pub(super) async fn enrol(
         now
     )?;
     let stream = open_stream(&mut tx, agent, now).await?;
-    audit::acts(&agent);
+    request.record_actor(&agent);
     tx.commit().await?;
     Ok(Enrolled {
         token,
@@ -154,8 +154,12 @@ pub(super) async fn find_agent(
 }
 
 /// From now on the agent is known by this token, and not by the one before.
-pub(super) async fn replace_token(db: &Db, agent: Agent, token: &str) -> Result<()> {
-    let mut tx = db.begin().await?;
+pub(super) async fn replace_token(
+    request: &RequestContext,
+    agent: Agent,
+    token: &str,
+) -> Result<()> {
+    let mut tx = request.begin().await?;
     execute!(
         &mut tx,
         "UPDATE agents SET token_hash = $3 WHERE vessel_id = $1 AND id = $2",
@@ -171,12 +175,12 @@ pub(super) async fn replace_token(db: &Db, agent: Agent, token: &str) -> Result<
 /// # Errors
 /// [`Error::NotFound`] when the vessel has no such agent.
 pub async fn revoke(
-    db: &Db,
+    request: &RequestContext,
     vessel: VesselId,
     agent: AgentId,
     now: Time,
 ) -> error::Result<Option<Event>> {
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     let revoked = row!(
         in &mut tx,
         Agent,

@@ -2,7 +2,7 @@
 
 use super::live::CHANNEL;
 use super::{Event, Kind};
-use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::db::{Connection, Db, Result, Tx, execute, row, rows};
 use crate::error;
 use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
 use crate::schedule;
@@ -75,7 +75,7 @@ async fn write(
     if firm_id.is_none() && kind.alters_the_schedule() {
         schedule::ask(tx, operator_id, now).await?;
     }
-    if let Tx::Postgres(tx) = tx {
+    if let Connection::Postgres(tx) = tx.connection() {
         sqlx::query("SELECT pg_notify($1, $2)")
             .bind(CHANNEL)
             .bind(serde_json::to_string(&event)?)

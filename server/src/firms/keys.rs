@@ -5,6 +5,7 @@
 
 use crate::access::{Caller, PartyWriter};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::ed25519;
 use crate::error::{Error, Problem, Result};
@@ -148,18 +149,21 @@ fn must_be_of(writer: PartyWriter, firm: FirmId) -> Result<()> {
               (status = 422, body = Problem)))]
 async fn register_key(
     State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(firm): Id<FirmId>,
     key: RequestKey,
     Valid(new): Valid<NewFirmKey>,
 ) -> Result<(StatusCode, Json<FirmKey>)> {
     must_be_of(writer, firm)?;
-    let request = idempotency::request_hash("firm key", &new)?;
+    let request_hash = idempotency::request_hash("firm key", &new)?;
     let new = new.checked(firm)?;
     let now = app.clock.now().into();
     let wanted = KeyId::new();
-    let mut tx = app.db.begin().await?;
-    let made = key.once(&mut tx, firm, &request, wanted.0, now).await?;
+    let mut tx = request.begin().await?;
+    let made = key
+        .once(&mut tx, firm, &request_hash, wanted.0, now)
+        .await?;
     if made == wanted.0 {
         let by = session::name_of(&mut tx, writer.user).await?;
         insert(&mut tx, wanted, firm, &new, &by, now).await?;
@@ -219,12 +223,13 @@ async fn find(tx: &mut Tx, firm: FirmId, id: KeyId) -> Result<FirmKey> {
               (status = 404, body = Problem)))]
 async fn revoke_key(
     State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id((firm, key)): Id<(FirmId, KeyId)>,
 ) -> Result<StatusCode> {
     must_be_of(writer, firm)?;
     let now: Time = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let revoked = execute!(
         &mut tx,
         "UPDATE firm_keys SET revoked_at = $3

@@ -14,6 +14,7 @@ pub use terms::{Terms, of_operator, terms_for};
 
 use crate::access::{Caller, Platform};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Valid, text};
 use crate::idempotency::{self, Key};
@@ -89,17 +90,20 @@ async fn list_firms(State(app): State<App>, caller: Caller, page: Page) -> Resul
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_firm(
     State(app): State<App>,
+    request: RequestContext,
     admin: Platform,
     key: Key,
     Valid(new): Valid<NewCompany>,
 ) -> Result<(StatusCode, Json<Firm>)> {
     let admin = admin.who_may_write()?;
-    let request = idempotency::request_hash("firm", &new)?;
+    let request_hash = idempotency::request_hash("firm", &new)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
     let wanted = FirmId::new();
-    let mut tx = app.db.begin().await?;
-    let made = key.once(&mut tx, admin, &request, wanted.0, now).await?;
+    let mut tx = request.begin().await?;
+    let made = key
+        .once(&mut tx, admin, &request_hash, wanted.0, now)
+        .await?;
     if made == wanted.0 {
         store::insert(&mut tx, wanted, &name, now).await?;
     }
@@ -134,11 +138,12 @@ async fn found(app: &App, who: Option<Tenant>, id: FirmId) -> Result<Json<Firm>>
               (status = 404, body = Problem)))]
 async fn engage_firm(
     State(app): State<App>,
+    request: RequestContext,
     admin: Platform,
     Id((operator, firm)): Id<(OperatorId, FirmId)>,
 ) -> Result<StatusCode> {
     admin.who_may_write()?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     if !operators::exists(&mut tx, operator).await? {
         return Err(Error::NotFound("operator"));
     }
@@ -160,12 +165,12 @@ async fn engage_firm(
               (status = 404, body = Problem),
               (status = 409, description = "It is asked for an order or has one", body = Problem)))]
 async fn dismiss_firm(
-    State(app): State<App>,
+    request: RequestContext,
     admin: Platform,
     Id((operator, firm)): Id<(OperatorId, FirmId)>,
 ) -> Result<StatusCode> {
     admin.who_may_write()?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let orders = store::orders_between(&mut tx, operator, firm).await?;
     if !store::dismiss(&mut tx, operator, firm).await? {
         return Err(Error::NotFound("firm"));

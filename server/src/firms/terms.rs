@@ -7,6 +7,7 @@
 use super::store;
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, Tx};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, text};
@@ -193,13 +194,14 @@ pub async fn terms_for(tx: &mut Tx, operator: OperatorId, firm: FirmId) -> Resul
               (status = 422, body = Problem)))]
 async fn set_terms(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(firm): Id<FirmId>,
     Valid(terms): Valid<Terms>,
 ) -> Result<Json<WithTerms>> {
     let terms = terms.checked()?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let name = store::name_for(&mut tx, writer.operator, firm)
         .await?
         .ok_or(Error::NotFound("firm"))?;
@@ -220,10 +222,11 @@ async fn set_terms(
               (status = 404, description = "Also when it has no terms", body = Problem)))]
 async fn end_terms(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(firm): Id<FirmId>,
 ) -> Result<StatusCode> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     if !store::remove_terms(&mut tx, writer.operator, firm).await? {
         return Err(Error::NotFound("firm"));
     }

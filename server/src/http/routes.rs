@@ -185,7 +185,7 @@ pub fn router(state: ServerState) -> Router {
         .method_not_allowed_fallback(no_such_method)
         .layer(axum::middleware::from_fn_with_state(
             app.clone(),
-            audit::keep,
+            audit::log_request,
         ))
         .layer(DefaultBodyLimit::max(MAX_JSON_BYTES))
         .layer(TimeoutLayer::with_status_code(

@@ -4,6 +4,7 @@ use super::entry::NewEntry;
 use super::schema::{BoardAnswerSchema, BoardReportSchema};
 use super::store::{self, Author, Change};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::enrolment::Agent;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
@@ -34,6 +35,7 @@ where
               (status = 404, body = Problem), (status = 422, body = Problem)))]
 async fn put_report(
     State(app): State<App>,
+    request: RequestContext,
     agent: Agent,
     Id(id): Id<EntryId>,
     Valid(sent): Valid<LogbookReport>,
@@ -51,7 +53,7 @@ async fn put_report(
         report: sent.report.checked(now)?,
         compass_id: None,
     };
-    let mut change = Change::begin(&app, agent.vessel_id, now.into()).await?;
+    let mut change = Change::begin(&app, &request, agent.vessel_id, now.into()).await?;
     let tx = change.tx();
     let is_new = store::insert(tx, agent.vessel_id, id, &content, &author).await?;
     let current = store::lock(tx, agent.vessel_id, id).await?;

@@ -21,6 +21,7 @@ pub use store::{Adjusted, of_compass, write_adjustment};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone, text};
 use crate::idempotency::{self, Key};
@@ -79,20 +80,21 @@ async fn list_logbook(
               (status = 422, body = Problem)))]
 async fn report_entry(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(vessel): Id<VesselId>,
     key: Key,
     Valid(new): Valid<NewEntry>,
 ) -> Result<(StatusCode, Json<LogbookEntry>)> {
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
-    let request = idempotency::request_hash(&format!("logbook entry of {vessel}"), &new)?;
+    let request_hash = idempotency::request_hash(&format!("logbook entry of {vessel}"), &new)?;
     let now = app.clock.now();
     let new = new.checked(now)?;
     let wanted = EntryId::new();
-    let mut change = Change::begin(&app, vessel, now.into()).await?;
+    let mut change = Change::begin(&app, &request, vessel, now.into()).await?;
     let tx = change.tx();
     let made = key
-        .once(tx, writer.operator, &request, wanted.0, now.into())
+        .once(tx, writer.operator, &request_hash, wanted.0, now.into())
         .await?;
     if made == wanted.0 {
         let author = Author::user(tx, writer.user, now.into()).await?;
@@ -132,13 +134,14 @@ async fn find_entry(
               (status = 422, body = Problem)))]
 async fn amend_entry(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, EntryId)>,
     Valid(amendment): Valid<Amendment>,
 ) -> Result<Json<LogbookEntry>> {
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let now = app.clock.now();
-    let mut change = Change::begin(&app, vessel, now.into()).await?;
+    let mut change = Change::begin(&app, &request, vessel, now.into()).await?;
     let current = store::lock(change.tx(), vessel, id).await?;
     if current.withdrawn_at.is_some() {
         return Err(Error::Gone("this entry is withdrawn"));
@@ -163,6 +166,7 @@ async fn amend_entry(
               (status = 422, body = Problem)))]
 async fn withdraw_entry(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, EntryId)>,
     ValidOrNone(withdrawal): ValidOrNone<Withdrawal>,
@@ -171,7 +175,7 @@ async fn withdraw_entry(
     let given = withdrawal.reason.filter(|reason| !reason.trim().is_empty());
     let reason = given.map(|reason| text("reason", &reason)).transpose()?;
     let now = app.clock.now().into();
-    let mut change = Change::begin(&app, vessel, now).await?;
+    let mut change = Change::begin(&app, &request, vessel, now).await?;
     let current = store::lock(change.tx(), vessel, id).await?;
     if current.withdrawn_at.is_none() {
         let author = Author::user(change.tx(), writer.user, now).await?;

@@ -3,6 +3,7 @@
 use super::entry::{AuthorKind, CheckedFilter, LogbookEntry, NewEntry, Revision};
 use crate::analysis;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::enrolment::Agent;
 use crate::error::{Error, Result};
@@ -73,8 +74,13 @@ pub(super) struct Change<'a> {
 }
 
 impl<'a> Change<'a> {
-    pub(super) async fn begin(app: &'a App, vessel: VesselId, now: Time) -> Result<Change<'a>> {
-        let tx = app.db.begin().await?;
+    pub(super) async fn begin(
+        app: &'a App,
+        request: &RequestContext,
+        vessel: VesselId,
+        now: Time,
+    ) -> Result<Change<'a>> {
+        let tx = request.begin().await?;
         Ok(Change {
             app,
             vessel,

@@ -28,6 +28,7 @@ pub use send::Mailer;
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid};
 use crate::idempotency::{self, Key};
@@ -81,18 +82,19 @@ async fn list_recipients(
               (status = 422, body = Problem)))]
 async fn create_recipient(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     key: Key,
     Valid(new): Valid<NewRecipient>,
 ) -> Result<(StatusCode, Json<Recipient>)> {
     must_be_set_up(&app)?;
-    let request = idempotency::request_hash("mail recipient", &new)?;
+    let request_hash = idempotency::request_hash("mail recipient", &new)?;
     let new = new.checked()?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let wanted = RecipientId::new();
     let made = key
-        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
         store::insert(&mut tx, writer.operator, wanted, &new, now).await?;
@@ -123,11 +125,12 @@ async fn find_recipient(
               (status = 422, body = Problem)))]
 async fn change_recipient(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<RecipientId>,
     Valid(wanted): Valid<ChangedRecipient>,
 ) -> Result<Json<Recipient>> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::change(&mut tx, writer.operator, id, wanted.severity).await?;
     tx.commit().await?;
     Ok(Json(store::must_find(&app.db, writer.operator, id).await?))
@@ -141,11 +144,11 @@ async fn change_recipient(
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn delete_recipient(
-    State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<RecipientId>,
 ) -> Result<StatusCode> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     outbox::delete(&mut tx, writer.operator, id.0, Channel::Mail).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
@@ -161,6 +164,7 @@ async fn delete_recipient(
               (status = 409, description = "The server was not told how to send mail", body = Problem)))]
 async fn test_recipient(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<RecipientId>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
@@ -172,7 +176,7 @@ async fn test_recipient(
         order: None,
         body: serde_json::to_string(&Letter::test())?,
     };
-    let queued = outbox::queue_one(&app.db, id.0, &message, app.clock.now().into()).await?;
+    let queued = outbox::queue_one(&request, id.0, &message, app.clock.now().into()).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 
@@ -204,12 +208,13 @@ async fn list_letters(
               (status = 403, body = Problem), (status = 404, body = Problem)))]
 async fn send_letter_again(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((id, delivery)): Id<(RecipientId, DeliveryId)>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
     store::must_find(&app.db, writer.operator, id).await?;
     let now = app.clock.now().into();
-    let queued = outbox::send_again(&app.db, id.0, delivery, now).await?;
+    let queued = outbox::send_again(&request, id.0, delivery, now).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 

@@ -5,6 +5,7 @@
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, optional_text};
@@ -127,6 +128,7 @@ async fn find_particulars(
               (status = 422, body = Problem)))]
 async fn set_particulars(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(vessel): Id<VesselId>,
     Valid(particulars): Valid<Particulars>,
@@ -134,7 +136,7 @@ async fn set_particulars(
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let particulars = particulars.checked()?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let name = session::name_of(&mut tx, writer.user).await?;
     put(&mut tx, vessel, &particulars, &name, now).await?;
     schedule::ask(&mut tx, writer.operator, now).await?;

@@ -22,6 +22,7 @@ pub use post::{post, watch};
 
 use crate::access::Caller;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone};
 use crate::ids::{AlertId, NotificationId, OrderId, VesselId};
@@ -173,12 +174,13 @@ async fn list_notifications(
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
 async fn mark_notifications_read(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     ValidOrNone(read): ValidOrNone<Read>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
     let user = told(&caller)?.user.user_id;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::mark_read(&mut tx, user, read.until, app.clock.now().into()).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
@@ -191,6 +193,7 @@ async fn mark_notifications_read(
               (status = 404, body = Problem)))]
 async fn change_notification(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     Id(id): Id<NotificationId>,
     Valid(changed): Valid<Changed>,
@@ -198,7 +201,7 @@ async fn change_notification(
     caller.must_not_only_read()?;
     let user = told(&caller)?.user.user_id;
     let read_at = changed.read.then(|| app.clock.now().into());
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     if !store::mark(&mut tx, user, id, read_at).await? {
         return Err(Error::NotFound("notification"));
     }
@@ -225,6 +228,7 @@ async fn find_notification_settings(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn change_notification_settings(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     Valid(settings): Valid<Settings>,
 ) -> Result<Json<InForce>> {
@@ -232,7 +236,7 @@ async fn change_notification_settings(
     let (user, role) = (told(&caller)?.user.user_id, caller.user.role);
     let settings = settings.checked(role)?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::put_settings(&mut tx, user, &settings, now).await?;
     for (id, kind, urgent) in store::waiting(&mut tx, user).await? {
         let mail_at = settings.mail_at(settings.way(kind, role), urgent, now);

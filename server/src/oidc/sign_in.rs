@@ -6,7 +6,7 @@ use super::provider;
 use super::refusal::Refusal;
 use super::store::{self, Known};
 use crate::app::App;
-use crate::audit::{self, Actor};
+use crate::audit::RequestContext;
 use crate::config::Serve;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Params, Valid};
@@ -115,18 +115,23 @@ async fn go_to_provider(State(app): State<App>) -> Result<(StatusCode, HeaderMap
               (status = 409, description = "There is no provider", body = Problem)))]
 async fn return_from_provider(
     State(app): State<App>,
+    request: RequestContext,
     from: Origin,
     headers: HeaderMap,
     Params(answer): Params<Answer>,
 ) -> Result<(StatusCode, HeaderMap)> {
+    // Whoever comes back from the provider signs in.
+    request.log_as_change();
     must_be_set_up(&app)?;
-    Ok(match conclude(&app, &from, &headers, answer).await {
-        Ok(done) => done,
-        Err(refusal) => {
-            info!(why = refusal.word(), "nobody was signed in by the provider");
-            sent_away(&app, &refusal)
-        }
-    })
+    Ok(
+        match conclude(&app, &request, &from, &headers, answer).await {
+            Ok(done) => done,
+            Err(refusal) => {
+                info!(why = refusal.word(), "nobody was signed in by the provider");
+                sent_away(&app, &refusal)
+            }
+        },
+    )
 }
 
 /// Send the second factor's code after the provider
@@ -139,6 +144,7 @@ async fn return_from_provider(
               (status = 429, body = Problem)))]
 async fn send_code(
     State(app): State<App>,
+    request: RequestContext,
     from: Origin,
     headers: HeaderMap,
     Valid(sent): Valid<Code>,
@@ -148,19 +154,19 @@ async fn send_code(
     let (state, now) = (attempt.state_hash(), app.clock.now());
     let user = store::awaited(&app.db, &state, now.into()).await?;
     let user = user.ok_or(OVER)?;
-    audit::acts(Actor::user(&user));
+    request.record_actor(&user);
     let subjects = Subjects::person(&user.email, &from);
     // As with passwords, guesses sent at once do not outrun the count.
     let _place = password::place(&app).await?;
     throttle::check(&app.db, &subjects, now).await?;
-    if !second_factor::use_code(&app.db, user.user_id, &sent.code, now).await? {
-        throttle::note_failure(&app.db, &subjects, now).await?;
+    if !second_factor::use_code(&request, user.user_id, &sent.code, now).await? {
+        throttle::note_failure(&request, &subjects, now).await?;
         return Err(Error::WrongCode);
     }
-    if !store::take_awaited(&app.db, &state).await? {
+    if !store::take_awaited(&request, &state).await? {
         return Err(OVER);
     }
-    let mut cookies = open(&app, &from, &user).await?;
+    let mut cookies = open(&app, &request, &from, &user).await?;
     cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
     Ok((cookies, Json(user)))
 }
@@ -180,7 +186,13 @@ pub(super) fn redirect_url(config: &Serve) -> Option<RedirectUrl> {
 
 type Done = std::result::Result<(StatusCode, HeaderMap), Refusal>;
 
-async fn conclude(app: &App, from: &Origin, headers: &HeaderMap, answer: Answer) -> Done {
+async fn conclude(
+    app: &App,
+    request: &RequestContext,
+    from: &Origin,
+    headers: &HeaderMap,
+    answer: Answer,
+) -> Done {
     let attempt = Attempt::of(app, headers).ok_or(Refusal::Over)?;
     // Of hashes, so that how long it takes does not tell how much is right.
     let state = answer.state.unwrap_or_default();
@@ -191,33 +203,38 @@ async fn conclude(app: &App, from: &Origin, headers: &HeaderMap, answer: Answer)
     let subjects = Subjects::address(from);
     throttle::check(&app.db, &subjects, now).await?;
     let until = Timestamp::from_micros(attempt.ends_s() * 1_000_000).unwrap_or(now);
-    if !store::note_return(&app.db, &attempt.state_hash(), now.into(), until.into()).await? {
+    if !store::note_return(request, &attempt.state_hash(), now.into(), until.into()).await? {
         return Err(Refusal::Over);
     }
     let (None, Some(code)) = (answer.error, answer.code) else {
         return Err(Refusal::Cancelled);
     };
-    let user = match who(app, &attempt, code).await {
+    let user = match who(app, request, &attempt, code).await {
         Ok(user) => user,
         Err(refusal) => {
             if refusal.counts() {
-                throttle::note_failure(&app.db, &subjects, now).await?;
+                throttle::note_failure(request, &subjects, now).await?;
             }
             return Err(refusal);
         }
     };
     if user.second_factor {
-        store::await_code(&app.db, &attempt.state_hash(), user.user_id).await?;
+        store::await_code(request, &attempt.state_hash(), user.user_id).await?;
         return Ok(redirect(&format!("{SIGN_IN_PAGE}code"), []));
     }
-    let mut cookies = open(app, from, &user).await?;
+    let mut cookies = open(app, request, from, &user).await?;
     cookies.append(SET_COOKIE, attempt::forgotten(&app.config));
     cookies.insert(LOCATION, HeaderValue::from_static("/"));
     Ok((StatusCode::SEE_OTHER, cookies))
 }
 
 /// The user whom the provider means.
-async fn who(app: &App, attempt: &Attempt, code: String) -> std::result::Result<User, Refusal> {
+async fn who(
+    app: &App,
+    request: &RequestContext,
+    attempt: &Attempt,
+    code: String,
+) -> std::result::Result<User, Refusal> {
     let issuer = app.config.oidc.oidc_issuer.as_deref().unwrap_or_default();
     let identity = claims::redeem(app, attempt, code).await?;
     let subject = identity.subject.as_str();
@@ -228,14 +245,19 @@ async fn who(app: &App, attempt: &Attempt, code: String) -> std::result::Result<
     let user = match store::find_known(&app.db, issuer, subject).await? {
         Some(Known::User(user)) => *user,
         Some(Known::Disabled) => return Err(Refusal::Unknown),
-        None => return bound(app, issuer, &identity).await,
+        None => return bound(app, request, issuer, &identity).await,
     };
-    audit::acts(Actor::user(&user));
+    request.record_actor(&user);
     Ok(user)
 }
 
 /// The user with the e-mail of someone who comes for the first time.
-async fn bound(app: &App, issuer: &str, identity: &Identity) -> std::result::Result<User, Refusal> {
+async fn bound(
+    app: &App,
+    request: &RequestContext,
+    issuer: &str,
+    identity: &Identity,
+) -> std::result::Result<User, Refusal> {
     let email = claims::verified_email(app, identity).await?;
     // Nobody here has another; and what is alike in lower case is not the same.
     if !email.is_ascii() || email.chars().any(char::is_control) {
@@ -244,9 +266,9 @@ async fn bound(app: &App, issuer: &str, identity: &Identity) -> std::result::Res
     let user = store::find_by_email(&app.db, &normal_email(&email)).await?;
     let user = user.ok_or(Refusal::Unknown)?;
     let (subject, now) = (identity.subject.as_str(), Time(app.clock.now()));
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     if store::bind(&mut tx, issuer, subject, user.user_id, now).await? {
-        audit::acts(Actor::user(&user));
+        request.record_actor(&user);
         tx.commit().await?;
         return Ok(user);
     }
@@ -254,15 +276,20 @@ async fn bound(app: &App, issuer: &str, identity: &Identity) -> std::result::Res
     // The same person may have come through two windows at once.
     match store::find_known(&app.db, issuer, subject).await? {
         Some(Known::User(known)) if known.user_id == user.user_id => {
-            audit::acts(Actor::user(&user));
+            request.record_actor(&user);
             Ok(user)
         }
         _ => Err(Refusal::Taken),
     }
 }
 
-async fn open(app: &App, from: &Origin, user: &User) -> Result<HeaderMap> {
-    session::open(app, from, user, Some(&app.config.oidc.oidc_name)).await
+async fn open(
+    app: &App,
+    request: &RequestContext,
+    from: &Origin,
+    user: &User,
+) -> Result<HeaderMap> {
+    session::open(app, request, from, user, Some(&app.config.oidc.oidc_name)).await
 }
 
 /// To the sign-in page, which says why.

@@ -1,5 +1,6 @@
 //! Whom the provider means, and which sign-ins have come back from it.
 
+use crate::audit::RequestContext;
 use crate::db::{Db, Result, Tx, execute, row};
 use crate::ids::UserId;
 use crate::session::{User, user_sql};
@@ -84,12 +85,12 @@ pub async fn forget(tx: &mut Tx, user: UserId) -> Result<()> {
 
 /// Notes that a sign-in came back; false when it did before.
 pub(super) async fn note_return(
-    db: &Db,
+    request: &RequestContext,
     state_hash: &[u8],
     now: Time,
     expires_at: Time,
 ) -> Result<bool> {
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     execute!(
         &mut tx,
         "DELETE FROM provider_returns WHERE expires_at <= $1",
@@ -107,8 +108,12 @@ pub(super) async fn note_return(
 }
 
 /// Notes whose code a sign-in waits for.
-pub(super) async fn await_code(db: &Db, state_hash: &[u8], user: UserId) -> Result<()> {
-    let mut tx = db.begin().await?;
+pub(super) async fn await_code(
+    request: &RequestContext,
+    state_hash: &[u8],
+    user: UserId,
+) -> Result<()> {
+    let mut tx = request.begin().await?;
     execute!(
         &mut tx,
         "UPDATE provider_returns SET user_id = $2 WHERE state_hash = $1",
@@ -135,8 +140,8 @@ pub(super) async fn awaited(db: &Db, state_hash: &[u8], now: Time) -> Result<Opt
 }
 
 /// Notes that a sign-in waits no more; false when it did not.
-pub(super) async fn take_awaited(db: &Db, state_hash: &[u8]) -> Result<bool> {
-    let mut tx = db.begin().await?;
+pub(super) async fn take_awaited(request: &RequestContext, state_hash: &[u8]) -> Result<bool> {
+    let mut tx = request.begin().await?;
     let taken = execute!(
         &mut tx,
         "UPDATE provider_returns SET user_id = NULL

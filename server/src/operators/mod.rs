@@ -8,6 +8,7 @@ pub use store::{all, create, exists};
 
 use crate::access::Platform;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Valid, text};
 use crate::idempotency::{self, Key};
@@ -91,17 +92,20 @@ async fn list_operators(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_operator(
     State(app): State<App>,
+    request: RequestContext,
     admin: Platform,
     key: Key,
     Valid(new): Valid<NewCompany>,
 ) -> Result<(StatusCode, Json<Operator>)> {
     let admin = admin.who_may_write()?;
-    let request = idempotency::request_hash("operator", &new)?;
+    let request_hash = idempotency::request_hash("operator", &new)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
     let wanted = OperatorId::new();
-    let mut tx = app.db.begin().await?;
-    let made = key.once(&mut tx, admin, &request, wanted.0, now).await?;
+    let mut tx = request.begin().await?;
+    let made = key
+        .once(&mut tx, admin, &request_hash, wanted.0, now)
+        .await?;
     if made == wanted.0 {
         store::insert(&mut tx, wanted, &name, now).await?;
     }

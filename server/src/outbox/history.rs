@@ -2,6 +2,7 @@
 
 use super::delivery::{Delivery, DeliveryList, DeliveryState, Filter, Kind, Message};
 use super::queue::queue;
+use crate::audit::RequestContext;
 use crate::db::{Db, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::http::Page;
@@ -72,19 +73,29 @@ async fn must_find(db: &Db, receiver: Uuid, id: DeliveryId) -> Result<Delivery> 
 ///
 /// # Errors
 /// [`Error::NotFound`] when the receiver was removed meanwhile.
-pub async fn queue_one(db: &Db, receiver: Uuid, message: &Message, now: Time) -> Result<Delivery> {
-    let mut tx = db.begin().await?;
+pub async fn queue_one(
+    request: &RequestContext,
+    receiver: Uuid,
+    message: &Message,
+    now: Time,
+) -> Result<Delivery> {
+    let mut tx = request.begin().await?;
     queue(&mut tx, receiver, message, now).await?;
     tx.commit().await?;
-    must_find(db, receiver, message.id).await
+    must_find(request.db(), receiver, message.id).await
 }
 
 /// Has a delivery tried again at once, and for another day; one that waits too.
 ///
 /// # Errors
 /// [`Error::NotFound`] when the receiver has none of that id.
-pub async fn send_again(db: &Db, receiver: Uuid, id: DeliveryId, now: Time) -> Result<Delivery> {
-    let mut tx = db.begin().await?;
+pub async fn send_again(
+    request: &RequestContext,
+    receiver: Uuid,
+    id: DeliveryId,
+    now: Time,
+) -> Result<Delivery> {
+    let mut tx = request.begin().await?;
     let changed = execute!(
         &mut tx,
         "UPDATE deliveries
@@ -99,7 +110,7 @@ pub async fn send_again(db: &Db, receiver: Uuid, id: DeliveryId, now: Time) -> R
         return Err(Error::NotFound("delivery"));
     }
     tx.commit().await?;
-    must_find(db, receiver, id).await
+    must_find(request.db(), receiver, id).await
 }
 
 impl Row {

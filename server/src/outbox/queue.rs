@@ -7,7 +7,7 @@
 //! each in the order of their ids, so that no two transactions wait for each other.
 
 use super::delivery::{Channel, DeliveryState, Message};
-use crate::db::{Db, Result, Tx, execute, row, rows};
+use crate::db::{Connection, Db, Result, Tx, execute, row, rows};
 use crate::ids::DeliveryId;
 use crate::time::Time;
 use sha2::{Digest, Sha256};
@@ -139,8 +139,8 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
     }
     let lease_until = Time(now.0.plus_seconds(LEASE_S));
     let mut tx = db.begin().await?;
-    let claimed = match &mut tx {
-        Tx::Sqlite(tx) => {
+    let claimed = match tx.connection() {
+        Connection::Sqlite(tx) => {
             sqlx::query_as(claim_sql!(""))
                 .bind(now)
                 .bind(lease_until)
@@ -150,7 +150,7 @@ pub(super) async fn claim(db: &Db, channel: Channel, now: Time) -> Result<Option
                 .await?
         }
         // Workers of other processes take other receivers rather than wait.
-        Tx::Postgres(tx) => {
+        Connection::Postgres(tx) => {
             sqlx::query_as(claim_sql!(" FOR UPDATE OF d SKIP LOCKED"))
                 .bind(now)
                 .bind(lease_until)

@@ -24,6 +24,7 @@ pub use store::{Row, ahead, alongside, lies};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
 use crate::events::{self, Event};
@@ -113,21 +114,22 @@ async fn listed(
               (status = 422, body = Problem)))]
 async fn enter_port_call(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(vessel): Id<VesselId>,
     key: Key,
     Valid(new): Valid<NewCall>,
 ) -> Result<(StatusCode, Json<PortCall>)> {
-    let request = idempotency::request_hash(&format!("port call of {vessel}"), &new)?;
+    let request_hash = idempotency::request_hash(&format!("port call of {vessel}"), &new)?;
     vessels::must_be_in_fleet(&app.db, writer.operator, vessel).await?;
     let now = app.clock.now().into();
     let is_named = new.reference.is_some();
     let mut call = new.checked(now)?;
     let wanted = CallId::new();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let known = store::lock(&mut tx, writer.operator, vessel).await?;
     let made = key
-        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
         if !is_named {
@@ -175,12 +177,13 @@ async fn find_port_call(
               (status = 422, body = Problem)))]
 async fn amend_port_call(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, CallId)>,
     Valid(amendment): Valid<Amendment>,
 ) -> Result<Json<PortCall>> {
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let known = store::lock(&mut tx, writer.operator, vessel).await?;
     let current = known.iter().find(|row| row.id == id);
     let current = current.ok_or(Error::NotFound("port call"))?;
@@ -214,13 +217,14 @@ async fn amend_port_call(
               (status = 422, body = Problem)))]
 async fn withdraw_port_call(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id((vessel, id)): Id<(VesselId, CallId)>,
     ValidOrNone(withdrawal): ValidOrNone<Withdrawal>,
 ) -> Result<Json<PortCall>> {
     let reason = optional_text("reason", withdrawal.reason.as_deref())?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let known = store::lock(&mut tx, writer.operator, vessel).await?;
     let current = known.iter().find(|row| row.id == id);
     let current = current.ok_or(Error::NotFound("port call"))?;

@@ -7,6 +7,7 @@ use super::moving;
 use super::store::{self, Author};
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Params, file, file_name};
 use crate::ids::{CallId, VesselId};
@@ -79,6 +80,7 @@ struct Uploaded {
                              their columns, the first fifty of them", body = Problem)))]
 async fn upload_fleet_csv(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Params(how): Params<How>,
     body: Body,
@@ -88,7 +90,16 @@ async fn upload_fleet_csv(
     let (rows, mut faults) = read_csv(bytes, None, now).await?;
     let fleet = vessels::names(&app.db, writer.operator).await?;
     let found = by_vessel(rows.calls, &fleet, now, &mut faults)?;
-    take(&app, writer, (found, faults), Source::Csv, &how, rows.over).await
+    take(
+        &app,
+        &request,
+        writer,
+        (found, faults),
+        Source::Csv,
+        &how,
+        rows.over,
+    )
+    .await
 }
 
 /// Send a file of a vessel's port calls
@@ -105,6 +116,7 @@ async fn upload_fleet_csv(
                              their columns, the first fifty of them", body = Problem)))]
 async fn upload_csv(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(vessel): Id<VesselId>,
     Params(how): Params<How>,
@@ -118,7 +130,16 @@ async fn upload_csv(
     let her = [(vessel, row.name, row.imo_number)];
     let mut found = by_vessel(rows.calls, &her, now, &mut faults)?;
     found.entry(vessel).or_default();
-    take(&app, writer, (found, faults), Source::Csv, &how, rows.over).await
+    take(
+        &app,
+        &request,
+        writer,
+        (found, faults),
+        Source::Csv,
+        &how,
+        rows.over,
+    )
+    .await
 }
 
 /// A file's rows, and what is wrong with others; `of` is the vessel of rows that name none.
@@ -157,6 +178,7 @@ async fn read_csv(
                              the property", body = Problem)))]
 async fn upload_ics(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(vessel): Id<VesselId>,
     Params(how): Params<How>,
@@ -182,6 +204,7 @@ async fn upload_ics(
     let found = BTreeMap::from([(vessel, hers)]);
     take(
         &app,
+        &request,
         writer,
         (found, faults),
         Source::Icalendar,
@@ -194,6 +217,7 @@ async fn upload_ics(
 /// Takes a file whole, or nothing of it where anything is wrong.
 async fn take(
     app: &App,
+    request: &RequestContext,
     writer: Writer,
     (found, mut faults): (BTreeMap<VesselId, OfVessel>, FileErrors),
     source: Source,
@@ -207,7 +231,7 @@ async fn take(
         ..Uploaded::default()
     };
     let (mut changed, mut told) = (Vec::new(), Vec::new());
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let author = Author::of(&mut tx, writer.user, now).await?;
     // In the order of their ids: two files at once wait for one another only one way.
     for (vessel, hers) in found {

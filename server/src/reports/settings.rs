@@ -5,6 +5,7 @@
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
@@ -78,6 +79,7 @@ async fn find_report_settings(State(app): State<App>, reader: Reader) -> Result<
               (status = 422, body = Problem)))]
 async fn set_report_settings(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Valid(settings): Valid<Settings>,
 ) -> Result<Json<Settings>> {
@@ -86,7 +88,7 @@ async fn set_report_settings(
         mail::must_be_set_up(&app)?;
     }
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let by = session::name_of(&mut tx, writer.user).await?;
     put(&mut tx, writer.operator, &settings, &by, now).await?;
     bring_recipients_in_line(&mut tx, writer.operator, &settings.monthly_to, now).await?;

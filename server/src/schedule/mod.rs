@@ -31,6 +31,7 @@ pub use worker::{run, step};
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page};
 use crate::ids::OperatorId;
@@ -138,9 +139,10 @@ async fn current(app: &App, operator: OperatorId, plan: Option<Plan>) -> Result<
 async fn solve_schedule(
     State(app): State<App>,
     State(slots): State<PlanSlots>,
+    request: RequestContext,
     writer: Writer,
 ) -> Result<Json<Current>> {
-    let plan = solve::solve(&app, &slots, writer.operator).await?;
+    let plan = solve::solve(&app, &request, &slots, writer.operator).await?;
     current(&app, writer.operator, Some(plan)).await
 }
 

@@ -9,6 +9,7 @@ use super::plan::{Job, Plan};
 use super::store;
 use crate::access::Writer;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::firms::{self, Terms};
 use crate::http::{Json, Valid, optional_text};
@@ -86,6 +87,7 @@ struct OfferedOrder {
               (status = 422, body = Problem)))]
 async fn offer_job(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Valid(new): Valid<NewScheduleOffer>,
 ) -> Result<(StatusCode, Json<Offered>)> {
@@ -97,7 +99,7 @@ async fn offer_job(
         .into_iter()
         .filter_map(|(firm, _, terms)| Some((firm, terms?)))
         .collect();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     for compass in &job.compasses {
         work_orders::lock_compass(&mut tx, job.vessel_id, compass.compass_id).await?;
     }
@@ -121,7 +123,7 @@ async fn offer_job(
         let id = OrderId::new();
         orders::at_call(&mut tx, job.vessel_id, id, job.call_id).await?;
         let order = order_of(job, compass.compass_id, offer);
-        let (goes_on, news) = work_orders::write(&app, tx, writer, id, order).await?;
+        let (goes_on, news) = work_orders::write(&app, &request, tx, writer, id, order).await?;
         (tx, told) = (goes_on, told.into_iter().chain(news).collect());
         orders.push(OfferedOrder {
             order_id: id,

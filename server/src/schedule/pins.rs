@@ -6,6 +6,7 @@
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, Tx, execute, row, rows};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, optional_text};
@@ -104,6 +105,7 @@ async fn list_pins(State(app): State<App>, reader: Reader) -> Result<Json<PinLis
               (status = 422, body = Problem)))]
 async fn pin(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Valid(new): Valid<NewPin>,
 ) -> Result<Json<Pin>> {
@@ -139,7 +141,7 @@ async fn pin(
         });
     }
     let note = optional_text("note", new.note.as_deref())?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let pin = Pin {
         vessel_id: vessel,
         compass_id: new.compass_id,
@@ -163,12 +165,13 @@ async fn pin(
               (status = 404, body = Problem)))]
 async fn unpin(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(compass): Id<CompassId>,
 ) -> Result<StatusCode> {
     let vessel = vessel_of(&app.db, writer.operator, compass).await?;
     let vessel = vessel.ok_or(Error::NotFound("pin"))?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let removed = execute!(
         &mut tx,
         "DELETE FROM schedule_pins WHERE vessel_id = $1 AND compass_id = $2",

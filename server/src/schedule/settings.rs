@@ -2,6 +2,7 @@
 
 use crate::access::{Reader, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{Db, execute, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
@@ -67,12 +68,13 @@ async fn find_schedule_settings(State(app): State<App>, reader: Reader) -> Resul
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn set_settings(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Valid(settings): Valid<Settings>,
 ) -> Result<Json<Settings>> {
     settings.check()?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let by = session::name_of(&mut tx, writer.user).await?;
     execute!(
         &mut tx,

@@ -11,6 +11,8 @@ use super::plan::{Against, Change, Compass, Job, Later, Place, Plan, Unscheduled
 use super::store;
 use crate::alerts;
 use crate::app::App;
+use crate::audit::RequestContext;
+use crate::db::Tx;
 use crate::error::{Error, Result};
 use crate::events;
 use crate::ids::{CallId, CompassId, FirmId, OperatorId, OrderId, VesselId};
@@ -32,9 +34,14 @@ const MOST_TRIES: usize = 5;
 
 /// Makes the operator's plan anew, or finds that nothing has changed. Whoever asks for it
 /// meanwhile waits for the operator's lock, and takes no slot of other operators'.
-pub(super) async fn solve(app: &App, slots: &PlanSlots, operator: OperatorId) -> Result<Plan> {
+pub(super) async fn solve(
+    app: &App,
+    request: &RequestContext,
+    slots: &PlanSlots,
+    operator: OperatorId,
+) -> Result<Plan> {
     let lock = slots.lock_of(operator).await;
-    solve_locked(app, slots, operator, Arc::new(lock)).await
+    solve_locked(app, Some(request), slots, operator, Arc::new(lock)).await
 }
 
 /// The same, unless somebody is at it.
@@ -44,7 +51,7 @@ pub(super) async fn solve_unless_busy(
     operator: OperatorId,
 ) -> Result<Option<Plan>> {
     match slots.try_lock_of(operator) {
-        Some(lock) => solve_locked(app, slots, operator, Arc::new(lock))
+        Some(lock) => solve_locked(app, None, slots, operator, Arc::new(lock))
             .await
             .map(Some),
         None => Ok(None),
@@ -53,6 +60,7 @@ pub(super) async fn solve_unless_busy(
 
 async fn solve_locked(
     app: &App,
+    request: Option<&RequestContext>,
     slots: &PlanSlots,
     operator: OperatorId,
     lock: Arc<PlanLock>,
@@ -63,7 +71,7 @@ async fn solve_locked(
             && former.input_sha256 == gathered.sha256
         {
             let former = former.clone();
-            forget_asks(app, operator, &gathered).await?;
+            forget_asks(begin(app, request).await?, operator, &gathered).await?;
             return Ok(former);
         }
         let begun = Instant::now();
@@ -71,7 +79,8 @@ async fn solve_locked(
         let took_s = begun.elapsed().as_secs_f64();
         histogram!("binnacle_schedule_seconds").record(took_s);
         let plan = named(schedule, &gathered, app.clock.now().into(), took_s)?;
-        if keep(app, operator, &plan, &gathered).await? {
+        let tx = begin(app, request).await?;
+        if keep(app, tx, operator, &plan, &gathered).await? {
             info!(%operator, version = plan.version, took_s, gap_percent = plan.gap_percent,
                   "a schedule was made");
             return Ok(plan);
@@ -80,6 +89,14 @@ async fn solve_locked(
     Err(Error::WrongState(
         "others make the schedule at the same time; try again".to_owned(),
     ))
+}
+
+/// Begins a transaction, which carries the audit line of the request that asks for the plan.
+async fn begin(app: &App, request: Option<&RequestContext>) -> Result<Tx> {
+    Ok(match request {
+        Some(request) => request.begin().await?,
+        None => app.db.begin().await?,
+    })
 }
 
 /// The plan in which an order that a job was moved away from holds its team still, as it does
@@ -132,11 +149,10 @@ fn moved_away(schedule: &Schedule, gathered: &Gathered) -> Result<Vec<OrderId>> 
 
 /// Forgets what asked, for an operator that has no firms to plan with.
 pub(super) async fn forget_asks(
-    app: &App,
+    mut tx: Tx,
     operator: OperatorId,
     gathered: &Gathered,
 ) -> Result<()> {
-    let mut tx = app.db.begin().await?;
     store::answered(&mut tx, operator, &gathered.asks).await?;
     tx.commit().await?;
     Ok(())
@@ -155,8 +171,13 @@ async fn run(slots: &PlanSlots, text: String, lock: &Arc<PlanLock>) -> Result<Sc
     Ok(done.await??)
 }
 
-async fn keep(app: &App, operator: OperatorId, plan: &Plan, gathered: &Gathered) -> Result<bool> {
-    let mut tx = app.db.begin().await?;
+async fn keep(
+    app: &App,
+    mut tx: Tx,
+    operator: OperatorId,
+    plan: &Plan,
+    gathered: &Gathered,
+) -> Result<bool> {
     if !store::keep(&mut tx, operator, plan, &gathered.text).await? {
         return Ok(false);
     }

@@ -87,7 +87,7 @@ enum Made {
 async fn make(app: &App, slots: &PlanSlots, operator: OperatorId) -> crate::error::Result<Made> {
     let gathered = gather(app, operator, &BTreeSet::new()).await?;
     if !gathered.has_firms && gathered.former.is_none() {
-        solve::forget_asks(app, operator, &gathered).await?;
+        solve::forget_asks(app.db.begin().await?, operator, &gathered).await?;
         return Ok(Made::Here);
     }
     let made = solve::solve_unless_busy(app, slots, operator).await?;

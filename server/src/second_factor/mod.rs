@@ -10,7 +10,8 @@ mod totp;
 
 use crate::access::Caller;
 use crate::app::App;
-use crate::db::{Db, Tx};
+use crate::audit::RequestContext;
+use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
 use crate::ids::UserId;
@@ -91,16 +92,17 @@ struct RecoveryCodes {
               (status = 429, body = Problem)))]
 async fn begin_second_factor(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     from: Origin,
     Valid(again): Valid<Again>,
 ) -> Result<(StatusCode, Json<Begun>)> {
     caller.must_be_signed_in()?;
-    session::prove(&app, &caller.user, &from, again.password).await?;
+    session::prove(&app, &request, &caller.user, &from, again.password).await?;
     let user = &caller.user;
     let secret: [u8; totp::SECRET_BYTES] = secret::random();
     let now = app.clock.now().into();
-    if !store::begin(&app.db, user.user_id, &secret, now).await? {
+    if !store::begin(&request, user.user_id, &secret, now).await? {
         let there = "there is a second factor; remove it before you set up another";
         return Err(Error::WrongState(there.to_owned()));
     }
@@ -119,6 +121,7 @@ async fn begin_second_factor(
               (status = 409, description = "None was begun, or it is confirmed", body = Problem)))]
 async fn confirm_second_factor(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     Valid(first): Valid<Code>,
 ) -> Result<Json<RecoveryCodes>> {
@@ -129,7 +132,7 @@ async fn confirm_second_factor(
         ));
     }
     let user = caller.user.user_id;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     if !store::confirm(&mut tx, user, &first.code, app.clock.now()).await? {
         return Err(Error::Invalid {
             field: "code",
@@ -150,13 +153,14 @@ async fn confirm_second_factor(
               (status = 429, body = Problem)))]
 async fn remove_second_factor(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     from: Origin,
     Valid(again): Valid<Again>,
 ) -> Result<StatusCode> {
     caller.must_be_signed_in()?;
-    session::prove(&app, &caller.user, &from, again.password).await?;
-    let mut tx = app.db.begin().await?;
+    session::prove(&app, &request, &caller.user, &from, again.password).await?;
+    let mut tx = request.begin().await?;
     if !remove(&mut tx, caller.user.user_id).await? {
         return Err(Error::NotFound("second factor"));
     }
@@ -174,16 +178,17 @@ async fn remove_second_factor(
               (status = 422, body = Problem), (status = 429, body = Problem)))]
 async fn renew_recovery_codes(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     from: Origin,
     Valid(again): Valid<Again>,
 ) -> Result<Json<RecoveryCodes>> {
     caller.must_be_signed_in()?;
-    session::prove(&app, &caller.user, &from, again.password).await?;
+    session::prove(&app, &request, &caller.user, &from, again.password).await?;
     if !caller.user.second_factor {
         return Err(Error::NotFound("second factor"));
     }
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let codes = new_recovery_codes(&mut tx, caller.user.user_id).await?;
     tx.commit().await?;
     Ok(Json(codes))
@@ -199,8 +204,13 @@ async fn new_recovery_codes(tx: &mut Tx, user: UserId) -> Result<RecoveryCodes> 
 ///
 /// # Errors
 /// When the database does.
-pub async fn use_code(db: &Db, user: UserId, code: &str, now: Timestamp) -> Result<bool> {
-    let mut tx = db.begin().await?;
+pub async fn use_code(
+    request: &RequestContext,
+    user: UserId,
+    code: &str,
+    now: Timestamp,
+) -> Result<bool> {
+    let mut tx = request.begin().await?;
     let used = store::use_code(&mut tx, user, code, now).await?
         || store::use_recovery_code(&mut tx, user, code).await?;
     tx.commit().await?;

@@ -1,7 +1,8 @@
 //! Second factors and recovery codes in the database.
 
 use super::totp;
-use crate::db::{Db, Result, Tx, execute, row};
+use crate::audit::RequestContext;
+use crate::db::{Result, Tx, execute, row};
 use crate::ids::UserId;
 use crate::secret;
 use crate::time::Time;
@@ -18,8 +19,13 @@ struct Factor {
 
 /// Keeps a secret that is yet to be confirmed, in place of one that never was; false
 /// when there is a confirmed one.
-pub(super) async fn begin(db: &Db, user: UserId, secret: &[u8], now: Time) -> Result<bool> {
-    let mut tx = db.begin().await?;
+pub(super) async fn begin(
+    request: &RequestContext,
+    user: UserId,
+    secret: &[u8],
+    now: Time,
+) -> Result<bool> {
+    let mut tx = request.begin().await?;
     let kept = execute!(
         &mut tx,
         "INSERT INTO second_factors (user_id, secret, created_at, confirmed_at, last_step)

@@ -3,6 +3,7 @@
 use super::store;
 use crate::access::Caller;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::{self, Tx};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid};
@@ -99,12 +100,12 @@ async fn list_sessions(
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn end_session(
-    State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     Id(id): Id<SessionId>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    if !store::end(&app.db, caller.user.user_id, id).await? {
+    if !store::end(&request, caller.user.user_id, id).await? {
         return Err(Error::NotFound("session"));
     }
     Ok(StatusCode::NO_CONTENT)
@@ -113,9 +114,9 @@ async fn end_session(
 /// End all your other sessions
 #[utoipa::path(delete, path = "/sessions", tag = "session",
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
-async fn end_other_sessions(State(app): State<App>, caller: Caller) -> Result<StatusCode> {
+async fn end_other_sessions(request: RequestContext, caller: Caller) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     end_all(&mut tx, caller.user.user_id, caller.session).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
@@ -129,6 +130,7 @@ async fn end_other_sessions(State(app): State<App>, caller: Caller) -> Result<St
               (status = 422, body = Problem), (status = 429, body = Problem)))]
 async fn change_password(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     from: Origin,
     Valid(change): Valid<ChangedPassword>,
@@ -139,7 +141,7 @@ async fn change_password(
     let about = [&user.email, &user.name, company.unwrap_or(&user.name)];
     password::check("new", &change.new, &about.map(String::as_str))?;
     let is_the_same = change.new == change.current;
-    super::prove(&app, user, &from, change.current).await?;
+    super::prove(&app, &request, user, &from, change.current).await?;
     if is_the_same {
         return Err(Error::Invalid {
             field: "new",
@@ -147,7 +149,7 @@ async fn change_password(
         });
     }
     let hash = password::hash(password::place(&app).await?, change.new).await?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::set_password(&mut tx, user.user_id, &hash).await?;
     end_all(&mut tx, user.user_id, Some(session)).await?;
     tx.commit().await?;

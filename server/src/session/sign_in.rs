@@ -4,7 +4,7 @@ use super::user::{User, normal_email};
 use super::{cookie, store, throttle};
 use crate::access::Caller;
 use crate::app::App;
-use crate::audit::{self, Actor};
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Json, Valid};
 use crate::peer::Origin;
@@ -50,11 +50,12 @@ struct SignIn {
     responses((status = 200, body = User), (status = 401, body = Problem), (status = 429, body = Problem)))]
 async fn sign_in(
     State(app): State<App>,
+    request: RequestContext,
     from: Origin,
-    Valid(request): Valid<SignIn>,
+    Valid(given): Valid<SignIn>,
 ) -> Result<(HeaderMap, Json<User>)> {
-    let user = judge(&app, &from, request).await?;
-    Ok((open(&app, &from, &user, None).await?, Json(user)))
+    let user = judge(&app, &request, &from, given).await?;
+    Ok((open(&app, &request, &from, &user, None).await?, Json(user)))
 }
 
 /// Opens a session by the word of a provider, or by a password; the header gives the browser
@@ -64,6 +65,7 @@ async fn sign_in(
 /// When the database does.
 pub async fn open(
     app: &App,
+    request: &RequestContext,
     from: &Origin,
     user: &User,
     provider: Option<&str>,
@@ -77,7 +79,7 @@ pub async fn open(
         now: now.into(),
         expires_at: now.plus_seconds(lasts_s as f64).into(),
     };
-    store::open(&app.db, user, from, &new).await?;
+    store::open(request, user, from, &new).await?;
     Ok(cookie::set(&app.config, &token, lasts_s))
 }
 
@@ -86,9 +88,13 @@ pub async fn open(
 /// The session ends for good, whoever holds its cookie.
 #[utoipa::path(delete, path = "/session", tag = "session",
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem)))]
-async fn sign_out(State(app): State<App>, caller: Caller) -> Result<(StatusCode, HeaderMap)> {
+async fn sign_out(
+    State(app): State<App>,
+    request: RequestContext,
+    caller: Caller,
+) -> Result<(StatusCode, HeaderMap)> {
     if let Some(session) = caller.session {
-        store::end(&app.db, caller.user.user_id, session).await?;
+        store::end(&request, caller.user.user_id, session).await?;
     }
     Ok((StatusCode::NO_CONTENT, cookie::set(&app.config, "", 0)))
 }
@@ -101,29 +107,35 @@ async fn me(caller: Caller) -> Json<User> {
 }
 
 /// The user, if everything is right.
-async fn judge(app: &App, from: &Origin, request: SignIn) -> Result<User> {
+async fn judge(app: &App, request: &RequestContext, from: &Origin, given: SignIn) -> Result<User> {
     // PostgreSQL takes no NUL in a text, and nobody has such an e-mail.
-    if request.email.chars().any(char::is_control) {
+    if given.email.chars().any(char::is_control) {
         return Err(Error::WrongPassword);
     }
-    let email = normal_email(&request.email);
-    let user = with_password(app, from, &email, request.password).await?;
-    audit::acts(Actor::user(&user));
+    let email = normal_email(&given.email);
+    let user = with_password(app, request, from, &email, given.password).await?;
+    request.record_actor(&user);
     if !user.second_factor {
         return Ok(user);
     }
-    let code = request.code.filter(|code| !code.trim().is_empty());
+    let code = given.code.filter(|code| !code.trim().is_empty());
     let code = code.ok_or(Error::SecondFactorNeeded)?;
     let now = app.clock.now();
-    if second_factor::use_code(&app.db, user.user_id, &code, now).await? {
+    if second_factor::use_code(request, user.user_id, &code, now).await? {
         return Ok(user);
     }
-    throttle::note_failure(&app.db, &Subjects::person(&email, from), now).await?;
+    throttle::note_failure(request, &Subjects::person(&email, from), now).await?;
     Err(Error::WrongCode)
 }
 
 /// The user with this e-mail and this password.
-async fn with_password(app: &App, from: &Origin, email: &str, password: String) -> Result<User> {
+async fn with_password(
+    app: &App,
+    request: &RequestContext,
+    from: &Origin,
+    email: &str,
+    password: String,
+) -> Result<User> {
     if password.len() > password::MOST_BYTES {
         return Err(Error::WrongPassword);
     }
@@ -140,7 +152,7 @@ async fn with_password(app: &App, from: &Origin, email: &str, password: String) 
     if let Some(user) = user.filter(|_| matches) {
         return Ok(user);
     }
-    throttle::note_failure(&app.db, &subjects, now).await?;
+    throttle::note_failure(request, &subjects, now).await?;
     drop(place);
     Err(Error::WrongPassword)
 }
@@ -150,8 +162,14 @@ async fn with_password(app: &App, from: &Origin, email: &str, password: String) 
 ///
 /// # Errors
 /// When it is wrong, which counts like a failed sign-in.
-pub async fn prove(app: &App, user: &User, from: &Origin, password: String) -> Result<()> {
-    with_password(app, from, &user.email, password)
+pub async fn prove(
+    app: &App,
+    request: &RequestContext,
+    user: &User,
+    from: &Origin,
+    password: String,
+) -> Result<()> {
+    with_password(app, request, from, &user.email, password)
         .await
         .map(drop)
 }

@@ -2,6 +2,7 @@
 
 use super::own::Session;
 use super::user::{Role, User, normal_email, user_sql};
+use crate::audit::RequestContext;
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::error;
 use crate::ids::{SessionId, UserId};
@@ -122,9 +123,14 @@ pub(super) struct NewSession<'a> {
 }
 
 /// Opens a session; clears away those that ended, and the e-mail's failures.
-pub(super) async fn open(db: &Db, user: &User, from: &Origin, new: &NewSession<'_>) -> Result<()> {
+pub(super) async fn open(
+    request: &RequestContext,
+    user: &User,
+    from: &Origin,
+    new: &NewSession<'_>,
+) -> Result<()> {
     let now = new.now;
-    let mut tx = db.begin().await?;
+    let mut tx = request.begin().await?;
     execute!(&mut tx, "DELETE FROM sessions WHERE expires_at <= $1", now)?;
     execute!(
         &mut tx,
@@ -174,8 +180,8 @@ pub(super) async fn list(
 }
 
 /// Ends one of a user's sessions; false when it is none of theirs.
-pub(super) async fn end(db: &Db, user: UserId, id: SessionId) -> Result<bool> {
-    let mut tx = db.begin().await?;
+pub(super) async fn end(request: &RequestContext, user: UserId, id: SessionId) -> Result<bool> {
+    let mut tx = request.begin().await?;
     let ended = execute!(
         &mut tx,
         "DELETE FROM sessions WHERE user_id = $1 AND id = $2",

@@ -4,6 +4,7 @@
 //! that the answer does not tell which exist. Failures count for the e-mail, and, so
 //! that one password is not tried on every e-mail, for the address they come from.
 
+use crate::audit::RequestContext;
 use crate::db::{Db, execute, row};
 use crate::error::{Error, Result};
 use crate::peer::Origin;
@@ -77,8 +78,12 @@ pub async fn check(db: &Db, subjects: &Subjects<'_>, now: Timestamp) -> Result<(
 }
 
 /// Counts a wrong password or code.
-pub async fn note_failure(db: &Db, subjects: &Subjects<'_>, now: Timestamp) -> Result<()> {
-    let mut tx = db.begin().await?;
+pub async fn note_failure(
+    request: &RequestContext,
+    subjects: &Subjects<'_>,
+    now: Timestamp,
+) -> Result<()> {
+    let mut tx = request.begin().await?;
     execute!(
         &mut tx,
         "DELETE FROM login_failures WHERE last_at < $1",

@@ -1,5 +1,6 @@
 //! Who signs in.
 
+use crate::audit::Actor;
 use crate::ids::{FirmId, OperatorId, UserId};
 use crate::tenants::Tenant;
 use serde::{Deserialize, Serialize};
@@ -45,6 +46,12 @@ impl User {
     /// Whether nothing is to be had before a second factor is set up.
     pub fn lacks_second_factor(&self) -> bool {
         self.second_factor_required && !self.second_factor
+    }
+}
+
+impl From<&User> for Actor {
+    fn from(user: &User) -> Actor {
+        Actor::person(user.user_id, &user.name, user.tenant())
     }
 }
 

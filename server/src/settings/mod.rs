@@ -12,6 +12,7 @@ use crate::access::{Reader, Writer};
 use crate::alerts::AlertLimits;
 use crate::analysis;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
 use crate::ids::VesselId;
@@ -134,6 +135,7 @@ async fn find_settings(
               (status = 422, body = Problem)))]
 async fn change_settings(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
     Valid(wanted): Valid<VesselSettings>,
@@ -150,7 +152,7 @@ async fn change_settings(
     }
     wanted.alerts.checked()?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::change(&mut tx, id, &wanted, now).await?;
     analysis::enqueue(&mut tx, id, now, 0.0).await?;
     tx.commit().await?;

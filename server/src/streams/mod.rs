@@ -18,6 +18,7 @@ mod store;
 pub use bursts::{Imported, Incomplete, Refused, import};
 
 use crate::app::App;
+use crate::audit::{self, RequestContext};
 use crate::db::Tx;
 use crate::enrolment;
 use crate::enrolment::Agent;
@@ -54,6 +55,7 @@ where
 {
     OpenApiRouter::new()
         .routes(routes!(put_batch))
+        .route_layer(axum::middleware::from_fn(audit::leave_out))
         .layer(DefaultBodyLimit::max(MAX_BYTES))
         .routes(routes!(open_stream))
         .routes(routes!(downlink))
@@ -64,9 +66,10 @@ where
     responses((status = 201, body = OpenStreamSchema), (status = 401, body = Problem)))]
 async fn open_stream(
     State(app): State<App>,
+    request: RequestContext,
     agent: Agent,
 ) -> Result<(StatusCode, Json<OpenStreamAnswer>)> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let stream = enrolment::open_stream(&mut tx, agent, app.clock.now().into()).await?;
     tx.commit().await?;
     Ok((StatusCode::CREATED, Json(OpenStreamAnswer { stream })))
@@ -88,6 +91,7 @@ async fn open_stream(
               (status = 413, body = Problem), (status = 422, body = Problem)))]
 async fn put_batch(
     State(app): State<App>,
+    request: RequestContext,
     agent: Agent,
     Id((stream, seq)): Id<(Uuid, u64)>,
     Params(has): Params<Has>,
@@ -96,7 +100,7 @@ async fn put_batch(
     let bytes = body.map_err(|rejection| too_large(&rejection))?;
     let batch = read(&bytes, StreamId(stream), seq)?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let delay_s = match has.wait {
         None => analysis_delay_s(&app, &batch),
         // No other follows.

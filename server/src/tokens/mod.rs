@@ -9,6 +9,7 @@ pub use store::{caller, delete_all, lasts};
 
 use crate::access::Caller;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid};
 use crate::ids::TokenId;
@@ -116,6 +117,7 @@ async fn list_tokens(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_token(
     State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     Valid(new): Valid<NewToken>,
 ) -> Result<(StatusCode, Json<MadeToken>)> {
@@ -142,7 +144,7 @@ async fn create_token(
         created_at: now.into(),
         last_used_at: None,
     };
-    store::insert(&app.db, caller.user.user_id, &about, &secret::hash(&token)).await?;
+    store::insert(&request, caller.user.user_id, &about, &secret::hash(&token)).await?;
     Ok((StatusCode::CREATED, Json(MadeToken { about, token })))
 }
 
@@ -151,12 +153,12 @@ async fn create_token(
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn delete_token(
-    State(app): State<App>,
+    request: RequestContext,
     caller: Caller,
     Id(id): Id<TokenId>,
 ) -> Result<StatusCode> {
     caller.must_not_only_read()?;
-    if !store::delete(&app.db, caller.user.user_id, id).await? {
+    if !store::delete(&request, caller.user.user_id, id).await? {
         return Err(Error::NotFound("token"));
     }
     Ok(StatusCode::NO_CONTENT)

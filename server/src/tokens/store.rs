@@ -2,6 +2,7 @@
 
 use super::{PREFIX, Scope, Token};
 use crate::access::Caller;
+use crate::audit::RequestContext;
 use crate::db::{Db, Result, Tx, execute, row, rows};
 use crate::ids::{TokenId, UserId};
 use crate::secret;
@@ -103,8 +104,13 @@ pub(super) async fn list(
     )
 }
 
-pub(super) async fn insert(db: &Db, user: UserId, token: &Token, hash: &[u8]) -> Result<()> {
-    let mut tx = db.begin().await?;
+pub(super) async fn insert(
+    request: &RequestContext,
+    user: UserId,
+    token: &Token,
+    hash: &[u8],
+) -> Result<()> {
+    let mut tx = request.begin().await?;
     execute!(
         &mut tx,
         "INSERT INTO api_tokens (id, user_id, token_hash, name, scope, created_at, expires_at)
@@ -120,8 +126,8 @@ pub(super) async fn insert(db: &Db, user: UserId, token: &Token, hash: &[u8]) ->
     tx.commit().await
 }
 
-pub(super) async fn delete(db: &Db, user: UserId, id: TokenId) -> Result<bool> {
-    let mut tx = db.begin().await?;
+pub(super) async fn delete(request: &RequestContext, user: UserId, id: TokenId) -> Result<bool> {
+    let mut tx = request.begin().await?;
     let deleted = execute!(
         &mut tx,
         "DELETE FROM api_tokens WHERE user_id = $1 AND id = $2",

@@ -5,7 +5,7 @@
 
 use crate::access::Custodian;
 use crate::app::App;
-use crate::audit::{self, Actor};
+use crate::audit::{Actor, RequestContext};
 use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
@@ -97,10 +97,11 @@ struct Invited {
               (status = 409, description = "The user is shut out", body = Problem)))]
 async fn invite_again(
     State(app): State<App>,
+    request: RequestContext,
     custodian: Custodian,
     Id(id): Id<UserId>,
 ) -> Result<(StatusCode, Json<Invitation>)> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let user = super::store::find(&mut tx, custodian.operator, id).await?;
     let user = user.ok_or(Error::NotFound("user"))?;
     if user.state == super::Standing::Disabled {
@@ -123,6 +124,7 @@ async fn invite_again(
               (status = 410, description = "The code has lapsed", body = Problem)))]
 async fn accept_invitation(
     State(app): State<App>,
+    request: RequestContext,
     Valid(acceptance): Valid<Acceptance>,
 ) -> Result<Json<Accepted>> {
     let code_hash = secret::hash(&secret::normal_code(&acceptance.code));
@@ -137,7 +139,7 @@ async fn accept_invitation(
     let about = [invited.email.as_str(), &invited.name, company];
     password::check("password", &acceptance.password, &about)?;
     let hash = password::hash(password::place(&app).await?, acceptance.password).await?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let used = execute!(
         &mut tx,
         "DELETE FROM invitations WHERE user_id = $1 AND code_hash = $2",
@@ -151,7 +153,7 @@ async fn accept_invitation(
     end_access(&mut tx, invited.user_id).await?;
     let tenant = invited.operator_id.map(Tenant::Operator);
     let tenant = tenant.or(invited.firm_id.map(Tenant::Firm));
-    audit::acts(Actor::person(invited.user_id, &invited.name, tenant));
+    request.record_actor(Actor::person(invited.user_id, &invited.name, tenant));
     tx.commit().await?;
     Ok(Json(Accepted {
         email: invited.email,
@@ -178,8 +180,12 @@ pub(super) async fn make(tx: &mut Tx, app: &App, user: UserId) -> Result<Invitat
 ///
 /// # Errors
 /// When the database does.
-pub async fn reset(db: &Db, email: &str, now: Time) -> Result<Option<(String, Time)>> {
-    let mut tx = db.begin().await?;
+pub async fn reset(
+    request: &RequestContext,
+    email: &str,
+    now: Time,
+) -> Result<Option<(String, Time)>> {
+    let mut tx = request.begin().await?;
     let user = row!(
         in &mut tx,
         (UserId, Option<OperatorId>, Option<FirmId>),
@@ -191,7 +197,7 @@ pub async fn reset(db: &Db, email: &str, now: Time) -> Result<Option<(String, Ti
     };
     let tenant = operator.map(Tenant::Operator);
     if let Some(tenant) = tenant.or(firm.map(Tenant::Firm)) {
-        audit::concerns(tenant);
+        request.concerns(tenant);
     }
     session::set_password(&mut tx, user, "").await?;
     end_access(&mut tx, user).await?;

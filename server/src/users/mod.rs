@@ -12,6 +12,7 @@ pub use invitation::reset;
 
 use crate::access::{Custodian, Overseer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Listed, Page, Valid, text};
 use crate::ids::UserId;
@@ -183,13 +184,14 @@ async fn list_users(
               (status = 409, description = "The e-mail has an account", body = Problem)))]
 async fn invite_user(
     State(app): State<App>,
+    request: RequestContext,
     custodian: Custodian,
     Valid(new): Valid<NewUser>,
 ) -> Result<(StatusCode, Json<InvitedUser>)> {
     let email = checked_email(&new.email)?;
     let name = text("name", &new.name)?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let created = store::insert(
         &mut tx,
         custodian.operator,
@@ -218,6 +220,7 @@ async fn invite_user(
               (status = 409, description = "It is the last admin", body = Problem)))]
 async fn change_user(
     State(app): State<App>,
+    request: RequestContext,
     custodian: Custodian,
     Id(id): Id<UserId>,
     Valid(change): Valid<ChangedUser>,
@@ -229,7 +232,7 @@ async fn change_user(
         .transpose()?;
     let role = change.role.map(Role::from);
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::lock(&mut tx, custodian.operator).await?;
     let before = store::find(&mut tx, custodian.operator, id).await?;
     before.ok_or(Error::NotFound("user"))?;
@@ -252,11 +255,11 @@ async fn change_user(
     responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem),
               (status = 409, description = "It is the last admin", body = Problem)))]
 async fn remove_user(
-    State(app): State<App>,
+    request: RequestContext,
     custodian: Custodian,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::lock(&mut tx, custodian.operator).await?;
     if !store::delete(&mut tx, custodian.operator, id).await? {
         return Err(Error::NotFound("user"));
@@ -273,11 +276,11 @@ async fn remove_user(
     params(("id" = UserId, Path)),
     responses((status = 204), (status = 401, body = Problem), (status = 404, body = Problem)))]
 async fn reset_second_factor(
-    State(app): State<App>,
+    request: RequestContext,
     custodian: Custodian,
     Id(id): Id<UserId>,
 ) -> Result<StatusCode> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let user = store::find(&mut tx, custodian.operator, id).await?;
     user.ok_or(Error::NotFound("user"))?;
     second_factor::remove(&mut tx, id).await?;
@@ -302,11 +305,11 @@ async fn find_sign_in_rules(
     responses((status = 200, body = SignInRules), (status = 401, body = Problem),
               (status = 409, description = "You have no second factor yourself", body = Problem)))]
 async fn change_sign_in_rules(
-    State(app): State<App>,
+    request: RequestContext,
     custodian: Custodian,
     Valid(rules): Valid<SignInRules>,
 ) -> Result<Json<SignInRules>> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let asking = store::find(&mut tx, custodian.operator, custodian.user).await?;
     if rules.second_factor_required && !asking.is_some_and(|user| user.second_factor) {
         let first = "set up a second factor of your own first";

@@ -13,7 +13,7 @@ pub use store::{find_row, is_in_service, must_be_in_fleet, names};
 use crate::access::{Reader, Writer};
 use crate::alerts::{self, Severity, Standing};
 use crate::app::App;
-use crate::audit;
+use crate::audit::RequestContext;
 use crate::compasses::{self, Compass};
 use crate::deviation::Worst;
 use crate::error::{Error, Problem, Result};
@@ -175,20 +175,21 @@ async fn list_vessels(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_vessel(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     key: Key,
     Valid(new): Valid<NewVessel>,
 ) -> Result<(StatusCode, Json<Vessel>)> {
-    let request = idempotency::request_hash("vessel", &new)?;
+    let request_hash = idempotency::request_hash("vessel", &new)?;
     let new = new.checked()?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let wanted = VesselId::new();
     let id = key
-        .once(&mut tx, writer.operator, &request, wanted.0, now)
+        .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
         .await?;
     if id == wanted.0 {
-        audit::concerns_vessel(wanted, None);
+        request.concerns_vessel(wanted, None);
         store::insert(&mut tx, writer.operator, wanted, &new, now).await?;
         compasses::insert_standard(&mut tx, wanted, now).await?;
     }
@@ -221,12 +222,13 @@ async fn find_vessel(
               (status = 422, body = Problem)))]
 async fn amend_vessel(
     State(app): State<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<VesselId>,
     Valid(amendment): Valid<Amendment>,
 ) -> Result<Json<Vessel>> {
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let vessel = store::lock(&mut tx, writer.operator, id).await?;
     let told = match amendment.in_service {
         Some(in_service) => {

@@ -19,6 +19,7 @@ pub use send::{Reach, SIGNATURE_HEADER, Sender, check_url, client};
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid};
 use crate::idempotency::{self, Key};
@@ -74,17 +75,18 @@ async fn list_webhooks(
               (status = 403, body = Problem), (status = 422, body = Problem)))]
 async fn create_webhook(
     State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     key: Key,
     Valid(new): Valid<NewWebhook>,
 ) -> Result<(StatusCode, Json<MadeWebhook>)> {
-    let request = idempotency::request_hash("webhook", &new)?;
+    let request_hash = idempotency::request_hash("webhook", &new)?;
     let new = new.checked(writer.tenant, app.config.webhooks.reach())?;
     let now = app.clock.now().into();
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let wanted = WebhookId::new();
     let made = key
-        .once(&mut tx, writer.tenant, &request, wanted.0, now)
+        .once(&mut tx, writer.tenant, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
         let secret = format!("{SECRET_PREFIX}{}", secret::new_token());
@@ -120,13 +122,14 @@ async fn find_webhook(
               (status = 422, body = Problem)))]
 async fn change_webhook(
     State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<WebhookId>,
     Valid(wanted): Valid<NewWebhook>,
 ) -> Result<Json<Webhook>> {
     store::must_find(&app.db, writer.tenant, id).await?;
     let wanted = wanted.checked(writer.tenant, app.config.webhooks.reach())?;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     store::change(&mut tx, writer.tenant, id, &wanted).await?;
     tx.commit().await?;
     Ok(Json(store::must_find(&app.db, writer.tenant, id).await?))
@@ -139,11 +142,11 @@ async fn change_webhook(
     responses((status = 204), (status = 401, body = Problem), (status = 403, body = Problem),
               (status = 404, body = Problem)))]
 async fn delete_webhook(
-    State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<WebhookId>,
 ) -> Result<StatusCode> {
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     outbox::delete(&mut tx, writer.tenant, id.0, Channel::Webhook).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
@@ -158,6 +161,7 @@ async fn delete_webhook(
               (status = 403, body = Problem), (status = 404, body = Problem)))]
 async fn test_webhook(
     State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<WebhookId>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
@@ -171,7 +175,7 @@ async fn test_webhook(
         order: None,
         body,
     };
-    let queued = outbox::queue_one(&app.db, id.0, &message, now.into()).await?;
+    let queued = outbox::queue_one(&request, id.0, &message, now.into()).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }
 
@@ -202,11 +206,12 @@ async fn list_deliveries(
               (status = 403, body = Problem), (status = 404, body = Problem)))]
 async fn send_delivery_again(
     State(app): State<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id((id, delivery)): Id<(WebhookId, DeliveryId)>,
 ) -> Result<(StatusCode, Json<Delivery>)> {
     store::must_find(&app.db, writer.tenant, id).await?;
     let now = app.clock.now().into();
-    let queued = outbox::send_again(&app.db, id.0, delivery, now).await?;
+    let queued = outbox::send_again(&request, id.0, delivery, now).await?;
     Ok((StatusCode::ACCEPTED, Json(queued)))
 }

@@ -13,9 +13,10 @@ use super::reading::{Read, must_be_numbers};
 use super::refusal::Refusal;
 use super::second::{Second, WHOLE, to_plan_from};
 use super::standing::Standing;
-use super::{completion, request, shown};
+use super::{completion, order_update, shown};
 use crate::access::PartyWriter;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
 use crate::idempotency::Key;
@@ -160,13 +161,14 @@ where
               (status = 422, body = Problem)))]
 async fn read_field_again(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(given): Valid<AgainForm>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "second reading", &given)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "second reading", &given)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
@@ -187,7 +189,7 @@ async fn read_field_again(
     let judge = move || second.judge(&prepared, &steps, looked_at, planned);
     let (mut judged, basis) = calculate(&app, judge).await?;
     judged.anew = basis.map(|basis| to_plan_from(basis, form)).transpose()?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         change
             .append(Content::SecondReading(Box::new(judged)))
             .await?;

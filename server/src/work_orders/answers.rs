@@ -6,9 +6,10 @@ use super::offering::{
 };
 use super::order::{Order, State};
 use super::store;
-use super::{request, shown};
+use super::{order_update, shown};
 use crate::access::{PartyWriter, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, ValidOrNone};
 use crate::idempotency::Key;
@@ -43,14 +44,15 @@ where
               (status = 422, body = Problem)))]
 async fn offer_work_order(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(new): Valid<NewOffer>,
 ) -> Result<Json<Order>> {
     let operator = writer.operator;
-    let request = request(&app, writer, id, key, "offer", &new)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "offer", &new)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, operator, id).await;
     }
@@ -59,7 +61,7 @@ async fn offer_work_order(
         &allowed,
         "it is offered before a firm has it, and not twice at a time",
     )?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         let offered = new.checked(&mut change.tx, operator).await?;
         offering::offer(&mut change, offered).await?;
         change.commit().await?;
@@ -88,15 +90,16 @@ async fn vessel_of(app: &App, tenant: Tenant, id: OrderId) -> Result<VesselId> {
               (status = 422, body = Problem)))]
 async fn accept_work_order(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "yes", &answer)?;
+    let update = order_update(&app, request, writer, id, key, "yes", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
-    if let Some(mut change) = request.begin_on(vessel).await? {
+    if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
             Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::Yes(answer)).await?,
             Tenant::Operator(_) => operator_says(&mut change, answer, true).await?,
@@ -118,15 +121,16 @@ async fn accept_work_order(
               (status = 422, body = Problem)))]
 async fn decline_work_order(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<StatusCode> {
-    let request = request(&app, writer, id, key, "no", &answer)?;
+    let update = order_update(&app, request, writer, id, key, "no", &answer)?;
     let answer = answer.checked(writer.tenant)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
-    if let Some(mut change) = request.begin_on(vessel).await? {
+    if let Some(mut change) = update.begin_on(vessel).await? {
         match writer.tenant {
             Tenant::Firm(firm) => firm_says(&mut change, firm, FirmSays::No(answer)).await?,
             Tenant::Operator(_) => operator_says(&mut change, answer, false).await?,
@@ -149,6 +153,7 @@ async fn decline_work_order(
               (status = 422, body = Problem)))]
 async fn propose_terms(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
@@ -159,10 +164,10 @@ async fn propose_terms(
             "terms are proposed by a firm that is asked",
         ));
     };
-    let request = request(&app, writer, id, key, "proposal", &proposal)?;
+    let update = order_update(&app, request, writer, id, key, "proposal", &proposal)?;
     let vessel = vessel_of(&app, writer.tenant, id).await?;
     let now = app.clock.now().into();
-    if let Some(mut change) = request.begin_on(vessel).await? {
+    if let Some(mut change) = update.begin_on(vessel).await? {
         let proposal = proposal.checked(change.whole.summary.planned_at, now)?;
         firm_says(&mut change, firm, FirmSays::Instead(proposal)).await?;
         change.commit().await?;
@@ -181,20 +186,21 @@ async fn propose_terms(
               (status = 422, body = Problem)))]
 async fn go_on_board(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     ValidOrNone(boarded): ValidOrNone<Boarded>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "on board", &boarded)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "on board", &boarded)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
     let allowed = [State::Planned, State::Accepted];
     whole.must_be(&allowed, "the adjuster goes on board once a firm has it")?;
     let boarded = boarded.checked(app.clock.now().into())?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         change.append(Content::OnBoard(boarded)).await?;
         change.commit().await?;
     }

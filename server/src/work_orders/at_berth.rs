@@ -12,9 +12,10 @@ use super::second::is_explained_by;
 use super::steps::{Moved, Stand, StepRead, judge, learn_anew};
 use super::store::{self, Whole};
 use super::whereabouts;
-use super::{request, shown};
+use super::{order_update, shown};
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, ValidOrNone, degrees, optional_text};
 use crate::idempotency::Key;
@@ -62,13 +63,14 @@ where
               (status = 422, description = "Also when the reading is refused", body = Problem)))]
 async fn read_berth(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(given): Valid<ReadingForm>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "berth reading", &given)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "berth reading", &given)?;
+    let (whole, done) = update.look().await?;
     if let Some(entry) = done {
         must_not_be_refused(&whole, entry)?;
         return shown(&app, writer.tenant, id).await;
@@ -90,7 +92,7 @@ async fn read_berth(
         checked,
         refusal: refusal.clone(),
     };
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         if refusal.is_none() {
             let (at, heading_deg) = (Time(read.given.at), read.given.heading_true_deg);
             port_calls::lies(&mut change.tx, vessel, at, heading_deg).await?;
@@ -162,13 +164,14 @@ async fn find_plan(
               (status = 422, description = "There is no plan, and what would cure that", body = Problem)))]
 async fn choose_plan(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     ValidOrNone(choice): ValidOrNone<Choice>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "plan", &choice)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "plan", &choice)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
@@ -182,7 +185,7 @@ async fn choose_plan(
         field: "plan",
         detail: format!("there are plans 1 to {offered}"),
     })?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         change.append(Content::Plan(Box::new(planned))).await?;
         change.commit().await?;
     }
@@ -200,13 +203,22 @@ async fn choose_plan(
               (status = 422, body = Problem)))]
 async fn read_step(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id((id, number)): Id<(OrderId, u32)>,
     key: Key,
     Valid(read): Valid<StepRead>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, &format!("step {number}"), &read)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(
+        &app,
+        request,
+        writer,
+        id,
+        key,
+        &format!("step {number}"),
+        &read,
+    )?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
@@ -230,7 +242,7 @@ async fn read_step(
     let prepared = standing.prepared()?;
     must_be_without_cargo(&app, &whole.summary, &prepared).await?;
     let judged = calculate(&app, move || judge(&prepared, step, before_deg, after_deg)).await?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         change.append(Content::Step(Box::new(judged))).await?;
         change.commit().await?;
     }
@@ -270,13 +282,14 @@ fn must_lie_still(before_deg: f64, last_deg: Option<f64>) -> Result<()> {
               (status = 422, body = Problem)))]
 async fn set_correctors(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(stand): Valid<Stand>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "corrector settings", &stand)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "corrector settings", &stand)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
@@ -285,7 +298,7 @@ async fn set_correctors(
     let mut moved = moved(&whole, stand, app.clock.now().into())?;
     moved.learnt_anew = learn_anew(&app, &whole.standing(), &moved).await?;
     moved.explains_reading = is_explained_by(&app, &whole.standing(), &moved).await?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         let content = Content::CorrectorSettings(Box::new(moved));
         change.append(content).await?;
         change.commit().await?;

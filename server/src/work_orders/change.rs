@@ -11,6 +11,7 @@ use super::order::State;
 use super::store::{self, Whole};
 use crate::access::PartyWriter;
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::db::Tx;
 use crate::error::{Error, Result};
 use crate::events::{self, Event, Kind};
@@ -21,8 +22,9 @@ use crate::time::Time;
 use uuid::Uuid;
 
 /// A request to change an order.
-pub(super) struct Request<'a> {
+pub(super) struct OrderUpdate<'a> {
     pub(super) app: &'a App,
+    pub(super) request: RequestContext,
     pub(super) writer: PartyWriter,
     pub(super) order: OrderId,
     pub(super) key: Key,
@@ -44,7 +46,7 @@ pub(super) struct Change<'a> {
     told: Vec<Event>,
 }
 
-impl<'a> Request<'a> {
+impl<'a> OrderUpdate<'a> {
     /// The order as it is, and whether this request has been done already.
     pub(super) async fn look(&self) -> Result<(Whole, Option<Uuid>)> {
         let tenant = self.writer.tenant;
@@ -72,7 +74,7 @@ impl<'a> Request<'a> {
     /// whoever does has to look at what is in the change.
     pub(super) async fn begin_on(self, vessel: VesselId) -> Result<Option<Change<'a>>> {
         let now = self.app.clock.now().into();
-        let mut tx = self.app.db.begin().await?;
+        let mut tx = self.request.begin().await?;
         let whole = store::lock(&mut tx, vessel, self.order).await?;
         let wanted = Uuid::now_v7();
         let tenant = self.writer.tenant;

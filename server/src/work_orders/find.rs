@@ -5,11 +5,12 @@
 
 use super::order::{Filter, Summary};
 use super::store::{Whole, read};
-use crate::db::{Db, Tx, execute, row, rows};
+use crate::db::{self, Db, Tx, execute, row, rows};
 use crate::error::{Error, Result};
 use crate::ids::{FirmId, OrderId, VesselId};
 use crate::tenants::Tenant;
 use crate::time::Time;
+use futures_util::future::BoxFuture;
 use uuid::Uuid;
 
 /// Orders as a firm (`$1`) or, where that is none, an operator sees them.
@@ -87,6 +88,22 @@ pub(super) async fn summary(db: &Db, tenant: Tenant, id: OrderId) -> Result<Summ
         id
     )?
     .ok_or(Error::NotFound("work order"))
+}
+
+/// Finds the vessel of an order, whoever asks.
+pub(super) fn vessel_of(
+    tx: &mut Tx,
+    order: OrderId,
+) -> BoxFuture<'_, db::Result<Option<VesselId>>> {
+    Box::pin(async move {
+        let found = row!(
+            in tx,
+            (VesselId,),
+            "SELECT vessel_id FROM work_orders WHERE id = $1 ORDER BY vessel_id",
+            order
+        )?;
+        Ok(found.map(|(vessel,)| vessel))
+    })
 }
 
 /// The vessel of an order that a firm was once asked to do, whether or not it still sees it.

@@ -8,9 +8,10 @@ use super::plan::{foretold, must_have_turned, must_keep_to_limits, must_still_ho
 use super::record::Aboard;
 use super::store::{self, Whole};
 use super::view;
-use super::{request, shown};
+use super::{order_update, shown};
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::compasses;
 use crate::error::{Error, Problem, Result};
 use crate::evidence::{Evidence, File, Line, archive, predicted_csv, record_pdf, record_svg};
@@ -69,6 +70,7 @@ where
               (status = 415, body = Problem)))]
 async fn add_photo(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     Params(caption): Params<Caption>,
@@ -77,8 +79,8 @@ async fn add_photo(
 ) -> Result<Json<Order>> {
     let bytes = body.map_err(|_| Error::TooLarge(MAX_BYTES))?;
     let taken = PhotoTaken::new(PhotoId::new(), &bytes, &caption)?;
-    let request = request(&app, writer, id, key, "photo", &taken.sha256)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "photo", &taken.sha256)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
@@ -89,7 +91,7 @@ async fn add_photo(
     if photos(&whole).count() >= MOST {
         return Err(Error::WrongState(format!("there are {MOST} photographs")));
     }
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         let (sha256, kind) = (taken.sha256.as_str(), taken.media_type.as_str());
         store::insert_photo(
             &mut change.tx,
@@ -147,13 +149,14 @@ async fn find_photo(
               (status = 422, body = Problem)))]
 async fn complete_work_order(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(word): Valid<Word>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "completion", &word)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "completion", &word)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
@@ -167,7 +170,7 @@ async fn complete_work_order(
     must_have_turned(&app, &standing, prepared).await?;
     let learnt = foretold(&app, &standing).await?;
     let aboard = aboard(&app, &whole).await?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         Box::pin(completion::complete(&mut change, &aboard, learnt, word, at)).await?;
         change.commit().await?;
     }
@@ -200,20 +203,21 @@ async fn aboard(app: &App, whole: &Whole) -> Result<Aboard> {
               (status = 422, description = "It is not this key's", body = Problem)))]
 async fn sign_record(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(signed): Valid<Signed>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "signature", &signed)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "signature", &signed)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.tenant, id).await;
     }
     let completed = whole.standing().completed;
     let completed = completed.ok_or_else(no_record)?;
     signed.checked(&completed.record_sha256)?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         let holder = change.whole.summary.firm_id;
         let key = keys::find_active(&mut change.tx, holder, &signed.public_key).await?;
         let signed = SignedBy { signed, key };

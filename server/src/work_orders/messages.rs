@@ -5,10 +5,11 @@
 use super::entry::Content;
 use super::offering::{message, must_be_own};
 use super::offers::{Between, Offer, OfferState, Offers};
-use super::request;
+use super::order_update;
 use super::store;
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Valid};
 use crate::idempotency::Key;
@@ -124,19 +125,20 @@ async fn list_messages(
               (status = 422, body = Problem)))]
 async fn send_message(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(new): Valid<NewMessage>,
 ) -> Result<StatusCode> {
-    let request = request(&app, writer, id, key, "message", &new)?;
+    let update = order_update(&app, request, writer, id, key, "message", &new)?;
     must_be_own(writer.tenant, new.firm_id)?;
     let text = message(&new.text)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     if summary.state.is_over() {
         return Err(Error::WrongState("the order is over".to_owned()));
     }
-    if let Some(mut change) = request.begin_on(summary.vessel_id).await? {
+    if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offers = change.whole.standing().offers;
         let said = Between {
             text: Some(text),

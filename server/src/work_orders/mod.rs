@@ -64,7 +64,7 @@ pub use verification::{adjusted_at, after_analysis, alert};
 
 use crate::access::{PartyReader, PartyWriter, Writer};
 use crate::app::App;
-use crate::audit;
+use crate::audit::RequestContext;
 use crate::db::Tx;
 use crate::error::{Error, Problem, Result};
 use crate::events::Event;
@@ -74,9 +74,11 @@ use crate::ids::{OperatorId, OrderId, VesselId};
 use crate::session;
 use crate::tenants::Tenant;
 use crate::vessels;
-use axum::extract::{FromRef, State as Shared};
+use axum::extract::{FromRef, RawPathParams, Request, State as Shared};
 use axum::http::StatusCode;
-use change::{Change, Request};
+use axum::middleware::{Next, from_fn};
+use axum::response::Response;
+use change::{Change, OrderUpdate};
 use completion::write_binnacle;
 use entry::{Author, Content, Entry, Said};
 use order::{Filter, Opened, Order, OrderList};
@@ -94,8 +96,19 @@ where
     App: FromRef<S>,
     S: Clone + Send + Sync + 'static,
 {
-    finish::router()
+    OpenApiRouter::new()
         .routes(routes!(list_work_orders, create_work_order))
+        .merge(router_of_one())
+}
+
+/// The routes of one order. In the audit log each request has its order, and what firms read
+/// is logged.
+fn router_of_one<S>() -> OpenApiRouter<S>
+where
+    App: FromRef<S>,
+    S: Clone + Send + Sync + 'static,
+{
+    finish::router()
         .routes(routes!(find_work_order))
         .routes(routes!(list_entries))
         .routes(routes!(remark))
@@ -107,6 +120,22 @@ where
         .merge(retime::router())
         .merge(messages::router())
         .merge(aboard::router())
+        .route_layer(from_fn(log_order))
+}
+
+/// Tells the audit log which order a request is about.
+async fn log_order(
+    context: RequestContext,
+    path: RawPathParams,
+    request: Request,
+    next: Next,
+) -> Response {
+    let mut ids = path.iter().map(|(_, value)| Uuid::parse_str(value));
+    if let Some(order) = ids.find_map(std::result::Result::ok) {
+        context.concerns_order(OrderId(order), find::vessel_of);
+    }
+    context.log_reads_of_firms();
+    next.run(request).await
 }
 
 /// Something to be said of an order.
@@ -149,6 +178,7 @@ async fn list_work_orders(
               (status = 422, body = Problem)))]
 async fn create_work_order(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: Writer,
     key: Key,
     Valid(new): Valid<NewOrder>,
@@ -158,11 +188,11 @@ async fn create_work_order(
     let new = new.checked(now)?;
     let wanted = OrderId::new();
     let operator = writer.operator;
-    let mut tx = app.db.begin().await?;
+    let mut tx = request.begin().await?;
     let made = key.once(&mut tx, operator, &hash, wanted.0, now).await?;
     if made == wanted.0 {
         let author = author(&mut tx, writer).await?;
-        let change = open(&app, tx, operator, wanted, new, author).await?;
+        let change = open(&app, &request, tx, operator, wanted, new, author).await?;
         change.commit().await?;
     }
     Ok((
@@ -176,14 +206,15 @@ async fn create_work_order(
 /// # Errors
 /// [`Error::WrongState`] when another order of the compass is under way or the vessel out of
 /// service, and what is wrong with the offer.
-async fn open(
-    app: &App,
+async fn open<'a>(
+    app: &'a App,
+    request: &RequestContext,
     mut tx: Tx,
     operator: OperatorId,
     id: OrderId,
     mut new: NewOrder,
     author: Author,
-) -> Result<Change<'_>> {
+) -> Result<Change<'a>> {
     let (vessel, compass) = (new.vessel_id, new.compass_id);
     let (vessel_name, compass_name) = store::names(&mut tx, operator, vessel, compass).await?;
     if store::is_under_way(&mut tx, vessel, compass).await? {
@@ -199,7 +230,7 @@ async fn open(
     // Whom it is offered to stands in entries of their own.
     let offer = new.offer.take();
     let now = app.clock.now().into();
-    audit::concerns_vessel(vessel, Some(id));
+    request.concerns_vessel(vessel, Some(id));
     store::insert(&mut tx, id, &new, &author, now).await?;
     let whole = store::lock(&mut tx, vessel, id).await?;
     let mut change = Change::new(app, tx, whole, author, now, Uuid::now_v7());
@@ -226,6 +257,7 @@ async fn open(
 /// with the order or its offer.
 pub async fn write(
     app: &App,
+    request: &RequestContext,
     mut tx: Tx,
     writer: Writer,
     id: OrderId,
@@ -233,7 +265,7 @@ pub async fn write(
 ) -> Result<(Tx, Vec<Event>)> {
     let author = author(&mut tx, writer).await?;
     let new = new.checked(app.clock.now().into())?;
-    let change = open(app, tx, writer.operator, id, new, author).await?;
+    let change = open(app, request, tx, writer.operator, id, new, author).await?;
     change.settle().await
 }
 
@@ -330,16 +362,17 @@ async fn list_entries(
               (status = 422, body = Problem)))]
 async fn remark(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(remark): Valid<Remark>,
 ) -> Result<Json<Order>> {
     let said = said(&remark)?;
-    let request = request(&app, writer, id, key, "remark", &remark)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "remark", &remark)?;
+    let (whole, done) = update.look().await?;
     if done.is_none()
-        && let Some(mut change) = request.begin(&whole).await?
+        && let Some(mut change) = update.begin(&whole).await?
     {
         change.append(Content::Remark(said)).await?;
         change.commit().await?;
@@ -358,21 +391,22 @@ async fn remark(
               (status = 409, body = Problem), (status = 422, body = Problem)))]
 async fn cancel_work_order(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(remark): Valid<Remark>,
 ) -> Result<Json<Order>> {
     let said = said(&remark)?;
-    let request = request(&app, writer, id, key, "cancellation", &remark)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "cancellation", &remark)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
     if !whole.summary.state.is_under_way() {
         whole.must_be(&[], "it cannot be cancelled any more")?;
     }
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         leave_as_it_stands(&mut change).await?;
         change.append(Content::Cancelled(said)).await?;
         change.commit().await?;
@@ -423,14 +457,15 @@ struct Closing {
               (status = 422, body = Problem)))]
 async fn close_work_order(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(closing): Valid<Closing>,
 ) -> Result<Json<Order>> {
     let text = text("text", &closing.text)?;
-    let request = request(&app, writer, id, key, "closing", &closing)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "closing", &closing)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
@@ -442,7 +477,7 @@ async fn close_work_order(
             "it is closed when headings at sea have spoken, or once adjusted without_verification",
         )?;
     }
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         let text = if unverified {
             format!("closed without verification: {text}")
         } else {
@@ -461,16 +496,18 @@ fn said(remark: &Remark) -> Result<Said> {
 }
 
 /// A request to change an order, told from others by what it asks.
-fn request<'a>(
+fn order_update<'a>(
     app: &'a App,
+    request: RequestContext,
     writer: impl Into<PartyWriter>,
     order: OrderId,
     key: Key,
     what: &str,
     content: &impl Serialize,
-) -> Result<Request<'a>> {
-    Ok(Request {
+) -> Result<OrderUpdate<'a>> {
+    Ok(OrderUpdate {
         app,
+        request,
         writer: writer.into(),
         order,
         key,

@@ -13,9 +13,10 @@ use super::order::{Order, State};
 use super::place;
 use super::store;
 use super::turns::answer_by;
-use super::{request, shown};
+use super::{order_update, shown};
 use crate::access::{PartyWriter, Writer};
 use crate::app::App;
+use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::firms::{Told, port_meant};
 use crate::http::{Id, Json, Valid, ValidOrNone, optional_text};
@@ -75,13 +76,14 @@ struct Retime {
               (status = 422, body = Problem)))]
 async fn propose_retime(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: Writer,
     Id(id): Id<OrderId>,
     key: Key,
     Valid(retime): Valid<Retime>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "retime", &retime)?;
-    let (whole, done) = request.look().await?;
+    let update = order_update(&app, request, writer, id, key, "retime", &retime)?;
+    let (whole, done) = update.look().await?;
     if done.is_some() {
         return shown(&app, writer.operator, id).await;
     }
@@ -95,7 +97,7 @@ async fn propose_retime(
     let terms = checked_terms(retime.terms, app.clock.now().into())?;
     let text = optional_text("text", retime.text.as_deref())?;
     whole.must_be(&[State::Accepted], "a firm that has it is asked")?;
-    if let Some(mut change) = request.begin(&whole).await? {
+    if let Some(mut change) = update.begin(&whole).await? {
         let holder = holder(&change)?;
         must_be_possible(&mut change, &holder.firm(), &terms, Told::Operator).await?;
         let between = Between {
@@ -122,12 +124,21 @@ async fn propose_retime(
               (status = 422, body = Problem)))]
 async fn accept_retime(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "yes to another time", &answer)?;
+    let update = order_update(
+        &app,
+        request,
+        writer,
+        id,
+        key,
+        "yes to another time",
+        &answer,
+    )?;
     let answer = answer.checked(writer.tenant)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
     let Tenant::Firm(firm) = writer.tenant else {
@@ -135,7 +146,7 @@ async fn accept_retime(
             "the firm that has the order answers what it is asked".to_owned(),
         ));
     };
-    if let Some(mut change) = request.begin_on(summary.vessel_id).await? {
+    if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offer = holder(&change)?;
         if offer.firm_id != firm {
             return Err(Error::NotFound("work order"));
@@ -172,15 +183,24 @@ async fn accept_retime(
               (status = 422, body = Problem)))]
 async fn decline_retime(
     Shared(app): Shared<App>,
+    request: RequestContext,
     writer: PartyWriter,
     Id(id): Id<OrderId>,
     key: Key,
     ValidOrNone(answer): ValidOrNone<Answer>,
 ) -> Result<Json<Order>> {
-    let request = request(&app, writer, id, key, "no to another time", &answer)?;
+    let update = order_update(
+        &app,
+        request,
+        writer,
+        id,
+        key,
+        "no to another time",
+        &answer,
+    )?;
     let answer = answer.checked(writer.tenant)?;
     let summary = store::summary(&app.db, writer.tenant, id).await?;
-    if let Some(mut change) = request.begin_on(summary.vessel_id).await? {
+    if let Some(mut change) = update.begin_on(summary.vessel_id).await? {
         let offer = holder(&change)?;
         if writer
             .tenant

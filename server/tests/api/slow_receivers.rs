@@ -3,6 +3,7 @@
 use crate::on_both;
 use crate::support::Shore;
 use crate::webhooks::{Receiver, deliver, make, path};
+use binnacle_server::audit::RequestContext;
 use binnacle_server::ids::{DeliveryId, OrderId};
 use binnacle_server::outbox::{self, Kind, Message, Sent};
 use binnacle_server::webhooks::{Reach, Sender};
@@ -92,7 +93,8 @@ async fn a_receiver_that_does_not_answer_is_called_upon_once_at_a_time(shore: Sh
             body: "{}".to_owned(),
         };
         let now = shore.app.clock.now().into();
-        let queued = outbox::queue_one(&shore.app.db, receiver, &message, now);
+        let command = RequestContext::of_command(&shore.app.db, "queue", now);
+        let queued = outbox::queue_one(&command, receiver, &message, now);
         queued.await.unwrap();
     }
     let first = begin(&shore);

@@ -1,7 +1,7 @@
 //! A database from before there were firms loses nothing.
 
 use crate::support::{Answer, Engine, Shore, attempt, password_hash};
-use binnacle_server::db::{Db, Tx};
+use binnacle_server::db::{Connection, Db, Tx};
 use binnacle_server::secret;
 use reqwest::Method;
 use serde_json::json;
@@ -15,9 +15,9 @@ const PEOPLE: usize = 3;
 
 macro_rules! run {
     ($tx:expr, $sql:expr $(, $bind:expr)* $(,)?) => {
-        match $tx {
-            Tx::Sqlite(tx) => drop(sqlx::query($sql)$(.bind($bind))*.execute(&mut **tx).await.unwrap()),
-            Tx::Postgres(tx) => drop(sqlx::query($sql)$(.bind($bind))*.execute(&mut **tx).await.unwrap()),
+        match Tx::connection($tx) {
+            Connection::Sqlite(tx) => drop(sqlx::query($sql)$(.bind($bind))*.execute(&mut **tx).await.unwrap()),
+            Connection::Postgres(tx) => drop(sqlx::query($sql)$(.bind($bind))*.execute(&mut **tx).await.unwrap()),
         }
     };
 }

@@ -4,6 +4,7 @@ use crate::second_factor::{app_code, now_s, set_up};
 use crate::support::{
     Answer, Engine, PASSWORD, Person, Provider, Shore, Signer, attempt, provider_settings,
 };
+use binnacle_server::audit::RequestContext;
 use binnacle_server::time::Time;
 use binnacle_server::users;
 use serde_json::{Value, json};
@@ -344,7 +345,8 @@ async fn a_person_who_begins_anew_is_found_anew(world: World) {
         .says(json!({ "sub": "person-3", "email": email }));
     assert_eq!(outcome(&world.sign_in().await), "/?sign-in=taken");
     let now = Time(shore.app.clock.now());
-    users::reset(&shore.app.db, email, now).await.unwrap();
+    let command = RequestContext::of_command(&shore.app.db, "admin reset-user", now);
+    users::reset(&command, email, now).await.unwrap();
     assert_eq!(world.me().await["email"], email);
     world.shore.finish().await;
 }

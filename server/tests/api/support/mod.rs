@@ -19,7 +19,7 @@ use binnacle_server::analysis::{self, Worked};
 use binnacle_server::app::App;
 use binnacle_server::clock::Clock;
 use binnacle_server::config::{Cli, Command, Serve};
-use binnacle_server::db::{Db, Tx};
+use binnacle_server::db::{Connection, Db};
 use binnacle_server::{command, operations};
 use clap::Parser;
 use database::Database;
@@ -109,16 +109,16 @@ impl Shore {
 
     /// Changes the database behind the server's back.
     pub(crate) async fn sql(&self, statement: &'static str) {
-        match self.app.db.begin().await.unwrap() {
-            Tx::Sqlite(mut tx) => {
-                sqlx::query(statement).execute(&mut *tx).await.unwrap();
-                tx.commit().await.unwrap();
+        let mut tx = self.app.db.begin().await.unwrap();
+        match tx.connection() {
+            Connection::Sqlite(tx) => {
+                sqlx::query(statement).execute(&mut **tx).await.unwrap();
             }
-            Tx::Postgres(mut tx) => {
-                sqlx::query(statement).execute(&mut *tx).await.unwrap();
-                tx.commit().await.unwrap();
+            Connection::Postgres(tx) => {
+                sqlx::query(statement).execute(&mut **tx).await.unwrap();
             }
         }
+        tx.commit().await.unwrap();
     }
 
     /// The kinds of all live events there were, in order.

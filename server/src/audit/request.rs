@@ -1,0 +1,116 @@
+//! The request in a handler's hands: it begins the transactions that carry the audit line.
+
+use super::trail::{Actor, AuditTrail, Facts, FindVessel};
+use crate::db::{self, Db, Tx};
+use crate::error::{Error, Result};
+use crate::ids::{OrderId, VesselId};
+use crate::tenants::Tenant;
+use crate::time::Time;
+use axum::extract::FromRequestParts;
+use axum::http::request::Parts;
+use std::sync::{Arc, Mutex};
+use uuid::Uuid;
+
+/// A request, or a command, that may change something.
+///
+/// Handlers name it in their arguments, and hand it down to whatever writes: a transaction
+/// that is begun by it has the request's line of the audit log when it is committed.
+#[derive(Clone)]
+pub struct RequestContext {
+    db: Db,
+    trail: Arc<AuditTrail>,
+}
+
+impl RequestContext {
+    pub(super) fn new(db: Db, trail: Arc<AuditTrail>) -> RequestContext {
+        RequestContext { db, trail }
+    }
+
+    /// The context of a command on the server itself.
+    pub fn of_command(db: &Db, command: &str, now: Time) -> RequestContext {
+        let facts = Facts {
+            actor: Some(Actor::command_line()),
+            is_change: true,
+            ..Facts::default()
+        };
+        let trail = AuditTrail {
+            id: Uuid::now_v7(),
+            at: now,
+            address: String::new(),
+            method: String::new(),
+            route: command.to_owned(),
+            path: command.to_owned(),
+            facts: Mutex::new(facts),
+        };
+        RequestContext::new(db.clone(), Arc::new(trail))
+    }
+
+    /// The context of the request that these parts are of.
+    ///
+    /// # Errors
+    /// When the request has not passed the audit log's middleware.
+    pub fn of(parts: &Parts) -> Result<&RequestContext> {
+        let found = parts.extensions.get::<RequestContext>();
+        found.ok_or_else(|| Error::Internal(anyhow::anyhow!("a route without the audit log")))
+    }
+
+    /// The database, for reading.
+    pub fn db(&self) -> &Db {
+        &self.db
+    }
+
+    /// Begins a transaction that carries the line.
+    pub async fn begin(&self) -> db::Result<Tx> {
+        let hook = Arc::clone(&self.trail);
+        Ok(self.db.begin().await?.with_hook(hook))
+    }
+
+    /// Records who asks, as soon as that is known.
+    pub fn record_actor(&self, actor: impl Into<Actor>) {
+        self.trail.facts().actor = Some(actor.into());
+    }
+
+    /// Records whom it concerns, where the path does not tell.
+    pub fn concerns(&self, tenant: Tenant) {
+        self.trail.facts().tenant = Some(tenant);
+    }
+
+    /// Records the vessel that it concerns, and the vessel's order if it is about one, where
+    /// the path does not tell.
+    pub fn concerns_vessel(&self, vessel: VesselId, order: Option<OrderId>) {
+        let mut facts = self.trail.facts();
+        facts.vessel = Some(vessel);
+        facts.order = order.or(facts.order);
+    }
+
+    /// Records the order that it concerns. Its vessel is looked up when the line is written,
+    /// and only for what is done: a refusal does not tell whose order it is.
+    pub fn concerns_order(&self, order: OrderId, find_vessel: FindVessel) {
+        let mut facts = self.trail.facts();
+        facts.order = Some(order);
+        facts.find_vessel = Some(find_vessel);
+    }
+
+    /// Logs what a firm reads by this request.
+    pub fn log_reads_of_firms(&self) {
+        self.trail.facts().logs_firms = true;
+    }
+
+    /// Logs the request as a change, though its method is a safe one.
+    pub fn log_as_change(&self) {
+        self.trail.facts().is_change = true;
+    }
+
+    /// Leaves a change out of the audit log: what it writes is a log itself.
+    pub fn leave_out(&self) {
+        self.trail.facts().is_change = false;
+    }
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for RequestContext {
+    type Rejection = Error;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<RequestContext> {
+        RequestContext::of(parts).cloned()
+    }
+}
