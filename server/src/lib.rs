@@ -40,12 +40,14 @@ pub mod binnacles;
 pub mod compasses;
 pub mod fleet;
 pub mod logbook;
+pub mod particulars;
 pub mod settings;
 pub mod vessels;
 
 pub mod enrolment;
 pub mod streams;
 
+pub mod adjustments;
 pub mod alerts;
 pub mod analysis;
 pub mod changes;
@@ -67,6 +69,7 @@ pub mod deviation_book;
 pub mod sheet;
 
 pub mod mail;
+pub mod notices;
 pub mod notifications;
 pub mod outbox;
 pub mod reports;
@@ -76,6 +79,7 @@ pub mod dashboard;
 pub mod http;
 pub mod operations;
 pub mod state;
+pub mod subscriptions;
 pub mod tls;
 
 pub mod command;

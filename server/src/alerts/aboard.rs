@@ -10,13 +10,13 @@ use super::adjusted::ADJUSTED;
 use super::alert::{AlertWanted, Cause, Dated, Evidence, Severity, State};
 use super::look::{News, OVER, bring_in_line, tell};
 use super::store::{self, Known};
+use crate::adjustments;
 use crate::app::App;
 use crate::db::{Result as DbResult, Tx, execute, rows};
 use crate::error::Result;
 use crate::events::Event;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
-use crate::work_orders;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
 
@@ -65,7 +65,7 @@ pub(super) async fn in_line(
     let Some(last) = spoken.first() else {
         return Ok(Vec::new());
     };
-    let adjusted = work_orders::adjusted_at(tx, vessel, compass).await?;
+    let adjusted = adjustments::last_adjusted_at(tx, vessel, compass).await?;
     let is_before = adjusted.is_some_and(|adjusted| Time(last.at) < adjusted);
     let (wanted, why) = match last.state {
         // No card from before an adjustment judges the compass after it; the gyro it does.

@@ -8,11 +8,11 @@
 use super::alert::Cause;
 use super::findings::Findings;
 use super::store::{self, OpenAlert};
+use crate::adjustments;
 use crate::db::Db;
 use crate::error::Result;
 use crate::ids::{CompassId, VesselId};
 use crate::time::Time;
-use crate::work_orders;
 
 /// Why such an alert cleared itself.
 pub(super) const ADJUSTED: &str = "the compass has been adjusted since: the card that was foretold \
@@ -33,7 +33,7 @@ pub(super) fn forget_changes(findings: &mut Findings, adjusted: Time) {
 /// When the database cannot be asked.
 pub async fn in_force(db: &Db, vessel: VesselId, compass: CompassId) -> Result<Vec<OpenAlert>> {
     let mut open = store::open_of_compass(db, vessel, compass).await?;
-    let last = work_orders::completed(db, vessel, compass).await?.pop();
+    let last = adjustments::completed(db, vessel, compass).await?.pop();
     if let Some(last) = last {
         open.retain(|alert| !is_about_before(alert.cause, alert.since, last.at));
     }

@@ -14,6 +14,7 @@ use super::limits::AlertLimits;
 use super::store::{self, Known};
 use super::wanted::{alerts_of, silence};
 use super::{aboard, cloned};
+use crate::adjustments;
 use crate::app::App;
 use crate::changes;
 use crate::db::Tx;
@@ -22,7 +23,7 @@ use crate::events::{self, Event};
 use crate::ids::{AlertId, CompassId, DeliveryId, VesselId};
 use crate::outbox::Kind;
 use crate::time::Time;
-use crate::{compasses, mail, notifications, vessels, webhooks, work_orders};
+use crate::{compasses, mail, notifications, vessels, webhooks};
 use std::time::Duration;
 use tracing::{error, info};
 
@@ -61,12 +62,14 @@ pub struct AlertNews {
     pub was: Option<Severity>,
 }
 
-/// Holds a compass's alerts against its last analysis.
+/// Reconciles a compass's alerts with its last analysis, and with the alert that its last
+/// adjustment calls for.
 pub async fn after_analysis(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
     limits: &AlertLimits,
+    of_adjustment: Option<AlertWanted>,
     now: Time,
 ) -> Result<Option<Event>> {
     store::lock(tx, vessel, compass).await?;
@@ -75,7 +78,7 @@ pub async fn after_analysis(
     };
     let mut findings: Findings = serde_json::from_str(&findings)?;
     changes::sharpen_in(tx, vessel, &mut findings).await?;
-    let adjusted = work_orders::adjusted_at(tx, vessel, compass).await?;
+    let adjusted = adjustments::last_adjusted_at(tx, vessel, compass).await?;
     if let Some(adjusted) = adjusted {
         forget_changes(&mut findings, adjusted);
     }
@@ -84,7 +87,7 @@ pub async fn after_analysis(
     let open = known.iter().map(|alert| (alert.cause, alert.severity));
     let open: Vec<(Cause, Severity)> = open.collect();
     let mut wanted = alerts_of(&findings, limits, &open);
-    wanted.extend(work_orders::alert(tx, vessel, compass).await?);
+    wanted.extend(of_adjustment);
     let why = |alert: &Known| match adjusted {
         Some(adjusted) if is_about_before(alert.cause, alert.since, adjusted) => ADJUSTED,
         _ => why_cleared(alert, &findings),

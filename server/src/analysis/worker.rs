@@ -157,7 +157,9 @@ async fn work(app: &App, job: queue::Job) -> Result<usize> {
     }
     // Also where nothing new was found: the limits may be others.
     for compass in &compasses {
-        let told = alerts::after_analysis(&mut tx, job.vessel_id, compass.id, &limits, now);
+        let (vessel, compass) = (job.vessel_id, compass.id);
+        let failed = work_orders::alert(&mut tx, vessel, compass).await?;
+        let told = alerts::after_analysis(&mut tx, vessel, compass, &limits, failed, now);
         events.extend(told.await?);
     }
     tx.commit().await?;

@@ -20,6 +20,7 @@ use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::audit::RequestContext;
 use crate::compasses;
+use crate::db::DomainEvent;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, optional_text};
 use crate::idempotency::{self, Key};
@@ -27,7 +28,6 @@ use crate::ids::{BinnacleId, CompassId, VesselId};
 use crate::session;
 use crate::time::Time;
 use crate::vessels;
-use crate::work_orders;
 use axum::extract::{FromRef, State};
 use axum::http::header::{CONTENT_DISPOSITION, HeaderName};
 use binnacle_adjustment::binnacle::{Binnacle, BinnacleError, BinnacleForm};
@@ -35,6 +35,16 @@ use serde::{Deserialize, Serialize};
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+
+/// A compass's binnacle is about to be written anew.
+pub struct BinnacleAmended {
+    /// The vessel.
+    pub vessel: VesselId,
+    /// The compass.
+    pub compass: CompassId,
+}
+
+impl DomainEvent for BinnacleAmended {}
 
 /// The routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>
@@ -132,7 +142,7 @@ async fn put_binnacle(
         .once(&mut tx, writer.operator, &request_hash, wanted.0, now)
         .await?;
     if made == wanted.0 {
-        work_orders::must_not_be_adjusting(&mut tx, vessel, compass).await?;
+        tx.publish(&BinnacleAmended { vessel, compass }).await?;
         let author = Author {
             id: writer.user.0,
             name: session::name_of(&mut tx, writer.user).await?,

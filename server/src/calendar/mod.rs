@@ -7,8 +7,9 @@
 
 mod ics;
 mod store;
+mod subscriber;
 
-pub use store::delete_all_of;
+pub use subscriber::delete_feeds;
 
 use crate::access::{PartyReader, PartyWriter};
 use crate::app::App;

@@ -130,7 +130,7 @@ pub(super) async fn delete(tx: &mut Tx, tenant: Tenant, id: FeedId) -> Result<bo
 ///
 /// # Errors
 /// When the database does.
-pub async fn delete_all_of(tx: &mut Tx, user: UserId) -> Result<u64> {
+pub(super) async fn delete_all_of(tx: &mut Tx, user: UserId) -> Result<u64> {
     execute!(tx, "DELETE FROM calendar_feeds WHERE user_id = $1", user)
 }
 

@@ -10,13 +10,13 @@ use super::contents::{
 use super::due::{self, next_due};
 use super::observed::{Observed, STEP_DEG};
 use super::refusal::{OLDEST_DAYS, Refusal};
+use crate::adjustments::CompletedOrder;
 use crate::alerts::{Cause, OpenAlert};
 use crate::binnacles::Revised;
 use crate::compasses::Compass;
 use crate::deviation::{self, Row};
 use crate::models::StoredModel;
 use crate::time::Time;
-use crate::work_orders::CompletedOrder;
 use binnacle_compass::deviation::{Coefficients as Exact, DeviationError};
 use binnacle_compass::logbook::{LogbookEntry, LogbookKind};
 use binnacle_compass::ship::EarthField;

@@ -22,6 +22,7 @@ pub use contents::{Card, Status};
 pub use refusal::Refusal;
 
 use crate::access::Reader;
+use crate::adjustments;
 use crate::alerts;
 use crate::analysis;
 use crate::app::App;
@@ -37,7 +38,6 @@ use crate::settings::{self, VesselSettings};
 use crate::sheet;
 use crate::time::Time;
 use crate::vessels;
-use crate::work_orders;
 use axum::extract::{FromRef, State};
 use axum::response::Response;
 use binnacle_compass::field::field;
@@ -189,7 +189,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
     };
     let data = data_of(app, &model).await?;
     let samples = analysis::chunks(db, id, compass.id, Some(from), Some(until)).await?;
-    let completed = work_orders::completed(db, id, compass.id).await?;
+    let completed = adjustments::completed(db, id, compass.id).await?;
     let binnacle = binnacles::current(db, id, compass.id).await?;
     let logbook = logbook::of_compass(db, id, compass.id).await?;
     let alerts = alerts::in_force(db, id, compass.id).await?;
@@ -229,7 +229,7 @@ async fn find(app: &App, reader: Reader, id: VesselId, query: &Query) -> Result<
 /// of the model before the adjustment.
 async fn data_of(app: &App, model: &StoredModel) -> Result<(Time, Time)> {
     let from = match model.foretold_by {
-        Some(order) => work_orders::foretold_from(&app.db, model.vessel_id, order).await?,
+        Some(order) => adjustments::foretold_from(&app.db, model.vessel_id, order).await?,
         None => None,
     };
     let behind = match from {

@@ -10,6 +10,7 @@ use crate::db::{Db, Tx};
 use crate::error::Error;
 use crate::ids::{AgentId, FirmId, OperatorId, VesselId};
 use crate::session::{self, Role};
+use crate::subscriptions::subscribers;
 use crate::tenants::Tenant;
 use crate::time::Time;
 use crate::{enrolment, firms, http, operators, password, secret, users};
@@ -25,7 +26,7 @@ use uuid::Uuid;
 /// When the database cannot be reached.
 pub fn admin(arguments: Admin) -> Result<ExitCode> {
     block_on(async {
-        let db = Db::connect(&arguments.database.database_url).await?;
+        let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
         let name = name_of(&arguments.command);

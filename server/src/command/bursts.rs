@@ -7,6 +7,7 @@ use crate::config::Bursts;
 use crate::db::Db;
 use crate::ids::VesselId;
 use crate::streams;
+use crate::subscriptions::subscribers;
 use anyhow::{Context, Result};
 use binnacle_wire::burst::MESSAGE_OCTETS;
 use std::fs::{self, File};
@@ -30,7 +31,7 @@ pub fn bursts(arguments: &Bursts) -> Result<ExitCode> {
     }
     let vessel = VesselId(arguments.vessel);
     let imported = block_on(async {
-        let db = Db::connect(&arguments.database.database_url).await?;
+        let db = Db::connect(&arguments.database.database_url, subscribers()).await?;
         db.migrate().await?;
         let now = Clock::System.now().into();
         let imported = streams::import(&db, vessel, &messages, now).await;

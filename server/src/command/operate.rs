@@ -7,6 +7,7 @@ use crate::db::Db;
 use crate::mail::Mailer;
 use crate::peer::Peer;
 use crate::state::ServerState;
+use crate::subscriptions::subscribers;
 use crate::tls::TlsListener;
 use crate::{
     alerts, analysis, audit, events, http, notifications, operations, outbox, reports, schedule,
@@ -41,7 +42,7 @@ const MAIL_SENDERS: usize = 2;
 pub fn serve(config: Serve) -> Result<ExitCode> {
     start_log(config.log_json);
     block_on(async {
-        let db = Db::connect(&config.database.database_url).await?;
+        let db = Db::connect(&config.database.database_url, subscribers()).await?;
         db.migrate().await?;
         let listener = TcpListener::bind(config.listen)
             .await
@@ -152,7 +153,7 @@ fn announce(scheme: &str, listener: &impl Listener<Addr = SocketAddr>) -> Result
 /// When the database cannot be reached or a migration fails.
 pub fn migrate(database: &Database) -> Result<ExitCode> {
     block_on(async {
-        let db = Db::connect(&database.database_url).await?;
+        let db = Db::connect(&database.database_url, subscribers()).await?;
         db.migrate().await?;
         db.close().await;
         Ok(ExitCode::SUCCESS)

@@ -1,12 +1,13 @@
 //! Opening a database by its URL, and bringing its schema up to date.
 
-use super::Db;
+use super::{Db, Pools, Subscribers};
 use anyhow::{Context, bail};
 use sqlx::Database;
 use sqlx::migrate::Migrator;
 use sqlx::pool::PoolOptions;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteJournalMode, SqliteSynchronous};
 use std::str::FromStr;
+use std::sync::Arc;
 use std::time::Duration;
 
 static PORTABLE: Migrator = sqlx::migrate!("../migrations");
@@ -20,12 +21,16 @@ impl Db {
     ///
     /// # Errors
     /// When the URL is of another kind, or the database cannot be reached.
-    pub async fn connect(url: &str) -> anyhow::Result<Db> {
-        match url.split_once(':') {
-            Some(("sqlite", _)) => connect_sqlite(url).await,
-            Some(("postgres" | "postgresql", _)) => connect_postgres(url).await,
+    pub async fn connect(url: &str, subscribers: Subscribers) -> anyhow::Result<Db> {
+        let pools = match url.split_once(':') {
+            Some(("sqlite", _)) => connect_sqlite(url).await?,
+            Some(("postgres" | "postgresql", _)) => connect_postgres(url).await?,
             _ => bail!("the database URL begins neither with sqlite: nor with postgres:"),
-        }
+        };
+        Ok(Db {
+            pools,
+            subscribers: Arc::new(subscribers),
+        })
     }
 
     /// Applies the migrations that are missing.
@@ -33,9 +38,9 @@ impl Db {
     /// # Errors
     /// When one fails, or one that was applied has been edited since.
     pub async fn migrate(&self) -> anyhow::Result<()> {
-        match self {
-            Db::Sqlite { writer, .. } => PORTABLE.run(writer).await?,
-            Db::Postgres(pool) => {
+        match &self.pools {
+            Pools::Sqlite { writer, .. } => PORTABLE.run(writer).await?,
+            Pools::Postgres(pool) => {
                 let all = PORTABLE.iter().chain(POSTGRES_ONLY.iter()).cloned();
                 Migrator::with_migrations(all.collect()).run(pool).await?;
             }
@@ -54,7 +59,7 @@ fn pool<D: Database>(connections: u32) -> PoolOptions<D> {
         .max_lifetime(None)
 }
 
-async fn connect_sqlite(url: &str) -> anyhow::Result<Db> {
+async fn connect_sqlite(url: &str) -> anyhow::Result<Pools> {
     let options = SqliteConnectOptions::from_str(url)
         .with_context(|| format!("{url:?} is not a SQLite URL"))?
         .create_if_missing(true)
@@ -71,13 +76,13 @@ async fn connect_sqlite(url: &str) -> anyhow::Result<Db> {
         .connect_with(options.pragma("query_only", "ON"))
         .await
         .with_context(|| format!("cannot open {url}"))?;
-    Ok(Db::Sqlite { readers, writer })
+    Ok(Pools::Sqlite { readers, writer })
 }
 
-async fn connect_postgres(url: &str) -> anyhow::Result<Db> {
+async fn connect_postgres(url: &str) -> anyhow::Result<Pools> {
     let pool = pool(16)
         .connect(url)
         .await
         .context("cannot connect to PostgreSQL")?;
-    Ok(Db::Postgres(pool))
+    Ok(Pools::Postgres(pool))
 }

@@ -8,14 +8,19 @@
 //! A transaction may carry a [`CommitHook`], which writes into it last of all: so a change
 //! has its line in the audit log, and this module knows nothing of that log.
 //!
+//! An event that is published in a transaction is handled in it, see [`Subscribers`].
+//!
 //! The macros take the SQL as a literal and run it on whichever database is
 //! there: `rows!`, `row!` and `execute!`.
 
 mod connect;
 mod queries;
+mod subscribers;
 
 pub(crate) use queries::{execute, row, rows};
+pub use subscribers::{DomainEvent, Handler, Subscribers};
 
+use crate::error;
 use futures_util::future::BoxFuture;
 use sqlx::{PgPool, Postgres, Sqlite, SqlitePool, Transaction};
 use std::sync::Arc;
@@ -23,9 +28,16 @@ use std::sync::Arc;
 /// A result from the database.
 pub type Result<T> = std::result::Result<T, sqlx::Error>;
 
-/// The database that the URL named.
+/// The database that the URL named, with those who subscribed to events.
 #[derive(Clone, Debug)]
-pub enum Db {
+pub struct Db {
+    pools: Pools,
+    subscribers: Arc<Subscribers>,
+}
+
+/// Connections to the database.
+#[derive(Clone, Debug)]
+pub enum Pools {
     /// One file.
     Sqlite {
         /// Any number of readers.
@@ -40,6 +52,7 @@ pub enum Db {
 /// A transaction; rolled back unless committed.
 pub struct Tx {
     connection: Connection,
+    subscribers: Arc<Subscribers>,
     hook: Option<Arc<dyn CommitHook>>,
 }
 
@@ -64,15 +77,21 @@ pub trait CommitHook: Send + Sync {
 }
 
 impl Db {
+    /// The connections, for what only one kind of database can do.
+    pub fn pools(&self) -> &Pools {
+        &self.pools
+    }
+
     /// Begins a transaction that may write, for work that no request asked for. A request
     /// begins its own by `audit::RequestContext::begin`.
     pub async fn begin(&self) -> Result<Tx> {
-        let connection = match self {
-            Db::Sqlite { writer, .. } => Connection::Sqlite(begin_sqlite(writer).await?),
-            Db::Postgres(pool) => Connection::Postgres(pool.begin().await?),
+        let connection = match &self.pools {
+            Pools::Sqlite { writer, .. } => Connection::Sqlite(begin_sqlite(writer).await?),
+            Pools::Postgres(pool) => Connection::Postgres(pool.begin().await?),
         };
         Ok(Tx {
             connection,
+            subscribers: Arc::clone(&self.subscribers),
             hook: None,
         })
     }
@@ -84,12 +103,12 @@ impl Db {
 
     /// Closes every connection once it is idle.
     pub async fn close(&self) {
-        match self {
-            Db::Sqlite { readers, writer } => {
+        match &self.pools {
+            Pools::Sqlite { readers, writer } => {
                 readers.close().await;
                 writer.close().await;
             }
-            Db::Postgres(pool) => pool.close().await,
+            Pools::Postgres(pool) => pool.close().await,
         }
     }
 }
@@ -114,6 +133,18 @@ impl Tx {
             hook: Some(hook),
             ..self
         }
+    }
+
+    /// Publishes an event: each of its subscribers runs now, in this transaction.
+    ///
+    /// # Errors
+    /// When a subscriber fails, or refuses what is about to happen.
+    pub async fn publish<E: DomainEvent>(&mut self, event: &E) -> error::Result<()> {
+        let subscribers = Arc::clone(&self.subscribers);
+        for handler in subscribers.of::<E>() {
+            handler(self, event).await?;
+        }
+        Ok(())
     }
 
     /// The connection that statements of this transaction run on.

@@ -12,10 +12,10 @@ macro_rules! rows {
         }
     };
     ($db:expr, $row:ty, $sql:expr $(, $bind:expr)* $(,)?) => {
-        match $db {
-            $crate::db::Db::Sqlite { readers, .. } => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
+        match $db.pools() {
+            $crate::db::Pools::Sqlite { readers, .. } => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
                 $(.bind($bind))*.fetch_all(readers).await,
-            $crate::db::Db::Postgres(pool) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
+            $crate::db::Pools::Postgres(pool) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
                 $(.bind($bind))*.fetch_all(pool).await,
         }
     };
@@ -32,10 +32,10 @@ macro_rules! row {
         }
     };
     ($db:expr, $row:ty, $sql:expr $(, $bind:expr)* $(,)?) => {
-        match $db {
-            $crate::db::Db::Sqlite { readers, .. } => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
+        match $db.pools() {
+            $crate::db::Pools::Sqlite { readers, .. } => sqlx::query_as::<sqlx::Sqlite, $row>($sql)
                 $(.bind($bind))*.fetch_optional(readers).await,
-            $crate::db::Db::Postgres(pool) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
+            $crate::db::Pools::Postgres(pool) => sqlx::query_as::<sqlx::Postgres, $row>($sql)
                 $(.bind($bind))*.fetch_optional(pool).await,
         }
     };

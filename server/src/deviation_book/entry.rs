@@ -1,11 +1,11 @@
 //! An entry of a deviation book: what was observed, beside what the card said.
 
 use super::select::{Occasion, choose};
+use crate::adjustments::CompletedOrder;
 use crate::card;
 use crate::models::StoredModel;
 use crate::samples::SampleReasonSchema;
 use crate::time::Time;
-use crate::work_orders::CompletedOrder;
 use binnacle_compass::angle::{TrueHeading, wrap_180};
 use binnacle_compass::deviation::Prediction;
 use binnacle_compass::result::{SampleDiagnostic, SampleReason};

@@ -1,6 +1,7 @@
 //! A book's entries from what is stored, a month of samples at a time.
 
 use super::entry::{Ends, Entry, entries};
+use crate::adjustments::{self, CompletedOrder};
 use crate::analysis::{self, Chunk};
 use crate::db::Db;
 use crate::error::{Error, Result};
@@ -8,7 +9,6 @@ use crate::ids::{CompassId, VesselId};
 use crate::logbook;
 use crate::models;
 use crate::time::Time;
-use crate::work_orders::{self, CompletedOrder};
 use binnacle_compass::result::SampleDiagnostic;
 use std::collections::VecDeque;
 
@@ -49,7 +49,7 @@ impl Source {
             from,
             to,
             ends,
-            completed: work_orders::completed(db, vessel, compass).await?,
+            completed: adjustments::completed(db, vessel, compass).await?,
             left: left.into(),
         })
     }

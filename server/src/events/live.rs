@@ -2,7 +2,7 @@
 
 use super::{Event, store};
 use crate::app::App;
-use crate::db::Db;
+use crate::db::{Db, Pools};
 use crate::time::Time;
 use sqlx::PgPool;
 use sqlx::postgres::PgListener;
@@ -48,7 +48,7 @@ impl App {
     /// Makes an event known whose transaction was committed. On PostgreSQL the
     /// commit itself has done it, through [`Line`].
     pub fn publish(&self, event: Event) {
-        if matches!(self.db, Db::Sqlite { .. }) {
+        if matches!(self.db.pools(), Pools::Sqlite { .. }) {
             self.live.tell(event);
             self.work.notify_one();
         }
@@ -61,16 +61,16 @@ pub struct Line(Option<PgListener>);
 impl Line {
     /// Begins to listen; what is committed from now on will be heard.
     pub async fn open(db: &Db) -> Result<Line, sqlx::Error> {
-        match db {
-            Db::Sqlite { .. } => Ok(Line(None)),
-            Db::Postgres(pool) => Ok(Line(Some(connect(pool).await?))),
+        match db.pools() {
+            Pools::Sqlite { .. } => Ok(Line(None)),
+            Pools::Postgres(pool) => Ok(Line(Some(connect(pool).await?))),
         }
     }
 
     /// Passes on what is heard until the server stops. After a break, what was
     /// missed is read from the database.
     pub async fn listen(self, app: App) {
-        let (Some(mut listener), Db::Postgres(pool)) = (self.0, &app.db) else {
+        let (Some(mut listener), Pools::Postgres(pool)) = (self.0, app.db.pools()) else {
             return;
         };
         loop {

@@ -14,9 +14,11 @@ pub use store::{insert, insert_of_order, prune};
 
 use crate::access::Caller;
 use crate::app::App;
+use crate::db::DomainEvent;
 use crate::error::{Problem, Result};
 use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
 use crate::tenants::Tenant;
+use crate::time::Time;
 use axum::extract::{FromRef, State};
 use axum::http::HeaderMap;
 use axum::response::sse::{Event as Sent, KeepAlive, Sse};
@@ -65,16 +67,6 @@ pub enum Kind {
     Need,
 }
 
-impl Kind {
-    /// Whether the schedule rests on it.
-    fn alters_the_schedule(self) -> bool {
-        matches!(
-            self,
-            Kind::Model | Kind::Logbook | Kind::WorkOrder | Kind::PortCall
-        )
-    }
-}
-
 /// An event, with those who may know of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::FromRow)]
 pub struct Event {
@@ -91,6 +83,16 @@ pub struct Event {
     /// What happened.
     pub kind: Kind,
 }
+
+/// A live event was stored, in the transaction that makes it true.
+pub struct EventStored {
+    /// The event.
+    pub event: Event,
+    /// When.
+    pub at: Time,
+}
+
+impl DomainEvent for EventStored {}
 
 /// The data of an event.
 #[derive(Serialize, ToSchema)]

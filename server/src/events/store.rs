@@ -1,11 +1,10 @@
 //! Events in the database, kept for a day.
 
 use super::live::CHANNEL;
-use super::{Event, Kind};
+use super::{Event, EventStored, Kind};
 use crate::db::{Connection, Db, Result, Tx, execute, row, rows};
 use crate::error;
 use crate::ids::{EventId, FirmId, OperatorId, OrderId, VesselId};
-use crate::schedule;
 use crate::tenants::Tenant;
 use crate::time::Time;
 
@@ -71,10 +70,7 @@ async fn write(
         kind,
         now
     )?;
-    // A firm's copy of an event alters nothing more.
-    if firm_id.is_none() && kind.alters_the_schedule() {
-        schedule::ask(tx, operator_id, now).await?;
-    }
+    tx.publish(&EventStored { event, at: now }).await?;
     if let Connection::Postgres(tx) = tx.connection() {
         sqlx::query("SELECT pg_notify($1, $2)")
             .bind(CHANNEL)

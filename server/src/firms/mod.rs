@@ -10,7 +10,7 @@ mod terms;
 
 pub use room::{Booking, Told, Visit, bookings, must_have_room, port_meant, teams_taken};
 pub use store::{create, engage, exists, name_for};
-pub use terms::{Terms, of_operator, terms_for};
+pub use terms::{Terms, TermsChanged, of_operator, terms_for};
 
 use crate::access::{Caller, Platform};
 use crate::app::App;

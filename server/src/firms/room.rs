@@ -11,7 +11,7 @@ use super::{Terms, store};
 use crate::db::{Db, Tx, execute, rows};
 use crate::error::{Error, Result};
 use crate::ids::{FirmId, OperatorId, OrderId, VesselId};
-use crate::needs;
+use crate::particulars;
 use crate::time::Time;
 use binnacle_schedule::ports::{self, Port, PortCode};
 use binnacle_schedule::time::Instant;
@@ -165,7 +165,7 @@ async fn must_suit(tx: &mut Tx, firm_name: &str, terms: &Terms, visit: &Visit<'_
     if let Some(why) = terms.closed_at(visit.at, port_meant(visit.port)) {
         return wrong(why, "time");
     }
-    let (flag, licence) = needs::asked_of_adjusters(tx, visit.vessel).await?;
+    let (flag, licence) = particulars::asked_of_adjusters(tx, visit.vessel).await?;
     match terms.not_accepted(flag, licence.as_deref()) {
         Some(why) => wrong(why, "firm"),
         None => Ok(()),

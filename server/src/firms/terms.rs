@@ -8,12 +8,12 @@ use super::store;
 use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::audit::RequestContext;
-use crate::db::{Db, Tx};
+use crate::db::{Db, DomainEvent, Tx};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, text};
 use crate::ids::{FirmId, OperatorId};
+use crate::session;
 use crate::time::Time;
-use crate::{schedule, session};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use binnacle_schedule::input::{self, ServedPort};
@@ -29,6 +29,16 @@ use utoipa_axum::routes;
 
 /// No list in terms is longer.
 const MOST: usize = 1000;
+
+/// An operator has other terms with a firm.
+pub struct TermsChanged {
+    /// Whose terms.
+    pub operator: OperatorId,
+    /// When.
+    pub at: Time,
+}
+
+impl DomainEvent for TermsChanged {}
 
 pub(super) fn router<S>() -> OpenApiRouter<S>
 where
@@ -208,7 +218,11 @@ async fn set_terms(
     let by = session::name_of(&mut tx, writer.user).await?;
     let json = serde_json::to_string(&terms)?;
     store::put_terms(&mut tx, writer.operator, firm, &json, &by, now).await?;
-    schedule::ask(&mut tx, writer.operator, now).await?;
+    tx.publish(&TermsChanged {
+        operator: writer.operator,
+        at: now,
+    })
+    .await?;
     tx.commit().await?;
     Ok(Json(WithTerms::new((firm, name, Some(terms)))))
 }
@@ -230,7 +244,11 @@ async fn end_terms(
     if !store::remove_terms(&mut tx, writer.operator, firm).await? {
         return Err(Error::NotFound("firm"));
     }
-    schedule::ask(&mut tx, writer.operator, app.clock.now().into()).await?;
+    tx.publish(&TermsChanged {
+        operator: writer.operator,
+        at: app.clock.now().into(),
+    })
+    .await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -7,8 +7,9 @@ use crate::work_orders::NotAdjustableFields;
 use crate::{
     alerts, audit, binnacles, calendar, card, changes, compasses, dashboard, deviation,
     deviation_book, enrolment, error, events, firms, fleet, logbook, mail, models, needs,
-    notifications, oidc, operations, operators, port_calls, reports, samples, schedule,
-    second_factor, session, settings, streams, tokens, users, vessels, webhooks, work_orders,
+    notifications, oidc, operations, operators, particulars, port_calls, reports, samples,
+    schedule, second_factor, session, settings, streams, tokens, users, vessels, webhooks,
+    work_orders,
 };
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, MatchedPath, Request};
@@ -97,6 +98,7 @@ fn for_people() -> OpenApiRouter<ServerState> {
         .merge(binnacles::router())
         .merge(work_orders::router())
         .merge(port_calls::router())
+        .merge(particulars::router())
         .merge(needs::router())
         .merge(schedule::router())
         .merge(calendar::router())

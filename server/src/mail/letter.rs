@@ -12,29 +12,32 @@ const WIDTH: usize = 72;
 /// A letter as it waits to be sent.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Letter {
-    pub(super) subject: String,
-    pub(super) text: String,
+    /// Subject line.
+    pub subject: String,
+    /// The text.
+    pub text: String,
     /// What it tells of, one after the other, if that is several things.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) told: Vec<Told>,
+    pub told: Vec<Told>,
     /// The page to look at, below the dashboard's address.
-    pub(super) path: String,
+    pub path: String,
     /// The alert or the order that it is about: mail programs show its letters together.
     #[serde(alias = "alert")]
-    pub(super) about: Option<Uuid>,
+    pub about: Option<Uuid>,
     /// The report that goes with it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) report: Option<Attached>,
+    pub report: Option<Attached>,
 }
 
 /// One of the things of which a letter tells.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Told {
+pub struct Told {
     /// In a line.
-    pub(super) head: String,
-    pub(super) text: String,
+    pub head: String,
+    /// The text.
+    pub text: String,
     /// The page to look at, below the dashboard's address.
-    pub(super) path: String,
+    pub path: String,
 }
 
 impl Told {
@@ -48,9 +51,9 @@ impl Told {
 
 /// A monthly report that goes with a letter.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Attached {
-    pub(super) operator: OperatorId,
-    pub(super) month: String,
+pub struct Attached {
+    pub operator: OperatorId,
+    pub month: String,
 }
 
 /// Why somebody gets a letter.
@@ -140,7 +143,7 @@ pub fn words_of(news: &AlertNews) -> (String, String) {
 
 /// A subject as it goes into a header: a name that looks like an encoded word (RFC 2047,
 /// section 2) is none.
-pub(super) fn header(subject: &str) -> String {
+pub fn header(subject: &str) -> String {
     one_line(subject).replace("=?", "= ?")
 }
 
@@ -203,7 +206,7 @@ pub fn one_line(text: &str) -> String {
 
 /// Lines of at most [`WIDTH`] columns, the first after `lead`, the others indented
 /// alike.
-pub(super) fn wrapped(lead: &str, text: &str) -> String {
+pub fn wrapped(lead: &str, text: &str) -> String {
     let mut lines = Vec::new();
     let mut line = lead.to_owned();
     let mut empty = true;

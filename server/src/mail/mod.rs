@@ -10,7 +10,6 @@
 //! - No text of others makes a header: names are encoded, line breaks are taken out.
 
 mod announce;
-mod digest;
 mod letter;
 mod monthly;
 mod recipient;
@@ -19,8 +18,7 @@ mod send;
 mod store;
 
 pub use announce::announce;
-pub use digest::letter_of;
-pub use letter::{Letter, one_line, words_of};
+pub use letter::{Letter, Told, header, one_line, words_of, wrapped};
 pub use monthly::monthly_letter;
 pub use recipient::address;
 pub use relay::Relay;

@@ -1,12 +1,12 @@
 //! What is known of a compass that rules ask about, put together from what is stored.
 
 use super::need::Ahead;
-use super::particulars::{Particulars, place_of};
 use super::since::Since;
 use crate::alerts::{AlertLimits, Findings};
 use crate::deviation::{table, worst_of};
 use crate::ids::{CompassId, VesselId};
 use crate::models::StoredModel;
+use crate::particulars::{Particulars, place_of};
 use crate::time::Time;
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::logbook::LogbookKind;

@@ -1,7 +1,6 @@
 //! What needs are found from, out of the database: a few queries for a whole fleet.
 
 use super::facts::{Completed, Facts, Stored, Waypoint, Work, compass};
-use super::particulars::Particulars;
 use super::since::{self, Since};
 use crate::alerts::{AlertLimits, Findings};
 use crate::app::App;
@@ -10,6 +9,7 @@ use crate::db::{Db, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, OperatorId, OrderId, VesselId};
 use crate::models::{self, StoredModel};
+use crate::particulars::Particulars;
 use crate::port_calls;
 use crate::time::Time;
 use crate::work_orders::State;

@@ -7,14 +7,12 @@
 mod facts;
 mod load;
 mod need;
-mod particulars;
 mod schema;
 mod since;
 
 pub use facts::Facts;
 pub use load::of_fleet;
 pub use need::Need;
-pub use particulars::asked_of_adjusters;
 pub use schema::UrgencySchema;
 
 use crate::access::Reader;
@@ -40,7 +38,6 @@ where
     OpenApiRouter::new()
         .routes(routes!(list_needs))
         .routes(routes!(list_vessel_needs))
-        .merge(particulars::router())
 }
 
 /// List the fleet's needs

@@ -8,16 +8,16 @@
 //!   waits for neither. Letters go through [`crate::outbox`].
 //! - A notification is its person's own: nobody else finds it.
 
-mod kind;
+mod digest;
 mod needs;
 mod news;
 mod post;
 mod settings;
 mod store;
+mod way;
 
-pub use kind::Kind;
 pub use needs::look;
-pub use news::{News, tell, tell_of_alerts};
+pub use news::{create, tell_of_alerts};
 pub use post::{post, watch};
 
 use crate::access::Caller;
@@ -26,17 +26,18 @@ use crate::audit::RequestContext;
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Page, Params, Valid, ValidOrNone};
 use crate::ids::{AlertId, NotificationId, OrderId, VesselId};
+use crate::notices::Kind;
 use crate::session::Role;
 use crate::time::Time;
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
-use kind::Way;
 use serde::{Deserialize, Serialize};
 use settings::Settings;
 use std::collections::BTreeMap;
 use utoipa::{IntoParams, ToSchema};
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
+use way::Way;
 
 /// The routes of this part.
 pub fn router<S>() -> OpenApiRouter<S>

@@ -4,14 +4,15 @@
 //! sees it first; a date that is put off is noted and not told. What is noted is what
 //! calendars show.
 
-use super::kind::Kind;
-use super::news::{News, tell};
+use super::news::tell;
 use super::store::{self, Noted};
 use crate::app::App;
 use crate::error::Result;
 use crate::events;
 use crate::ids::{CompassId, OperatorId};
 use crate::needs::{Need, need, note_since, of_fleet};
+use crate::notices::Kind;
+use crate::notices::Notice;
 use crate::time::Time;
 use crate::{operators, schedule};
 use binnacle_schedule::needs::{CauseKind, Urgency};
@@ -106,7 +107,7 @@ fn kind(need: &Need, known: Option<&Noted>) -> Result<Option<Kind>> {
     Ok((presses && need.urgency > urgency).then_some(Kind::DueSoon))
 }
 
-fn news(need: &Need, kind: Kind) -> News {
+fn news(need: &Need, kind: Kind) -> Notice {
     let what = match (kind, need.urgency) {
         (Kind::NeedRaised, _) => "to be adjusted sooner",
         (_, Urgency::Overdue) => "overdue for adjusting",
@@ -114,7 +115,7 @@ fn news(need: &Need, kind: Kind) -> News {
     };
     let adjusted = need.adjusted_on.map(|day| day.to_string());
     let adjusted = adjusted.unwrap_or_else(|| "not on record".to_owned());
-    News {
+    Notice {
         kind,
         urgent: false,
         subject: format!(

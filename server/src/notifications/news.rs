@@ -3,38 +3,19 @@
 //! What always holds: it is written for each person in the transaction that makes it
 //! true, with when a letter is to tell of it; the list and the letters are made from that.
 
-use super::kind::{Kind, Way};
 use super::settings::Settings;
 use super::store;
+use super::way::Way;
 use crate::alerts::{AlertNews, Severity};
 use crate::db::{Tx, row, rows};
 use crate::error::Result;
-use crate::ids::{AlertId, OperatorId, OrderId, UserId, VesselId};
+use crate::ids::{OperatorId, UserId};
+use crate::notices::{Kind, Notice, NoticesPublished};
 use crate::outbox;
 use crate::session::Role;
 use crate::tenants::Tenant;
 use crate::time::Time;
-
-/// Something to be told.
-#[derive(Clone, Debug)]
-pub struct News {
-    /// What it is about.
-    pub kind: Kind,
-    /// Whether it waits for nothing.
-    pub urgent: bool,
-    /// In a line.
-    pub subject: String,
-    /// In a letter: a fact on each line, then sentences.
-    pub text: String,
-    /// The dashboard's page to look at.
-    pub path: String,
-    /// The vessel.
-    pub vessel: VesselId,
-    /// The work order, if it is of one.
-    pub order: Option<OrderId>,
-    /// The alert, if it is of one.
-    pub alert: Option<AlertId>,
-}
+use futures_util::future::BoxFuture;
 
 /// Someone whom news may concern.
 struct Person {
@@ -44,10 +25,10 @@ struct Person {
 }
 
 /// Tells a tenant's people, but not who made the news.
-pub async fn tell(
+pub(super) async fn tell(
     tx: &mut Tx,
     tenant: impl Into<Tenant>,
-    all: &[News],
+    all: &[Notice],
     by: Option<UserId>,
     now: Time,
 ) -> Result<()> {
@@ -55,7 +36,7 @@ pub async fn tell(
         return Ok(());
     }
     for person in people(tx, tenant.into()).await? {
-        let concerns = |news: &&News| news.kind.concerns(person.role) && by != Some(person.id);
+        let concerns = |news: &&Notice| news.kind.concerns(person.role) && by != Some(person.id);
         for news in all.iter().filter(concerns) {
             let way = person.settings.way(news.kind, person.role);
             if way == Way::Off {
@@ -78,11 +59,11 @@ pub async fn tell_of_alerts(
     all: &[AlertNews],
     now: Time,
 ) -> Result<()> {
-    let news: Vec<News> = all.iter().filter_map(of_alert).collect();
+    let news: Vec<Notice> = all.iter().filter_map(of_alert).collect();
     tell(tx, operator, &news, None, now).await
 }
 
-fn of_alert(news: &AlertNews) -> Option<News> {
+fn of_alert(news: &AlertNews) -> Option<Notice> {
     let alert = &news.alert;
     let critical = alert.severity == Severity::Critical;
     let presses = alert.severity >= Severity::Warning;
@@ -94,7 +75,7 @@ fn of_alert(news: &AlertNews) -> Option<News> {
         _ => false,
     };
     let (subject, text) = crate::mail::words_of(news);
-    told.then(|| News {
+    told.then(|| Notice {
         kind: Kind::Alert,
         urgent: critical && news.kind != outbox::Kind::AlertCleared,
         subject,
@@ -141,4 +122,17 @@ async fn is_on_the_mailing_list(tx: &mut Tx, user: UserId) -> Result<bool> {
         user
     )?;
     Ok(found.is_some_and(|(listed,)| listed > 0))
+}
+
+/// Creates the notifications of published notices.
+pub fn create<'a>(tx: &'a mut Tx, published: &'a NoticesPublished) -> BoxFuture<'a, Result<()>> {
+    Box::pin(async move {
+        let NoticesPublished {
+            tenant,
+            notices,
+            by,
+            at,
+        } = published;
+        tell(tx, *tenant, notices, *by, *at).await
+    })
 }

@@ -4,12 +4,11 @@
 //! that nothing is told twice or never; what was read meanwhile is not told any more.
 
 use super::store;
-use super::{Notification, needs};
+use super::{Notification, digest, needs};
 use crate::app::App;
 use crate::db::{Tx, row};
 use crate::error::Result;
 use crate::ids::{DeliveryId, FirmId, OperatorId, UserId};
-use crate::mail;
 use crate::outbox::{self, Channel, Message};
 use crate::tenants::Tenant;
 use crate::time::Time;
@@ -69,7 +68,7 @@ async fn queue(tx: &mut Tx, user: UserId, mut taken: Vec<Notification>, now: Tim
     };
     let (urgent, others): (Vec<_>, Vec<_>) = taken.into_iter().partition(|told| told.urgent);
     for together in [urgent, others] {
-        let Some(letter) = mail::letter_of(&together) else {
+        let Some(letter) = digest::letter_of(&together) else {
             continue;
         };
         outbox::ensure(tx, tenant, user.0, Channel::Mail).await?;

@@ -3,8 +3,9 @@
 //! What always holds: times of day are those of the person's own time zone, also when its
 //! clocks change.
 
-use super::kind::{Kind, Way};
+use super::way::Way;
 use crate::error::{Error, Result};
+use crate::notices::Kind;
 use crate::session::Role;
 use crate::time::Time;
 use binnacle_schedule::time::Instant;
@@ -156,7 +157,7 @@ impl Settings {
     /// How to tell of a kind.
     pub(super) fn way(&self, kind: Kind, role: Role) -> Way {
         let said = self.ways.get(&kind).copied();
-        said.unwrap_or_else(|| kind.usual_way(role))
+        said.unwrap_or_else(|| Way::default_for(kind, role))
     }
 
     /// When a letter is to tell of something that happens now; none when none is.

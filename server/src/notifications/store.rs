@@ -1,12 +1,12 @@
 //! Notifications and people's settings in the database.
 
-use super::kind::Kind;
-use super::news::News;
 use super::settings::Settings;
 use super::{Filter, Notification};
 use crate::db::{Db, Result as DbResult, Tx, execute, row, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, NotificationId, OperatorId, UserId, VesselId};
+use crate::notices::Kind;
+use crate::notices::Notice;
 use crate::time::Time;
 use uuid::Uuid;
 
@@ -48,7 +48,7 @@ pub(super) async fn put_settings(
 pub(super) async fn insert(
     tx: &mut Tx,
     user: UserId,
-    news: &News,
+    news: &Notice,
     mail_at: Option<Time>,
     now: Time,
 ) -> DbResult<()> {

@@ -19,6 +19,7 @@ mod schema;
 mod settings;
 mod solve;
 mod store;
+mod subscriber;
 
 mod worker;
 
@@ -26,7 +27,7 @@ pub use concurrency::PlanSlots;
 pub use orders::{link, linked_port};
 pub use plan::Plan;
 pub use settings::terms;
-pub use store::ask;
+pub use subscriber::{on_particulars_change, on_service_change, on_terms_change, on_vessel_event};
 pub use worker::{run, step};
 
 use crate::access::{Reader, Writer};

@@ -153,7 +153,7 @@ async fn pin(
         created_by: session::name_of(&mut tx, writer.user).await?,
     };
     put(&mut tx, &pin).await?;
-    super::ask(&mut tx, writer.operator, now).await?;
+    super::store::ask(&mut tx, writer.operator, now).await?;
     tx.commit().await?;
     Ok(Json(pin))
 }
@@ -181,7 +181,7 @@ async fn unpin(
     if removed == 0 {
         return Err(Error::NotFound("pin"));
     }
-    super::ask(&mut tx, writer.operator, app.clock.now().into()).await?;
+    super::store::ask(&mut tx, writer.operator, app.clock.now().into()).await?;
     tx.commit().await?;
     Ok(StatusCode::NO_CONTENT)
 }

@@ -88,7 +88,7 @@ async fn set_settings(
         now,
         by
     )?;
-    super::ask(&mut tx, writer.operator, now).await?;
+    super::store::ask(&mut tx, writer.operator, now).await?;
     tx.commit().await?;
     Ok(Json(settings))
 }

@@ -11,7 +11,7 @@ use uuid::Uuid;
 const KEPT: i64 = 30;
 
 /// Says that something has changed on which the schedule rests.
-pub async fn ask(tx: &mut Tx, operator: OperatorId, now: Time) -> DbResult<()> {
+pub(super) async fn ask(tx: &mut Tx, operator: OperatorId, now: Time) -> DbResult<()> {
     execute!(
         tx,
         "INSERT INTO schedule_asks (operator_id, id, asked_at) VALUES ($1, $2, $3)",

@@ -6,13 +6,13 @@
 use crate::access::Custodian;
 use crate::app::App;
 use crate::audit::{Actor, RequestContext};
-use crate::db::{Db, Tx, execute, row};
+use crate::db::{Db, DomainEvent, Tx, execute, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid};
 use crate::ids::{FirmId, OperatorId, UserId};
 use crate::tenants::Tenant;
 use crate::time::Time;
-use crate::{calendar, oidc, password, second_factor, secret, session, tokens};
+use crate::{oidc, password, second_factor, secret, session, tokens};
 use axum::extract::{FromRef, State};
 use axum::http::StatusCode;
 use serde::{Deserialize, Serialize};
@@ -207,11 +207,19 @@ pub async fn reset(
     Ok(Some(made))
 }
 
-/// Ends all by which a user, or who stole from them, gets in.
+/// All access of a user ends, also that of whoever stole it.
+pub struct AccessEnded {
+    /// The user.
+    pub user: UserId,
+}
+
+impl DomainEvent for AccessEnded {}
+
+/// Ends all access of a user, also that of whoever stole it.
 async fn end_access(tx: &mut Tx, user: UserId) -> Result<()> {
     session::end_all(tx, user, None).await?;
     tokens::delete_all(tx, user).await?;
-    calendar::delete_all_of(tx, user).await?;
+    tx.publish(&AccessEnded { user }).await?;
     oidc::forget(tx, user).await?;
     Ok(())
 }

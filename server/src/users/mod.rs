@@ -8,7 +8,7 @@
 mod invitation;
 mod store;
 
-pub use invitation::reset;
+pub use invitation::{AccessEnded, reset};
 
 use crate::access::{Custodian, Overseer};
 use crate::app::App;

@@ -8,6 +8,7 @@ mod imo;
 mod service;
 mod store;
 
+pub use service::ServiceChanged;
 pub use store::{find_row, is_in_service, must_be_in_fleet, names};
 
 use crate::access::{Reader, Writer};

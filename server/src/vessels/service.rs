@@ -1,17 +1,33 @@
 //! A vessel goes out of service, or comes back.
 
 use super::store::{Row, set_out_of_service};
-use crate::db::Tx;
-use crate::error::{Error, Result};
+use crate::db::{DomainEvent, Tx};
+use crate::error::Result;
 use crate::events::{self, Event};
-use crate::ids::OperatorId;
+use crate::ids::{OperatorId, VesselId};
 use crate::time::Time;
-use crate::{alerts, analysis, schedule, work_orders};
+use crate::{alerts, analysis};
 
-/// Takes a vessel out of service, or back into it; what is so already stays.
+/// A vessel is about to go out of service, or to come back.
+pub struct ServiceChanged {
+    /// Whose vessel.
+    pub operator: OperatorId,
+    /// Which vessel.
+    pub vessel: VesselId,
+    /// The vessel's name.
+    pub vessel_name: String,
+    /// Whether it comes back.
+    pub in_service: bool,
+    /// When.
+    pub at: Time,
+}
+
+impl DomainEvent for ServiceChanged {}
+
+/// Takes a vessel out of service, or back into it; no change where it is so already.
 ///
 /// # Errors
-/// [`Error::WrongState`] when a work order of hers is under way.
+/// When a subscriber refuses, as work orders do while one of the vessel's is under way.
 pub(super) async fn set(
     tx: &mut Tx,
     operator: OperatorId,
@@ -22,19 +38,20 @@ pub(super) async fn set(
     if in_service == vessel.out_of_service_at.is_none() {
         return Ok(Vec::new());
     }
-    schedule::ask(tx, operator, now).await?;
+    let change = ServiceChanged {
+        operator,
+        vessel: vessel.id,
+        vessel_name: vessel.name.clone(),
+        in_service,
+        at: now,
+    };
+    tx.publish(&change).await?;
     let mut told = vec![events::insert(tx, vessel.id, events::Kind::Need, now).await?];
     if in_service {
         set_out_of_service(tx, vessel.id, None).await?;
         // It raises what alerts there were again, if they still are called for.
         analysis::enqueue(tx, vessel.id, now, 0.0).await?;
         return Ok(told);
-    }
-    if work_orders::is_any_under_way(tx, vessel.id).await? {
-        return Err(Error::WrongState(format!(
-            "a work order of {} is under way: cancel it first, or have it done",
-            vessel.name
-        )));
     }
     set_out_of_service(tx, vessel.id, Some(now)).await?;
     told.extend(alerts::out_of_service(tx, vessel.id, now).await?);

@@ -13,7 +13,7 @@ use crate::db::Tx;
 use crate::error::Result;
 use crate::events::{self, Event};
 use crate::ids::{DeliveryId, FirmId, UserId};
-use crate::notifications::{self, News};
+use crate::notices::{Notice, NoticesPublished};
 use crate::outbox::{Kind, Message};
 use crate::tenants::Tenant;
 use crate::time::Time;
@@ -74,7 +74,13 @@ pub(super) async fn tell(
         let firm = entry.content.between().map(|said| said.firm.firm_id);
         notices::for_operator(summary, entry, firm.and_then(|firm| before.was(firm)))
     });
-    notifications::tell(tx, operator, &notices.collect::<Vec<_>>(), by, now).await?;
+    let published = NoticesPublished {
+        tenant: operator,
+        notices: notices.collect(),
+        by,
+        at: now,
+    };
+    tx.publish(&published).await?;
     let order = (summary.vessel_id, summary.id);
     let mut live = vec![events::insert_of_order(tx, order, None, now).await?];
     // In the order of their ids: no two transactions wait for each other.
@@ -91,7 +97,13 @@ pub(super) async fn tell(
         }
         webhooks::announce_messages(tx, Tenant::Firm(firm), &told, now).await?;
         let notices = notices_for(summary, offer, was, &new);
-        notifications::tell(tx, Tenant::Firm(firm), &notices, by, now).await?;
+        let published = NoticesPublished {
+            tenant: Tenant::Firm(firm),
+            notices,
+            by,
+            at: now,
+        };
+        tx.publish(&published).await?;
         live.push(events::insert_of_order(tx, order, Some(firm), now).await?);
     }
     Ok(live)
@@ -132,10 +144,10 @@ fn notices_for(
     offer: &Offer,
     was: Option<OfferState>,
     new: &[&Entry],
-) -> Vec<News> {
+) -> Vec<Notice> {
     let seen = summary.seen_with(offer);
     let theirs = new.iter().filter(|entry| offer.lets_see(entry));
-    let mut told: Vec<News> = theirs
+    let mut told: Vec<Notice> = theirs
         .filter_map(|entry| notices::for_firm(&seen, entry, was))
         .collect();
     if offer.is_taken_back(was) {

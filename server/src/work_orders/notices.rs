@@ -8,7 +8,7 @@ use super::moved::{CallFit, CallMoved};
 use super::offers::{Between, OfferState};
 use super::order::Summary;
 use crate::mail;
-use crate::notifications::{Kind, News};
+use crate::notices::{Kind, Notice};
 use binnacle_adjustment::adjust::Verification;
 use std::fmt::Write;
 
@@ -25,7 +25,7 @@ pub(super) fn for_operator(
     summary: &Summary,
     entry: &Entry,
     was: Option<OfferState>,
-) -> Option<News> {
+) -> Option<Notice> {
     let by_firm = entry.author.firm_id.is_some();
     let firm = |said: &Between| said.firm.firm_name.clone();
     let (kind, what) = match &entry.content {
@@ -83,7 +83,11 @@ pub(super) fn for_operator(
 }
 
 /// What a firm's people are told of an entry that they may see.
-pub(super) fn for_firm(summary: &Summary, entry: &Entry, was: Option<OfferState>) -> Option<News> {
+pub(super) fn for_firm(
+    summary: &Summary,
+    entry: &Entry,
+    was: Option<OfferState>,
+) -> Option<Notice> {
     let by_firm = entry.author.firm_id.is_some();
     let (kind, what) = match &entry.content {
         Content::Asked(_) => (Kind::Offered, "a job is offered to you"),
@@ -110,9 +114,9 @@ pub(super) fn for_firm(summary: &Summary, entry: &Entry, was: Option<OfferState>
 }
 
 /// What a firm's people are told when its offer is taken back; why is not their business.
-pub(super) fn withdrawn(summary: &Summary, last: &Entry) -> News {
+pub(super) fn withdrawn(summary: &Summary, last: &Entry) -> Notice {
     let facts = facts(summary, Side::Firm);
-    News {
+    Notice {
         text: facts + "\nAnother firm may have it, or it is not to be done.\n",
         ..told(
             Kind::Withdrawn,
@@ -148,13 +152,13 @@ fn verified(content: &Content) -> Option<(Kind, &'static str)> {
     }
 }
 
-fn told(kind: Kind, what: &str, facts: String, summary: &Summary, entry: &Entry) -> News {
+fn told(kind: Kind, what: &str, facts: String, summary: &Summary, entry: &Entry) -> Notice {
     let mut text = facts;
     if let Some(said) = said(&entry.content) {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}: {said}\n", entry.author.name);
     }
-    News {
+    Notice {
         kind,
         urgent: false,
         subject: format!("{}: {what} at {}", summary.vessel_name, summary.port),

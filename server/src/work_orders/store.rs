@@ -5,7 +5,6 @@ pub(super) use super::find::{lines, list, lock, overdue, summary, vessel_of_aske
 use super::offers::{Between, Offers};
 use super::order::{NewOrder, State, Summary};
 use super::standing::Standing;
-use crate::compasses;
 use crate::db::{Db, Tx, execute, row};
 use crate::error::{Error, Result};
 use crate::ids::{CompassId, OperatorId, OrderId, PhotoId, VesselId};
@@ -105,25 +104,12 @@ pub(super) async fn is_under_way(
     Ok(found.is_some_and(|(orders,)| orders > 0))
 }
 
-/// Whether an order of any of a vessel's compasses is under way.
-pub async fn is_any_under_way(tx: &mut Tx, vessel: VesselId) -> Result<bool> {
-    for compass in compasses::ids(tx, vessel).await? {
-        if is_under_way(tx, vessel, compass).await? {
-            return Ok(true);
-        }
-    }
-    Ok(false)
-}
-
-/// Refuses to write a binnacle whose correctors are being moved.
-///
-/// # Errors
-/// [`Error::WrongState`].
-pub async fn must_not_be_adjusting(
+/// Whether a compass's correctors are being moved.
+pub(super) async fn is_adjusting(
     tx: &mut Tx,
     vessel: VesselId,
     compass: CompassId,
-) -> Result<()> {
+) -> Result<bool> {
     lock_compass(tx, vessel, compass).await?;
     let found = row!(
         in tx,
@@ -133,14 +119,7 @@ pub async fn must_not_be_adjusting(
         vessel,
         compass
     )?;
-    if found.is_none_or(|(orders,)| orders == 0) {
-        return Ok(());
-    }
-    Err(Error::WrongState(
-        "this compass is being adjusted: how its correctors stand is said to its work order, \
-         which writes the binnacle when it is completed or cancelled"
-            .to_owned(),
-    ))
+    Ok(found.is_some_and(|(orders,)| orders > 0))
 }
 
 /// The compass's last order that was completed; one that was closed after headings at sea

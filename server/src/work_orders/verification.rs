@@ -164,16 +164,6 @@ fn settled(found: &SampleDiagnostic) -> Option<Settled> {
     })
 }
 
-/// When a compass's last adjustment by an order was.
-pub async fn adjusted_at(
-    tx: &mut Tx,
-    vessel: VesselId,
-    compass: CompassId,
-) -> Result<Option<Time>> {
-    let last = store::last_completed(tx, vessel, compass).await?;
-    Ok(last.map(|(_, _, at)| at))
-}
-
 /// The alert that a compass's last adjustment calls for.
 pub async fn alert(
     tx: &mut Tx,

@@ -2,7 +2,7 @@
 
 use crate::on_both;
 use crate::support::{Answer, Engine, Person, Shore, passage};
-use binnacle_server::db::Db;
+use binnacle_server::db::Pools;
 use binnacle_server::events;
 use futures_util::StreamExt;
 use reqwest::Method;
@@ -26,7 +26,7 @@ async fn a_broken_line_to_postgres_is_mended_and_what_was_missed_is_told() {
     let ada = shore.admin("ada").await;
     let nao = shore.ship(&ada, "Nao").await;
     let mut source = Source::open(&ada, None).await;
-    let Db::Postgres(pool) = &shore.app.db else {
+    let Pools::Postgres(pool) = shore.app.db.pools() else {
         unreachable!("PostgreSQL was asked for");
     };
     let broken: Vec<bool> = sqlx::query_scalar(
@@ -195,9 +195,9 @@ async fn a_stopping_server_lets_its_dashboards_go(shore: Shore) {
 
 async fn left(shore: &Shore) -> (i64,) {
     let sql = "SELECT COUNT(*) FROM events";
-    match &shore.app.db {
-        Db::Sqlite { readers, .. } => sqlx::query_as(sql).fetch_one(readers).await,
-        Db::Postgres(pool) => sqlx::query_as(sql).fetch_one(pool).await,
+    match shore.app.db.pools() {
+        Pools::Sqlite { readers, .. } => sqlx::query_as(sql).fetch_one(readers).await,
+        Pools::Postgres(pool) => sqlx::query_as(sql).fetch_one(pool).await,
     }
     .unwrap()
 }

@@ -2,7 +2,7 @@
 
 use crate::on_both;
 use crate::support::{Answer, Engine, Shore, days_at_sea, frame, passage, truth};
-use binnacle_server::db::Db;
+use binnacle_server::db::Pools;
 use binnacle_wire::batch::StreamId;
 use serde_json::json;
 use uuid::Uuid;
@@ -220,7 +220,7 @@ async fn a_disk_that_was_full_takes_batches_again() {
     let shore = Shore::start(Engine::Sqlite).await;
     let ada = shore.admin("ada").await;
     let nao = shore.ship(&ada, "Nao").await;
-    let Db::Sqlite { writer, .. } = &shore.app.db else {
+    let Pools::Sqlite { writer, .. } = shore.app.db.pools() else {
         unreachable!("it was started on SQLite");
     };
     // Not below what it has.

@@ -5,7 +5,7 @@ use crate::on_both;
 use crate::port_calls;
 use crate::support::{Person, Shore};
 use binnacle_schedule::{input, plan};
-use binnacle_server::db::Db;
+use binnacle_server::db::Pools;
 use binnacle_server::schedule::{self, PlanSlots};
 use serde_json::{Value, json};
 
@@ -156,9 +156,10 @@ async fn a_storm_of_changes_makes_one_plan_after_half_a_minute(shore: Shore) {
     );
     let second = shore.second().await;
     shore.advance(11.0);
+    let (here, there) = (PlanSlots::default(), PlanSlots::default());
     let (one, other) = tokio::join!(
-        schedule::step(&shore.app, &PlanSlots::default()),
-        schedule::step(&second, &PlanSlots::default())
+        schedule::step(&shore.app, &here),
+        schedule::step(&second, &there)
     );
     // Two servers, one schedule.
     assert!(one.unwrap().is_some() != other.unwrap().is_some());
@@ -253,9 +254,9 @@ async fn a_fleet_that_is_too_large_to_be_planned_is_told_so(shore: Shore) {
     let nao = due_vessel(&ada, "Nao").await;
     enter(&ada, &nao, "NLRTM", 8).await;
     shore
-        .sql(match &shore.app.db {
-            Db::Sqlite { .. } => many_calls!("randomblob(16)"),
-            Db::Postgres(_) => many_calls!("gen_random_uuid()"),
+        .sql(match shore.app.db.pools() {
+            Pools::Sqlite { .. } => many_calls!("randomblob(16)"),
+            Pools::Postgres(_) => many_calls!("gen_random_uuid()"),
         })
         .await;
     let said = "this fleet cannot be planned: port_calls: 50001 are more than 50000";

@@ -4,6 +4,7 @@
 //! migrations one by one, for each of hundreds of tests, would take minutes.
 
 use binnacle_server::db::Db;
+use binnacle_server::subscriptions::subscribers;
 use sqlx::{AssertSqlSafe, Connection, Executor, PgConnection};
 use tempfile::TempDir;
 use tokio::sync::OnceCell;
@@ -101,7 +102,7 @@ async fn server_pattern() -> String {
 
 /// Makes every table, and leaves the database to itself.
 async fn migrate(url: &str) {
-    let db = Db::connect(url).await.unwrap();
+    let db = Db::connect(url, subscribers()).await.unwrap();
     db.migrate().await.unwrap();
     db.close().await;
 }

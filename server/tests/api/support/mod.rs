@@ -19,7 +19,8 @@ use binnacle_server::analysis::{self, Worked};
 use binnacle_server::app::App;
 use binnacle_server::clock::Clock;
 use binnacle_server::config::{Cli, Command, Serve};
-use binnacle_server::db::{Connection, Db};
+use binnacle_server::db::{Connection, Db, Pools};
+use binnacle_server::subscriptions::subscribers;
 use binnacle_server::{command, operations};
 use clap::Parser;
 use database::Database;
@@ -58,19 +59,19 @@ impl Shore {
     /// A database as the migrations before one left it, before the server opens it.
     pub(crate) async fn aged(engine: Engine, before: i64) -> Aged {
         let database = Database::bare(engine).await;
-        let db = Db::connect(&database.url).await.unwrap();
+        let db = Db::connect(&database.url, subscribers()).await.unwrap();
         let all = sqlx::migrate!("../migrations");
         let old = all.iter().filter(|migration| migration.version < before);
         let old = Migrator::with_migrations(old.cloned().collect());
-        match &db {
-            Db::Sqlite { writer, .. } => old.run(writer).await.unwrap(),
-            Db::Postgres(pool) => old.run(pool).await.unwrap(),
+        match db.pools() {
+            Pools::Sqlite { writer, .. } => old.run(writer).await.unwrap(),
+            Pools::Postgres(pool) => old.run(pool).await.unwrap(),
         }
         Aged { db, database }
     }
 
     async fn open(database: Database, clock: Clock, settings: &[&str]) -> Shore {
-        let db = Db::connect(&database.url).await.unwrap();
+        let db = Db::connect(&database.url, subscribers()).await.unwrap();
         db.migrate().await.unwrap();
         let config = config(&database.url, settings);
         let app = App::new(db, clock, config, metrics());
@@ -102,7 +103,9 @@ impl Shore {
 
     /// A second server process on the same database, as it were.
     pub(crate) async fn second(&self) -> App {
-        let db = Db::connect(&self.database.url).await.unwrap();
+        let db = Db::connect(&self.database.url, subscribers())
+            .await
+            .unwrap();
         let config = config(&self.database.url, &[]);
         App::new(db, self.app.clock.clone(), config, metrics())
     }
@@ -124,9 +127,9 @@ impl Shore {
     /// The kinds of all live events there were, in order.
     pub(crate) async fn events(&self) -> Vec<String> {
         let sql = "SELECT kind FROM events ORDER BY id";
-        match &self.app.db {
-            Db::Sqlite { readers, .. } => sqlx::query_scalar(sql).fetch_all(readers).await,
-            Db::Postgres(pool) => sqlx::query_scalar(sql).fetch_all(pool).await,
+        match self.app.db.pools() {
+            Pools::Sqlite { readers, .. } => sqlx::query_scalar(sql).fetch_all(readers).await,
+            Pools::Postgres(pool) => sqlx::query_scalar(sql).fetch_all(pool).await,
         }
         .unwrap()
     }

@@ -6,12 +6,12 @@
 use crate::access::{Reader, Writer};
 use crate::app::App;
 use crate::audit::RequestContext;
-use crate::db::{Db, Tx, execute, row};
+use crate::db::{Db, DomainEvent, Tx, execute, row};
 use crate::error::{Error, Problem, Result};
 use crate::http::{Id, Json, Valid, optional_text};
-use crate::ids::VesselId;
+use crate::ids::{OperatorId, VesselId};
 use crate::time::Time;
-use crate::{schedule, session, vessels};
+use crate::{session, vessels};
 use axum::extract::{FromRef, State};
 use binnacle_schedule::needs::{Ship, Transit};
 use binnacle_schedule::rules::{Canal, DeviationRecord, Flag, Trade};
@@ -25,7 +25,18 @@ use utoipa_axum::routes;
 const MOST_TRANSITS: usize = 50;
 const MOST_TONNAGE: u32 = 1_000_000;
 
-pub(super) fn router<S>() -> OpenApiRouter<S>
+/// What rules ask about a vessel is about to change.
+pub struct ParticularsChanged {
+    /// Whose vessel.
+    pub operator: OperatorId,
+    /// When.
+    pub at: Time,
+}
+
+impl DomainEvent for ParticularsChanged {}
+
+/// The routes of this part.
+pub fn router<S>() -> OpenApiRouter<S>
 where
     App: FromRef<S>,
     S: Clone + Send + Sync + 'static,
@@ -40,7 +51,7 @@ where
     "flag_state": "PA", "gross_tonnage": 24000, "trade": "bulk", "deviation_record": "kept",
     "licence": null, "transits": [{ "canal": "panama", "on": "2027-02-10" }]
 }))]
-pub(super) struct Particulars {
+pub struct Particulars {
     /// Her flag, ISO 3166; where it is not said, what the vessel's own `flag` tells.
     #[schema(value_type = Option<String>, required, pattern = "^[A-Z]{2}$")]
     pub flag_state: Option<Flag>,
@@ -139,7 +150,11 @@ async fn set_particulars(
     let mut tx = request.begin().await?;
     let name = session::name_of(&mut tx, writer.user).await?;
     put(&mut tx, vessel, &particulars, &name, now).await?;
-    schedule::ask(&mut tx, writer.operator, now).await?;
+    tx.publish(&ParticularsChanged {
+        operator: writer.operator,
+        at: now,
+    })
+    .await?;
     tx.commit().await?;
     Ok(Json(particulars))
 }
@@ -222,7 +237,7 @@ impl Particulars {
     }
 
     /// The ship as rules see her; `flag` is what is written of the vessel herself.
-    pub(super) fn ship(&self, flag: Option<&str>) -> Ship {
+    pub fn ship(&self, flag: Option<&str>) -> Ship {
         Ship {
             flag: self.flag_state.or_else(|| flag.and_then(flag_of)),
             gross_tonnage: self.gross_tonnage,
@@ -234,7 +249,7 @@ impl Particulars {
 }
 
 /// The field of a canal is that of its middle, degrees north and east.
-pub(super) fn place_of(canal: Canal) -> (f64, f64) {
+pub fn place_of(canal: Canal) -> (f64, f64) {
     match canal {
         Canal::Panama => (9.1, -79.7),
     }

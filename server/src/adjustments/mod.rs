@@ -1,16 +1,16 @@
-//! Adjustments that orders brought about: by whom, and what the sea said of them.
+//! Completed adjustments of a compass: by whom, and whether headings at sea confirm them.
 //!
-//! What always holds: an adjustment bears on the model that it foretold and on what was
-//! fitted later to the epoch that it began, and on no other.
+//! What always holds: an adjustment bears on the model that it predicted and on what was
+//! fitted later to the epoch that it began, and on no other. Work orders write these rows;
+//! they are only read here.
 
-use super::store;
-use super::verification::Verified;
-use crate::db::{Db, rows};
+use crate::db::{Db, Tx, row, rows};
 use crate::error::Result;
 use crate::ids::{CompassId, OrderId, VesselId};
 use crate::models::StoredModel;
 use crate::time::Time;
 use binnacle_adjustment::adjust::Verification;
+use serde::Deserialize;
 use serde_json::Value;
 
 /// An adjustment that was completed.
@@ -67,11 +67,48 @@ pub async fn completed(
 
 /// The version of the model that an order's adjustment was foretold from, by its record.
 pub async fn foretold_from(db: &Db, vessel: VesselId, order: OrderId) -> Result<Option<i64>> {
-    let Some(record) = store::record(db, vessel, order).await? else {
+    let found = row!(
+        db,
+        (Option<String>,),
+        "SELECT record FROM work_orders WHERE vessel_id = $1 AND id = $2 ORDER BY id",
+        vessel,
+        order
+    )?;
+    let Some(record) = found.and_then(|(record,)| record) else {
         return Ok(None);
     };
     let record: Value = serde_json::from_str(&record)?;
     Ok(record["data"]["model_version"].as_i64())
+}
+
+/// Returns when a compass's last adjustment by an order was.
+///
+/// # Errors
+/// When the database cannot be read.
+pub async fn last_adjusted_at(
+    tx: &mut Tx,
+    vessel: VesselId,
+    compass: CompassId,
+) -> Result<Option<Time>> {
+    let found = row!(
+        in tx,
+        (Time,),
+        "SELECT completed_at FROM work_orders
+         WHERE vessel_id = $1 AND compass_id = $2 AND completed_at IS NOT NULL
+         ORDER BY completed_at DESC, id DESC
+         LIMIT 1",
+        vessel,
+        compass
+    )?;
+    Ok(found.map(|(at,)| at))
+}
+
+/// Verdict of the headings at sea, as the order's row keeps it.
+#[derive(Deserialize)]
+struct Verdict {
+    verification: Verification,
+    samples: usize,
+    until: Time,
 }
 
 impl CompletedOrder {
@@ -97,7 +134,7 @@ struct Row {
 
 impl Row {
     fn read(self) -> Result<CompletedOrder> {
-        let verified: Option<Verified> = self
+        let verified: Option<Verdict> = self
             .verification
             .map(|text| serde_json::from_str(&text))
             .transpose()?;
@@ -115,7 +152,7 @@ impl Row {
 
 impl AtSea {
     /// None of a verdict that is no agreement.
-    fn of(verified_at: Time, verified: &Verified) -> Option<AtSea> {
+    fn of(verified_at: Time, verified: &Verdict) -> Option<AtSea> {
         let Verification::Passed {
             headings, rms_deg, ..
         } = verified.verification

@@ -1,6 +1,10 @@
-//! What people are told of, and in which ways.
+//! Notices: messages to an operator's or a firm's people, whoever delivers them.
 
+use crate::db::DomainEvent;
+use crate::ids::{AlertId, OrderId, UserId, VesselId};
 use crate::session::Role;
+use crate::tenants::Tenant;
+use crate::time::Time;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
@@ -42,24 +46,44 @@ pub enum Kind {
     Alert,
 }
 
-/// How a person is told of something.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "snake_case")]
-#[schema(as = NotificationWay)]
-pub(super) enum Way {
-    /// On the list, and by mail, after quiet hours if it comes during them.
-    Mail,
-    /// On the list, and with the next digest.
-    Digest,
-    /// On the list only.
-    List,
-    /// Not at all.
-    Off,
+/// Message to the people whom its kind concerns.
+#[derive(Clone, Debug)]
+pub struct Notice {
+    /// What it is about.
+    pub kind: Kind,
+    /// Whether it waits for nothing.
+    pub urgent: bool,
+    /// In a line.
+    pub subject: String,
+    /// In a letter: a fact on each line, then sentences.
+    pub text: String,
+    /// The dashboard's page to look at.
+    pub path: String,
+    /// The vessel.
+    pub vessel: VesselId,
+    /// The work order, if it is of one.
+    pub order: Option<OrderId>,
+    /// The alert, if it is of one.
+    pub alert: Option<AlertId>,
 }
+
+/// Notices for a tenant's people, to be delivered to each as the person has chosen.
+pub struct NoticesPublished {
+    /// Whose people.
+    pub tenant: Tenant,
+    /// The notices.
+    pub notices: Vec<Notice>,
+    /// Who caused them, and gets none.
+    pub by: Option<UserId>,
+    /// When.
+    pub at: Time,
+}
+
+impl DomainEvent for NoticesPublished {}
 
 impl Kind {
     /// All of them.
-    pub(super) const ALL: [Kind; 13] = [
+    pub const ALL: [Kind; 13] = [
         Kind::DueSoon,
         Kind::NeedRaised,
         Kind::Offered,
@@ -76,7 +100,7 @@ impl Kind {
     ];
 
     /// Whether someone of that role is ever told of it.
-    pub(super) fn concerns(self, role: Role) -> bool {
+    pub fn concerns(self, role: Role) -> bool {
         match role {
             Role::Admin | Role::Viewer => !matches!(self, Kind::Offered | Kind::Withdrawn),
             Role::Adjuster => !matches!(
@@ -84,16 +108,6 @@ impl Kind {
                 Kind::DueSoon | Kind::NeedRaised | Kind::OnBoard | Kind::Completed | Kind::Alert
             ),
             Role::PlatformAdmin => false,
-        }
-    }
-
-    /// How someone is told who has not said. Alerts have the operator's mailing list; and
-    /// who only looks on is not written to unasked.
-    pub(super) fn usual_way(self, role: Role) -> Way {
-        match (role, self) {
-            (Role::Viewer, _) | (_, Kind::Alert) => Way::List,
-            (_, Kind::DueSoon | Kind::Completed) => Way::Digest,
-            _ => Way::Mail,
         }
     }
 }

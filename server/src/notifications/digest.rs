@@ -1,8 +1,8 @@
 //! The letter of one notification, or of several together.
 
-use super::letter::{Letter, Told, header, one_line, wrapped};
+use super::Notification;
 use crate::error::Result;
-use crate::notifications::Notification;
+use crate::mail::{Letter, Told, header, one_line, wrapped};
 
 /// So many are told with all that there is to know, more by a line each, and more than so
 /// many only counted.
@@ -10,7 +10,7 @@ const MOST_IN_FULL: usize = 20;
 const MOST_TOLD: usize = 60;
 
 /// The letter that tells of them, as it waits to be sent; none of none.
-pub fn letter_of(told: &[Notification]) -> Option<Result<String>> {
+pub(super) fn letter_of(told: &[Notification]) -> Option<Result<String>> {
     let letter = match told {
         [] => return None,
         [one] => Letter {

@@ -1,0 +1,17 @@
+//! Who handles which event: one table, in the order in which the handlers run.
+
+use crate::db::Subscribers;
+use crate::{calendar, notifications, schedule, work_orders};
+
+/// Returns the handlers of every event of the server.
+pub fn subscribers() -> Subscribers {
+    Subscribers::default()
+        .on(work_orders::refuse_leave_of_service)
+        .on(work_orders::refuse_amended_binnacle)
+        .on(schedule::on_service_change)
+        .on(schedule::on_particulars_change)
+        .on(schedule::on_terms_change)
+        .on(schedule::on_vessel_event)
+        .on(calendar::delete_feeds)
+        .on(notifications::create)
+}
