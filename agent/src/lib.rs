@@ -30,7 +30,7 @@ mod output;
 mod sentences;
 mod work;
 
-mod guests;
+mod http_limits;
 mod offline;
 mod page;
 mod reports;

@@ -8,8 +8,8 @@
 
 use crate::alert::Aboard;
 use crate::config::PageConfig;
-use crate::guests::Guests;
 use crate::hold::Hold;
+use crate::http_limits::LimitedListener;
 use crate::reports;
 use crate::spool::Spool;
 use crate::status::Status;
@@ -72,7 +72,7 @@ pub(crate) async fn serve(
     page.spool.set_page(Some(address)).await?;
     let stopped = shutdown.clone().cancelled_owned();
     tokio::spawn(async move {
-        let served = axum::serve(Guests::of(listener), router(page))
+        let served = axum::serve(LimitedListener::new(listener), router(page))
             .with_graceful_shutdown(stopped)
             .await;
         if let Err(error) = served {

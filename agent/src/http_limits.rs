@@ -13,48 +13,52 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
 /// More than a bridge has screens.
-const MOST: usize = 64;
+const MAX_CONNECTIONS: usize = 64;
 /// The page asks once a second.
-const PATIENCE: Duration = Duration::from_secs(10);
+const IDLE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// A listener with room for so many.
 #[derive(Debug)]
-pub(crate) struct Guests {
+pub(crate) struct LimitedListener {
     listener: TcpListener,
-    room: Arc<Semaphore>,
-    patience: Duration,
+    permits: Arc<Semaphore>,
+    idle_timeout: Duration,
 }
 
-impl Guests {
+impl LimitedListener {
     /// Takes over a listener.
-    pub(crate) fn of(listener: TcpListener) -> Guests {
-        Guests::at_most(MOST, PATIENCE, listener)
+    pub(crate) fn new(listener: TcpListener) -> LimitedListener {
+        LimitedListener::with_limits(MAX_CONNECTIONS, IDLE_TIMEOUT, listener)
     }
 
-    fn at_most(most: usize, patience: Duration, listener: TcpListener) -> Guests {
-        Guests {
+    fn with_limits(
+        max_connections: usize,
+        idle_timeout: Duration,
+        listener: TcpListener,
+    ) -> LimitedListener {
+        LimitedListener {
             listener,
-            room: Arc::new(Semaphore::new(most)),
-            patience,
+            permits: Arc::new(Semaphore::new(max_connections)),
+            idle_timeout,
         }
     }
 }
 
-impl axum::serve::Listener for Guests {
-    type Io = Guest;
+impl axum::serve::Listener for LimitedListener {
+    type Io = LimitedConnection;
     type Addr = SocketAddr;
 
-    async fn accept(&mut self) -> (Guest, SocketAddr) {
-        let room = self.room.clone().acquire_owned().await;
-        let room = room.expect("the semaphore is never closed");
+    async fn accept(&mut self) -> (LimitedConnection, SocketAddr) {
+        let permit = self.permits.clone().acquire_owned().await;
+        let permit = permit.expect("the semaphore is never closed");
         let (stream, address) = axum::serve::Listener::accept(&mut self.listener).await;
-        let guest = Guest {
+        let connection = LimitedConnection {
             stream,
-            patience: self.patience,
-            silent: Box::pin(sleep(self.patience)),
-            _room: room,
+            idle_timeout: self.idle_timeout,
+            idle_timer: Box::pin(sleep(self.idle_timeout)),
+            _permit: permit,
         };
-        (guest, address)
+        (connection, address)
     }
 
     fn local_addr(&self) -> io::Result<SocketAddr> {
@@ -64,48 +68,50 @@ impl axum::serve::Listener for Guests {
 
 /// A connection that ends when nothing comes and nothing can be told for too long.
 #[derive(Debug)]
-pub(crate) struct Guest {
+pub(crate) struct LimitedConnection {
     stream: TcpStream,
-    patience: Duration,
-    silent: Pin<Box<Sleep>>,
-    _room: OwnedSemaphorePermit,
+    idle_timeout: Duration,
+    idle_timer: Pin<Box<Sleep>>,
+    _permit: OwnedSemaphorePermit,
 }
 
-impl Guest {
+impl LimitedConnection {
     /// Begins to wait anew when there was something, and gives up when there is nothing.
-    fn heed<T>(
+    fn check_idle<T>(
         &mut self,
         cx: &mut Context<'_>,
-        happened: Poll<io::Result<T>>,
+        outcome: Poll<io::Result<T>>,
     ) -> Poll<io::Result<T>> {
-        if happened.is_ready() {
-            self.silent.as_mut().reset(Instant::now() + self.patience);
-            return happened;
+        if outcome.is_ready() {
+            self.idle_timer
+                .as_mut()
+                .reset(Instant::now() + self.idle_timeout);
+            return outcome;
         }
-        ready!(self.silent.as_mut().poll(cx));
+        ready!(self.idle_timer.as_mut().poll(cx));
         Poll::Ready(Err(io::ErrorKind::TimedOut.into()))
     }
 }
 
-impl AsyncRead for Guest {
+impl AsyncRead for LimitedConnection {
     fn poll_read(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
         buffer: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
         let read = Pin::new(&mut self.stream).poll_read(cx, buffer);
-        self.heed(cx, read)
+        self.check_idle(cx, read)
     }
 }
 
-impl AsyncWrite for Guest {
+impl AsyncWrite for LimitedConnection {
     fn poll_write(
         mut self: Pin<&mut Self>,
         cx: &mut Context<'_>,
-        octets: &[u8],
+        bytes: &[u8],
     ) -> Poll<io::Result<usize>> {
-        let written = Pin::new(&mut self.stream).poll_write(cx, octets);
-        self.heed(cx, written)
+        let written = Pin::new(&mut self.stream).poll_write(cx, bytes);
+        self.check_idle(cx, written)
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {
@@ -128,24 +134,25 @@ mod tests {
     async fn those_who_say_nothing_make_room_for_those_who_do() {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
-        let guests = Guests::at_most(3, Duration::from_millis(200), listener);
+        let listener_with_limits =
+            LimitedListener::with_limits(3, Duration::from_millis(200), listener);
         let router = Router::new().route("/", get(|| async { "here" }));
-        tokio::spawn(async move { axum::serve(guests, router).await });
-        let mut silent = Vec::new();
+        tokio::spawn(async move { axum::serve(listener_with_limits, router).await });
+        let mut idle_timer = Vec::new();
         for _ in 0..9 {
-            let mut guest = TcpStream::connect(address).await.unwrap();
-            guest.write_all(b"GET / HTTP/1.1\r\nHo").await.unwrap();
-            silent.push(guest);
+            let mut connection = TcpStream::connect(address).await.unwrap();
+            connection.write_all(b"GET / HTTP/1.1\r\nHo").await.unwrap();
+            idle_timer.push(connection);
         }
-        let mut guest = TcpStream::connect(address).await.unwrap();
+        let mut connection = TcpStream::connect(address).await.unwrap();
         let request = b"GET / HTTP/1.1\r\nhost: a\r\nconnection: close\r\n\r\n";
-        guest.write_all(request).await.unwrap();
+        connection.write_all(request).await.unwrap();
         let mut answer = String::new();
-        guest.read_to_string(&mut answer).await.unwrap();
+        connection.read_to_string(&mut answer).await.unwrap();
         assert!(answer.ends_with("here"), "{answer}");
         // The first was shown out.
         let mut rest = Vec::new();
-        let read = silent[0].read_to_end(&mut rest).await;
+        let read = idle_timer[0].read_to_end(&mut rest).await;
         assert!(!rest.starts_with(b"HTTP/1.1 200"), "{read:?}");
     }
 }
