@@ -25,10 +25,10 @@ mod spool;
 mod burst;
 mod uplink;
 
+mod card_invalidation;
 mod corrected;
 mod output;
 mod sentences;
-mod work;
 
 mod http_limits;
 mod offline;

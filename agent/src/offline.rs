@@ -4,7 +4,7 @@ use crate::alert::Aboard;
 use crate::spool::Spool;
 use crate::status::{ModelStatus, Status};
 use crate::uplink::{LinkState, LinkStatus};
-use crate::{clock, work};
+use crate::{card_invalidation, clock};
 
 /// What the spool alone can tell.
 pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
@@ -17,7 +17,9 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
     };
     let model = spool.model().await?;
     let withdrawn = match (spool.card_withdrawn().await?, &model) {
-        (None, Some(model)) => work::that_ends(model, &spool.reports().await?, clock::now()),
+        (None, Some(model)) => {
+            card_invalidation::find_invalidation(model, &spool.reports().await?, clock::now())
+        }
         (withdrawn, _) => withdrawn,
     };
     Ok(Status {

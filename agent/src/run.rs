@@ -9,6 +9,7 @@ mod keep;
 
 use crate::alert::{Aboard, AlarmSentence, Card, Lookout};
 use crate::burst::{self, FileModem};
+use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
 use crate::corrected::{self, Corrected, Ingredients};
@@ -25,7 +26,6 @@ use crate::ship::{Latest, Ship};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
 use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{self, Plan, Told};
-use crate::work;
 use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
@@ -348,7 +348,7 @@ impl Agent {
         by_shore.or_else(|| {
             let model = self.told.model.borrow();
             let now = self.ship.time().unwrap_or_else(clock::now);
-            work::that_ends(model.as_ref()?, &self.reports, now)
+            card_invalidation::find_invalidation(model.as_ref()?, &self.reports, now)
         })
     }
 

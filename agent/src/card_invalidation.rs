@@ -11,19 +11,21 @@ use serde_json::Value;
 
 const DAY_S: f64 = 86_400.0;
 /// Work that began so long before a model's last sample is of the model's own past.
-const LONG_KNOWN_S: f64 = 30.0 * DAY_S;
+const KNOWN_TO_MODEL_S: f64 = 30.0 * DAY_S;
 /// An epoch that began so little before the work was written to have is the work's: the
 /// shore dates by the samples.
-const DATED_APART_S: f64 = DAY_S;
+const DATING_TOLERANCE_S: f64 = DAY_S;
 
 /// What of the reported work ends a card, the latest of it.
-pub(crate) fn that_ends(
+pub(crate) fn find_invalidation(
     model: &ModelDownlink,
     reports: &[StoredReport],
     now: Timestamp,
 ) -> Option<CardWithdrawn> {
-    let ending = reports.iter().filter(|stored| ends(model, stored, now));
-    let last = ending.max_by_key(|stored| stored.sent.report.from)?;
+    let invalidating = reports
+        .iter()
+        .filter(|stored| invalidates(model, stored, now));
+    let last = invalidating.max_by_key(|stored| stored.sent.report.from)?;
     let report = &last.sent.report;
     let reason = match serde_json::to_value(report.kind) {
         Ok(Value::String(word)) => word,
@@ -35,17 +37,18 @@ pub(crate) fn that_ends(
     })
 }
 
-fn ends(model: &ModelDownlink, stored: &StoredReport, now: Timestamp) -> bool {
+fn invalidates(model: &ModelDownlink, stored: &StoredReport, now: Timestamp) -> bool {
     let report = &stored.sent.report;
     let from = report.from;
-    let counts = report.kind.ends_an_epoch() && !stored.is_taken_back() && from <= now;
-    let is_past = model.data_until.seconds_since(from) > LONG_KNOWN_S;
+    let is_effective = report.kind.ends_an_epoch() && !stored.is_taken_back() && from <= now;
+    let is_known = model.data_until.seconds_since(from) > KNOWN_TO_MODEL_S;
     let replaces = model.replaces.as_ref();
-    let is_since = replaces.is_some_and(|old| old.since.seconds_since(from) >= -DATED_APART_S);
+    let is_replaced =
+        replaces.is_some_and(|old| old.since.seconds_since(from) >= -DATING_TOLERANCE_S);
     // Reports go before samples: who has these has read that.
-    let is_judged =
+    let is_analysed =
         stored.standing != ReportStanding::Waiting && model.data_until > stored.written_at;
-    counts && !is_past && !is_since && !is_judged
+    is_effective && !is_known && !is_replaced && !is_analysed
 }
 
 #[cfg(test)]
@@ -94,7 +97,7 @@ mod tests {
     }
 
     fn ended(model: &ModelDownlink, report: StoredReport, now: &str) -> Option<String> {
-        that_ends(model, &[report], at(now)).map(|ended| ended.reason)
+        find_invalidation(model, &[report], at(now)).map(|ended| ended.reason)
     }
 
     const BEFORE: &str = "2026-11-20T06:00:00Z";
