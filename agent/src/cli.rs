@@ -3,6 +3,7 @@
 //! Exit code 2 and one line for what the one who typed it got wrong, 1 for
 //! everything else that fails.
 
+use crate::atomic_file::write_atomically;
 use crate::config::{Config, ConfigError, RolesConfig, SilenceConfig};
 use crate::hold::Hold;
 use crate::offline::offline_status;
@@ -13,7 +14,6 @@ use crate::run;
 use crate::spool::{Identity, Spool};
 use crate::status::Status;
 use crate::uplink::{Shore, Trouble};
-use crate::whole_file::write_whole;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -249,7 +249,7 @@ fn export(config: &Config, span: Span, csv: Option<&Path>) -> anyhow::Result<()>
         return Err(BadInput(format!("{}: there is no ring yet", ring.display())).into());
     }
     let rows = match csv {
-        Some(path) => write_whole(path, |out| ring::export(&ring, span, out))?,
+        Some(path) => write_atomically(path, |out| ring::export(&ring, span, out))?,
         None => ring::export(&ring, span, &mut std::io::stdout().lock())?,
     };
     writeln!(std::io::stderr(), "{rows} seconds")?;
@@ -269,7 +269,7 @@ fn replay(files: &[PathBuf], config: Option<&Path>, csv: Option<&Path>) -> anyho
     let table = replayed.csv()?;
     match csv {
         Some(path) => {
-            write_whole(path, |out| Ok(out.write_all(&table)?))
+            write_atomically(path, |out| Ok(out.write_all(&table)?))
                 .map_err(|e| BadInput(format!("{e:#}")))?;
         }
         None => std::io::stdout().write_all(&table)?,

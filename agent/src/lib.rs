@@ -36,8 +36,8 @@ mod page;
 mod reports;
 mod status;
 
+mod atomic_file;
 mod replay;
-mod whole_file;
 
 mod clock;
 mod clocks;

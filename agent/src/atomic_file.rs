@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// What `content` says, or that the file cannot be written.
-pub(crate) fn write_whole<T>(
+pub(crate) fn write_atomically<T>(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
@@ -53,7 +53,7 @@ mod tests {
         let directory = TempDir::new().unwrap();
         let path = directory.path().join("samples.csv");
         for table in [b"a longer table".as_slice(), b"a table"] {
-            write_whole(&path, |out| Ok(out.write_all(table)?)).unwrap();
+            write_atomically(&path, |out| Ok(out.write_all(table)?)).unwrap();
             assert_eq!(fs::read(&path).unwrap(), table);
         }
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 1);
@@ -68,7 +68,7 @@ mod tests {
         let directory = TempDir::new().unwrap();
         let path = directory.path().join("samples.csv");
         fs::write(&path, "before").unwrap();
-        let failed: anyhow::Result<()> = write_whole(&path, |out| {
+        let failed: anyhow::Result<()> = write_atomically(&path, |out| {
             out.write_all(b"half")?;
             anyhow::bail!("no more")
         });
