@@ -40,4 +40,4 @@ mod atomic_file;
 mod replay;
 
 mod clock;
-mod clocks;
+mod clock_checkpoint;

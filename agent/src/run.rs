@@ -121,8 +121,8 @@ impl Agent {
             // The computer may have lost its time with its power.
             let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
             ship.judge_time_by(known, Instant::now());
-            if let Some(before) = spool.clocks().await? {
-                ship.remember_clocks(before);
+            if let Some(before) = spool.clock_checkpoint().await? {
+                ship.restore_clock_checkpoint(before);
             }
         }
         let reports = spool.reports().await?;
@@ -233,7 +233,7 @@ impl Agent {
         self.ship.sampler.finish();
         self.collect();
         self.store(Seal::Full).await;
-        self.note_clocks().await;
+        self.save_clock_checkpoint().await;
         self.ring.flush(Instant::now());
         if let Err(error) = self.uplink.await {
             tracing::error!(%error, "the uplink ended badly");

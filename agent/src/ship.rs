@@ -1,6 +1,6 @@
 //! The ship as her instruments tell it: roles and sampler, and the latest readings.
 
-use crate::clocks::Clocks;
+use crate::clock_checkpoint::ClockCheckpoint;
 use crate::config::RolesConfig;
 use crate::hold::Hold;
 use crate::input::is_recorded_time;
@@ -86,7 +86,7 @@ impl Ship {
     }
 
     /// What was noted before the restart.
-    pub(crate) fn remember_clocks(&mut self, before: Clocks) {
+    pub(crate) fn restore_clock_checkpoint(&mut self, before: ClockCheckpoint) {
         self.roles.clock().remember(before);
     }
 

@@ -3,7 +3,7 @@
 
 use super::Agent;
 use crate::clock;
-use crate::clocks::Clocks;
+use crate::clock_checkpoint::ClockCheckpoint;
 use crate::sampler::Tally;
 use crate::spool::{MOST_PENDING, Seal, is_want_of_room};
 use crate::uplink::LinkState;
@@ -74,7 +74,7 @@ impl Agent {
                     self.make_room().await;
                 }
                 if sealed > 0 {
-                    self.note_clocks().await;
+                    self.save_clock_checkpoint().await;
                     self.told.sealed.notify_one();
                 }
             }
@@ -95,12 +95,16 @@ impl Agent {
     }
 
     /// For the first time stamp after a restart.
-    pub(super) async fn note_clocks(&self) {
+    pub(super) async fn save_clock_checkpoint(&self) {
         let Some(ship) = self.ship.certain_time() else {
             return;
         };
         let computer = clock::now();
-        if let Err(error) = self.spool.note_clocks(&Clocks { ship, computer }).await {
+        if let Err(error) = self
+            .spool
+            .save_clock_checkpoint(&ClockCheckpoint { ship, computer })
+            .await
+        {
             tracing::error!(%error, "the time cannot be noted");
         }
     }

@@ -125,7 +125,7 @@ fn restarted() -> (ShipClock, Instant) {
     let mut clock = ShipClock::new(1, 15.0);
     let start = Instant::now();
     clock.judge_by(at(0), start);
-    clock.remember(Clocks {
+    clock.remember(ClockCheckpoint {
         ship: at(-9_000),
         computer: at(-9_000),
     });
@@ -176,7 +176,7 @@ fn a_receiver_that_was_1024_weeks_ahead_is_believed_when_it_is_right_again() {
 fn a_roll_over_is_put_right_by_a_computer_that_lost_its_time_as_well() {
     let mut clock = ShipClock::new(1, 15.0);
     clock.judge_by(Timestamp::from_micros(0).unwrap(), Instant::now());
-    clock.remember(Clocks {
+    clock.remember(ClockCheckpoint {
         ship: at(-86_400),
         computer: at(-86_400),
     });

@@ -33,7 +33,7 @@ pub(crate) use room::{MOST_PENDING, is_want_of_room};
 pub(crate) use seal::{Pending, Seal};
 
 use crate::alert::Aboard;
-use crate::clocks::Clocks;
+use crate::clock_checkpoint::ClockCheckpoint;
 use crate::hold::Hold;
 use crate::uplink::Account;
 use anyhow::Context;
@@ -102,7 +102,7 @@ const LAST_CONTACT: &str = "last_contact";
 const ALERT: &str = "alert";
 const THINNED: &str = "thinned";
 const ACCOUNT: &str = "account";
-const CLOCKS: &str = "clocks";
+const CLOCK_CHECKPOINT: &str = "clocks";
 
 /// Columns of `batches` that earlier agents did not have.
 const LATER_COLUMNS: [(&str, &str); 5] = [
@@ -282,14 +282,17 @@ impl Spool {
     }
 
     /// What both clocks said when it was last noted.
-    pub(crate) async fn clocks(&self) -> sqlx::Result<Option<Clocks>> {
-        self.get(CLOCKS).await
+    pub(crate) async fn clock_checkpoint(&self) -> sqlx::Result<Option<ClockCheckpoint>> {
+        self.get(CLOCK_CHECKPOINT).await
     }
 
     /// Notes what both clocks say.
-    pub(crate) async fn note_clocks(&self, clocks: &Clocks) -> sqlx::Result<()> {
+    pub(crate) async fn save_clock_checkpoint(
+        &self,
+        clock_checkpoint: &ClockCheckpoint,
+    ) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        put(&mut tx, CLOCKS, clocks).await?;
+        put(&mut tx, CLOCK_CHECKPOINT, clock_checkpoint).await?;
         tx.commit().await
     }
 

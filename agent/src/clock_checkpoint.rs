@@ -10,7 +10,7 @@ use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
 /// Two clocks that are the same.
-const AGREE_S: f64 = 3_600.0;
+const AGREEMENT_S: f64 = 3_600.0;
 /// A date this near is right, whatever the hour.
 const DAY_S: f64 = 86_400.0;
 /// No ship is laid up for longer, with her computer off.
@@ -18,22 +18,22 @@ const YEAR_S: f64 = 366.0 * DAY_S;
 
 /// Both clocks at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Clocks {
+pub(crate) struct ClockCheckpoint {
     /// The ship's.
     pub(crate) ship: Timestamp,
     /// The computer's.
     pub(crate) computer: Timestamp,
 }
 
-impl Clocks {
+impl ClockCheckpoint {
     /// The time that it must be about, if a first stamp cannot be right.
     pub(crate) fn contradict(self, stamp: Timestamp, computer: Timestamp) -> Option<Timestamp> {
-        if computer.seconds_since(self.ship) < -AGREE_S {
+        if computer.seconds_since(self.ship) < -AGREEMENT_S {
             let later_s = stamp.seconds_since(self.ship);
             let is_possible = (-DAY_S..=YEAR_S).contains(&later_s);
             return (!is_possible).then_some(self.ship);
         }
-        let agreed = self.ship.seconds_since(self.computer).abs() <= AGREE_S;
+        let agreed = self.ship.seconds_since(self.computer).abs() <= AGREEMENT_S;
         let is_near = stamp.seconds_since(computer).abs() <= DAY_S;
         (agreed && !is_near).then_some(computer)
     }
@@ -49,8 +49,8 @@ mod tests {
     }
 
     /// Noted at 0 by both.
-    const fn noted(ship: Timestamp, computer: Timestamp) -> Clocks {
-        Clocks { ship, computer }
+    const fn noted(ship: Timestamp, computer: Timestamp) -> ClockCheckpoint {
+        ClockCheckpoint { ship, computer }
     }
 
     #[test]
