@@ -12,11 +12,11 @@ mod input;
 mod observation;
 
 mod alert;
+mod gnss_clock;
 mod hold;
 mod roles;
 mod sampler;
 mod ship;
-mod ship_time;
 mod weak_field;
 
 mod ring;

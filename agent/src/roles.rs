@@ -5,9 +5,9 @@
 //! An instrument that says itself that it is not to be trusted counts as silent.
 
 use crate::config::{RolesConfig, SourceConfig};
+use crate::gnss_clock::{GnssClock, Step};
 use crate::observation::{Observation, Reading};
 use crate::sentences;
-use crate::ship_time::{ShipClock, Step};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
@@ -49,7 +49,7 @@ pub(crate) struct Roles {
     position: Role,
     rate_of_turn: Role,
     roll: Role,
-    clock: ShipClock,
+    clock: GnssClock,
 }
 
 impl Roles {
@@ -64,7 +64,7 @@ impl Roles {
             rate_of_turn: role(&config.rate_of_turn),
             roll: role(&config.roll),
             // A recording's own time stamps rank behind every receiver.
-            clock: ShipClock::new(config.position.len() + 1, stale_s),
+            clock: GnssClock::new(config.position.len() + 1, stale_s),
         }
     }
 
@@ -74,12 +74,12 @@ impl Roles {
     }
 
     /// The ship's own time, if it is to be relied on.
-    pub(crate) fn certain_time(&self) -> Option<Timestamp> {
-        self.clock.now().filter(|_| !self.clock.is_in_doubt())
+    pub(crate) fn reliable_time(&self) -> Option<Timestamp> {
+        self.clock.now().filter(|_| !self.clock.is_uncertain())
     }
 
     /// The ship's clock, to be told of other clocks.
-    pub(crate) fn clock(&mut self) -> &mut ShipClock {
+    pub(crate) fn clock(&mut self) -> &mut GnssClock {
         &mut self.clock
     }
 

@@ -120,7 +120,7 @@ impl Agent {
         if !config.inputs.values().any(is_recorded) {
             // The computer may have lost its time with its power.
             let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
-            ship.judge_time_by(known, Instant::now());
+            ship.set_reference_time(known, Instant::now());
             if let Some(before) = spool.clock_checkpoint().await? {
                 ship.restore_clock_checkpoint(before);
             }
@@ -208,7 +208,7 @@ impl Agent {
                 Ok(()) = self.told.link.changed() => {
                     let contact = self.told.link.borrow_and_update().last_contact;
                     if let Some(time) = contact.filter(|_| contact != self.last_contact) {
-                        self.ship.hear_shores_time(time, Instant::now());
+                        self.ship.correct_reference_time(time, Instant::now());
                     }
                     self.last_contact = contact;
                 }

@@ -81,28 +81,28 @@ impl Ship {
 
     /// From now on jumps of the receivers' time are held against the computer's: not for
     /// recordings.
-    pub(crate) fn judge_time_by(&mut self, time: Timestamp, now: Instant) {
-        self.roles.clock().judge_by(time, now);
+    pub(crate) fn set_reference_time(&mut self, time: Timestamp, now: Instant) {
+        self.roles.clock().set_reference(time, now);
     }
 
     /// What was noted before the restart.
     pub(crate) fn restore_clock_checkpoint(&mut self, before: ClockCheckpoint) {
-        self.roles.clock().remember(before);
+        self.roles.clock().restore_checkpoint(before);
     }
 
     /// The ship's own time, if it is to be relied on.
-    pub(crate) fn certain_time(&self) -> Option<Timestamp> {
-        self.roles.certain_time()
+    pub(crate) fn reliable_time(&self) -> Option<Timestamp> {
+        self.roles.reliable_time()
     }
 
     /// The shore's time is better than the computer's.
-    pub(crate) fn hear_shores_time(&mut self, time: Timestamp, now: Instant) {
-        self.roles.clock().correct(time, now);
+    pub(crate) fn correct_reference_time(&mut self, time: Timestamp, now: Instant) {
+        self.roles.clock().correct_reference(time, now);
     }
 
     /// Takes what a source said, heard at `heard`.
     pub(crate) fn observe(&mut self, seen: &Observation, heard: Instant) {
-        self.roles.clock().hear_at(heard);
+        self.roles.clock().set_receive_time(heard);
         if let Reading::Time(at) = seen.reading
             && is_recorded_time(seen)
         {

@@ -96,7 +96,7 @@ impl Agent {
 
     /// For the first time stamp after a restart.
     pub(super) async fn save_clock_checkpoint(&self) {
-        let Some(ship) = self.ship.certain_time() else {
+        let Some(ship) = self.ship.reliable_time() else {
             return;
         };
         let computer = clock::now();

@@ -12,7 +12,7 @@
 //!   speaks against it ([`crate::clock_checkpoint`]).
 //! - Aboard, a date that is right but for some times 1,024 weeks, after which GPS counts
 //!   them from 0 again (IS-GPS-200, 20.3.3.3.1.1), is put right.
-//! - Recorded and accelerated data work: without [`ShipClock::judge_by`] no other clock
+//! - Recorded and accelerated data work: without [`GnssClock::set_reference`] no other clock
 //!   is asked, and a jump is a jump.
 
 use crate::clock_checkpoint::ClockCheckpoint;
@@ -20,17 +20,17 @@ use binnacle_magnetics::time::Timestamp;
 use tokio::time::Instant;
 
 /// Two receivers, or two sentences, may differ by so much.
-const SLACK_S: f64 = 2.0;
+const RECEIVER_TOLERANCE_S: f64 = 2.0;
 /// A step beyond this is not mere silence.
 const LONGEST_STEP_S: f64 = 600.0;
 /// A jump is borne out by a stamp that follows within this.
 const CONFIRM_S: f64 = 60.0;
 /// What another clock may be wrong by and still decide.
-const DECIDES_S: f64 = 3_600.0;
+const ARBITRATION_TOLERANCE_S: f64 = 3_600.0;
 /// A new time is believed when it has lasted so long and nothing speaks against it.
-const LASTED_S: f64 = 86_400.0;
+const ACCEPT_AFTER_S: f64 = 86_400.0;
 /// The computer's quartz may err by so much of the time that passed.
-const QUARTZ: f64 = 0.01;
+const QUARTZ_DRIFT: f64 = 0.01;
 /// 1980-01-06, when GPS time begins, and 2100-01-01.
 const PLAUSIBLE_MICROS: std::ops::Range<i64> = 315_964_800_000_000..4_102_444_800_000_000;
 const ROLL_OVER_S: f64 = 1_024.0 * 7.0 * 86_400.0;
@@ -51,43 +51,43 @@ pub(crate) enum Step {
 
 /// One clock from ranked sources of time.
 #[derive(Debug)]
-pub(crate) struct ShipClock {
+pub(crate) struct GnssClock {
     now: Option<Timestamp>,
-    suspect: Option<Timestamp>,
+    candidate: Option<Timestamp>,
     stale_s: f64,
     active: usize,
     /// For each rank: what it first said since the active source was heard.
     waiting: Vec<Option<Timestamp>>,
-    computer: Option<Computer>,
+    reference: Option<ReferenceClock>,
     /// What was noted before the restart, until there is a first stamp.
-    before: Option<ClockCheckpoint>,
-    doubt: Option<Doubt>,
+    checkpoint: Option<ClockCheckpoint>,
+    unconfirmed: Option<UnconfirmedJump>,
     rolled_over: bool,
 }
 
 /// What the computer knows of time.
 #[derive(Clone, Copy, Debug)]
-struct Computer {
+struct ReferenceClock {
     /// The shore's time, or its own, when it was set.
     time: Timestamp,
-    set: Instant,
+    set_at: Instant,
     /// When the stamp at hand was heard.
-    heard: Instant,
+    heard_at: Instant,
     /// When the clock was last right.
-    right: Instant,
+    valid_at: Instant,
 }
 
-impl Computer {
+impl ReferenceClock {
     /// As far as it knows.
     fn now(&self) -> Timestamp {
-        let passed = self.heard.saturating_duration_since(self.set);
+        let passed = self.heard_at.saturating_duration_since(self.set_at);
         self.time.plus_seconds(passed.as_secs_f64())
     }
 }
 
 /// A jump that nothing bears out.
 #[derive(Clone, Copy, Debug)]
-struct Doubt {
+struct UnconfirmedJump {
     /// Whether it was so from the start.
     is_first: bool,
     jump_s: f64,
@@ -96,18 +96,18 @@ struct Doubt {
     lasted_s: f64,
 }
 
-impl ShipClock {
+impl GnssClock {
     /// A clock that has not been set, with sources of rank 0 to `ranks - 1`.
-    pub(crate) fn new(ranks: usize, stale_s: f64) -> ShipClock {
-        ShipClock {
+    pub(crate) fn new(ranks: usize, stale_s: f64) -> GnssClock {
+        GnssClock {
             now: None,
-            suspect: None,
+            candidate: None,
             stale_s,
             active: ranks.saturating_sub(1),
             waiting: vec![None; ranks],
-            computer: None,
-            before: None,
-            doubt: None,
+            reference: None,
+            checkpoint: None,
+            unconfirmed: None,
             rolled_over: false,
         }
     }
@@ -118,51 +118,51 @@ impl ShipClock {
     }
 
     /// From now on jumps are held against the computer's clock.
-    pub(crate) fn judge_by(&mut self, time: Timestamp, now: Instant) {
-        self.computer = Some(Computer {
+    pub(crate) fn set_reference(&mut self, time: Timestamp, now: Instant) {
+        self.reference = Some(ReferenceClock {
             time,
-            set: now,
-            heard: now,
-            right: now,
+            set_at: now,
+            heard_at: now,
+            valid_at: now,
         });
     }
 
     /// The first stamp is held against what was noted before the restart.
-    pub(crate) fn remember(&mut self, before: ClockCheckpoint) {
-        self.before = Some(before);
+    pub(crate) fn restore_checkpoint(&mut self, checkpoint: ClockCheckpoint) {
+        self.checkpoint = Some(checkpoint);
     }
 
     /// Whether its time is not to be relied on.
-    pub(crate) fn is_in_doubt(&self) -> bool {
-        self.doubt.is_some()
+    pub(crate) fn is_uncertain(&self) -> bool {
+        self.unconfirmed.is_some()
     }
 
     /// The shore says what time it is, which the computer may not know.
-    pub(crate) fn correct(&mut self, time: Timestamp, now: Instant) {
-        if let Some(computer) = &mut self.computer {
-            (computer.time, computer.set) = (time, now);
+    pub(crate) fn correct_reference(&mut self, time: Timestamp, now: Instant) {
+        if let Some(reference) = &mut self.reference {
+            (reference.time, reference.set_at) = (time, now);
         }
     }
 
     /// What comes next was heard now.
-    pub(crate) fn hear_at(&mut self, heard: Instant) {
-        if let Some(computer) = &mut self.computer {
-            computer.heard = heard;
+    pub(crate) fn set_receive_time(&mut self, heard_at: Instant) {
+        if let Some(reference) = &mut self.reference {
+            reference.heard_at = heard_at;
         }
     }
 
     /// What is wrong with the receiver's time, in words.
     pub(crate) fn problem(&self) -> Option<String> {
-        if let Some(doubt) = self.doubt {
-            let far = if doubt.jump_s.abs() < 2.0 * LASTED_S {
-                format!("{:+.1} h", doubt.jump_s / 3_600.0)
+        if let Some(unconfirmed) = self.unconfirmed {
+            let offset = if unconfirmed.jump_s.abs() < 2.0 * ACCEPT_AFTER_S {
+                format!("{:+.1} h", unconfirmed.jump_s / 3_600.0)
             } else {
-                format!("{:+.0} days", doubt.jump_s / 86_400.0)
+                format!("{:+.0} days", unconfirmed.jump_s / 86_400.0)
             };
-            let what = if doubt.is_first {
-                format!("is {far} from what this computer's clock or spool says")
+            let what = if unconfirmed.is_first {
+                format!("is {offset} from what this computer's clock or spool says")
             } else {
-                format!("jumped by {far}")
+                format!("jumped by {offset}")
             };
             return Some(format!(
                 "the receiver's time {what}: nothing is sampled until it is clear which is right"
@@ -180,35 +180,37 @@ impl ShipClock {
         if !PLAUSIBLE_MICROS.contains(&stamp.micros()) || rank >= self.waiting.len() {
             return Step::Held;
         }
-        let unrolled = self.unrolled(stamp);
-        if !self.may_set(rank, unrolled) {
+        let without_rollover = self.without_rollover(stamp);
+        if !self.accept_source(rank, without_rollover) {
             return Step::Held;
         }
-        self.rolled_over = unrolled != stamp;
-        let step = match self.doubt {
-            Some(doubt) => self.settle(doubt, unrolled),
-            None => self.set(unrolled),
+        self.rolled_over = without_rollover != stamp;
+        let step = match self.unconfirmed {
+            Some(unconfirmed) => self.resolve_jump(unconfirmed, without_rollover),
+            None => self.apply(without_rollover),
         };
-        if let Some(computer) = &mut self.computer
-            && self.doubt.is_none()
-            && self.suspect.is_none()
+        if let Some(reference) = &mut self.reference
+            && self.unconfirmed.is_none()
+            && self.candidate.is_none()
         {
-            computer.right = computer.heard;
+            reference.valid_at = reference.heard_at;
         }
         step
     }
 
-    fn unrolled(&self, stamp: Timestamp) -> Timestamp {
-        let Some(computer) = self.computer else {
+    fn without_rollover(&self, stamp: Timestamp) -> Timestamp {
+        let Some(reference) = self.reference else {
             return stamp;
         };
-        let outside = computer.now();
-        if stamp.seconds_since(outside).abs() <= YEAR_S {
+        let reference_time = reference.now();
+        if stamp.seconds_since(reference_time).abs() <= YEAR_S {
             // The ship's clock is wrong, if any: a receiver may have counted a cycle too many.
             return stamp;
         }
-        let noted = self.before.map_or(outside, |before| before.ship);
-        let known = self.now.unwrap_or(outside.max(noted));
+        let noted = self
+            .checkpoint
+            .map_or(reference_time, |checkpoint| checkpoint.ship);
+        let known = self.now.unwrap_or(reference_time.max(noted));
         let behind_s = known.seconds_since(stamp);
         let cycles = (behind_s / ROLL_OVER_S).round();
         if cycles < 1.0 || (behind_s - cycles * ROLL_OVER_S).abs() > YEAR_S {
@@ -219,7 +221,7 @@ impl ShipClock {
 
     /// The active source and better ones may; a worse one when the active one
     /// has been silent for long, by the worse one's own time.
-    fn may_set(&mut self, rank: usize, stamp: Timestamp) -> bool {
+    fn accept_source(&mut self, rank: usize, stamp: Timestamp) -> bool {
         if rank > self.active && self.now.is_some() {
             let since = *self.waiting[rank].get_or_insert(stamp);
             if stamp.seconds_since(since).abs() < self.stale_s {
@@ -231,53 +233,53 @@ impl ShipClock {
         true
     }
 
-    fn set(&mut self, stamp: Timestamp) -> Step {
+    fn apply(&mut self, stamp: Timestamp) -> Step {
         let Some(now) = self.now else {
-            return self.begin(stamp);
+            return self.initialise(stamp);
         };
         let step_s = stamp.seconds_since(now);
         if (0.0..=LONGEST_STEP_S).contains(&step_s) {
-            self.suspect = None;
+            self.candidate = None;
             if step_s == 0.0 {
                 return Step::Held;
             }
             self.now = Some(stamp);
             return Step::Advanced(stamp);
         }
-        if (-SLACK_S..0.0).contains(&step_s) {
+        if (-RECEIVER_TOLERANCE_S..0.0).contains(&step_s) {
             return Step::Held;
         }
         let confirmed = self
-            .suspect
+            .candidate
             .replace(stamp)
-            .is_some_and(|suspect| (0.0..=CONFIRM_S).contains(&stamp.seconds_since(suspect)));
+            .is_some_and(|candidate| (0.0..=CONFIRM_S).contains(&stamp.seconds_since(candidate)));
         if !confirmed {
             return Step::Held;
         }
-        self.suspect = None;
-        if self.bears_out(step_s) {
+        self.candidate = None;
+        if self.is_plausible_step(step_s) {
             return self.jump(stamp);
         }
-        let doubt = Doubt {
+        let unconfirmed = UnconfirmedJump {
             is_first: false,
             jump_s: step_s,
             last: stamp,
             lasted_s: 0.0,
         };
-        self.doubt = Some(doubt);
-        self.settle(doubt, stamp)
+        self.unconfirmed = Some(unconfirmed);
+        self.resolve_jump(unconfirmed, stamp)
     }
 
-    fn begin(&mut self, stamp: Timestamp) -> Step {
-        let known = match (self.before.take(), self.computer) {
-            (Some(before), Some(computer)) => before.contradict(stamp, computer.now()),
+    fn initialise(&mut self, stamp: Timestamp) -> Step {
+        let known = match (self.checkpoint.take(), self.reference) {
+            (Some(checkpoint), Some(reference)) => checkpoint.contradict(stamp, reference.now()),
             _ => None,
         };
         self.now = Some(known.unwrap_or(stamp));
         let Some(known) = known else {
             return Step::Advanced(stamp);
         };
-        self.doubt = Some(Doubt {
+        self.unconfirmed = Some(UnconfirmedJump {
             is_first: true,
             jump_s: stamp.seconds_since(known),
             last: stamp,
@@ -287,48 +289,50 @@ impl ShipClock {
     }
 
     /// Whether so much time may have passed since the clock was right.
-    fn bears_out(&self, step_s: f64) -> bool {
-        let Some(computer) = self.computer else {
+    fn is_plausible_step(&self, step_s: f64) -> bool {
+        let Some(reference) = self.reference else {
             return true;
         };
-        let passed = computer.heard.saturating_duration_since(computer.right);
+        let passed = reference
+            .heard_at
+            .saturating_duration_since(reference.valid_at);
         let passed_s = passed.as_secs_f64();
-        (step_s - passed_s).abs() <= LONGEST_STEP_S + QUARTZ * passed_s
+        (step_s - passed_s).abs() <= LONGEST_STEP_S + QUARTZ_DRIFT * passed_s
     }
 
     /// A stamp after a jump that nothing bore out.
-    fn settle(&mut self, mut doubt: Doubt, stamp: Timestamp) -> Step {
-        let (Some(now), Some(computer)) = (self.now, self.computer) else {
+    fn resolve_jump(&mut self, mut unconfirmed: UnconfirmedJump, stamp: Timestamp) -> Step {
+        let (Some(now), Some(reference)) = (self.now, self.reference) else {
             return self.jump(stamp);
         };
-        let went_on_s = stamp.seconds_since(doubt.last);
-        if (0.0..=LONGEST_STEP_S).contains(&went_on_s) {
-            doubt.lasted_s += went_on_s;
+        let advanced_s = stamp.seconds_since(unconfirmed.last);
+        if (0.0..=LONGEST_STEP_S).contains(&advanced_s) {
+            unconfirmed.lasted_s += advanced_s;
         }
-        doubt.last = stamp;
-        self.doubt = Some(doubt);
-        let expected = now.plus_seconds(doubt.lasted_s);
+        unconfirmed.last = stamp;
+        self.unconfirmed = Some(unconfirmed);
+        let expected = now.plus_seconds(unconfirmed.lasted_s);
         if stamp.seconds_since(expected).abs() <= LONGEST_STEP_S {
             return self.jump(stamp);
         }
-        let outside = computer.now();
+        let reference_time = reference.now();
         let (new_s, old_s) = (
-            stamp.seconds_since(outside).abs(),
-            expected.seconds_since(outside).abs(),
+            stamp.seconds_since(reference_time).abs(),
+            expected.seconds_since(reference_time).abs(),
         );
-        let believed = if new_s.min(old_s) <= DECIDES_S {
+        let is_accepted = if new_s.min(old_s) <= ARBITRATION_TOLERANCE_S {
             new_s < old_s
         } else {
-            doubt.lasted_s >= LASTED_S
+            unconfirmed.lasted_s >= ACCEPT_AFTER_S
         };
-        if believed {
+        if is_accepted {
             return self.jump(stamp);
         }
         Step::Held
     }
 
     fn jump(&mut self, stamp: Timestamp) -> Step {
-        self.doubt = None;
+        self.unconfirmed = None;
         self.now = Some(stamp);
         Step::Jumped(stamp)
     }

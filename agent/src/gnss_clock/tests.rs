@@ -10,7 +10,7 @@ fn at(seconds: i64) -> Timestamp {
 
 #[test]
 fn one_wrong_stamp_moves_nothing() {
-    let mut clock = ShipClock::new(1, 15.0);
+    let mut clock = GnssClock::new(1, 15.0);
     assert_eq!(clock.observe(0, at(0)), Step::Advanced(at(0)));
     assert_eq!(clock.observe(0, at(86_400 * 3000)), Step::Held);
     assert_eq!(clock.observe(0, at(-7200)), Step::Held);
@@ -20,7 +20,7 @@ fn one_wrong_stamp_moves_nothing() {
 #[test]
 fn a_jump_that_is_borne_out_is_a_jump() {
     for jump in [-7200, -30, 601, 86_400] {
-        let mut clock = ShipClock::new(1, 15.0);
+        let mut clock = GnssClock::new(1, 15.0);
         clock.observe(0, at(0));
         assert_eq!(clock.observe(0, at(jump)), Step::Held);
         assert_eq!(clock.observe(0, at(jump + 1)), Step::Jumped(at(jump + 1)));
@@ -29,18 +29,18 @@ fn a_jump_that_is_borne_out_is_a_jump() {
 }
 
 /// A clock aboard: the computer's says the same as the receiver's at 0.
-fn aboard(computer: i64) -> (ShipClock, Instant) {
-    let mut clock = ShipClock::new(1, 15.0);
+fn on_board_clock(computer: i64) -> (GnssClock, Instant) {
+    let mut clock = GnssClock::new(1, 15.0);
     let start = Instant::now();
-    clock.judge_by(at(computer), start);
+    clock.set_reference(at(computer), start);
     assert_eq!(clock.observe(0, at(0)), Step::Advanced(at(0)));
     (clock, start)
 }
 
 /// Hears a stamp a second for a while, `off_s` from the time; what that did.
-fn hear(clock: &mut ShipClock, start: Instant, seconds: Range<i64>, off_s: i64) -> Vec<Step> {
+fn hear(clock: &mut GnssClock, start: Instant, seconds: Range<i64>, off_s: i64) -> Vec<Step> {
     let steps = seconds.map(|second| {
-        clock.hear_at(start + Duration::from_secs(second.unsigned_abs()));
+        clock.set_receive_time(start + Duration::from_secs(second.unsigned_abs()));
         clock.observe(0, at(second + off_s))
     });
     steps.collect()
@@ -53,7 +53,7 @@ fn no_time_passes_while_the_receiver_is_a_day_off() {
     // Whether the computer knows the time or not.
     for computer in [0, YEARS_S] {
         for off_s in [86_400, -86_400, 7_200, 1_200] {
-            let (mut clock, start) = aboard(computer);
+            let (mut clock, start) = on_board_clock(computer);
             hear(&mut clock, start, 1..60, 0);
             let steps = hear(&mut clock, start, 60..4_000, off_s);
             assert!(steps.iter().all(|step| *step == Step::Held), "{off_s}");
@@ -70,7 +70,7 @@ fn no_time_passes_while_the_receiver_is_a_day_off() {
 #[test]
 fn a_receiver_that_comes_to_its_senses_is_believed() {
     // It was wrong from the start, as the computer says; then it is right.
-    let (mut clock, start) = aboard(86_400);
+    let (mut clock, start) = on_board_clock(86_400);
     hear(&mut clock, start, 1..60, 0);
     let steps = hear(&mut clock, start, 60..62, 86_400);
     assert_eq!(steps[1], Step::Jumped(at(61 + 86_400)));
@@ -78,11 +78,11 @@ fn a_receiver_that_comes_to_its_senses_is_believed() {
 
 #[test]
 fn what_lasts_for_a_day_with_nothing_against_it_is_believed() {
-    let (mut clock, start) = aboard(YEARS_S);
+    let (mut clock, start) = on_board_clock(YEARS_S);
     let steps = hear(&mut clock, start, 1..86_500, -40_000);
     let jumps: Vec<&Step> = steps.iter().filter(|step| **step != Step::Held).collect();
     assert!(matches!(jumps[0], Step::Jumped(_)), "{jumps:?}");
-    let (mut clock, start) = aboard(0);
+    let (mut clock, start) = on_board_clock(0);
     let steps = hear(&mut clock, start, 1..86_500, -40_000);
     assert!(steps.iter().all(|step| *step == Step::Held));
 }
@@ -90,7 +90,7 @@ fn what_lasts_for_a_day_with_nothing_against_it_is_believed() {
 #[test]
 fn silence_is_no_jump_if_as_much_time_has_passed() {
     for computer in [0, YEARS_S] {
-        let (mut clock, start) = aboard(computer);
+        let (mut clock, start) = on_board_clock(computer);
         let steps = hear(&mut clock, start, 90_000..90_002, 0);
         assert_eq!(steps[1], Step::Jumped(at(90_001)));
     }
@@ -99,7 +99,7 @@ fn silence_is_no_jump_if_as_much_time_has_passed() {
 #[test]
 fn a_date_of_1024_weeks_ago_is_put_right() {
     const WEEKS_S: i64 = -1_024 * 7 * 86_400;
-    let (mut clock, start) = aboard(0);
+    let (mut clock, start) = on_board_clock(0);
     let steps = hear(&mut clock, start, 1..9, WEEKS_S);
     let wanted: Vec<Step> = (1..9).map(|second| Step::Advanced(at(second))).collect();
     assert_eq!(steps, wanted);
@@ -110,22 +110,22 @@ fn a_date_of_1024_weeks_ago_is_put_right() {
 
 #[test]
 fn a_receiver_that_rolled_over_before_is_put_right_and_an_old_log_stays_old() {
-    let mut clock = ShipClock::new(1, 15.0);
-    clock.judge_by(at(90 * 86_400), Instant::now());
+    let mut clock = GnssClock::new(1, 15.0);
+    clock.set_reference(at(90 * 86_400), Instant::now());
     let rolled = clock.observe(0, at(0).plus_seconds(-2.0 * ROLL_OVER_S));
     assert_eq!(rolled, Step::Advanced(at(0)));
-    let mut clock = ShipClock::new(1, 15.0);
-    clock.judge_by(at(0), Instant::now());
+    let mut clock = GnssClock::new(1, 15.0);
+    clock.set_reference(at(0), Instant::now());
     let old = at(-2 * YEARS_S);
     assert_eq!(clock.observe(0, old), Step::Advanced(old));
 }
 
 /// A clock aboard after a restart, with a computer that knows the time.
-fn restarted() -> (ShipClock, Instant) {
-    let mut clock = ShipClock::new(1, 15.0);
+fn restarted() -> (GnssClock, Instant) {
+    let mut clock = GnssClock::new(1, 15.0);
     let start = Instant::now();
-    clock.judge_by(at(0), start);
-    clock.remember(ClockCheckpoint {
+    clock.set_reference(at(0), start);
+    clock.restore_checkpoint(ClockCheckpoint {
         ship: at(-9_000),
         computer: at(-9_000),
     });
@@ -155,7 +155,7 @@ fn a_first_stamp_in_doubt_is_believed_when_the_shore_bears_it_out() {
     const WEEK_S: i64 = 7 * 86_400;
     let (mut clock, start) = restarted();
     hear(&mut clock, start, 0..60, WEEK_S);
-    clock.correct(at(60 + WEEK_S), start + Duration::from_mins(1));
+    clock.correct_reference(at(60 + WEEK_S), start + Duration::from_mins(1));
     let steps = hear(&mut clock, start, 60..61, WEEK_S);
     assert_eq!(steps, [Step::Jumped(at(60 + WEEK_S))]);
 }
@@ -163,9 +163,9 @@ fn a_first_stamp_in_doubt_is_believed_when_the_shore_bears_it_out() {
 #[test]
 fn a_receiver_that_was_1024_weeks_ahead_is_believed_when_it_is_right_again() {
     const WEEKS_S: i64 = 1_024 * 7 * 86_400;
-    let mut clock = ShipClock::new(1, 15.0);
+    let mut clock = GnssClock::new(1, 15.0);
     let start = Instant::now();
-    clock.judge_by(at(0), start);
+    clock.set_reference(at(0), start);
     hear(&mut clock, start, 0..60, WEEKS_S);
     let steps = hear(&mut clock, start, 60..62, 0);
     assert_eq!(steps[1], Step::Jumped(at(61)));
@@ -174,9 +174,9 @@ fn a_receiver_that_was_1024_weeks_ahead_is_believed_when_it_is_right_again() {
 
 #[test]
 fn a_roll_over_is_put_right_by_a_computer_that_lost_its_time_as_well() {
-    let mut clock = ShipClock::new(1, 15.0);
-    clock.judge_by(Timestamp::from_micros(0).unwrap(), Instant::now());
-    clock.remember(ClockCheckpoint {
+    let mut clock = GnssClock::new(1, 15.0);
+    clock.set_reference(Timestamp::from_micros(0).unwrap(), Instant::now());
+    clock.restore_checkpoint(ClockCheckpoint {
         ship: at(-86_400),
         computer: at(-86_400),
     });
@@ -186,7 +186,7 @@ fn a_roll_over_is_put_right_by_a_computer_that_lost_its_time_as_well() {
 
 #[test]
 fn a_second_receiver_a_little_behind_is_no_jump() {
-    let mut clock = ShipClock::new(1, 15.0);
+    let mut clock = GnssClock::new(1, 15.0);
     clock.observe(0, at(10));
     for _ in 0..5 {
         assert_eq!(clock.observe(0, at(9)), Step::Held);
@@ -196,7 +196,7 @@ fn a_second_receiver_a_little_behind_is_no_jump() {
 
 #[test]
 fn a_worse_source_takes_over_after_silence_and_hands_back_at_once() {
-    let mut clock = ShipClock::new(2, 15.0);
+    let mut clock = GnssClock::new(2, 15.0);
     clock.observe(0, at(0));
     assert_eq!(clock.observe(1, at(5000)), Step::Held);
     clock.observe(0, at(1));
@@ -210,7 +210,7 @@ fn a_worse_source_takes_over_after_silence_and_hands_back_at_once() {
 
 #[test]
 fn a_date_before_gps_is_not_believed() {
-    let mut clock = ShipClock::new(1, 15.0);
+    let mut clock = GnssClock::new(1, 15.0);
     let year_1850 = Timestamp::parse("1850-06-01T00:00:00Z").unwrap();
     for _ in 0..3 {
         assert_eq!(clock.observe(0, year_1850), Step::Held);
