@@ -12,9 +12,9 @@ use binnacle_wire::messages::Settings;
 use tokio::time::Instant;
 
 /// Windows that were only refused are reported this often, by ship time.
-const TALLY_ALONE_S: f64 = 86_400.0;
+const TALLY_INTERVAL_S: f64 = 86_400.0;
 /// If the disk takes nothing, so many samples are kept in memory.
-const MOST_UNSTORED: usize = 20_000;
+const MAX_UNSTORED: usize = 20_000;
 
 impl Agent {
     /// By the ship's time; after a jump of her clock, whichever way.
@@ -29,7 +29,7 @@ impl Agent {
         let first = self.unstored.samples.first().map(|sample| sample.time);
         let due = older(self.unstored.pending.since, seal_s)
             || older(first, seal_s)
-            || older(self.unstored.tally_since, TALLY_ALONE_S.max(seal_s));
+            || older(self.unstored.tally_since, TALLY_INTERVAL_S.max(seal_s));
         if due { Seal::All } else { Seal::Full }
     }
 
@@ -60,7 +60,7 @@ impl Agent {
             Ok((pending, sealed)) => {
                 unstored.problem = None;
                 if has_evidence {
-                    self.alert_kept = self.lookout.aboard().copied();
+                    self.stored_alert = self.lookout.aboard().copied();
                     unstored.alerts.clear();
                     self.told.urgent.notify_one();
                 }
@@ -71,7 +71,7 @@ impl Agent {
                     unstored.tally_since = self.ship.time();
                 }
                 if sealed > 0 || unstored.pending.samples > MOST_PENDING {
-                    self.make_room().await;
+                    self.limit_spool().await;
                 }
                 if sealed > 0 {
                     self.save_clock_checkpoint().await;
@@ -88,7 +88,7 @@ impl Agent {
                 if is_want_of_room(&error) {
                     self.ring.give_way(&error.to_string(), Instant::now());
                 }
-                let excess = unstored.samples.len().saturating_sub(MOST_UNSTORED);
+                let excess = unstored.samples.len().saturating_sub(MAX_UNSTORED);
                 unstored.samples.drain(..excess);
             }
         }
@@ -110,7 +110,7 @@ impl Agent {
     }
 
     /// Few batches, within the disk and within what the link may cost.
-    async fn make_room(&self) {
+    async fn limit_spool(&self) {
         let gathered = if self.batches_wait() {
             self.spool.gather().await
         } else {

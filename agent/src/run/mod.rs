@@ -5,7 +5,7 @@
 //! waits, its channel fills, and the inputs wait in turn: a recording that is
 //! played fast is throttled and never lost.
 
-mod keep;
+mod store_samples;
 
 use crate::alert::{Aboard, AlarmSentence, Card, Lookout};
 use crate::burst::{self, FileModem};
@@ -42,10 +42,10 @@ use uuid::Uuid;
 /// Samples are written to the spool when there are so many, or after a second.
 pub(crate) const SAMPLES_PER_COMMIT: usize = 64;
 /// Deliveries of observations that may wait: what is here dies with the agent.
-const CHANNEL: usize = 8;
+const CHANNEL_CAPACITY: usize = 8;
 const SECOND: Duration = Duration::from_secs(1);
 /// Variation at twenty knots changes by less than a tenth of a degree meanwhile.
-const POSITION_SERVES: Duration = Duration::from_mins(10);
+const POSITION_MAX_AGE: Duration = Duration::from_mins(10);
 
 /// Runs until `shutdown`; everything settled is in the spool then.
 pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::Result<()> {
@@ -76,7 +76,7 @@ struct Agent {
     hold: watch::Sender<Option<Hold>>,
     lookout: Lookout,
     /// What the spool has of the lookout's alert.
-    alert_kept: Option<Aboard>,
+    stored_alert: Option<Aboard>,
     /// Whether the last heading sent was known too badly to be given out.
     withheld: bool,
     acknowledged: watch::Receiver<Option<Uuid>>,
@@ -110,7 +110,7 @@ impl Agent {
     ) -> anyhow::Result<Agent> {
         let (uplink, told) = uplink::prepare(&config.uplink, &spool).await?;
         let hold = spool.hold().await?;
-        let alert_kept = spool.alert().await?;
+        let stored_alert = spool.alert().await?;
         let judged_by = told.model.borrow().as_ref().map(|model| model.id);
         let settings = told.settings.borrow().clone();
         let last_contact = told.link.borrow().last_contact;
@@ -151,7 +151,7 @@ impl Agent {
             tokio::spawn(burst::run(spool.clone(), modem, shutdown.clone()));
         }
 
-        let (tx, observations) = mpsc::channel(CHANNEL);
+        let (tx, observations) = mpsc::channel(CHANNEL_CAPACITY);
         let mut inputs = Vec::new();
         for (name, input) in config.inputs {
             let stats = Arc::new(InputStats::default());
@@ -176,8 +176,8 @@ impl Agent {
             outputs,
             interval: config.output.interval_s.duration(),
             hold,
-            lookout: Lookout::new(config.alert, alert_kept, judged_by),
-            alert_kept,
+            lookout: Lookout::new(config.alert, stored_alert, judged_by),
+            stored_alert,
             withheld: false,
             acknowledged: acknowledged_rx,
             alarm: config.output.alarm_sentence.then(AlarmSentence::default),
@@ -251,7 +251,7 @@ impl Agent {
                 self.ring.take(time, second, heard);
             }
         }
-        self.look_out();
+        self.update_alert();
         if !self.ship.sampler.has_samples() {
             return;
         }
@@ -266,14 +266,14 @@ impl Agent {
     }
 
     async fn every_second(&mut self) {
-        self.look_out();
+        self.update_alert();
         self.collect();
         let seal = self.seal_due();
         let unstored = &self.unstored;
         if seal == Seal::All || !unstored.samples.is_empty() || !unstored.alerts.is_empty() {
             self.store(seal).await;
         }
-        self.keep_alert().await;
+        self.save_alert().await;
         self.told.ship_time.send_replace(self.ship.time());
         match self.spool.hold().await {
             Ok(hold) => {
@@ -287,12 +287,12 @@ impl Agent {
             Ok(reports) => self.reports = reports,
             Err(error) => tracing::error!(%error, "the spool cannot be read"),
         }
-        let status = self.take_stock().await;
+        let status = self.build_status().await;
         self.status.send_replace(Arc::new(status));
     }
 
     /// Looks at what has settled since; the samples of an alert end with it.
-    fn look_out(&mut self) {
+    fn update_alert(&mut self) {
         let withdrawn = self.withdrawn();
         let model = self.told.model.borrow();
         let card = Card {
@@ -318,15 +318,15 @@ impl Agent {
     }
 
     /// Keeps what only those aboard need to know of the alert.
-    async fn keep_alert(&mut self) {
+    async fn save_alert(&mut self) {
         let Some(aboard) = self.lookout.aboard().copied() else {
             return;
         };
-        if self.alert_kept == Some(aboard) || !self.unstored.alerts.is_empty() {
+        if self.stored_alert == Some(aboard) || !self.unstored.alerts.is_empty() {
             return;
         }
         match self.spool.keep_alert(&aboard).await {
-            Ok(()) => self.alert_kept = Some(aboard),
+            Ok(()) => self.stored_alert = Some(aboard),
             Err(error) => tracing::error!(%error, "the alert cannot be stored"),
         }
     }
@@ -359,7 +359,7 @@ impl Agent {
         let readings = &self.ship.readings;
         let from = Ingredients {
             compass: Latest::within(readings.compass, self.silence.stale_s.duration(), now),
-            position: Latest::within(readings.position, POSITION_SERVES, now),
+            position: Latest::within(readings.position, POSITION_MAX_AGE, now),
             time: self.ship.time(),
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
@@ -398,7 +398,7 @@ impl Agent {
         })
     }
 
-    async fn take_stock(&self) -> Status {
+    async fn build_status(&self) -> Status {
         let now = Instant::now();
         let stale = self.silence.stale_s.duration();
         let readings = &self.ship.readings;
