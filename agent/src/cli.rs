@@ -8,8 +8,8 @@ use crate::config::{Config, ConfigError, RolesConfig, SilenceConfig};
 use crate::hold::Hold;
 use crate::offline::offline_status;
 use crate::page::{GUARD_HEADER, HoldRequest};
+use crate::raw_log::{self, Span};
 use crate::replay;
-use crate::ring::{self, Span};
 use crate::run;
 use crate::spool::{Identity, Spool};
 use crate::status::Status;
@@ -244,13 +244,13 @@ fn time(flag: &str, text: Option<&str>) -> Result<Option<Timestamp>, BadInput> {
 }
 
 fn export(config: &Config, span: Span, csv: Option<&Path>) -> anyhow::Result<()> {
-    let ring = ring::path(&config.data_dir);
-    if !ring.exists() {
-        return Err(BadInput(format!("{}: there is no ring yet", ring.display())).into());
+    let raw_log = raw_log::path(&config.data_dir);
+    if !raw_log.exists() {
+        return Err(BadInput(format!("{}: there is no ring yet", raw_log.display())).into());
     }
     let rows = match csv {
-        Some(path) => write_atomically(path, |out| ring::export(&ring, span, out))?,
-        None => ring::export(&ring, span, &mut std::io::stdout().lock())?,
+        Some(path) => write_atomically(path, |out| raw_log::export(&raw_log, span, out))?,
+        None => raw_log::export(&raw_log, span, &mut std::io::stdout().lock())?,
     };
     writeln!(std::io::stderr(), "{rows} seconds")?;
     Ok(())

@@ -19,7 +19,7 @@ mod sampler;
 mod ship;
 mod weak_field;
 
-mod ring;
+mod raw_log;
 mod spool;
 
 mod burst;

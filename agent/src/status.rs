@@ -4,7 +4,7 @@ use crate::alert::AlertStatus;
 use crate::corrected::{CardRow, Corrected};
 use crate::hold::Hold;
 use crate::input::InputStatus;
-use crate::ring::RingStatus;
+use crate::raw_log::RawLogStatus;
 use crate::spool::Standing;
 use crate::uplink::{Account, LinkStatus};
 use binnacle_magnetics::angle::TrueHeading;
@@ -54,8 +54,8 @@ pub(crate) struct Status {
     #[serde(default)]
     pub(crate) budget: Option<Account>,
     /// What was said in each second, kept on board.
-    #[serde(default)]
-    pub(crate) ring: Option<RingStatus>,
+    #[serde(default, rename = "ring")]
+    pub(crate) raw_log: Option<RawLogStatus>,
 }
 
 /// The model in use.
@@ -265,10 +265,10 @@ impl Status {
                 spool.thinned_batches
             )?;
         }
-        if let Some(ring) = &self.ring {
-            let (octets, limit) = (ring.octets as f64 / 1e6, ring.limit_octets as f64 / 1e6);
-            write!(out, "ring       {octets:.1} of {limit:.1} MB")?;
-            if let Some(problem) = &ring.problem {
+        if let Some(raw_log) = &self.raw_log {
+            let (size, limit) = (raw_log.bytes as f64 / 1e6, raw_log.limit_bytes as f64 / 1e6);
+            write!(out, "ring       {size:.1} of {limit:.1} MB")?;
+            if let Some(problem) = &raw_log.problem {
                 write!(out, ", nothing is kept for now: {problem}")?;
             }
             writeln!(out)?;

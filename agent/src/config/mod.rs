@@ -33,8 +33,8 @@ pub(crate) struct Config {
     #[serde(default)]
     pub(crate) spool_mb: SpoolLimit,
     /// How much of the disk what was heard in each second may take; 0 keeps nothing.
-    #[serde(default)]
-    pub(crate) ring_mb: RingLimit,
+    #[serde(default, rename = "ring_mb")]
+    pub(crate) raw_log_mb: RawLogLimit,
     /// What is listened to, by the name that roles refer to.
     #[serde(default)]
     pub(crate) inputs: BTreeMap<String, InputConfig>,
@@ -158,26 +158,26 @@ impl TryFrom<f64> for SpoolLimit {
 /// Megabytes (of a million bytes), from 1 to 10 000, or 0 for none.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f64")]
-pub(crate) struct RingLimit(f64);
+pub(crate) struct RawLogLimit(f64);
 
-impl RingLimit {
+impl RawLogLimit {
     /// In bytes.
     pub(crate) fn bytes(self) -> u64 {
         (self.0 * 1e6) as u64
     }
 }
 
-impl Default for RingLimit {
-    fn default() -> RingLimit {
-        RingLimit(64.0)
+impl Default for RawLogLimit {
+    fn default() -> RawLogLimit {
+        RawLogLimit(64.0)
     }
 }
 
-impl TryFrom<f64> for RingLimit {
+impl TryFrom<f64> for RawLogLimit {
     type Error = String;
-    fn try_from(megabytes: f64) -> Result<RingLimit, String> {
+    fn try_from(megabytes: f64) -> Result<RawLogLimit, String> {
         if megabytes == 0.0 || (1.0..=10_000.0).contains(&megabytes) {
-            Ok(RingLimit(megabytes))
+            Ok(RawLogLimit(megabytes))
         } else {
             Err(format!(
                 "{megabytes} is neither 0 nor from 1 to 10000 megabytes"
@@ -360,7 +360,7 @@ stale_s = 15
         let example = example.map_err(|w| w.problem).unwrap();
         let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
         assert_eq!(example.spool_mb, bare.spool_mb);
-        assert_eq!(example.ring_mb, bare.ring_mb);
+        assert_eq!(example.raw_log_mb, bare.raw_log_mb);
         assert_eq!(example.uplink.profile, bare.uplink.profile);
         assert_eq!(example.uplink.poll(), bare.uplink.poll());
         assert_eq!(example.uplink.retry_min_s, bare.uplink.retry_min_s);

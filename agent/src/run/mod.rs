@@ -19,7 +19,7 @@ use crate::observation::Observation;
 use crate::offline::offline_status;
 use crate::output::Outputs;
 use crate::page::{self, Page};
-use crate::ring::{Ring, Second};
+use crate::raw_log::{RawLog, Second};
 use crate::sampler::Tally;
 use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
@@ -64,7 +64,7 @@ struct Agent {
     silence: SilenceConfig,
     spool: Spool,
     spool_limit_bytes: u64,
-    ring: Ring,
+    raw_log: RawLog,
     plan: Plan,
     told: Told,
     /// What officers reported.
@@ -167,7 +167,7 @@ impl Agent {
             silence: config.silence,
             spool,
             spool_limit_bytes: config.spool_mb.bytes(),
-            ring: Ring::open(&config.data_dir, config.ring_mb.bytes()),
+            raw_log: RawLog::open(&config.data_dir, config.raw_log_mb.bytes()),
             plan: config.uplink.plan(),
             told,
             reports,
@@ -234,7 +234,7 @@ impl Agent {
         self.collect();
         self.store(Seal::Full).await;
         self.save_clock_checkpoint().await;
-        self.ring.flush(Instant::now());
+        self.raw_log.flush(Instant::now());
         if let Err(error) = self.uplink.await {
             tracing::error!(%error, "the uplink ended badly");
         }
@@ -248,7 +248,7 @@ impl Agent {
             if let Some(time) = self.ship.time() {
                 let (readings, stale) = (&self.ship.readings, self.silence.stale_s.duration());
                 let second = || Second::of(time, readings, stale, heard);
-                self.ring.take(time, second, heard);
+                self.raw_log.record(time, second, heard);
             }
         }
         self.update_alert();
@@ -422,7 +422,7 @@ impl Agent {
             .map(|(name, stats)| InputReport::new(name, stats.status()))
             .collect();
         status.link = self.told.link.borrow().clone();
-        status.ring = self.ring.status();
+        status.raw_log = self.raw_log.status();
         status.clock_problem = self.ship.clock_problem();
         status.storage_problem = self.unstored.problem.as_ref().map(|problem| {
             let waiting = self.unstored.samples.len();

@@ -86,7 +86,8 @@ impl Agent {
                 }
                 unstored.problem = Some(problem);
                 if is_want_of_room(&error) {
-                    self.ring.give_way(&error.to_string(), Instant::now());
+                    self.raw_log
+                        .release_disk(&error.to_string(), Instant::now());
                 }
                 let excess = unstored.samples.len().saturating_sub(MAX_UNSTORED);
                 unstored.samples.drain(..excess);

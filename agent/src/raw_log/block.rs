@@ -19,13 +19,13 @@ use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 
-pub(super) const BLOCK_OCTETS: u64 = 4_096;
-pub(super) const HEAD_OCTETS: usize = 16;
+pub(super) const BLOCK_BYTES: u64 = 4_096;
+pub(super) const HEAD_BYTES: usize = 16;
 /// Seconds of one block.
 pub(super) const RECORDS: usize = 168;
-const RECORD_OCTETS: usize = 24;
-const COUNT_AT: usize = HEAD_OCTETS + RECORDS * RECORD_OCTETS;
-const CHECKSUM_AT: usize = BLOCK_OCTETS as usize - 4;
+const RECORD_BYTES: usize = 24;
+const COUNT_AT: usize = HEAD_BYTES + RECORDS * RECORD_BYTES;
+const CHECKSUM_AT: usize = BLOCK_BYTES as usize - 4;
 const MAGIC: [u8; 4] = *b"BNR1";
 
 /// What a whole block holds.
@@ -37,24 +37,24 @@ pub(super) struct Block {
 
 /// Writes a block of at most [`RECORDS`] seconds.
 pub(super) fn write(number: u64, seconds: &[Second]) -> Vec<u8> {
-    let mut octets = Vec::with_capacity(BLOCK_OCTETS as usize);
-    octets.extend(MAGIC);
-    octets.extend(number.to_le_bytes());
-    octets.extend(crc32fast::hash(&octets).to_le_bytes());
+    let mut bytes = Vec::with_capacity(BLOCK_BYTES as usize);
+    bytes.extend(MAGIC);
+    bytes.extend(number.to_le_bytes());
+    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     let seconds = &seconds[..seconds.len().min(RECORDS)];
     for second in seconds {
-        write_second(&mut octets, second);
+        write_second(&mut bytes, second);
     }
-    octets.resize(COUNT_AT, 0);
-    octets.extend((seconds.len() as u16).to_le_bytes());
-    octets.resize(CHECKSUM_AT, 0);
-    let checksum = crc32fast::hash(&octets[HEAD_OCTETS..]);
-    octets.extend(checksum.to_le_bytes());
-    octets
+    bytes.resize(COUNT_AT, 0);
+    bytes.extend((seconds.len() as u16).to_le_bytes());
+    bytes.resize(CHECKSUM_AT, 0);
+    let checksum = crc32fast::hash(&bytes[HEAD_BYTES..]);
+    bytes.extend(checksum.to_le_bytes());
+    bytes
 }
 
 /// The number in a head, if it is whole.
-pub(super) fn number(head: &[u8; HEAD_OCTETS]) -> Option<u64> {
+pub(super) fn number(head: &[u8; HEAD_BYTES]) -> Option<u64> {
     let (stated, checksum) = head.split_last_chunk::<4>()?;
     let (magic, number) = stated.split_first_chunk::<4>()?;
     let whole = *magic == MAGIC && crc32fast::hash(stated) == u32::from_le_bytes(*checksum);
@@ -64,32 +64,32 @@ pub(super) fn number(head: &[u8; HEAD_OCTETS]) -> Option<u64> {
 }
 
 /// Reads a block, if it is whole.
-pub(super) fn read(octets: &[u8]) -> Option<Block> {
-    let (head, rest) = octets.split_first_chunk::<HEAD_OCTETS>()?;
+pub(super) fn read(bytes: &[u8]) -> Option<Block> {
+    let (head, rest) = bytes.split_first_chunk::<HEAD_BYTES>()?;
     let number = number(head)?;
     let (content, checksum) = rest.split_last_chunk::<4>()?;
-    if octets.len() as u64 != BLOCK_OCTETS
+    if bytes.len() as u64 != BLOCK_BYTES
         || crc32fast::hash(content) != u32::from_le_bytes(*checksum)
     {
         return None;
     }
-    let (records, tail) = content.split_at_checked(RECORDS * RECORD_OCTETS)?;
+    let (records, tail) = content.split_at_checked(RECORDS * RECORD_BYTES)?;
     let count = u16::from_le_bytes(*tail.first_chunk()?);
-    let records = records.chunks_exact(RECORD_OCTETS).take(count.into());
+    let records = records.chunks_exact(RECORD_BYTES).take(count.into());
     Some(Block {
         number,
         seconds: records.filter_map(read_second).collect(),
     })
 }
 
-fn write_second(octets: &mut Vec<u8>, second: &Second) {
+fn write_second(bytes: &mut Vec<u8>, second: &Second) {
     let seconds = second.time.micros().div_euclid(1_000_000);
-    octets.extend(u32::try_from(seconds).unwrap_or_default().to_le_bytes());
+    bytes.extend(u32::try_from(seconds).unwrap_or_default().to_le_bytes());
     let place =
         |degrees: Option<f64>| signed(degrees, 1e7, i32::MIN.into(), i32::MAX.into()) as i32;
     let position = second.position;
-    octets.extend(place(position.map(Position::lat_deg)).to_le_bytes());
-    octets.extend(place(position.map(Position::lon_deg)).to_le_bytes());
+    bytes.extend(place(position.map(Position::lat_deg)).to_le_bytes());
+    bytes.extend(place(position.map(Position::lon_deg)).to_le_bytes());
     let headings = [
         second.compass.map(CompassHeading::degrees),
         second.gyro.map(TrueHeading::degrees),
@@ -97,11 +97,11 @@ fn write_second(octets: &mut Vec<u8>, second: &Second) {
     ];
     for value in headings.into_iter().chain([second.sog_kn]) {
         let hundredths = value.map(|value| (value * 100.0).round().clamp(0.0, 65_534.0) as u16);
-        octets.extend(hundredths.unwrap_or(u16::MAX).to_le_bytes());
+        bytes.extend(hundredths.unwrap_or(u16::MAX).to_le_bytes());
     }
     let small = |value, steps| signed(value, steps, i16::MIN.into(), i16::MAX.into()) as i16;
-    octets.extend(small(second.rate_of_turn_deg_min, 10.0).to_le_bytes());
-    octets.extend(small(second.roll_deg, 100.0).to_le_bytes());
+    bytes.extend(small(second.rate_of_turn_deg_min, 10.0).to_le_bytes());
+    bytes.extend(small(second.roll_deg, 100.0).to_le_bytes());
 }
 
 /// In steps, or `none`.
@@ -112,11 +112,11 @@ fn signed(value: Option<f64>, steps: f64, none: i64, most: i64) -> i64 {
 }
 
 /// A second that no ship can have is passed over.
-fn read_second(octets: &[u8]) -> Option<Second> {
-    let mut rest = octets;
+fn read_second(bytes: &[u8]) -> Option<Second> {
+    let mut rest = bytes;
     let seconds = u32::from_le_bytes(take(&mut rest)?);
-    let place = |octets: [u8; 4]| {
-        let steps = i32::from_le_bytes(octets);
+    let place = |bytes: [u8; 4]| {
+        let steps = i32::from_le_bytes(bytes);
         (steps != i32::MIN).then(|| f64::from(steps) / 1e7)
     };
     let (lat, lon) = (place(take(&mut rest)?), place(take(&mut rest)?));

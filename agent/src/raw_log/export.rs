@@ -1,6 +1,6 @@
 //! The ring as a table, also while the agent writes it.
 
-use super::{BLOCK_OCTETS, Second, block_at, number_at};
+use super::{BLOCK_BYTES, Second, block_at, number_at};
 use anyhow::Context;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
@@ -40,10 +40,10 @@ const COLUMNS: [&str; 9] = [
 ///
 /// # Errors
 /// When there is no ring, or the table cannot be written.
-pub(crate) fn export(ring: &Path, span: Span, out: &mut dyn Write) -> anyhow::Result<u64> {
-    let name = ring.display().to_string();
-    let mut file = File::open(ring).with_context(|| format!("{name}: there is no ring"))?;
-    let slots = file.metadata().context(name.clone())?.len() / BLOCK_OCTETS;
+pub(crate) fn export(raw_log: &Path, span: Span, out: &mut dyn Write) -> anyhow::Result<u64> {
+    let name = raw_log.display().to_string();
+    let mut file = File::open(raw_log).with_context(|| format!("{name}: there is no ring"))?;
+    let slots = file.metadata().context(name.clone())?.len() / BLOCK_BYTES;
     let mut order = Vec::new();
     for slot in 0..slots {
         if let Some(number) = number_at(&mut file, slot).context(name.clone())? {

@@ -19,7 +19,7 @@ use crate::ship::{Latest, Readings};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
-use block::{BLOCK_OCTETS, Block, RECORDS};
+use block::{BLOCK_BYTES, Block, RECORDS};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -28,7 +28,7 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 /// After the disk was full.
-const REST: Duration = Duration::from_hours(1);
+const PAUSE_AFTER_FULL: Duration = Duration::from_hours(1);
 
 /// What the instruments said in one second.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,23 +61,25 @@ impl Second {
 
 /// How the ring is, for the page and `status`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RingStatus {
-    pub(crate) octets: u64,
-    pub(crate) limit_octets: u64,
+pub(crate) struct RawLogStatus {
+    #[serde(rename = "octets")]
+    pub(crate) bytes: u64,
+    #[serde(rename = "limit_octets")]
+    pub(crate) limit_bytes: u64,
     /// Why nothing is kept for now.
     pub(crate) problem: Option<String>,
 }
 
 /// The ring of a running agent.
 #[derive(Debug)]
-pub(crate) struct Ring {
+pub(crate) struct RawLog {
     path: PathBuf,
     /// Blocks that the file may have; none: there is no ring.
     slots: u64,
     file: Option<File>,
     problem: Option<String>,
     /// Not tried again before this.
-    rests_until: Option<Instant>,
+    paused_until: Option<Instant>,
     /// Where the next block goes, and its number.
     slot: u64,
     number: u64,
@@ -91,35 +93,35 @@ pub(crate) fn path(data_dir: &Path) -> PathBuf {
     data_dir.join("ring.bin")
 }
 
-impl Ring {
+impl RawLog {
     /// Goes on where the file ends. One that cannot be used is a ring that keeps nothing.
-    pub(crate) fn open(data_dir: &Path, limit_octets: u64) -> Ring {
-        let mut ring = Ring {
+    pub(crate) fn open(data_dir: &Path, limit_bytes: u64) -> RawLog {
+        let mut raw_log = RawLog {
             path: path(data_dir),
-            slots: limit_octets / BLOCK_OCTETS,
+            slots: limit_bytes / BLOCK_BYTES,
             file: None,
             problem: None,
-            rests_until: None,
+            paused_until: None,
             slot: 0,
             number: 1,
             seconds: Vec::with_capacity(RECORDS),
             last_s: None,
         };
-        if ring.slots == 0 {
+        if raw_log.slots == 0 {
             // What an earlier configuration kept is the owner's; it is not removed.
-            return ring;
+            return raw_log;
         }
-        if let Err(error) = ring.find_end() {
-            ring.give_way(&error.to_string(), Instant::now());
+        if let Err(error) = raw_log.seek_end() {
+            raw_log.release_disk(&error.to_string(), Instant::now());
         }
-        ring
+        raw_log
     }
 
-    fn find_end(&mut self) -> io::Result<()> {
+    fn seek_end(&mut self) -> io::Result<()> {
         let mut file = open_private(&self.path)?;
-        let blocks = file.metadata()?.len() / BLOCK_OCTETS;
+        let blocks = file.metadata()?.len() / BLOCK_BYTES;
         if blocks > self.slots {
-            file.set_len(self.slots * BLOCK_OCTETS)?;
+            file.set_len(self.slots * BLOCK_BYTES)?;
         }
         for slot in 0..blocks.min(self.slots) {
             if let Some(number) = number_at(&mut file, slot)?
@@ -133,7 +135,12 @@ impl Ring {
     }
 
     /// Takes a second, unless it is the one before again; a whole block is written.
-    pub(crate) fn take(&mut self, time: Timestamp, second: impl FnOnce() -> Second, now: Instant) {
+    pub(crate) fn record(
+        &mut self,
+        time: Timestamp,
+        second: impl FnOnce() -> Second,
+        now: Instant,
+    ) {
         let second_s = time.micros().div_euclid(1_000_000);
         if self.slots == 0 || self.last_s.replace(second_s) == Some(second_s) {
             return;
@@ -146,7 +153,7 @@ impl Ring {
 
     /// Writes what is there as a block, as at the end.
     pub(crate) fn flush(&mut self, now: Instant) {
-        if self.rests_until.is_some_and(|until| now < until) {
+        if self.paused_until.is_some_and(|until| now < until) {
             self.seconds.clear();
         }
         if self.seconds.is_empty() {
@@ -157,9 +164,9 @@ impl Ring {
         match written {
             Ok(()) => {
                 self.problem = None;
-                self.rests_until = None;
+                self.paused_until = None;
             }
-            Err(error) => self.give_way(&error.to_string(), now),
+            Err(error) => self.release_disk(&error.to_string(), now),
         }
     }
 
@@ -171,7 +178,7 @@ impl Ring {
             return Ok(());
         };
         let block = block::write(self.number, &self.seconds);
-        file.seek(SeekFrom::Start(self.slot * BLOCK_OCTETS))?;
+        file.seek(SeekFrom::Start(self.slot * BLOCK_BYTES))?;
         file.write_all(&block)?;
         self.slot = (self.slot + 1) % self.slots;
         self.number += 1;
@@ -179,7 +186,7 @@ impl Ring {
     }
 
     /// Lets go of everything, for the spool's sake.
-    pub(crate) fn give_way(&mut self, problem: &str, now: Instant) {
+    pub(crate) fn release_disk(&mut self, problem: &str, now: Instant) {
         if self.slots == 0 {
             return;
         }
@@ -191,17 +198,17 @@ impl Ring {
             tracing::warn!(%error, "the ring cannot be emptied");
         }
         self.problem = Some(problem.to_owned());
-        self.rests_until = Some(now + REST);
+        self.paused_until = Some(now + PAUSE_AFTER_FULL);
         self.slot = 0;
         self.seconds.clear();
     }
 
     /// How it is; none when there is to be no ring.
-    pub(crate) fn status(&self) -> Option<RingStatus> {
+    pub(crate) fn status(&self) -> Option<RawLogStatus> {
         let length = |file: &File| file.metadata().map_or(0, |found| found.len());
-        (self.slots > 0).then(|| RingStatus {
-            octets: self.file.as_ref().map_or(0, length),
-            limit_octets: self.slots * BLOCK_OCTETS,
+        (self.slots > 0).then(|| RawLogStatus {
+            bytes: self.file.as_ref().map_or(0, length),
+            limit_bytes: self.slots * BLOCK_BYTES,
             problem: self.problem.clone(),
         })
     }
@@ -209,8 +216,8 @@ impl Ring {
 
 /// The number of the block there, if its head is whole.
 fn number_at(file: &mut File, slot: u64) -> io::Result<Option<u64>> {
-    let mut head = [0; block::HEAD_OCTETS];
-    file.seek(SeekFrom::Start(slot * BLOCK_OCTETS))?;
+    let mut head = [0; block::HEAD_BYTES];
+    file.seek(SeekFrom::Start(slot * BLOCK_BYTES))?;
     match file.read_exact(&mut head) {
         Ok(()) => Ok(block::number(&head)),
         Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
@@ -219,10 +226,10 @@ fn number_at(file: &mut File, slot: u64) -> io::Result<Option<u64>> {
 }
 
 fn block_at(file: &mut File, slot: u64) -> io::Result<Option<Block>> {
-    let mut octets = vec![0; BLOCK_OCTETS as usize];
-    file.seek(SeekFrom::Start(slot * BLOCK_OCTETS))?;
-    match file.read_exact(&mut octets) {
-        Ok(()) => Ok(block::read(&octets)),
+    let mut bytes = vec![0; BLOCK_BYTES as usize];
+    file.seek(SeekFrom::Start(slot * BLOCK_BYTES))?;
+    match file.read_exact(&mut bytes) {
+        Ok(()) => Ok(block::read(&bytes)),
         Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
         Err(error) => Err(error),
     }

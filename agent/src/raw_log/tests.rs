@@ -18,10 +18,10 @@ fn second(offset_s: i64) -> Second {
     }
 }
 
-fn fill(ring: &mut Ring, seconds: std::ops::Range<i64>) {
+fn fill(raw_log: &mut RawLog, seconds: std::ops::Range<i64>) {
     for offset_s in seconds {
         let second = second(offset_s);
-        ring.take(second.time, || second, Instant::now());
+        raw_log.record(second.time, || second, Instant::now());
     }
 }
 
@@ -48,16 +48,16 @@ fn kept(directory: &Path) -> i64 {
 }
 
 /// Four blocks.
-const SMALL: u64 = 4 * BLOCK_OCTETS;
+const SMALL: u64 = 4 * BLOCK_BYTES;
 
 #[test]
 fn every_second_comes_back_as_it_was_and_once() {
     let directory = TempDir::new().unwrap();
-    let mut ring = Ring::open(directory.path(), SMALL);
-    fill(&mut ring, 0..BLOCK_S + 10);
+    let mut raw_log = RawLog::open(directory.path(), SMALL);
+    fill(&mut raw_log, 0..BLOCK_S + 10);
     // The same second again, as when several sentences carry the time.
-    fill(&mut ring, BLOCK_S + 9..BLOCK_S + 10);
-    ring.flush(Instant::now());
+    fill(&mut raw_log, BLOCK_S + 9..BLOCK_S + 10);
+    raw_log.flush(Instant::now());
     let rows = table(directory.path(), Span::default());
     assert_eq!(count(&rows), BLOCK_S + 10);
     assert_eq!(
@@ -75,8 +75,8 @@ fn every_second_comes_back_as_it_was_and_once() {
 fn the_oldest_are_written_over_and_the_file_keeps_its_limit_over_restarts() {
     let directory = TempDir::new().unwrap();
     for start in 0..7 {
-        let mut ring = Ring::open(directory.path(), SMALL);
-        fill(&mut ring, start * BLOCK_S..(start + 1) * BLOCK_S);
+        let mut raw_log = RawLog::open(directory.path(), SMALL);
+        fill(&mut raw_log, start * BLOCK_S..(start + 1) * BLOCK_S);
         let length = std::fs::metadata(path(directory.path())).unwrap().len();
         assert!(length <= SMALL, "{length}");
     }
@@ -89,58 +89,58 @@ fn the_oldest_are_written_over_and_the_file_keeps_its_limit_over_restarts() {
 #[test]
 fn a_torn_block_costs_only_itself_and_what_is_no_ring_is_written_over() {
     let directory = TempDir::new().unwrap();
-    let mut ring = Ring::open(directory.path(), SMALL);
-    fill(&mut ring, 0..3 * BLOCK_S);
-    drop(ring);
+    let mut raw_log = RawLog::open(directory.path(), SMALL);
+    fill(&mut raw_log, 0..3 * BLOCK_S);
+    drop(raw_log);
     let file = path(directory.path());
-    let mut octets = std::fs::read(&file).unwrap();
-    octets[BLOCK_OCTETS as usize + 100] ^= 1;
-    octets.truncate(3 * BLOCK_OCTETS as usize - 1000);
-    std::fs::write(&file, &octets).unwrap();
+    let mut bytes = std::fs::read(&file).unwrap();
+    bytes[BLOCK_BYTES as usize + 100] ^= 1;
+    bytes.truncate(3 * BLOCK_BYTES as usize - 1000);
+    std::fs::write(&file, &bytes).unwrap();
     assert_eq!(kept(directory.path()), BLOCK_S);
-    let mut ring = Ring::open(directory.path(), SMALL);
-    fill(&mut ring, 5 * BLOCK_S..6 * BLOCK_S);
+    let mut raw_log = RawLog::open(directory.path(), SMALL);
+    fill(&mut raw_log, 5 * BLOCK_S..6 * BLOCK_S);
     assert_eq!(kept(directory.path()), 2 * BLOCK_S);
     std::fs::write(&file, vec![0x5a; 20_000]).unwrap();
-    let mut ring = Ring::open(directory.path(), SMALL);
-    fill(&mut ring, 0..BLOCK_S);
+    let mut raw_log = RawLog::open(directory.path(), SMALL);
+    fill(&mut raw_log, 0..BLOCK_S);
     assert_eq!(kept(directory.path()), BLOCK_S);
 }
 
 #[test]
 fn a_smaller_limit_makes_the_file_smaller() {
     let directory = TempDir::new().unwrap();
-    fill(&mut Ring::open(directory.path(), SMALL), 0..4 * BLOCK_S);
-    let ring = Ring::open(directory.path(), 2 * BLOCK_OCTETS);
-    assert_eq!(ring.status().unwrap().octets, 2 * BLOCK_OCTETS);
+    fill(&mut RawLog::open(directory.path(), SMALL), 0..4 * BLOCK_S);
+    let raw_log = RawLog::open(directory.path(), 2 * BLOCK_BYTES);
+    assert_eq!(raw_log.status().unwrap().bytes, 2 * BLOCK_BYTES);
 }
 
 #[test]
 fn a_ring_that_gives_way_frees_the_disk_and_begins_again_in_an_hour() {
     let directory = TempDir::new().unwrap();
-    let mut ring = Ring::open(directory.path(), SMALL);
-    fill(&mut ring, 0..2 * BLOCK_S);
+    let mut raw_log = RawLog::open(directory.path(), SMALL);
+    fill(&mut raw_log, 0..2 * BLOCK_S);
     let now = Instant::now();
-    ring.give_way("the disk is full", now);
-    let status = ring.status().unwrap();
+    raw_log.release_disk("the disk is full", now);
+    let status = raw_log.status().unwrap();
     assert_eq!(status.problem.as_deref(), Some("the disk is full"));
     assert_eq!(std::fs::metadata(path(directory.path())).unwrap().len(), 0);
-    fill(&mut ring, 2 * BLOCK_S..3 * BLOCK_S);
+    fill(&mut raw_log, 2 * BLOCK_S..3 * BLOCK_S);
     assert_eq!(std::fs::metadata(path(directory.path())).unwrap().len(), 0);
     for offset_s in 3 * BLOCK_S..4 * BLOCK_S {
         let second = second(offset_s);
-        ring.take(second.time, || second, now + REST);
+        raw_log.record(second.time, || second, now + PAUSE_AFTER_FULL);
     }
-    assert_eq!(ring.status().unwrap().problem, None);
+    assert_eq!(raw_log.status().unwrap().problem, None);
     assert_eq!(kept(directory.path()), BLOCK_S);
 }
 
 #[test]
 fn a_place_that_cannot_be_written_is_a_ring_that_keeps_nothing() {
     let directory = TempDir::new().unwrap();
-    let mut ring = Ring::open(&directory.path().join("nowhere"), SMALL);
-    fill(&mut ring, 0..2 * BLOCK_S);
-    assert!(ring.status().unwrap().problem.is_some());
+    let mut raw_log = RawLog::open(&directory.path().join("nowhere"), SMALL);
+    fill(&mut raw_log, 0..2 * BLOCK_S);
+    assert!(raw_log.status().unwrap().problem.is_some());
 }
 
 #[cfg(target_os = "linux")]
@@ -148,17 +148,17 @@ fn a_place_that_cannot_be_written_is_a_ring_that_keeps_nothing() {
 fn a_disk_without_room_makes_the_ring_give_way() {
     let directory = TempDir::new().unwrap();
     std::os::unix::fs::symlink("/dev/full", path(directory.path())).unwrap();
-    let mut ring = Ring::open(directory.path(), SMALL);
-    fill(&mut ring, 0..BLOCK_S);
-    let problem = ring.status().unwrap().problem.unwrap();
+    let mut raw_log = RawLog::open(directory.path(), SMALL);
+    fill(&mut raw_log, 0..BLOCK_S);
+    let problem = raw_log.status().unwrap().problem.unwrap();
     assert!(problem.contains("No space left"), "{problem}");
 }
 
 #[test]
 fn without_a_limit_there_is_no_ring() {
     let directory = TempDir::new().unwrap();
-    let mut ring = Ring::open(directory.path(), 0);
-    fill(&mut ring, 0..2 * BLOCK_S);
-    assert_eq!(ring.status(), None);
+    let mut raw_log = RawLog::open(directory.path(), 0);
+    fill(&mut raw_log, 0..2 * BLOCK_S);
+    assert_eq!(raw_log.status(), None);
     assert!(!path(directory.path()).exists());
 }
