@@ -22,7 +22,7 @@ mod weak_field;
 mod raw_log;
 mod spool;
 
-mod burst;
+mod short_burst;
 mod uplink;
 
 mod card_invalidation;

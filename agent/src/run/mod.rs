@@ -8,7 +8,6 @@
 mod store_samples;
 
 use crate::alert::{Aboard, AlarmSentence, Card, Lookout};
-use crate::burst::{self, FileModem};
 use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
@@ -23,6 +22,7 @@ use crate::raw_log::{RawLog, Second};
 use crate::sampler::Tally;
 use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
+use crate::short_burst::{self, FileModem};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
 use crate::status::{InputReport, ModelStatus, Status};
 use crate::uplink::{self, Plan, Told};
@@ -148,7 +148,7 @@ impl Agent {
         if let Some(modem) = &config.modem {
             let modem = FileModem::open(modem.directory())
                 .with_context(|| modem.directory().display().to_string())?;
-            tokio::spawn(burst::run(spool.clone(), modem, shutdown.clone()));
+            tokio::spawn(short_burst::run(spool.clone(), modem, shutdown.clone()));
         }
 
         let (tx, observations) = mpsc::channel(CHANNEL_CAPACITY);

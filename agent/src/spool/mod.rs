@@ -19,13 +19,13 @@
 //!   ten minutes that the sampler is still in.
 
 mod batches;
-mod bursts;
 mod gather;
 mod kept;
 mod repair;
 mod reports;
 mod room;
 mod seal;
+mod short_bursts;
 
 pub(crate) use batches::{SealedBatch, Standing};
 pub(crate) use reports::{NotKept, ReportStanding, StoredReport};

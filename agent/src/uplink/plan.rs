@@ -13,7 +13,7 @@
 //!   cannot be afforded waits, and is never dropped.
 
 use super::shore::Line;
-use crate::burst;
+use crate::short_burst;
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -113,7 +113,7 @@ impl Plan {
 
     /// A batch is thinned when it is larger.
     pub(crate) fn batch_octets(&self) -> Option<usize> {
-        (self.profile == Profile::ShortBurst).then(burst::batch_octets)
+        (self.profile == Profile::ShortBurst).then(short_burst::batch_octets)
     }
 
     /// Whether the connection stays open between two batches. An hourly batch costs some

@@ -32,7 +32,7 @@ async fn evidence(spool: &Spool, samples: &[Sample]) {
 }
 
 /// What is in the folder, in order.
-fn out(directory: &Path) -> Vec<Vec<u8>> {
+fn outbox(directory: &Path) -> Vec<Vec<u8>> {
     let folder = directory.join("modem").join("out");
     let files = std::fs::read_dir(folder).unwrap();
     let mut paths: Vec<_> = files.map(|entry| entry.unwrap().path()).collect();
@@ -70,7 +70,7 @@ async fn each_batch_goes_out_once_and_stays_until_the_shore_has_it() {
     seal(&spool, 100..101).await;
     exchange(&spool, &mut modem).await.unwrap();
     exchange(&spool, &mut modem).await.unwrap();
-    let sent = out(directory.path());
+    let sent = outbox(directory.path());
     assert!(sent.iter().all(|message| message.len() <= 340));
     assert_eq!(seqs(&sent), [1, 2]);
     assert_eq!(spool.standing().await.unwrap().waiting_batches, 2);
@@ -82,7 +82,7 @@ async fn each_batch_goes_out_once_and_stays_until_the_shore_has_it() {
         (standing.acknowledged_batches, standing.acknowledged_samples),
         (1, 90)
     );
-    assert_eq!(out(directory.path()), sent);
+    assert_eq!(outbox(directory.path()), sent);
 }
 
 #[tokio::test]
@@ -95,7 +95,7 @@ async fn an_answer_deletes_only_what_is_out_and_of_this_stream() {
     answer(directory.path(), "4.sbd", &[0xb2; 5_000]);
     exchange(&spool, &mut modem).await.unwrap();
     assert_eq!(spool.standing().await.unwrap().waiting_batches, 1);
-    assert_eq!(seqs(&out(directory.path())), [1]);
+    assert_eq!(seqs(&outbox(directory.path())), [1]);
     assert_eq!(modem.receive().await.unwrap(), None, "each is read once");
 }
 
@@ -106,7 +106,7 @@ async fn an_alert_goes_before_the_backlog() {
     seal(&spool, 1..2).await;
     evidence(&spool, &[]).await;
     exchange(&spool, &mut modem).await.unwrap();
-    assert_eq!(seqs(&out(directory.path())), [3, 1, 2]);
+    assert_eq!(seqs(&outbox(directory.path())), [3, 1, 2]);
 }
 
 /// Takes so many messages and then none.
@@ -135,7 +135,7 @@ async fn a_modem_that_fails_half_way_goes_on_with_the_next_message() {
     let restless: Vec<Sample> = (0..400).map(restless).collect();
     let counts = accepted(400);
     spool.store(&restless, &counts, Seal::All).await.unwrap();
-    let whole = spool.next_burst().await.unwrap().unwrap().0;
+    let whole = spool.next_burst_batch().await.unwrap().unwrap().0;
     let wanted = split(&whole.bytes).unwrap();
     assert!(wanted.len() > 2, "{}", wanted.len());
     let mut failing = Failing { modem, takes: 2 };
@@ -144,7 +144,7 @@ async fn a_modem_that_fails_half_way_goes_on_with_the_next_message() {
     let spool = Spool::open(directory.path()).await.unwrap();
     failing.takes = 100;
     exchange(&spool, &mut failing).await.unwrap();
-    assert_eq!(out(directory.path()), wanted);
+    assert_eq!(outbox(directory.path()), wanted);
 }
 
 #[tokio::test]
@@ -157,7 +157,7 @@ async fn a_batch_is_thinned_until_it_fits_into_three_messages_and_evidence_is_no
     spool.thin_each(batch_octets()).await.unwrap();
     exchange(&spool, &mut modem).await.unwrap();
     let mut joiner = Joiner::default();
-    let sent = out(directory.path());
+    let sent = outbox(directory.path());
     let frames = sent.iter().filter_map(|m| joiner.take(m).unwrap());
     let batches: Vec<_> = frames.map(|f| binnacle_wire::decode(&f).unwrap()).collect();
     let thinned = batches.iter().find(|batch| batch.seq == 1).unwrap();
@@ -192,7 +192,7 @@ async fn what_is_too_large_for_any_messages_waits_and_keeps_nothing_back() {
     evidence(&spool, &wild).await;
     seal(&spool, 0..1).await;
     exchange(&spool, &mut modem).await.unwrap();
-    assert_eq!(seqs(&out(directory.path())), [2]);
+    assert_eq!(seqs(&outbox(directory.path())), [2]);
     assert_eq!(spool.standing().await.unwrap().waiting_batches, 2);
 }
 
@@ -202,13 +202,13 @@ async fn no_link_in_the_folder_leads_a_message_out_of_it() {
     let (directory, spool, mut modem) = rig().await;
     let elsewhere = directory.path().join("elsewhere");
     std::fs::write(&elsewhere, "mine").unwrap();
-    let out = directory.path().join("modem").join("out");
+    let outbox = directory.path().join("modem").join("out");
     for name in ["partial", "next", "00000001.sbd"] {
-        std::os::unix::fs::symlink(&elsewhere, out.join(name)).unwrap();
+        std::os::unix::fs::symlink(&elsewhere, outbox.join(name)).unwrap();
     }
     seal(&spool, 0..1).await;
     modem.send(b"a message").await.unwrap();
     assert_eq!(std::fs::read(&elsewhere).unwrap(), b"mine");
-    let sent = std::fs::read(out.join("00000002.sbd"));
+    let sent = std::fs::read(outbox.join("00000002.sbd"));
     assert_eq!(sent.unwrap(), b"a message");
 }

@@ -10,7 +10,7 @@ const NONE_EVER: i64 = -2;
 impl Spool {
     /// The batch of which messages are to go out next, and how many of them did already.
     /// Alerts first, the newest of them, then the oldest.
-    pub(crate) async fn next_burst(&self) -> sqlx::Result<Option<(SealedBatch, usize)>> {
+    pub(crate) async fn next_burst_batch(&self) -> sqlx::Result<Option<(SealedBatch, usize)>> {
         let row: Option<(i64, Vec<u8>, bool, i64, i64)> = sqlx::query_as(
             "SELECT seq, bytes, urgent, samples, burst FROM batches
              WHERE standing = 'waiting' AND burst >= 0
@@ -31,7 +31,7 @@ impl Spool {
     }
 
     /// So many messages of a batch are out, which may be all there are.
-    pub(crate) async fn note_burst(
+    pub(crate) async fn record_burst_progress(
         &self,
         batch: &SealedBatch,
         sent: usize,
@@ -43,7 +43,7 @@ impl Spool {
     }
 
     /// No messages can carry this batch.
-    pub(crate) async fn not_for_bursts(&self, batch: &SealedBatch) -> sqlx::Result<()> {
+    pub(crate) async fn exclude_from_bursts(&self, batch: &SealedBatch) -> sqlx::Result<()> {
         self.set_burst(batch, NONE_EVER).await
     }
 
@@ -60,7 +60,7 @@ impl Spool {
 
     /// The shore has every batch up to this one: what of them is out is acknowledged; how
     /// many.
-    pub(crate) async fn acknowledge_burst(
+    pub(crate) async fn acknowledge_bursts(
         &self,
         identity: &Identity,
         contiguous_seq: u64,

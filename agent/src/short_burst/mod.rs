@@ -22,9 +22,9 @@ use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 
 /// How often the spool and the modem are looked at.
-const LOOK: Duration = Duration::from_secs(5);
+const POLL_INTERVAL: Duration = Duration::from_secs(5);
 /// After a modem that did not take a message.
-const PAUSE: Duration = Duration::from_mins(2);
+const RETRY_PAUSE: Duration = Duration::from_mins(2);
 /// A batch is thinned until it fits into so many messages.
 pub(crate) const MESSAGES_A_BATCH: usize = 3;
 
@@ -55,10 +55,10 @@ pub(crate) async fn run(spool: Spool, mut modem: impl Modem, shutdown: Cancellat
 /// Everything that there is to do; how long to wait then.
 async fn step(spool: &Spool, modem: &mut impl Modem) -> Duration {
     match exchange(spool, modem).await {
-        Ok(()) => LOOK,
+        Ok(()) => POLL_INTERVAL,
         Err(error) => {
             tracing::warn!(error = format!("{error:#}"), "the modem's turn failed");
-            PAUSE
+            RETRY_PAUSE
         }
     }
 }
@@ -71,7 +71,7 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
         match read_ack(&message) {
             Ok(ack) if ack.stream == StreamTag::of(identity.stream) => {
                 let acknowledged = spool
-                    .acknowledge_burst(&identity, ack.contiguous_seq)
+                    .acknowledge_bursts(&identity, ack.contiguous_seq)
                     .await?;
                 tracing::info!(seq = ack.contiguous_seq, acknowledged, "the shore answered");
             }
@@ -79,12 +79,12 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
             Err(error) => tracing::warn!(%error, "a message was passed over"),
         }
     }
-    while let Some((batch, sent)) = spool.next_burst().await? {
+    while let Some((batch, sent)) = spool.next_burst_batch().await? {
         let messages = match split(&batch.bytes) {
             Ok(messages) => messages,
             Err(error) => {
                 tracing::error!(seq = batch.seq, %error, "a batch waits for another link");
-                spool.not_for_bursts(&batch).await?;
+                spool.exclude_from_bursts(&batch).await?;
                 continue;
             }
         };
@@ -93,7 +93,9 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
         }
         for (index, message) in messages.iter().enumerate().skip(sent) {
             modem.send(message).await?;
-            spool.note_burst(&batch, index + 1, messages.len()).await?;
+            spool
+                .record_burst_progress(&batch, index + 1, messages.len())
+                .await?;
         }
         tracing::info!(seq = batch.seq, messages = messages.len(), "a batch is out");
     }
