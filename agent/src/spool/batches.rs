@@ -1,7 +1,8 @@
 //! Sealed batches: which is next, what became of it, and a new stream.
 
+use super::acknowledged;
 use super::seal::insert_batch;
-use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, kept, put};
+use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, put};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::messages::Downlink;
 use serde::{Deserialize, Serialize};
@@ -93,7 +94,7 @@ impl Spool {
     }
 
     /// The shore has this batch: notes it, and what follows from how far the shore says
-    /// that it has come ([`super::kept`]).
+    /// that it has come ([`super::acknowledged`]).
     pub(crate) async fn acknowledge(
         &self,
         stream: StreamId,
@@ -125,7 +126,7 @@ impl Spool {
         if let Some(samples) = samples {
             remember(&mut tx, stream, batch, samples).await?;
         }
-        kept::look(&mut tx, batch.seq, before, downlink).await?;
+        acknowledged::look(&mut tx, batch.seq, before, downlink).await?;
         tx.commit().await
     }
 
@@ -213,7 +214,7 @@ impl Spool {
             acknowledged_batches: batches.cast_unsigned(),
             acknowledged_samples: samples.cast_unsigned(),
             contiguous_seq: get(&mut connection, CONTIGUOUS_SEQ).await?.unwrap_or(0),
-            used_bytes: super::room::used_bytes(&mut connection).await?,
+            used_bytes: super::thinning::used_bytes(&mut connection).await?,
             thinned_batches: thinned.cast_unsigned(),
         })
     }

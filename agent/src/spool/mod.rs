@@ -18,19 +18,19 @@
 //!   [`crate::run::SAMPLES_PER_COMMIT`], whichever is less, and the stretch of at most
 //!   ten minutes that the sampler is still in.
 
+mod acknowledged;
 mod batches;
-mod gather;
-mod kept;
+mod merge;
 mod repair;
 mod reports;
-mod room;
 mod seal;
 mod short_bursts;
+mod thinning;
 
 pub(crate) use batches::{SealedBatch, Standing};
 pub(crate) use reports::{NotKept, ReportStanding, StoredReport};
-pub(crate) use room::{MOST_PENDING, is_want_of_room};
 pub(crate) use seal::{Pending, Seal};
+pub(crate) use thinning::{MOST_PENDING, is_want_of_room};
 
 use crate::alert::Aboard;
 use crate::clock_checkpoint::ClockCheckpoint;

@@ -9,8 +9,8 @@
 //! - What is joined goes into one packet, head and all, and through a proxy that cuts
 //!   after a kilobyte.
 
-use super::room::sum;
 use super::seal::SAMPLES_PER_BATCH;
+use super::thinning::sum;
 use super::{NEXT_SEQ, Spool, put};
 
 /// A request's head takes some 300 octets.

@@ -8,7 +8,7 @@
 //! - Samples are left out by heading, time and length alone, in each batch by itself,
 //!   and the batch says how many. What each window of the tally became can be told.
 
-use super::{Spool, THINNED, get, kept, put};
+use super::{Spool, THINNED, acknowledged, get, put};
 use crate::uplink::REQUEST_OCTETS;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::sample::Sample;
@@ -68,7 +68,7 @@ impl Spool {
                 .execute(&mut *tx)
                 .await?;
             // What the shore has goes before what it has not.
-            if kept::throw_away(&mut tx).await? > 0 {
+            if acknowledged::throw_away(&mut tx).await? > 0 {
                 tx.commit().await?;
                 continue;
             }
