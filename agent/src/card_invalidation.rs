@@ -4,7 +4,7 @@
 //! What always holds: the card is not used from the time the work began until the shore
 //! has a model of the ship since, or has refused or outlived the report.
 
-use crate::spool::{ReportStanding, StoredReport};
+use crate::spool::{ReportState, StoredReport};
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use serde_json::Value;
@@ -40,14 +40,14 @@ pub(crate) fn find_invalidation(
 fn invalidates(model: &ModelDownlink, stored: &StoredReport, now: Timestamp) -> bool {
     let report = &stored.sent.report;
     let from = report.from;
-    let is_effective = report.kind.ends_an_epoch() && !stored.is_taken_back() && from <= now;
+    let is_effective = report.kind.ends_an_epoch() && !stored.is_withdrawn() && from <= now;
     let is_known = model.data_until.seconds_since(from) > KNOWN_TO_MODEL_S;
     let replaces = model.replaces.as_ref();
     let is_replaced =
         replaces.is_some_and(|old| old.since.seconds_since(from) >= -DATING_TOLERANCE_S);
     // Reports go before samples: who has these has read that.
     let is_analysed =
-        stored.standing != ReportStanding::Waiting && model.data_until > stored.written_at;
+        stored.standing != ReportState::Waiting && model.data_until > stored.written_at;
     is_effective && !is_known && !is_replaced && !is_analysed
 }
 
@@ -91,7 +91,7 @@ mod tests {
                 },
             },
             written_at: at("2026-11-20T12:00:00Z"),
-            standing: ReportStanding::Waiting,
+            standing: ReportState::Waiting,
             problem: None,
         }
     }
@@ -167,7 +167,7 @@ mod tests {
         let later = model("2026-11-20T18:00:00Z", None);
         let mut ashore = report(LogbookKind::Welding, WORK);
         assert!(ended(&later, ashore.clone(), "2026-11-20T19:00:00Z").is_some());
-        ashore.standing = ReportStanding::Ashore;
+        ashore.standing = ReportState::Ashore;
         assert_eq!(ended(&later, ashore.clone(), "2026-11-20T19:00:00Z"), None);
         assert!(ended(&model(BEFORE, None), ashore, NOW).is_some());
     }

@@ -395,7 +395,7 @@ async fn rotate_token(config: &Config) -> anyhow::Result<()> {
     let server = &identity.server;
     let failed = |trouble: Trouble| anyhow::anyhow!("{server}: {trouble}");
     let new = shore.propose_token(&identity).await.map_err(failed)?;
-    spool.keep_other_token(&new.token).await?;
+    spool.save_other_token(&new.token).await?;
     shore.replace_token(&identity, &new).await.map_err(failed)?;
     spool.swap_tokens(&identity.token).await?;
     writeln!(std::io::stdout(), "the token was replaced")?;

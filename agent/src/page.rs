@@ -62,14 +62,14 @@ pub(crate) async fn serve(
     shutdown: &CancellationToken,
 ) -> anyhow::Result<Option<SocketAddr>> {
     let Some(config) = config else {
-        page.spool.set_page(None).await?;
+        page.spool.set_page_address(None).await?;
         return Ok(None);
     };
     let listener = TcpListener::bind(config.listen)
         .await
         .with_context(|| format!("page.listen {}: cannot listen", config.listen))?;
     let address = listener.local_addr()?;
-    page.spool.set_page(Some(address)).await?;
+    page.spool.set_page_address(Some(address)).await?;
     let stopped = shutdown.clone().cancelled_owned();
     tokio::spawn(async move {
         let served = axum::serve(LimitedListener::new(listener), router(page))
@@ -167,7 +167,7 @@ async fn acknowledged(spool: &Spool, id: Uuid) -> sqlx::Result<bool> {
         acknowledged: true,
         ..aboard
     };
-    spool.keep_alert(&seen).await?;
+    spool.save_alert(&seen).await?;
     Ok(true)
 }
 
@@ -329,7 +329,7 @@ pub(crate) mod tests {
             raised_by_deg: None,
             is_doubted: false,
         };
-        page.spool.keep_alert(&aboard).await.unwrap();
+        page.spool.save_alert(&aboard).await.unwrap();
         let press = |id: Uuid, guard: &str| {
             Request::post("/api/alert/acknowledge")
                 .header("content-type", "application/json")

@@ -5,7 +5,7 @@
 
 use crate::clock;
 use crate::page::{Page, guarded};
-use crate::spool::{NotKept, StoredReport};
+use crate::spool::{SaveReportError, StoredReport};
 use axum::Json;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode};
@@ -32,7 +32,7 @@ pub(crate) async fn list(State(page): State<Page>) -> Result<Json<Vec<StoredRepo
     let found = page.spool.reports().await;
     found
         .map(Json)
-        .map_err(|error| not_kept(&NotKept::Spool(error)))
+        .map_err(|error| not_kept(&SaveReportError::Spool(error)))
 }
 
 /// Takes a report, or a change of one.
@@ -55,7 +55,7 @@ pub(crate) async fn put(
     }
     let stored = page
         .spool
-        .keep_report(id, report, reporter, written.withdrawn, now)
+        .save_report(id, report, reporter, written.withdrawn, now)
         .await
         .map_err(|error| not_kept(&error))?;
     page.news.notify_one();
@@ -66,11 +66,11 @@ fn wrong(error: &ReportError) -> Refusal {
     (StatusCode::UNPROCESSABLE_ENTITY, error.to_string())
 }
 
-fn not_kept(error: &NotKept) -> Refusal {
+fn not_kept(error: &SaveReportError) -> Refusal {
     let status = match error {
-        NotKept::TakenBack => StatusCode::CONFLICT,
-        NotKept::TooMany => StatusCode::INSUFFICIENT_STORAGE,
-        NotKept::Spool(cause) => {
+        SaveReportError::Withdrawn => StatusCode::CONFLICT,
+        SaveReportError::TooMany => StatusCode::INSUFFICIENT_STORAGE,
+        SaveReportError::Spool(cause) => {
             tracing::error!(error = %cause, "the reports cannot be stored or read");
             StatusCode::INTERNAL_SERVER_ERROR
         }
@@ -81,7 +81,7 @@ fn not_kept(error: &NotKept) -> Refusal {
 #[cfg(test)]
 mod tests {
     use crate::page::tests::page;
-    use crate::spool::ReportStanding;
+    use crate::spool::ReportState;
     use axum::body::Body;
     use axum::extract::Request;
     use axum::http::StatusCode;
@@ -127,7 +127,7 @@ mod tests {
         let stored = page.spool.next_report().await.unwrap().unwrap();
         assert_eq!(stored.sent.report.hatch.as_deref(), Some("2"));
         assert_eq!(stored.sent.report.port, None);
-        assert_eq!(stored.standing, ReportStanding::Waiting);
+        assert_eq!(stored.standing, ReportState::Waiting);
 
         let list = Request::get("/api/reports").header("host", "localhost");
         let answer = send(&router, list.body(Body::empty()).unwrap()).await;

@@ -52,7 +52,7 @@ pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::
     let (spool, _alone) = Spool::open_for_agent(&config.data_dir).await?;
     let agent = Agent::start(config, spool.clone(), &shutdown).await?;
     agent.run(shutdown).await;
-    spool.set_page(None).await.ok();
+    spool.set_page_address(None).await.ok();
     spool.close().await;
     Ok(())
 }
@@ -325,7 +325,7 @@ impl Agent {
         if self.stored_alert == Some(aboard) || !self.unstored.alerts.is_empty() {
             return;
         }
-        match self.spool.keep_alert(&aboard).await {
+        match self.spool.save_alert(&aboard).await {
             Ok(()) => self.stored_alert = Some(aboard),
             Err(error) => tracing::error!(%error, "the alert cannot be stored"),
         }

@@ -5,7 +5,7 @@ use super::Agent;
 use crate::clock;
 use crate::clock_checkpoint::ClockCheckpoint;
 use crate::sampler::Tally;
-use crate::spool::{MOST_PENDING, Seal, is_want_of_room};
+use crate::spool::{MAX_PENDING, Seal, is_disk_full};
 use crate::uplink::LinkState;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::Settings;
@@ -70,7 +70,7 @@ impl Agent {
                 if has_evidence || seal == Seal::All {
                     unstored.tally_since = self.ship.time();
                 }
-                if sealed > 0 || unstored.pending.samples > MOST_PENDING {
+                if sealed > 0 || unstored.pending.samples > MAX_PENDING {
                     self.limit_spool().await;
                 }
                 if sealed > 0 {
@@ -85,7 +85,7 @@ impl Agent {
                     tracing::error!(problem, waiting, "samples cannot be stored");
                 }
                 unstored.problem = Some(problem);
-                if is_want_of_room(&error) {
+                if is_disk_full(&error) {
                     self.raw_log
                         .release_disk(&error.to_string(), Instant::now());
                 }
@@ -112,21 +112,21 @@ impl Agent {
 
     /// Few batches, within the disk and within what the link may cost.
     async fn limit_spool(&self) {
-        let gathered = if self.batches_wait() {
-            self.spool.gather().await
+        let merged = if self.batches_wait() {
+            self.spool.merge_last_two().await
         } else {
             Ok(())
         };
-        let within_disk = self.spool.make_room(self.spool_limit_bytes).await;
+        let within_disk = self.spool.shrink_to_limit(self.spool_limit_bytes).await;
         let within_messages = match self.plan.batch_octets() {
-            Some(octets) => self.spool.thin_each(octets).await,
+            Some(octets) => self.spool.thin_batches_to(octets).await,
             None => Ok(()),
         };
         let within_budget = match self.plan.backlog_octets() {
             Some(octets) => self.spool.thin_backlog(octets).await,
             None => Ok(()),
         };
-        if let Err(error) = gathered
+        if let Err(error) = merged
             .and(within_messages)
             .and(within_disk)
             .and(within_budget)

@@ -88,7 +88,7 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
                 continue;
             }
         };
-        if !spool.note_try(&batch).await? {
+        if !spool.mark_tried(&batch).await? {
             continue;
         }
         for (index, message) in messages.iter().enumerate().skip(sent) {

@@ -154,7 +154,7 @@ async fn a_batch_is_thinned_until_it_fits_into_three_messages_and_evidence_is_no
     let counts = accepted(500);
     spool.store(&restless, &counts, Seal::All).await.unwrap();
     evidence(&spool, &restless[..200]).await;
-    spool.thin_each(batch_octets()).await.unwrap();
+    spool.thin_batches_to(batch_octets()).await.unwrap();
     exchange(&spool, &mut modem).await.unwrap();
     let mut joiner = Joiner::default();
     let sent = outbox(directory.path());

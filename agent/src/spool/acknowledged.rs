@@ -13,15 +13,15 @@ use binnacle_wire::messages::Downlink;
 use sqlx::SqliteConnection;
 
 /// Who loses a shore restores it from a backup that is younger.
-const KEPT_MICROS: i64 = 30 * 86_400 * 1_000_000;
+const RETENTION_MICROS: i64 = 30 * 86_400 * 1_000_000;
 /// So many are thrown away at once.
-const AT_ONCE: i64 = 64;
+const DELETE_AT_ONCE: i64 = 64;
 
 impl Spool {
     /// The shore lost the stream: everything that is here is to be sent.
-    pub(crate) async fn send_all_again(&self) -> sqlx::Result<()> {
+    pub(crate) async fn requeue_all(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        wait_again(&mut tx, 0, 0).await?;
+        requeue(&mut tx, 0, 0).await?;
         tx.commit().await
     }
 }
@@ -29,9 +29,9 @@ impl Spool {
 /// Takes what the answer to a batch says of how far the shore has come: dates what is
 /// acknowledged, throws away what is older than a month, and lets what the shore lost
 /// wait again. `before` is what it said last.
-pub(super) async fn look(
+pub(super) async fn reconcile(
     tx: &mut SqliteConnection,
-    answered_seq: u64,
+    response_seq: u64,
     before: u64,
     downlink: &Downlink,
 ) -> sqlx::Result<()> {
@@ -46,10 +46,10 @@ pub(super) async fn look(
     let contiguous = downlink.contiguous_seq;
     // One that stands still although the next is acknowledged is a shore's error, not a
     // loss: sending it all again and again would not help.
-    let has_lost = contiguous < before
+    let has_regressed = contiguous < before
         || (contiguous > before && is_acknowledged(tx, contiguous.saturating_add(1)).await?);
-    if has_lost {
-        let batches = wait_again(tx, contiguous, answered_seq).await?;
+    if has_regressed {
+        let batches = requeue(tx, contiguous, response_seq).await?;
         tracing::warn!(
             contiguous,
             before,
@@ -62,25 +62,25 @@ pub(super) async fn look(
          WHERE standing = 'acknowledged' AND seq <= $1 AND acknowledged_micros < $2",
     )
     .bind(as_stored(contiguous))
-    .bind(now.saturating_sub(KEPT_MICROS))
+    .bind(now.saturating_sub(RETENTION_MICROS))
     .execute(tx)
     .await?;
     Ok(())
 }
 
 /// Throws away some of the oldest; how many.
-pub(super) async fn throw_away(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
+pub(super) async fn delete_oldest(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
     let contiguous: u64 = get(tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
-    let thrown = sqlx::query(
+    let deleted = sqlx::query(
         "DELETE FROM batches WHERE seq IN
          (SELECT seq FROM batches WHERE standing = 'acknowledged' AND seq <= $1
           ORDER BY seq LIMIT $2)",
     )
     .bind(as_stored(contiguous))
-    .bind(AT_ONCE)
+    .bind(DELETE_AT_ONCE)
     .execute(tx)
     .await?;
-    Ok(thrown.rows_affected())
+    Ok(deleted.rows_affected())
 }
 
 async fn is_acknowledged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
@@ -94,7 +94,7 @@ async fn is_acknowledged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bo
 
 /// What is acknowledged beyond a number, but for one batch; how many. What went out as
 /// short messages does so again.
-async fn wait_again(tx: &mut SqliteConnection, beyond: u64, but: u64) -> sqlx::Result<u64> {
+async fn requeue(tx: &mut SqliteConnection, beyond: u64, but: u64) -> sqlx::Result<u64> {
     let waiting = sqlx::query(
         "UPDATE batches SET standing = 'waiting', acknowledged_micros = NULL,
                             burst = CASE WHEN burst = -2 THEN -2 ELSE 0 END
@@ -156,7 +156,7 @@ mod tests {
             (standing.acknowledged_batches, standing.acknowledged_samples),
             (4, 4)
         );
-        spool.send_all_again().await.unwrap();
+        spool.requeue_all().await.unwrap();
         assert_eq!(spool.next_batch().await.unwrap().unwrap(), first);
     }
 
@@ -191,7 +191,7 @@ mod tests {
         assert_eq!(kept(&spool).await, [2]);
         let many: Vec<Sample> = (2..400).map(super::super::tests::restless).collect();
         spool.store(&many, &accepted(1), Seal::All).await.unwrap();
-        spool.make_room(1).await.unwrap();
+        spool.shrink_to_limit(1).await.unwrap();
         assert_eq!(kept(&spool).await, [0_i64; 0]);
         assert!(spool.has_unfillable_gap(1).await.unwrap());
         assert!(!spool.has_unfillable_gap(2).await.unwrap());

@@ -2,7 +2,7 @@
 
 use super::acknowledged;
 use super::seal::insert_batch;
-use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, put};
+use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, put, save_downlink};
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::messages::Downlink;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use sqlx::SqliteConnection;
 use std::collections::BTreeMap;
 
 /// So many acknowledged batches are remembered.
-const REMEMBERED: i64 = 20_000;
+const MAX_ACKNOWLEDGED: i64 = 20_000;
 
 /// A batch as it is sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,7 +70,7 @@ impl Spool {
     }
 
     /// How many others wait.
-    pub(crate) async fn waiting_beside(&self, seq: u64) -> sqlx::Result<u64> {
+    pub(crate) async fn count_other_waiting(&self, seq: u64) -> sqlx::Result<u64> {
         let others: i64 = sqlx::query_scalar(
             "SELECT COUNT(*) FROM batches WHERE standing = 'waiting' AND seq <> $1",
         )
@@ -82,7 +82,7 @@ impl Spool {
 
     /// Notes that these very bytes are about to be sent: they are not changed any more.
     /// `false` when the batch is another by now.
-    pub(crate) async fn note_try(&self, batch: &SealedBatch) -> sqlx::Result<bool> {
+    pub(crate) async fn mark_tried(&self, batch: &SealedBatch) -> sqlx::Result<bool> {
         let mut tx = self.write().await?;
         let noted = sqlx::query("UPDATE batches SET tried = TRUE WHERE seq = $1 AND bytes = $2")
             .bind(batch.seq.cast_signed())
@@ -104,7 +104,7 @@ impl Spool {
         let mut tx = self.write().await?;
         let before = get(&mut tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
         put(&mut tx, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
-        keep_downlink(&mut tx, downlink).await?;
+        save_downlink(&mut tx, downlink).await?;
         let was_refused: Option<i64> = sqlx::query_scalar(
             "SELECT 1 FROM batches WHERE seq = $1 AND bytes = $2 AND problem IS NOT NULL",
         )
@@ -124,9 +124,9 @@ impl Spool {
         .fetch_optional(&mut *tx)
         .await?;
         if let Some(samples) = samples {
-            remember(&mut tx, stream, batch, samples).await?;
+            record_acknowledged(&mut tx, stream, batch, samples).await?;
         }
-        acknowledged::look(&mut tx, batch.seq, before, downlink).await?;
+        acknowledged::reconcile(&mut tx, batch.seq, before, downlink).await?;
         tx.commit().await
     }
 
@@ -134,7 +134,7 @@ impl Spool {
     /// damaged is put aside, and an empty one takes its number: the shore need not wait for it.
     pub(crate) async fn park(&self, seq: u64, problem: &str) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        if give_up_damaged(&mut tx, seq).await? {
+        if replace_damaged(&mut tx, seq).await? {
             return tx.commit().await;
         }
         sqlx::query("UPDATE batches SET standing = 'parked', problem = $2 WHERE seq = $1")
@@ -228,7 +228,7 @@ async fn unpark(tx: &mut SqliteConnection) -> sqlx::Result<()> {
 }
 
 /// Whether this batch was damaged, and is put aside.
-async fn give_up_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
+async fn replace_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
     let bytes: Option<Vec<u8>> = sqlx::query_scalar("SELECT bytes FROM batches WHERE seq = $1")
         .bind(seq.cast_signed())
         .fetch_optional(&mut *tx)
@@ -240,7 +240,7 @@ async fn give_up_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bo
     let Err(problem) = binnacle_wire::decode(&bytes) else {
         return Ok(false);
     };
-    put_aside(tx, &bytes, &problem.to_string()).await?;
+    quarantine(tx, &bytes, &problem.to_string()).await?;
     let empty = Batch {
         stream: identity.stream,
         seq,
@@ -258,7 +258,7 @@ async fn give_up_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bo
     Ok(true)
 }
 
-async fn put_aside(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sqlx::Result<()> {
+async fn quarantine(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sqlx::Result<()> {
     tracing::error!(problem, "a damaged batch was put aside");
     sqlx::query("INSERT INTO quarantine (bytes, problem) VALUES ($1, $2)")
         .bind(bytes)
@@ -268,7 +268,7 @@ async fn put_aside(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sq
     Ok(())
 }
 
-pub(super) async fn remember(
+pub(super) async fn record_acknowledged(
     tx: &mut SqliteConnection,
     stream: StreamId,
     batch: &SealedBatch,
@@ -285,7 +285,7 @@ pub(super) async fn remember(
     .execute(&mut *tx)
     .await?;
     sqlx::query("DELETE FROM acknowledged WHERE id <= (SELECT MAX(id) FROM acknowledged) - $1")
-        .bind(REMEMBERED)
+        .bind(MAX_ACKNOWLEDGED)
         .execute(tx)
         .await?;
     Ok(())
@@ -310,19 +310,19 @@ pub(super) async fn renumber(tx: &mut SqliteConnection, stream: StreamId) -> sql
     sqlx::query("DELETE FROM batches").execute(&mut *tx).await?;
     let mut next = 1;
     for (bytes, urgent) in rows {
-        match in_stream(&bytes, stream, next) {
+        match reencode(&bytes, stream, next) {
             Ok((bytes, samples)) => {
                 insert_batch(tx, next, &bytes, samples, urgent).await?;
                 next += 1;
             }
-            Err(problem) => put_aside(tx, &bytes, &problem).await?,
+            Err(problem) => quarantine(tx, &bytes, &problem).await?,
         }
     }
     put(tx, NEXT_SEQ, &next).await?;
     put(tx, CONTIGUOUS_SEQ, &0_u64).await
 }
 
-fn in_stream(bytes: &[u8], stream: StreamId, seq: u64) -> Result<(Vec<u8>, usize), String> {
+fn reencode(bytes: &[u8], stream: StreamId, seq: u64) -> Result<(Vec<u8>, usize), String> {
     let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
     batch.stream = stream;
     batch.seq = seq;

@@ -10,15 +10,15 @@
 //!   after a kilobyte.
 
 use super::seal::SAMPLES_PER_BATCH;
-use super::thinning::sum;
+use super::thinning::add;
 use super::{NEXT_SEQ, Spool, put};
 
 /// A request's head takes some 300 octets.
-const MOST_OCTETS: usize = 700;
+const MAX_BYTES: usize = 700;
 
 impl Spool {
     /// Joins the batch that was sealed last to the one before, where that may be done.
-    pub(crate) async fn gather(&self) -> sqlx::Result<()> {
+    pub(crate) async fn merge_last_two(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         let last_two: Vec<(i64, Vec<u8>)> = sqlx::query_as(
             "SELECT seq, bytes FROM batches
@@ -31,7 +31,7 @@ impl Spool {
         let [(seq, before), (last_seq, last)] = last_two.as_slice() else {
             return Ok(());
         };
-        let Some((bytes, samples)) = joined(before, last) else {
+        let Some((bytes, samples)) = merge(before, last) else {
             return Ok(());
         };
         sqlx::query("UPDATE batches SET bytes = $2, samples = $3 WHERE seq = $1")
@@ -51,7 +51,7 @@ impl Spool {
 
 /// One batch of two, and its samples; none when it would be too large, or one of them
 /// does not read: what is damaged is dealt with where it is sent.
-fn joined(before: &[u8], last: &[u8]) -> Option<(Vec<u8>, i64)> {
+fn merge(before: &[u8], last: &[u8]) -> Option<(Vec<u8>, i64)> {
     let mut batch = binnacle_wire::decode(before).ok()?;
     let last = binnacle_wire::decode(last).ok()?;
     batch.samples.extend(last.samples);
@@ -64,12 +64,12 @@ fn joined(before: &[u8], last: &[u8]) -> Option<(Vec<u8>, i64)> {
         *sum = sum.saturating_add(windows);
     }
     batch.thinned = match (batch.thinned, last.thinned) {
-        (Some(before), Some(last)) => Some(sum(before, last)),
+        (Some(before), Some(last)) => Some(add(before, last)),
         (before, last) => before.or(last),
     };
     let bytes = binnacle_wire::encode(&batch).ok()?;
     let samples = i64::try_from(batch.samples.len()).ok()?;
-    (bytes.len() <= MOST_OCTETS).then_some((bytes, samples))
+    (bytes.len() <= MAX_BYTES).then_some((bytes, samples))
 }
 
 #[cfg(test)]
@@ -83,7 +83,7 @@ mod tests {
         let samples: Vec<_> = (0..36).map(|i| sample(number * 360 + i * 10)).collect();
         let stored = spool.store(&samples, &accepted(2_160), Seal::All).await;
         assert_eq!(stored.unwrap().1, 1);
-        spool.gather().await.unwrap();
+        spool.merge_last_two().await.unwrap();
     }
 
     async fn waiting(spool: &Spool) -> Vec<Batch> {
@@ -101,7 +101,7 @@ mod tests {
         let (_directory, spool) = enrolled().await;
         quarter(&spool, 0).await;
         let tried = spool.next_batch().await.unwrap().unwrap();
-        assert!(spool.note_try(&tried).await.unwrap());
+        assert!(spool.mark_tried(&tried).await.unwrap());
         for number in 1..120 {
             quarter(&spool, number).await;
         }
@@ -123,17 +123,17 @@ mod tests {
         let (_directory, spool) = enrolled().await;
         seal(&spool, 0..1).await;
         let tried = spool.next_batch().await.unwrap().unwrap();
-        spool.note_try(&tried).await.unwrap();
+        spool.mark_tried(&tried).await.unwrap();
         seal(&spool, 1..2).await;
-        spool.gather().await.unwrap();
+        spool.merge_last_two().await.unwrap();
         let nothing = std::collections::BTreeMap::new();
         spool
             .store_evidence(&[sample(2)], &nothing, &[alert(2)], None)
             .await
             .unwrap();
-        spool.gather().await.unwrap();
+        spool.merge_last_two().await.unwrap();
         seal(&spool, 3..4).await;
-        spool.gather().await.unwrap();
+        spool.merge_last_two().await.unwrap();
         let batches = waiting(&spool).await;
         let samples: Vec<usize> = batches.iter().map(|batch| batch.samples.len()).collect();
         assert_eq!(samples, [1; 4]);
@@ -146,7 +146,7 @@ mod tests {
             let samples: Vec<_> = (from..from + 150).map(restless).collect();
             let stored = spool.store(&samples, &accepted(150), Seal::All).await;
             stored.unwrap();
-            spool.gather().await.unwrap();
+            spool.merge_last_two().await.unwrap();
         }
         assert_eq!(waiting(&spool).await.len(), 2);
     }

@@ -28,9 +28,9 @@ mod short_bursts;
 mod thinning;
 
 pub(crate) use batches::{SealedBatch, Standing};
-pub(crate) use reports::{NotKept, ReportStanding, StoredReport};
+pub(crate) use reports::{ReportState, SaveReportError, StoredReport};
 pub(crate) use seal::{Pending, Seal};
-pub(crate) use thinning::{MOST_PENDING, is_want_of_room};
+pub(crate) use thinning::{MAX_PENDING, is_disk_full};
 
 use crate::alert::Aboard;
 use crate::clock_checkpoint::ClockCheckpoint;
@@ -209,7 +209,7 @@ impl Spool {
     }
 
     /// Keeps another token beside the one in use.
-    pub(crate) async fn keep_other_token(&self, token: &str) -> sqlx::Result<()> {
+    pub(crate) async fn save_other_token(&self, token: &str) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         if let Some(mut identity) = get::<Identity>(&mut tx, IDENTITY).await? {
             identity.other_token = Some(token.to_owned());
@@ -251,9 +251,9 @@ impl Spool {
     }
 
     /// Keeps what the shore sent.
-    pub(crate) async fn keep_downlink(&self, downlink: &Downlink) -> sqlx::Result<()> {
+    pub(crate) async fn save_downlink(&self, downlink: &Downlink) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        keep_downlink(&mut tx, downlink).await?;
+        save_downlink(&mut tx, downlink).await?;
         tx.commit().await
     }
 
@@ -263,7 +263,7 @@ impl Spool {
     }
 
     /// Keeps what is known of the alert aboard alone.
-    pub(crate) async fn keep_alert(&self, aboard: &Aboard) -> sqlx::Result<()> {
+    pub(crate) async fn save_alert(&self, aboard: &Aboard) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, ALERT, aboard).await?;
         tx.commit().await
@@ -275,7 +275,7 @@ impl Spool {
     }
 
     /// Keeps what is left of the budget.
-    pub(crate) async fn keep_account(&self, account: &Account) -> sqlx::Result<()> {
+    pub(crate) async fn save_account(&self, account: &Account) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, ACCOUNT, account).await?;
         tx.commit().await
@@ -327,7 +327,7 @@ impl Spool {
     }
 
     /// Notes where the page is, or that there is none.
-    pub(crate) async fn set_page(&self, address: Option<SocketAddr>) -> sqlx::Result<()> {
+    pub(crate) async fn set_page_address(&self, address: Option<SocketAddr>) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, PAGE, &address).await?;
         tx.commit().await
@@ -422,7 +422,7 @@ async fn forget(connection: &mut SqliteConnection, name: &str) -> sqlx::Result<(
 }
 
 /// All but how far the shore has come, which only the answer to a batch is sure to know.
-async fn keep_downlink(connection: &mut SqliteConnection, downlink: &Downlink) -> sqlx::Result<()> {
+async fn save_downlink(connection: &mut SqliteConnection, downlink: &Downlink) -> sqlx::Result<()> {
     put(connection, LAST_CONTACT, &downlink.server_time).await?;
     if let Some(model) = &downlink.model {
         put(connection, MODEL, model).await?;

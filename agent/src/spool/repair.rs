@@ -31,7 +31,7 @@ impl Spool {
         if !error.downcast_ref::<sqlx::Error>().is_some_and(is_damage) {
             return Err(error);
         }
-        let aside = put_aside(directory)?;
+        let aside = quarantine(directory)?;
         let name = aside.display().to_string();
         tracing::error!(
             aside = name,
@@ -84,7 +84,7 @@ fn is_damage(error: &sqlx::Error) -> bool {
 }
 
 /// Renames the database and its journal; the new name.
-fn put_aside(directory: &Path) -> anyhow::Result<PathBuf> {
+fn quarantine(directory: &Path) -> anyhow::Result<PathBuf> {
     let free = |number: &u32| !directory.join(format!("damaged-{number}.db")).exists();
     let number = (1..1000_u32).find(free).unwrap_or_default();
     let aside = directory.join(format!("damaged-{number}.db"));
@@ -216,7 +216,7 @@ mod tests {
         }
         let report = serde_json::from_str(r#"{"kind":"shock","from":"2026-11-21T06:00:00Z"}"#);
         let (id, report) = (uuid::Uuid::from_u128(1), report.unwrap());
-        let kept = spool.keep_report(id, report, String::new(), false, sample(0).time);
+        let kept = spool.save_report(id, report, String::new(), false, sample(0).time);
         kept.await.unwrap();
         let rest: Vec<_> = (100..140).map(sample).collect();
         spool.store(&rest, &accepted(1), Seal::Full).await.unwrap();

@@ -13,11 +13,11 @@ use sqlx::SqliteConnection;
 use uuid::Uuid;
 
 /// So many reports are shown; older ones that are ashore are forgotten.
-const REMEMBERED: i64 = 100;
+const MAX_LISTED: i64 = 100;
 /// More reports than anybody writes on a voyage: whoever sends more means harm.
-const MOST_WAITING: i64 = 1000;
+const MAX_WAITING: i64 = 1000;
 /// What became of a report that the shore withdrew.
-const WITHDRAWN_ASHORE: &str = "withdrawn ashore";
+const WITHDRAWN_BY_SERVER: &str = "withdrawn ashore";
 
 /// A report and how far it has come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -27,15 +27,15 @@ pub(crate) struct StoredReport {
     pub(crate) sent: LogbookReport,
     /// When it was last changed.
     pub(crate) written_at: Timestamp,
-    pub(crate) standing: ReportStanding,
+    pub(crate) standing: ReportState,
     /// Why it was refused, or what became of it ashore.
     pub(crate) problem: Option<String>,
 }
 
 impl StoredReport {
     /// Whether it counts no more, on board or ashore.
-    pub(crate) fn is_taken_back(&self) -> bool {
-        self.sent.withdrawn || self.problem.as_deref() == Some(WITHDRAWN_ASHORE)
+    pub(crate) fn is_withdrawn(&self) -> bool {
+        self.sent.withdrawn || self.problem.as_deref() == Some(WITHDRAWN_BY_SERVER)
     }
 }
 
@@ -43,7 +43,7 @@ impl StoredReport {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(rename_all = "snake_case")]
-pub(crate) enum ReportStanding {
+pub(crate) enum ReportState {
     /// To be sent.
     Waiting,
     /// In the logbook.
@@ -54,30 +54,30 @@ pub(crate) enum ReportStanding {
 
 /// Why a report was not kept.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum NotKept {
+pub(crate) enum SaveReportError {
     /// It was taken back before.
     #[error("this report was taken back; write another")]
-    TakenBack,
+    Withdrawn,
     /// There are too many.
-    #[error("{MOST_WAITING} reports wait for the link already")]
+    #[error("{MAX_WAITING} reports wait for the link already")]
     TooMany,
     /// The spool failed.
     #[error("the report cannot be stored")]
     Spool(#[from] sqlx::Error),
 }
 
-pub(super) type Row = (String, String, i64, ReportStanding, Option<String>);
+pub(super) type Row = (String, String, i64, ReportState, Option<String>);
 
 impl Spool {
     /// Keeps a report, or a change of one; the same again changes nothing.
-    pub(crate) async fn keep_report(
+    pub(crate) async fn save_report(
         &self,
         id: Uuid,
         report: Report,
         reporter: String,
         withdrawn: bool,
         now: Timestamp,
-    ) -> Result<StoredReport, NotKept> {
+    ) -> Result<StoredReport, SaveReportError> {
         let mut tx = self.write().await?;
         let before = find(&mut tx, id).await?;
         let revision = before.as_ref().map_or(0, |before| before.sent.revision) + 1;
@@ -96,16 +96,16 @@ impl Spool {
                 return Ok(before);
             }
             if before.sent.withdrawn {
-                return Err(NotKept::TakenBack);
+                return Err(SaveReportError::Withdrawn);
             }
-        } else if count_waiting(&mut tx).await? >= MOST_WAITING {
-            return Err(NotKept::TooMany);
+        } else if count_waiting(&mut tx).await? >= MAX_WAITING {
+            return Err(SaveReportError::TooMany);
         }
         let stored = StoredReport {
             id,
             sent,
             written_at: now,
-            standing: ReportStanding::Waiting,
+            standing: ReportState::Waiting,
             problem: None,
         };
         put(&mut tx, &stored).await?;
@@ -119,7 +119,7 @@ impl Spool {
             "SELECT id, report, written_micros, standing, problem FROM reports
              ORDER BY number DESC LIMIT $1",
         )
-        .bind(REMEMBERED)
+        .bind(MAX_LISTED)
         .fetch_all(&self.pool)
         .await?;
         Ok(rows.into_iter().filter_map(read).collect())
@@ -137,31 +137,30 @@ impl Spool {
     }
 
     /// The shore has answered to a revision of a report.
-    pub(crate) async fn report_answered(
+    pub(crate) async fn mark_report_delivered(
         &self,
         sent: &StoredReport,
         answer: &LogbookAnswer,
     ) -> sqlx::Result<()> {
         let withdrawn = answer.withdrawn && !sent.sent.withdrawn;
-        let problem = withdrawn.then_some(WITHDRAWN_ASHORE);
-        self.set_standing(sent, ReportStanding::Ashore, problem)
-            .await
+        let problem = withdrawn.then_some(WITHDRAWN_BY_SERVER);
+        self.set_standing(sent, ReportState::Ashore, problem).await
     }
 
     /// The shore will never take this revision of a report.
-    pub(crate) async fn report_refused(
+    pub(crate) async fn mark_report_refused(
         &self,
         sent: &StoredReport,
         problem: &str,
     ) -> sqlx::Result<()> {
-        self.set_standing(sent, ReportStanding::Refused, Some(problem))
+        self.set_standing(sent, ReportState::Refused, Some(problem))
             .await
     }
 
     async fn set_standing(
         &self,
         sent: &StoredReport,
-        standing: ReportStanding,
+        standing: ReportState,
         problem: Option<&str>,
     ) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
@@ -178,7 +177,7 @@ impl Spool {
             "DELETE FROM reports WHERE standing = 'ashore'
              AND number <= (SELECT MAX(number) FROM reports) - $1",
         )
-        .bind(REMEMBERED)
+        .bind(MAX_LISTED)
         .execute(&mut *tx)
         .await?;
         tx.commit().await
@@ -269,14 +268,18 @@ mod tests {
         .unwrap()
     }
 
-    async fn keep(spool: &Spool, note: &str, withdrawn: bool) -> Result<StoredReport, NotKept> {
+    async fn keep(
+        spool: &Spool,
+        note: &str,
+        withdrawn: bool,
+    ) -> Result<StoredReport, SaveReportError> {
         let report = lightning(note);
         spool
-            .keep_report(ID, report, "Li".to_owned(), withdrawn, time())
+            .save_report(ID, report, "Li".to_owned(), withdrawn, time())
             .await
     }
 
-    fn taken(revision: u32) -> LogbookAnswer {
+    fn accepted_answer(revision: u32) -> LogbookAnswer {
         LogbookAnswer {
             revision,
             withdrawn: false,
@@ -302,13 +305,19 @@ mod tests {
         let sent = keep(&spool, "a", false).await.unwrap();
         let changed = keep(&spool, "b", false).await.unwrap();
         assert_eq!(changed.sent.revision, 2);
-        spool.report_answered(&sent, &taken(1)).await.unwrap();
+        spool
+            .mark_report_delivered(&sent, &accepted_answer(1))
+            .await
+            .unwrap();
         assert_eq!(spool.next_report().await.unwrap(), Some(changed.clone()));
-        spool.report_answered(&changed, &taken(2)).await.unwrap();
+        spool
+            .mark_report_delivered(&changed, &accepted_answer(2))
+            .await
+            .unwrap();
         assert_eq!(spool.next_report().await.unwrap(), None);
         assert_eq!(
             spool.reports().await.unwrap()[0].standing,
-            ReportStanding::Ashore
+            ReportState::Ashore
         );
     }
 
@@ -320,7 +329,7 @@ mod tests {
         let back = keep(&spool, "a", true).await.unwrap();
         assert_eq!(keep(&spool, "a", true).await.unwrap(), back);
         let error = keep(&spool, "b", false).await.unwrap_err();
-        assert!(matches!(error, NotKept::TakenBack));
+        assert!(matches!(error, SaveReportError::Withdrawn));
         assert_eq!(spool.next_report().await.unwrap(), Some(back));
     }
 
@@ -353,9 +362,9 @@ mod tests {
         for number in 0..120 {
             let (id, reporter) = (Uuid::from_u128(1000 + number), String::new());
             let report = lightning("x");
-            let stored = spool.keep_report(id, report, reporter, false, time());
+            let stored = spool.save_report(id, report, reporter, false, time());
             spool
-                .report_answered(&stored.await.unwrap(), &taken(1))
+                .mark_report_delivered(&stored.await.unwrap(), &accepted_answer(1))
                 .await
                 .unwrap();
         }

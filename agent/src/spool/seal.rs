@@ -90,11 +90,11 @@ impl Spool {
         if let Some(identity) = get::<Identity>(&mut tx, IDENTITY).await? {
             if alerts.iter().any(|alert| alert.revision == 1) {
                 // What was sealed last lies just before the alert.
-                hurry_newest(&mut tx).await?;
+                prioritise_newest(&mut tx).await?;
             }
             while pending(&mut tx).await?.samples > u64::from(SAMPLES_PER_BATCH) {
                 sealed += usize::from(seal_one(&mut tx, &identity, &[]).await?);
-                hurry_newest(&mut tx).await?;
+                prioritise_newest(&mut tx).await?;
             }
             sealed += usize::from(seal_one(&mut tx, &identity, alerts).await?);
         }
@@ -148,7 +148,7 @@ async fn pending(connection: &mut SqliteConnection) -> sqlx::Result<Pending> {
 }
 
 /// Lets the batch that was sealed last go first, if it waits.
-async fn hurry_newest(tx: &mut SqliteConnection) -> sqlx::Result<()> {
+async fn prioritise_newest(tx: &mut SqliteConnection) -> sqlx::Result<()> {
     sqlx::query(
         "UPDATE batches SET urgent = TRUE
          WHERE standing = 'waiting' AND seq = (SELECT MAX(seq) FROM batches)",

@@ -1,11 +1,11 @@
 //! Which batches went out as short messages.
 
-use super::batches::{SealedBatch, remember};
+use super::batches::{SealedBatch, record_acknowledged};
 use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, Spool, get, put};
 
 /// In place of the number of messages that are out.
-const ALL: i64 = -1;
-const NONE_EVER: i64 = -2;
+const COMPLETE: i64 = -1;
+const EXCLUDED: i64 = -2;
 
 impl Spool {
     /// The batch of which messages are to go out next, and how many of them did already.
@@ -39,12 +39,13 @@ impl Spool {
     ) -> sqlx::Result<()> {
         let sent = i64::try_from(sent).unwrap_or(i64::MAX);
         let is_all = sent >= i64::try_from(messages).unwrap_or(i64::MAX);
-        self.set_burst(batch, if is_all { ALL } else { sent }).await
+        self.set_burst(batch, if is_all { COMPLETE } else { sent })
+            .await
     }
 
     /// No messages can carry this batch.
     pub(crate) async fn exclude_from_bursts(&self, batch: &SealedBatch) -> sqlx::Result<()> {
-        self.set_burst(batch, NONE_EVER).await
+        self.set_burst(batch, EXCLUDED).await
     }
 
     async fn set_burst(&self, batch: &SealedBatch, burst: i64) -> sqlx::Result<()> {
@@ -75,7 +76,7 @@ impl Spool {
              RETURNING seq, bytes, urgent, samples",
         )
         .bind(i64::try_from(contiguous_seq).unwrap_or(i64::MAX))
-        .bind(ALL)
+        .bind(COMPLETE)
         .fetch_all(&mut *tx)
         .await?;
         let acknowledged = rows.len();
@@ -86,7 +87,7 @@ impl Spool {
                 urgent,
                 samples: samples.unsigned_abs(),
             };
-            remember(&mut tx, identity.stream, &batch, samples).await?;
+            record_acknowledged(&mut tx, identity.stream, &batch, samples).await?;
         }
         let known = get::<u64>(&mut tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
         if acknowledged > 0 && known < contiguous_seq {

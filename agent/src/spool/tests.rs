@@ -296,7 +296,7 @@ async fn everything_is_there_after_opening_again() {
         settings: Some(settings.clone()),
         ..downlink(0)
     };
-    spool.keep_downlink(&news).await.unwrap();
+    spool.save_downlink(&news).await.unwrap();
     drop(spool);
     let spool = Spool::open(directory.path()).await.unwrap();
     assert_eq!(spool.identity().await.unwrap(), Some(identity(7)));
@@ -319,13 +319,13 @@ async fn a_withdrawn_card_stays_so_until_the_shore_says_otherwise() {
         card_withdrawn: Some(withdrawn.clone()),
         ..downlink(0)
     };
-    spool.keep_downlink(&told).await.unwrap();
+    spool.save_downlink(&told).await.unwrap();
     drop(spool);
     let spool = Spool::open(directory.path()).await.unwrap();
     assert_eq!(spool.card_withdrawn().await.unwrap(), Some(withdrawn));
-    spool.keep_downlink(&downlink(0)).await.unwrap();
+    spool.save_downlink(&downlink(0)).await.unwrap();
     assert_eq!(spool.card_withdrawn().await.unwrap(), None);
-    spool.keep_downlink(&told).await.unwrap();
+    spool.save_downlink(&told).await.unwrap();
     let other = Identity {
         vessel_name: "Arrano".to_owned(),
         ..identity(9)
@@ -397,7 +397,7 @@ async fn settings_outlive_a_new_token_but_not_another_compass() {
         settings: Some(settings.clone()),
         ..downlink(0)
     };
-    spool.keep_downlink(&told).await.unwrap();
+    spool.save_downlink(&told).await.unwrap();
     spool.enrol(&identity(8)).await.unwrap();
     assert_eq!(spool.settings().await.unwrap(), settings);
     let other = Identity {

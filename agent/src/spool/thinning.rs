@@ -19,11 +19,11 @@ use std::collections::BTreeMap;
 /// Thinning begins when so much of the limit is used, and goes on until it is less.
 const FULL_SHARE: f64 = 0.9;
 /// So many batches are thinned in one transaction.
-const BATCHES_AT_ONCE: i64 = 64;
+const THIN_AT_ONCE: i64 = 64;
 /// Without an identity nothing is sealed: more samples than these are thinned as they are.
-pub(crate) const MOST_PENDING: u64 = 20_000;
+pub(crate) const MAX_PENDING: u64 = 20_000;
 /// Batches that cannot be read are for a person to look at; more than these are not.
-const MOST_QUARANTINED: i64 = 100;
+const MAX_QUARANTINED: i64 = 100;
 const BIN_DEG: f64 = 10.0;
 
 /// Of each 10° of heading, so many samples in so many seconds. Six an hour cost the
@@ -38,25 +38,25 @@ const LEVELS: [(i64, usize); 5] = [
     (24 * 3_600, 1),
 ];
 /// A batch of this level cannot be thinned further; 0 is one that was not thinned.
-const DEEPEST: i64 = 5;
+const MAX_LEVEL: i64 = 5;
 
 /// SQLite's primary result codes for a file that cannot be read or written, as on a disk
 /// without room for the journal's index, and for a full disk.
 const IO_ERROR: i32 = 10;
-const FULL: i32 = 13;
+const DISK_FULL: i32 = 13;
 
 /// Whether a disk with more room would have helped, as far as can be told.
-pub(crate) fn is_want_of_room(error: &sqlx::Error) -> bool {
+pub(crate) fn is_disk_full(error: &sqlx::Error) -> bool {
     let sqlx::Error::Database(error) = error else {
         return false;
     };
     let code = error.code().and_then(|code| code.parse::<i32>().ok());
-    code.is_some_and(|code| matches!(code & 0xff, IO_ERROR | FULL))
+    code.is_some_and(|code| matches!(code & 0xff, IO_ERROR | DISK_FULL))
 }
 
 impl Spool {
     /// Thins until what is in use is within the limit, or nothing is left to thin.
-    pub(crate) async fn make_room(&self, limit_bytes: u64) -> sqlx::Result<()> {
+    pub(crate) async fn shrink_to_limit(&self, limit_bytes: u64) -> sqlx::Result<()> {
         let full = (limit_bytes as f64 * FULL_SHARE) as u64;
         loop {
             let mut tx = self.write().await?;
@@ -64,11 +64,11 @@ impl Spool {
                 return Ok(());
             }
             sqlx::query("DELETE FROM quarantine WHERE id <= (SELECT MAX(id) FROM quarantine) - $1")
-                .bind(MOST_QUARANTINED)
+                .bind(MAX_QUARANTINED)
                 .execute(&mut *tx)
                 .await?;
             // What the shore has goes before what it has not.
-            if acknowledged::throw_away(&mut tx).await? > 0 {
+            if acknowledged::delete_oldest(&mut tx).await? > 0 {
                 tx.commit().await?;
                 continue;
             }
@@ -85,11 +85,10 @@ impl Spool {
 impl Spool {
     /// Thins until what waits costs no more than so many octets to send, or nothing is
     /// left to thin.
-    pub(crate) async fn thin_backlog(&self, limit_octets: u64) -> sqlx::Result<()> {
+    pub(crate) async fn thin_backlog(&self, limit_bytes: u64) -> sqlx::Result<()> {
         loop {
             let mut tx = self.write().await?;
-            if backlog_octets(&mut tx).await? <= limit_octets
-                || thin_batches(&mut tx, 0).await? == 0
+            if backlog_bytes(&mut tx).await? <= limit_bytes || thin_batches(&mut tx, 0).await? == 0
             {
                 return Ok(());
             }
@@ -98,10 +97,10 @@ impl Spool {
     }
 
     /// Thins every batch until it has no more than so many octets, as far as it may be.
-    pub(crate) async fn thin_each(&self, octets: usize) -> sqlx::Result<()> {
+    pub(crate) async fn thin_batches_to(&self, max_bytes: usize) -> sqlx::Result<()> {
         loop {
             let mut tx = self.write().await?;
-            if thin_batches(&mut tx, octets).await? == 0 {
+            if thin_batches(&mut tx, max_bytes).await? == 0 {
                 return Ok(());
             }
             tx.commit().await?;
@@ -109,7 +108,7 @@ impl Spool {
     }
 }
 
-async fn backlog_octets(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
+async fn backlog_bytes(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
     let (bytes, batches): (i64, i64) = sqlx::query_as(
         "SELECT COALESCE(SUM(LENGTH(bytes)), 0), COUNT(*) FROM batches
          WHERE standing = 'waiting'",
@@ -131,22 +130,22 @@ pub(super) async fn used_bytes(connection: &mut SqliteConnection) -> sqlx::Resul
 
 /// Thins the oldest of those batches, larger than this, that were thinned least; says how
 /// many.
-async fn thin_batches(tx: &mut SqliteConnection, octets: usize) -> sqlx::Result<usize> {
+async fn thin_batches(tx: &mut SqliteConnection, min_bytes: usize) -> sqlx::Result<usize> {
     let rows: Vec<(i64, Vec<u8>, i64)> = sqlx::query_as(
         "SELECT seq, bytes, thinned FROM batches
          WHERE standing <> 'acknowledged' AND NOT tried AND NOT urgent AND thinned < $1
                AND LENGTH(bytes) > $3
          ORDER BY thinned, seq LIMIT $2",
     )
-    .bind(DEEPEST)
-    .bind(BATCHES_AT_ONCE)
-    .bind(i64::try_from(octets).unwrap_or(i64::MAX))
+    .bind(MAX_LEVEL)
+    .bind(THIN_AT_ONCE)
+    .bind(i64::try_from(min_bytes).unwrap_or(i64::MAX))
     .fetch_all(&mut *tx)
     .await?;
     for (seq, bytes, level) in &rows {
         let level = level + 1;
-        let (bytes, samples) = match thinner(bytes, level) {
-            Ok(thinner) => thinner,
+        let (bytes, samples) = match thin_batch(bytes, level) {
+            Ok(thin_batch) => thin_batch,
             Err(problem) => {
                 tracing::error!(seq, problem, "a batch cannot be thinned");
                 (bytes.clone(), 0)
@@ -172,15 +171,15 @@ async fn thin_batches(tx: &mut SqliteConnection, octets: usize) -> sqlx::Result<
 }
 
 /// A batch with fewer samples, and how many they are.
-fn thinner(bytes: &[u8], level: i64) -> Result<(Vec<u8>, i64), String> {
+fn thin_batch(bytes: &[u8], level: i64) -> Result<(Vec<u8>, i64), String> {
     let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
     let before = std::mem::take(&mut batch.samples);
-    let (kept, left_out) = thin(before, level);
-    if left_out.samples == 0 {
+    let (kept, dropped) = thin(before, level);
+    if dropped.samples == 0 {
         return Ok((bytes.to_vec(), count(&kept)));
     }
     batch.samples = kept;
-    batch.thinned = Some(sum(batch.thinned.unwrap_or_default(), left_out));
+    batch.thinned = Some(add(batch.thinned.unwrap_or_default(), dropped));
     let bytes = binnacle_wire::encode(&batch).map_err(|e| e.to_string())?;
     Ok((bytes, count(&batch.samples)))
 }
@@ -191,7 +190,7 @@ async fn thin_pending(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
         "SELECT id, sample FROM pending_samples
          WHERE (SELECT COUNT(*) FROM pending_samples) > $1 ORDER BY time_micros, id",
     )
-    .bind(MOST_PENDING.cast_signed())
+    .bind(MAX_PENDING.cast_signed())
     .fetch_all(&mut *tx)
     .await?;
     if rows.is_empty() {
@@ -199,43 +198,45 @@ async fn thin_pending(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
     }
     let read = |(id, text): &(i64, String)| Some((*id, serde_json::from_str::<Sample>(text).ok()?));
     let samples: Vec<(i64, Sample)> = rows.iter().filter_map(read).collect();
-    for level in 1..=DEEPEST {
-        let keep = kept_rows(samples.iter().map(|(_, sample)| sample), level);
-        let left_out: Vec<&(i64, Sample)> = samples
+    for level in 1..=MAX_LEVEL {
+        let keep = select_rows(samples.iter().map(|(_, sample)| sample), level);
+        let dropped: Vec<&(i64, Sample)> = samples
             .iter()
             .zip(&keep)
             .filter(|(_, keep)| !**keep)
             .map(|(row, _)| row)
             .collect();
         // Little at a time would come back with every sample.
-        if left_out.len() * 4 < samples.len() && level < DEEPEST {
+        if dropped.len() * 4 < samples.len() && level < MAX_LEVEL {
             continue;
         }
         let mut thinned = get::<Thinned>(tx, THINNED).await?.unwrap_or_default();
-        for (id, sample) in &left_out {
+        for (id, sample) in &dropped {
             sqlx::query("DELETE FROM pending_samples WHERE id = $1")
                 .bind(id)
                 .execute(&mut *tx)
                 .await?;
-            thinned = sum(thinned, one(sample));
+            thinned = add(thinned, thinned_sample(sample));
         }
         put(tx, THINNED, &thinned).await?;
-        return Ok(left_out.len());
+        return Ok(dropped.len());
     }
     Ok(0)
 }
 
 /// The samples to keep, and what is left out.
 fn thin(samples: Vec<Sample>, level: i64) -> (Vec<Sample>, Thinned) {
-    let keep = kept_rows(samples.iter(), level);
-    let left_out = samples.iter().zip(&keep).filter(|(_, keep)| !**keep);
-    let left_out = left_out.fold(Thinned::default(), |all, (sample, _)| sum(all, one(sample)));
+    let keep = select_rows(samples.iter(), level);
+    let dropped = samples.iter().zip(&keep).filter(|(_, keep)| !**keep);
+    let dropped = dropped.fold(Thinned::default(), |all, (sample, _)| {
+        add(all, thinned_sample(sample))
+    });
     let kept = samples.into_iter().zip(keep).filter(|(_, keep)| *keep);
-    (kept.map(|(sample, _)| sample).collect(), left_out)
+    (kept.map(|(sample, _)| sample).collect(), dropped)
 }
 
 /// Of each heading and time those of the most windows, the earliest of equals.
-fn kept_rows<'a>(samples: impl Iterator<Item = &'a Sample>, level: i64) -> Vec<bool> {
+fn select_rows<'a>(samples: impl Iterator<Item = &'a Sample>, level: i64) -> Vec<bool> {
     let index = usize::try_from(level - 1).unwrap_or_default();
     let (seconds, most) = LEVELS[index.min(LEVELS.len() - 1)];
     let mut groups: BTreeMap<(i64, i64), Vec<(u16, usize)>> = BTreeMap::new();
@@ -263,14 +264,14 @@ fn count(samples: &[Sample]) -> i64 {
     i64::try_from(samples.len()).unwrap_or(i64::MAX)
 }
 
-fn one(sample: &Sample) -> Thinned {
+fn thinned_sample(sample: &Sample) -> Thinned {
     Thinned {
         samples: 1,
         windows: u64::from(sample.windows),
     }
 }
 
-pub(super) fn sum(a: Thinned, b: Thinned) -> Thinned {
+pub(super) fn add(a: Thinned, b: Thinned) -> Thinned {
     Thinned {
         samples: a.samples.saturating_add(b.samples),
         windows: a.windows.saturating_add(b.windows),
@@ -328,7 +329,7 @@ mod tests {
         let (_directory, spool) = stuffed(300).await;
         let before = spool.standing().await.unwrap().used_bytes;
         let limit = before / 2;
-        spool.make_room(limit).await.unwrap();
+        spool.shrink_to_limit(limit).await.unwrap();
         assert!(spool.standing().await.unwrap().used_bytes <= limit);
         let batches = all(&spool).await;
         assert_eq!(batches.len(), 300);
@@ -357,7 +358,7 @@ mod tests {
             .unwrap();
         let many: Vec<Sample> = (0..5_000).map(restless).collect();
         let full = spool.store(&many, &accepted(1), Seal::Full).await;
-        assert!(is_want_of_room(&full.unwrap_err()));
+        assert!(is_disk_full(&full.unwrap_err()));
         sqlx::query("PRAGMA max_page_count = 100000")
             .execute(&spool.pool)
             .await
@@ -369,14 +370,14 @@ mod tests {
             "it goes on when there is room"
         );
         let wrong = sqlx::query("SELECT nothing").execute(&spool.pool).await;
-        assert!(!is_want_of_room(&wrong.unwrap_err()));
+        assert!(!is_disk_full(&wrong.unwrap_err()));
     }
 
     #[tokio::test]
     async fn a_backlog_beyond_the_budget_is_thinned_the_oldest_first_and_no_further() {
         let (_directory, spool) = stuffed(300).await;
         let mut connection = spool.pool.acquire().await.unwrap();
-        let before = backlog_octets(&mut connection).await.unwrap();
+        let before = backlog_bytes(&mut connection).await.unwrap();
         drop(connection);
         spool.thin_backlog(before).await.unwrap();
         assert!(
@@ -390,7 +391,7 @@ mod tests {
         assert!(batches[0].thinned.is_some() && batches[299].thinned.is_none());
         assert!(batches.iter().all(|b| windows(b) == b.tally["accepted"]));
         let mut connection = spool.pool.acquire().await.unwrap();
-        assert!(backlog_octets(&mut connection).await.unwrap() <= before * 3 / 4);
+        assert!(backlog_bytes(&mut connection).await.unwrap() <= before * 3 / 4);
     }
 
     #[tokio::test]
@@ -405,8 +406,8 @@ mod tests {
         assert!(urgent.urgent);
         spool.park(urgent.seq, "refused").await.unwrap();
         let tried = spool.next_batch().await.unwrap().unwrap();
-        assert!(spool.note_try(&tried).await.unwrap());
-        spool.make_room(1).await.unwrap();
+        assert!(spool.mark_tried(&tried).await.unwrap());
+        spool.shrink_to_limit(1).await.unwrap();
         spool.unpark().await.unwrap();
         assert_eq!(spool.next_batch().await.unwrap().unwrap(), urgent);
         let batches = all(&spool).await;
@@ -419,11 +420,11 @@ mod tests {
     async fn a_batch_that_was_thinned_after_it_was_read_is_not_sent_as_it_was() {
         let (_directory, spool) = stuffed(3).await;
         let stale = spool.next_batch().await.unwrap().unwrap();
-        spool.make_room(1).await.unwrap();
-        assert!(!spool.note_try(&stale).await.unwrap());
+        spool.shrink_to_limit(1).await.unwrap();
+        assert!(!spool.mark_tried(&stale).await.unwrap());
         let fresh = spool.next_batch().await.unwrap().unwrap();
         assert_ne!(fresh.bytes, stale.bytes);
-        assert!(spool.note_try(&fresh).await.unwrap());
+        assert!(spool.mark_tried(&fresh).await.unwrap());
     }
 
     #[tokio::test]
@@ -433,7 +434,7 @@ mod tests {
         let samples: Vec<Sample> = (0..21_000).map(sample).collect();
         let tally = accepted(1);
         spool.store(&samples, &tally, Seal::All).await.unwrap();
-        spool.make_room(1).await.unwrap();
+        spool.shrink_to_limit(1).await.unwrap();
         let left = spool.pending().await.unwrap().samples;
         assert!(left < 16_000, "{left}");
         spool.enrol(&identity(7)).await.unwrap();
@@ -481,11 +482,11 @@ mod tests {
             })
             .collect();
         let mut before = samples.len() + 1;
-        for level in 1..=DEEPEST {
-            let (kept, left_out) = thin(samples.clone(), level);
+        for level in 1..=MAX_LEVEL {
+            let (kept, dropped) = thin(samples.clone(), level);
             assert!(kept.len() < before, "{level}");
             before = kept.len();
-            assert_eq!(kept.len() as u64 + left_out.samples, samples.len() as u64);
+            assert_eq!(kept.len() as u64 + dropped.samples, samples.len() as u64);
             let bins: BTreeSet<i64> = kept
                 .iter()
                 .map(|s| (s.gyro.unwrap().degrees() / 10.0) as i64)

@@ -32,7 +32,7 @@ impl Uplink {
                     "a batch is ashore"
                 );
             }
-            None => self.spool.keep_downlink(&downlink).await?,
+            None => self.spool.save_downlink(&downlink).await?,
         }
         self.backoff.reset();
         let contiguous = downlink.contiguous_seq;
@@ -81,7 +81,7 @@ impl Uplink {
                     problem,
                     "the shore lost the stream: all that is kept goes again"
                 );
-                self.spool.send_all_again().await?;
+                self.spool.requeue_all().await?;
                 if let Next::Pause(pause) = self.open_stream(identity).await? {
                     return Ok(Next::Pause(pause));
                 }

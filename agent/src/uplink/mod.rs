@@ -91,7 +91,7 @@ impl Uplink {
             tracing::error!(%error, "cannot look at the parked batches");
         }
         let mut offer_again = Instant::now() + OFFER_AGAIN;
-        if let Err(error) = self.spool.keep_account(&self.budget.account()).await {
+        if let Err(error) = self.spool.save_account(&self.budget.account()).await {
             tracing::error!(%error, "the budget cannot be kept");
         }
         let mut answered = None;
@@ -162,7 +162,7 @@ impl Uplink {
             return Ok(Next::Idle(wait));
         }
         if let Some(batch) = &batch
-            && !self.spool.note_try(batch).await?
+            && !self.spool.mark_tried(batch).await?
         {
             return Ok(Next::GoOn);
         }
@@ -170,7 +170,7 @@ impl Uplink {
         let result = match &batch {
             Some(batch) => {
                 let aboard = Aboard {
-                    waits: self.spool.waiting_beside(batch.seq).await?,
+                    waits: self.spool.count_other_waiting(batch.seq).await?,
                     budget: self.budget.short_percent(),
                 };
                 let sent = self.shore.put_batch(&identity, batch, have, aboard);
@@ -215,7 +215,7 @@ impl Uplink {
     async fn spend(&mut self, octets: usize) -> sqlx::Result<f64> {
         self.in_touch = true;
         let cost = self.budget.spend(octets, self.now());
-        self.spool.keep_account(&self.budget.account()).await?;
+        self.spool.save_account(&self.budget.account()).await?;
         Ok(cost)
     }
 
@@ -225,7 +225,7 @@ impl Uplink {
             self.budget.take_back(cost);
         }
         self.budget.answered(self.shore.take_octets());
-        self.spool.keep_account(&self.budget.account()).await
+        self.spool.save_account(&self.budget.account()).await
     }
 
     /// What the spool has is in effect: nothing of another compass, if it is one.

@@ -32,7 +32,7 @@ impl Uplink {
         match result {
             Ok(answer) => {
                 if !self.has_left(identity).await? {
-                    self.spool.report_answered(report, &answer).await?;
+                    self.spool.mark_report_delivered(report, &answer).await?;
                     tracing::info!(id = %report.id, "a report is ashore");
                 }
                 self.backoff.reset();
@@ -44,7 +44,7 @@ impl Uplink {
             }
             Err(Trouble::Refused(problem)) => {
                 tracing::error!(id = %report.id, problem, "the shore refuses a report");
-                self.spool.report_refused(report, &problem).await?;
+                self.spool.mark_report_refused(report, &problem).await?;
                 Ok(Next::GoOn)
             }
             // A token that is not known any more shows itself in what is sent next.

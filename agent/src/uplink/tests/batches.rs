@@ -126,7 +126,7 @@ async fn a_shore_that_lost_its_batches_gets_them_again() {
 async fn a_shore_that_lost_what_is_not_kept_gets_a_new_stream() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
-    rig.spool.make_room(1).await.unwrap();
+    rig.spool.shrink_to_limit(1).await.unwrap();
     rig.fake.lock().unwrap().batches.clear();
     seal(&rig.spool, 3).await;
     seal(&rig.spool, 4).await;
