@@ -46,8 +46,7 @@ fn invalidates(model: &ModelDownlink, stored: &StoredReport, now: Timestamp) -> 
     let is_replaced =
         replaces.is_some_and(|old| old.since.seconds_since(from) >= -DATING_TOLERANCE_S);
     // Reports go before samples: who has these has read that.
-    let is_analysed =
-        stored.standing != ReportState::Waiting && model.data_until > stored.written_at;
+    let is_analysed = stored.state != ReportState::Waiting && model.data_until > stored.written_at;
     is_effective && !is_known && !is_replaced && !is_analysed
 }
 
@@ -91,7 +90,7 @@ mod tests {
                 },
             },
             written_at: at("2026-11-20T12:00:00Z"),
-            standing: ReportState::Waiting,
+            state: ReportState::Waiting,
             problem: None,
         }
     }
@@ -167,7 +166,7 @@ mod tests {
         let later = model("2026-11-20T18:00:00Z", None);
         let mut ashore = report(LogbookKind::Welding, WORK);
         assert!(ended(&later, ashore.clone(), "2026-11-20T19:00:00Z").is_some());
-        ashore.standing = ReportState::Ashore;
+        ashore.state = ReportState::Ashore;
         assert_eq!(ended(&later, ashore.clone(), "2026-11-20T19:00:00Z"), None);
         assert!(ended(&model(BEFORE, None), ashore, NOW).is_some());
     }

@@ -41,7 +41,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
             problem: None,
             last_contact,
         },
-        spool: spool.standing().await?,
+        spool: spool.status().await?,
         budget: spool.account().await?,
         alert: spool.alert().await?.as_ref().map(Aboard::status),
         ..Status::default()

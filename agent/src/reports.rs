@@ -127,7 +127,7 @@ mod tests {
         let stored = page.spool.next_report().await.unwrap().unwrap();
         assert_eq!(stored.sent.report.hatch.as_deref(), Some("2"));
         assert_eq!(stored.sent.report.port, None);
-        assert_eq!(stored.standing, ReportState::Waiting);
+        assert_eq!(stored.state, ReportState::Waiting);
 
         let list = Request::get("/api/reports").header("host", "localhost");
         let answer = send(&router, list.body(Body::empty()).unwrap()).await;

@@ -5,7 +5,7 @@ use crate::corrected::{CardRow, Corrected};
 use crate::hold::Hold;
 use crate::input::InputStatus;
 use crate::raw_log::RawLogStatus;
-use crate::spool::Standing;
+use crate::spool::SpoolStatus;
 use crate::uplink::{Account, LinkStatus};
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::time::Timestamp;
@@ -49,7 +49,7 @@ pub(crate) struct Status {
     pub(crate) windows: BTreeMap<String, u64>,
     pub(crate) inputs: Vec<InputReport>,
     pub(crate) link: LinkStatus,
-    pub(crate) spool: Standing,
+    pub(crate) spool: SpoolStatus,
     /// What the link may cost, and what is left of it.
     #[serde(default)]
     pub(crate) budget: Option<Account>,
@@ -307,10 +307,10 @@ mod tests {
                 left_octets: -120.4,
                 ship_time: None,
             }),
-            spool: Standing {
+            spool: SpoolStatus {
                 parked_batches: 2,
                 parked_because: Some("422 undecodable".to_owned()),
-                ..Standing::default()
+                ..SpoolStatus::default()
             },
             ..Status::default()
         };

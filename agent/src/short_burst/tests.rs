@@ -73,13 +73,13 @@ async fn each_batch_goes_out_once_and_stays_until_the_shore_has_it() {
     let sent = outbox(directory.path());
     assert!(sent.iter().all(|message| message.len() <= 340));
     assert_eq!(seqs(&sent), [1, 2]);
-    assert_eq!(spool.standing().await.unwrap().waiting_batches, 2);
+    assert_eq!(spool.status().await.unwrap().waiting_batches, 2);
     answer(directory.path(), "1.sbd", &ack(7, 1));
     exchange(&spool, &mut modem).await.unwrap();
-    let standing = spool.standing().await.unwrap();
-    assert_eq!((standing.waiting_batches, standing.contiguous_seq), (1, 1));
+    let status = spool.status().await.unwrap();
+    assert_eq!((status.waiting_batches, status.contiguous_seq), (1, 1));
     assert_eq!(
-        (standing.acknowledged_batches, standing.acknowledged_samples),
+        (status.acknowledged_batches, status.acknowledged_samples),
         (1, 90)
     );
     assert_eq!(outbox(directory.path()), sent);
@@ -94,7 +94,7 @@ async fn an_answer_deletes_only_what_is_out_and_of_this_stream() {
     answer(directory.path(), "3.sbd", b"\xb2 not an answer");
     answer(directory.path(), "4.sbd", &[0xb2; 5_000]);
     exchange(&spool, &mut modem).await.unwrap();
-    assert_eq!(spool.standing().await.unwrap().waiting_batches, 1);
+    assert_eq!(spool.status().await.unwrap().waiting_batches, 1);
     assert_eq!(seqs(&outbox(directory.path())), [1]);
     assert_eq!(modem.receive().await.unwrap(), None, "each is read once");
 }
@@ -193,7 +193,7 @@ async fn what_is_too_large_for_any_messages_waits_and_keeps_nothing_back() {
     seal(&spool, 0..1).await;
     exchange(&spool, &mut modem).await.unwrap();
     assert_eq!(seqs(&outbox(directory.path())), [2]);
-    assert_eq!(spool.standing().await.unwrap().waiting_batches, 2);
+    assert_eq!(spool.status().await.unwrap().waiting_batches, 2);
 }
 
 #[cfg(unix)]

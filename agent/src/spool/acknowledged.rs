@@ -151,9 +151,9 @@ mod tests {
             .unwrap();
         assert!(!spool.has_unfillable_gap(1).await.unwrap());
         assert_eq!(send(&spool, 4).await, [2, 3]);
-        let standing = spool.standing().await.unwrap();
+        let status = spool.status().await.unwrap();
         assert_eq!(
-            (standing.acknowledged_batches, standing.acknowledged_samples),
+            (status.acknowledged_batches, status.acknowledged_samples),
             (4, 4)
         );
         spool.requeue_all().await.unwrap();

@@ -27,7 +27,7 @@ pub(crate) struct SealedBatch {
 
 /// How far the shore has come with what is here.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Standing {
+pub(crate) struct SpoolStatus {
     /// Samples that are in no batch yet.
     pub(crate) pending_samples: u64,
     /// Sealed batches that were not acknowledged.
@@ -189,7 +189,7 @@ impl Spool {
     }
 
     /// How far the shore has come.
-    pub(crate) async fn standing(&self) -> sqlx::Result<Standing> {
+    pub(crate) async fn status(&self) -> sqlx::Result<SpoolStatus> {
         let pending_samples = self.pending().await?.samples;
         let mut connection = self.pool.acquire().await?;
         let (waiting, parked, thinned, because): (i64, i64, i64, Option<String>) = sqlx::query_as(
@@ -206,7 +206,7 @@ impl Spool {
             sqlx::query_as("SELECT COUNT(*), COALESCE(SUM(samples), 0) FROM acknowledged")
                 .fetch_one(&mut *connection)
                 .await?;
-        Ok(Standing {
+        Ok(SpoolStatus {
             pending_samples,
             waiting_batches: waiting.cast_unsigned(),
             parked_batches: parked.cast_unsigned(),

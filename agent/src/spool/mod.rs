@@ -27,7 +27,7 @@ mod seal;
 mod short_bursts;
 mod thinning;
 
-pub(crate) use batches::{SealedBatch, Standing};
+pub(crate) use batches::{SealedBatch, SpoolStatus};
 pub(crate) use reports::{ReportState, SaveReportError, StoredReport};
 pub(crate) use seal::{Pending, Seal};
 pub(crate) use thinning::{MAX_PENDING, is_disk_full};

@@ -27,7 +27,8 @@ pub(crate) struct StoredReport {
     pub(crate) sent: LogbookReport,
     /// When it was last changed.
     pub(crate) written_at: Timestamp,
-    pub(crate) standing: ReportState,
+    #[serde(rename = "standing")]
+    pub(crate) state: ReportState,
     /// Why it was refused, or what became of it ashore.
     pub(crate) problem: Option<String>,
 }
@@ -105,7 +106,7 @@ impl Spool {
             id,
             sent,
             written_at: now,
-            standing: ReportState::Waiting,
+            state: ReportState::Waiting,
             problem: None,
         };
         put(&mut tx, &stored).await?;
@@ -144,7 +145,8 @@ impl Spool {
     ) -> sqlx::Result<()> {
         let withdrawn = answer.withdrawn && !sent.sent.withdrawn;
         let problem = withdrawn.then_some(WITHDRAWN_BY_SERVER);
-        self.set_standing(sent, ReportState::Ashore, problem).await
+        self.set_report_state(sent, ReportState::Ashore, problem)
+            .await
     }
 
     /// The shore will never take this revision of a report.
@@ -153,21 +155,21 @@ impl Spool {
         sent: &StoredReport,
         problem: &str,
     ) -> sqlx::Result<()> {
-        self.set_standing(sent, ReportState::Refused, Some(problem))
+        self.set_report_state(sent, ReportState::Refused, Some(problem))
             .await
     }
 
-    async fn set_standing(
+    async fn set_report_state(
         &self,
         sent: &StoredReport,
-        standing: ReportState,
+        state: ReportState,
         problem: Option<&str>,
     ) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         // Changed meanwhile: then the answer is for what it was.
         if find(&mut tx, sent.id).await?.as_ref() == Some(sent) {
             let stored = StoredReport {
-                standing,
+                state,
                 problem: problem.map(str::to_owned),
                 ..sent.clone()
             };
@@ -197,7 +199,7 @@ pub(super) async fn put(tx: &mut SqliteConnection, stored: &StoredReport) -> sql
     .bind(stored.id.to_string())
     .bind(report)
     .bind(stored.written_at.micros())
-    .bind(stored.standing)
+    .bind(stored.state)
     .bind(&stored.problem)
     .execute(tx)
     .await?;
@@ -230,13 +232,13 @@ async fn count_waiting(tx: &mut SqliteConnection) -> sqlx::Result<i64> {
 }
 
 /// A row that does not read is reported and passed over: it must not stop the rest.
-pub(super) fn read((id, report, written_micros, standing, problem): Row) -> Option<StoredReport> {
+pub(super) fn read((id, report, written_micros, state, problem): Row) -> Option<StoredReport> {
     let read = || -> anyhow::Result<StoredReport> {
         Ok(StoredReport {
             id: id.parse()?,
             sent: serde_json::from_str(&report)?,
             written_at: Timestamp::from_micros(written_micros)?,
-            standing,
+            state,
             problem,
         })
     };
@@ -315,10 +317,7 @@ mod tests {
             .await
             .unwrap();
         assert_eq!(spool.next_report().await.unwrap(), None);
-        assert_eq!(
-            spool.reports().await.unwrap()[0].standing,
-            ReportState::Ashore
-        );
+        assert_eq!(spool.reports().await.unwrap()[0].state, ReportState::Ashore);
     }
 
     #[tokio::test]

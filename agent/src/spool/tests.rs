@@ -172,20 +172,20 @@ async fn a_batch_goes_only_when_it_and_all_before_it_are_acknowledged() {
         .await
         .unwrap();
     assert!(!spool.has_unfillable_gap(0).await.unwrap());
-    let standing = spool.standing().await.unwrap();
-    assert_eq!((standing.waiting_batches, standing.parked_batches), (1, 1));
-    assert_eq!(standing.parked_because.as_deref(), Some("unreadable"));
+    let status = spool.status().await.unwrap();
+    assert_eq!((status.waiting_batches, status.parked_batches), (1, 1));
+    assert_eq!(status.parked_because.as_deref(), Some("unreadable"));
     spool.unpark().await.unwrap();
     spool
         .acknowledge(stream, &first, &downlink(2))
         .await
         .unwrap();
-    let standing = spool.standing().await.unwrap();
+    let status = spool.status().await.unwrap();
     assert_eq!(
-        (standing.acknowledged_batches, standing.acknowledged_samples),
+        (status.acknowledged_batches, status.acknowledged_samples),
         (2, 2)
     );
-    assert_eq!((standing.waiting_batches, standing.contiguous_seq), (1, 2));
+    assert_eq!((status.waiting_batches, status.contiguous_seq), (1, 2));
     assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 3);
     assert!(!spool.has_unfillable_gap(1).await.unwrap());
 }
@@ -227,7 +227,7 @@ async fn a_new_stream_numbers_what_is_left_from_one() {
         8
     );
     seal(&spool, 9..10).await;
-    assert_eq!(spool.standing().await.unwrap().waiting_batches, 3);
+    assert_eq!(spool.status().await.unwrap().waiting_batches, 3);
     assert!(!spool.has_unfillable_gap(0).await.unwrap());
 }
 
@@ -417,8 +417,8 @@ async fn sealing_goes_on_when_damage_took_the_counter() {
         .await
         .unwrap();
     seal(&spool, 1..2).await;
-    let standing = spool.standing().await.unwrap();
-    assert_eq!((standing.waiting_batches, standing.pending_samples), (2, 0));
+    let status = spool.status().await.unwrap();
+    assert_eq!((status.waiting_batches, status.pending_samples), (2, 0));
 }
 
 pub(crate) fn alert(revision: u32) -> ShipAlert {

@@ -327,10 +327,10 @@ mod tests {
     #[tokio::test]
     async fn a_full_spool_thins_and_says_so_and_every_window_is_accounted_for() {
         let (_directory, spool) = stuffed(300).await;
-        let before = spool.standing().await.unwrap().used_bytes;
+        let before = spool.status().await.unwrap().used_bytes;
         let limit = before / 2;
         spool.shrink_to_limit(limit).await.unwrap();
-        assert!(spool.standing().await.unwrap().used_bytes <= limit);
+        assert!(spool.status().await.unwrap().used_bytes <= limit);
         let batches = all(&spool).await;
         assert_eq!(batches.len(), 300);
         for (batch, seq) in batches.iter().zip(1..) {
@@ -455,13 +455,13 @@ mod tests {
         let directory = TempDir::new().unwrap();
         let spool = Spool::open(directory.path()).await.unwrap();
         spool.enrol(&identity(7)).await.unwrap();
-        let empty = spool.standing().await.unwrap().used_bytes;
+        let empty = spool.status().await.unwrap().used_bytes;
         let windows: Vec<Sample> = (0..3 * WINDOWS_A_DAY).map(restless).collect();
         for quarter_day in windows.chunks(2_160) {
             let tally = accepted(2_160);
             spool.store(quarter_day, &tally, Seal::All).await.unwrap();
         }
-        let used = spool.standing().await.unwrap().used_bytes - empty;
+        let used = spool.status().await.unwrap().used_bytes - empty;
         let a_window = used as f64 / windows.len() as f64;
         let half_a_year = a_window * 180.0 * WINDOWS_A_DAY as f64;
         assert!(

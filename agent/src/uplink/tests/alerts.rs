@@ -56,11 +56,8 @@ async fn evidence_goes_before_the_backlog_and_the_reports_and_once() {
         [0, 1, 2, 3, 5],
         "a report, then the oldest first"
     );
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!(
-        (standing.acknowledged_batches, standing.contiguous_seq),
-        (6, 6)
-    );
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.acknowledged_batches, status.contiguous_seq), (6, 6));
 }
 
 #[tokio::test]

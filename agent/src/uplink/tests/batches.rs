@@ -11,12 +11,9 @@ async fn every_batch_is_sent_and_then_forgotten() {
     rig.sealed.notify_one();
     rig.link.mark_unchanged();
     rig.all_sent().await;
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!(
-        (standing.acknowledged_samples, standing.contiguous_seq),
-        (4, 4)
-    );
-    assert_eq!(standing.waiting_batches, 0);
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.acknowledged_samples, status.contiguous_seq), (4, 4));
+    assert_eq!(status.waiting_batches, 0);
     assert_eq!(rig.link.borrow().last_contact, Some(time()));
 }
 
@@ -39,7 +36,7 @@ async fn no_failure_of_the_link_loses_a_batch() {
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1, 2]);
     assert_eq!(rig.fake.lock().unwrap().requests, 6 + 2);
-    assert_eq!(rig.spool.standing().await.unwrap().acknowledged_batches, 2);
+    assert_eq!(rig.spool.status().await.unwrap().acknowledged_batches, 2);
 }
 
 #[tokio::test]
@@ -159,10 +156,10 @@ async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
     let mut rig = rig(2, fake).await;
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [2]);
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!((standing.parked_batches, standing.contiguous_seq), (1, 0));
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.parked_batches, status.contiguous_seq), (1, 0));
     assert_eq!(
-        standing.parked_because.as_deref(),
+        status.parked_because.as_deref(),
         Some("422 undecodable: why")
     );
 }
@@ -176,7 +173,7 @@ async fn what_was_refused_goes_when_the_shore_takes_the_first_of_it() {
     };
     let mut rig = rig(3, fake).await;
     rig.all_sent().await;
-    assert_eq!(rig.spool.standing().await.unwrap().parked_batches, 3);
+    assert_eq!(rig.spool.status().await.unwrap().parked_batches, 3);
     rig.spool.unpark_first().await.unwrap();
     rig.link.mark_unchanged();
     rig.sealed.notify_one();
@@ -199,8 +196,8 @@ async fn a_batch_that_the_disk_has_damaged_keeps_no_number_open() {
     rig.link.mark_unchanged();
     rig.sealed.notify_one();
     rig.all_sent().await;
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!((standing.parked_batches, standing.contiguous_seq), (0, 2));
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.parked_batches, status.contiguous_seq), (0, 2));
     let fake = rig.fake.lock().unwrap();
     let samples =
         |seq| binnacle_wire::decode(&fake.batches[&(STREAM, seq)]).map(|b| b.samples.len());

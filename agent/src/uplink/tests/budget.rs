@@ -82,9 +82,9 @@ async fn an_ordinary_exchange_is_one_request() {
     let settings = other_settings();
     let mut rig = rig(1, Fake::with_settings(&settings)).await;
     rig.all_sent().await;
-    let standing = rig.spool.standing().await.unwrap();
+    let status = rig.spool.status().await.unwrap();
     assert_eq!(
-        (standing.acknowledged_batches, standing.waiting_batches),
+        (status.acknowledged_batches, status.waiting_batches),
         (1, 0)
     );
     assert_eq!(*rig.settings.borrow(), settings);

@@ -28,9 +28,9 @@ impl Rig {
         patience.await.expect("the reports are sent");
     }
 
-    async fn standings(&self) -> Vec<ReportState> {
+    async fn states(&self) -> Vec<ReportState> {
         let reports = self.spool.reports().await.unwrap();
-        reports.iter().map(|report| report.standing).collect()
+        reports.iter().map(|report| report.state).collect()
     }
 }
 
@@ -46,7 +46,7 @@ async fn a_report_is_sent_until_it_is_answered() {
     rig.report(1).await;
     rig.reports_settled().await;
     rig.all_sent().await;
-    assert_eq!(rig.standings().await, [ReportState::Ashore]);
+    assert_eq!(rig.states().await, [ReportState::Ashore]);
     let sent = &rig.fake.lock().unwrap().reports;
     assert_eq!(sent.len(), 3);
     assert!(sent.iter().all(|report| *report == sent[0]), "{sent:?}");
@@ -65,7 +65,7 @@ async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes(
     rig.report(2).await;
     rig.reports_settled().await;
     let (ashore, refused) = (ReportState::Ashore, ReportState::Refused);
-    assert_eq!(rig.standings().await, [ashore, refused]);
+    assert_eq!(rig.states().await, [ashore, refused]);
     let reports = rig.spool.reports().await.unwrap();
     assert_eq!(reports[1].problem.as_deref(), Some("422 invalid: why"));
 }
@@ -83,5 +83,5 @@ async fn a_shore_that_knows_no_reports_gets_its_batches_all_the_same() {
     rig.sealed.notify_one();
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);
-    assert_eq!(rig.standings().await, [ReportState::Waiting]);
+    assert_eq!(rig.states().await, [ReportState::Waiting]);
 }

@@ -71,6 +71,6 @@ async fn a_token_that_is_replaced_while_a_batch_is_on_its_way_costs_no_second_on
     is_replaced.send(()).unwrap();
     rig.all_sent().await;
     assert_eq!(rig.fake.lock().unwrap().requests, 1);
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!(standing.acknowledged_batches, 1);
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!(status.acknowledged_batches, 1);
 }
