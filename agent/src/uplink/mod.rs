@@ -7,30 +7,30 @@
 //!   before. Until then it is sent again, byte for byte.
 //! - No failure loses data or stops the agent; each is on the page in words.
 //! - Evidence of an alert goes before everything else, and cuts a pause short.
-//! - Nothing is sent that the day's budget does not allow ([`plan`]); it is paid for,
+//! - Nothing is sent that the day's budget does not allow ([`budget`]); it is paid for,
 //!   and that is kept, before it is sent.
 //! - A report for the logbook goes before the other batches: it is short, and changes
 //!   how they are read. One that the shore does not take keeps nothing else back.
 //! - A model or settings that arrive are kept first and then in effect at once.
 
-mod aboard;
-mod answer;
 mod backoff;
-mod plan;
+mod budget;
+mod client;
 mod reports;
-mod shore;
+mod request;
+mod response;
 mod start;
 mod status;
 
-pub(crate) use plan::{Account, EXCHANGE, Plan, Profile, REQUEST_OCTETS};
-pub(crate) use shore::{Line, Shore, Trouble};
+pub(crate) use budget::{Account, EXCHANGE, Plan, Profile, REQUEST_OCTETS};
+pub(crate) use client::{Line, Shore, Trouble};
 pub(crate) use start::{Told, prepare};
 pub(crate) use status::{LinkState, LinkStatus, Tell};
 
-use aboard::Aboard;
 use backoff::Backoff;
-use plan::{Budget, Class, Now};
-use shore::Have;
+use budget::{Budget, Class, Now};
+use client::Have;
+use request::Aboard;
 
 use crate::spool::{Identity, Spool};
 use binnacle_magnetics::time::Timestamp;

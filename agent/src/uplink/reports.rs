@@ -1,7 +1,7 @@
 //! Reports for the logbook on their way: each by itself, before the batches.
 
-use super::plan::Class;
-use super::shore::Trouble;
+use super::budget::Class;
+use super::client::Trouble;
 use super::{LinkState, Next, Uplink};
 use crate::spool::{Identity, StoredReport};
 use tokio::time::Instant;

@@ -4,9 +4,9 @@ mod alerts;
 mod batches;
 mod budget;
 mod connection;
+mod downlink;
 mod reports;
 mod token;
-mod told;
 
 use super::*;
 use crate::spool::Seal;

@@ -12,7 +12,7 @@
 //!   samples may not, and what has no samples leaves [`RESERVE_DAYS`] to those. What
 //!   cannot be afforded waits, and is never dropped.
 
-use super::shore::Line;
+use super::client::Line;
 use crate::short_burst;
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};

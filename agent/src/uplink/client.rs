@@ -5,7 +5,7 @@
 //! harbour's network or a proxy says, with whatever status and in whatever form, is a
 //! failure of the link.
 
-use super::aboard::Aboard;
+use super::request::Aboard;
 use crate::spool::{Identity, SealedBatch, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;

@@ -4,7 +4,7 @@
 //! nothing; what the shore refuses is kept, with its reason, and keeps nothing else
 //! back.
 
-use super::shore::Trouble;
+use super::client::Trouble;
 use super::{LinkState, LinkStatus, Next, Uplink};
 use crate::spool::{Identity, SealedBatch};
 use binnacle_wire::messages::{CardWithdrawn, Downlink};
