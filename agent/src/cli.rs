@@ -13,7 +13,7 @@ use crate::replay;
 use crate::run;
 use crate::spool::{Identity, Spool};
 use crate::status::Status;
-use crate::uplink::{Shore, Trouble};
+use crate::uplink::{RequestError, ServerClient};
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
 use clap::{Parser, Subcommand, ValueEnum};
@@ -208,8 +208,11 @@ fn execute(command: Command) -> anyhow::Result<()> {
 fn load(path: &Path) -> Result<Config, BadInput> {
     let config = Config::load(path)?;
     // A certificate that cannot be used is found now, not at the first upload.
-    Shore::new(config.uplink.pinned_ca.as_deref(), &config.uplink.line())
-        .map_err(|e| BadInput(format!("{e:#}")))?;
+    ServerClient::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.connection_policy(),
+    )
+    .map_err(|e| BadInput(format!("{e:#}")))?;
     Ok(config)
 }
 
@@ -321,13 +324,13 @@ async fn set_hold(config: &Config, argument: HoldArgument) -> anyhow::Result<()>
     // A running agent looks into the spool every second, but obeys its page at once.
     spool.set_hold(hold).await?;
     if let Some(page) = page_of(&spool).await {
-        let told = local_client()?
+        let response = local_client()?
             .post(format!("http://{page}/api/hold"))
             .header(GUARD_HEADER, "1")
             .json(&HoldRequest { hold })
             .send()
             .await;
-        if let Err(error) = told {
+        if let Err(error) = response {
             tracing::debug!(%error, "no running agent answers");
         }
     }
@@ -360,14 +363,21 @@ fn local_client() -> reqwest::Result<reqwest::Client> {
 
 async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> {
     let server = server_url(server)?;
-    let shore = Shore::new(config.uplink.pinned_ca.as_deref(), &config.uplink.line())?;
+    let client = ServerClient::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.connection_policy(),
+    )?;
     let spool = Spool::open(&config.data_dir).await?;
-    let answer = match shore.enrol(&server, code.trim()).await {
+    let answer = match client.enrol(&server, code.trim()).await {
         Ok(answer) => answer,
-        Err(trouble @ (Trouble::Unknown(_) | Trouble::NotFound(_) | Trouble::Refused(_))) => {
-            return Err(BadInput(format!("the code was refused: {trouble}")).into());
+        Err(
+            error @ (RequestError::Unauthorized(_)
+            | RequestError::NotFound(_)
+            | RequestError::Refused(_)),
+        ) => {
+            return Err(BadInput(format!("the code was refused: {error}")).into());
         }
-        Err(trouble) => anyhow::bail!("{server}: {trouble}"),
+        Err(error) => anyhow::bail!("{server}: {error}"),
     };
     let said = format!("enrolled: {}, {}", answer.vessel_name, answer.compass_name);
     spool
@@ -387,16 +397,22 @@ async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> 
 /// The new token is kept before the shore is asked to know it, so that an answer that is
 /// lost locks nobody out: the agent then tries both.
 async fn rotate_token(config: &Config) -> anyhow::Result<()> {
-    let shore = Shore::new(config.uplink.pinned_ca.as_deref(), &config.uplink.line())?;
+    let client = ServerClient::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.connection_policy(),
+    )?;
     let spool = Spool::open(&config.data_dir).await?;
     let Some(identity) = spool.identity().await? else {
         return Err(BadInput("the agent is not enrolled".to_owned()).into());
     };
     let server = &identity.server;
-    let failed = |trouble: Trouble| anyhow::anyhow!("{server}: {trouble}");
-    let new = shore.propose_token(&identity).await.map_err(failed)?;
+    let failed = |error: RequestError| anyhow::anyhow!("{server}: {error}");
+    let new = client.propose_token(&identity).await.map_err(failed)?;
     spool.save_other_token(&new.token).await?;
-    shore.replace_token(&identity, &new).await.map_err(failed)?;
+    client
+        .replace_token(&identity, &new)
+        .await
+        .map_err(failed)?;
     spool.swap_tokens(&identity.token).await?;
     writeln!(std::io::stdout(), "the token was replaced")?;
     Ok(())

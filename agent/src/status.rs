@@ -6,7 +6,7 @@ use crate::hold::Hold;
 use crate::input::InputStatus;
 use crate::raw_log::RawLogStatus;
 use crate::spool::SpoolStatus;
-use crate::uplink::{Account, LinkStatus};
+use crate::uplink::{BudgetAccount, LinkStatus};
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::ShipAlertState;
@@ -52,7 +52,7 @@ pub(crate) struct Status {
     pub(crate) spool: SpoolStatus,
     /// What the link may cost, and what is left of it.
     #[serde(default)]
-    pub(crate) budget: Option<Account>,
+    pub(crate) budget: Option<BudgetAccount>,
     /// What was said in each second, kept on board.
     #[serde(default, rename = "ring")]
     pub(crate) raw_log: Option<RawLogStatus>,
@@ -246,8 +246,8 @@ impl Status {
         writeln!(out)?;
         if let Some(budget) = &self.budget {
             write!(out, "profile    {}", budget.profile)?;
-            if let Some(day) = budget.day_octets {
-                let left = budget.left_octets;
+            if let Some(day) = budget.daily_bytes {
+                let left = budget.remaining_bytes;
                 write!(out, ", {left:.0} octets left at {day:.0} a day")?;
             }
             writeln!(out)?;
@@ -301,10 +301,10 @@ mod tests {
                 problem: Some("there is no model yet".to_owned()),
                 ..Corrected::default()
             },
-            budget: Some(Account {
+            budget: Some(BudgetAccount {
                 profile: Profile::Metered,
-                day_octets: Some(8_000.0),
-                left_octets: -120.4,
+                daily_bytes: Some(8_000.0),
+                remaining_bytes: -120.4,
                 ship_time: None,
             }),
             spool: SpoolStatus {

@@ -1,7 +1,7 @@
 //! How the shore is spoken to, and over what.
 
 use super::{PositiveSeconds, Wrong};
-use crate::uplink::{EXCHANGE, Line, Plan, Profile};
+use crate::uplink::{ConnectionPolicy, EXCHANGE_TIMEOUT, Profile, UploadPlan};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -16,7 +16,7 @@ pub(crate) struct UplinkConfig {
     /// What the link costs: how often the shore is spoken to, and for how much.
     pub(crate) profile: Spanned<Profile>,
     /// A budget in place of the profile's.
-    pub(crate) day_kb: Option<DayBudget>,
+    pub(crate) day_kb: Option<DailyBudget>,
     /// Asks for news when nothing was sent for so many seconds, in place of the
     /// profile's time.
     pub(crate) poll_s: Option<PositiveSeconds>,
@@ -35,7 +35,7 @@ impl Default for UplinkConfig {
             profile: Spanned::new(0..0, Profile::default()),
             day_kb: None,
             poll_s: None,
-            exchange_s: PositiveSeconds(EXCHANGE.as_secs_f64()),
+            exchange_s: PositiveSeconds(EXCHANGE_TIMEOUT.as_secs_f64()),
             retry_min_s: Spanned::new(0..0, PositiveSeconds(30.0)),
             retry_max_s: Spanned::new(0..0, PositiveSeconds(3_600.0)),
         }
@@ -44,17 +44,17 @@ impl Default for UplinkConfig {
 
 impl UplinkConfig {
     /// What the profile and the budget come to.
-    pub(crate) fn plan(&self) -> Plan {
+    pub(crate) fn plan(&self) -> UploadPlan {
         self.profile
             .get_ref()
-            .plan(self.day_kb.map(DayBudget::octets))
+            .plan(self.day_kb.map(DailyBudget::octets))
     }
 
     /// How connections are used.
-    pub(crate) fn line(&self) -> Line {
-        Line {
-            exchange: self.exchange_s.duration(),
-            ..self.plan().line()
+    pub(crate) fn connection_policy(&self) -> ConnectionPolicy {
+        ConnectionPolicy {
+            exchange_timeout: self.exchange_s.duration(),
+            ..self.plan().connection_policy()
         }
     }
 
@@ -122,20 +122,20 @@ impl ModemConfig {
 /// Kilobytes (of a thousand bytes) a day, from 3, one exchange, to a million.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f64")]
-pub(crate) struct DayBudget(f64);
+pub(crate) struct DailyBudget(f64);
 
-impl DayBudget {
+impl DailyBudget {
     /// In octets.
     pub(crate) fn octets(self) -> f64 {
         self.0 * 1e3
     }
 }
 
-impl TryFrom<f64> for DayBudget {
+impl TryFrom<f64> for DailyBudget {
     type Error = String;
-    fn try_from(kilobytes: f64) -> Result<DayBudget, String> {
+    fn try_from(kilobytes: f64) -> Result<DailyBudget, String> {
         if (3.0..=1e6).contains(&kilobytes) {
-            Ok(DayBudget(kilobytes))
+            Ok(DailyBudget(kilobytes))
         } else {
             Err(format!(
                 "{kilobytes} is not from 3 to 1000000 kilobytes a day"
@@ -156,21 +156,27 @@ mod tests {
     fn a_profile_says_how_often_and_for_how_much_and_single_settings_override_it() {
         let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
         let plan = bare.uplink.plan();
-        assert_eq!((plan.seal_s, plan.day_octets), (21_600, None));
+        assert_eq!((plan.seal_s, plan.daily_bytes), (21_600, None));
         let uplink = |lines: &str| {
             let text = format!("data_dir = \"d\"\n[uplink]\n{lines}");
             parse(&text).map_err(|w| w.problem).unwrap().uplink
         };
         let metered = uplink("profile = \"metered\"");
         assert_eq!(metered.plan().seal_s, 86_400);
-        assert_eq!(metered.plan().day_octets, Some(8_000.0));
+        assert_eq!(metered.plan().daily_bytes, Some(8_000.0));
         assert_eq!(metered.poll(), Duration::from_hours(36));
         let own = uplink("profile = \"very-metered\"\nday_kb = 12\npoll_s = 60");
-        assert_eq!(own.plan().day_octets, Some(12_000.0));
+        assert_eq!(own.plan().daily_bytes, Some(12_000.0));
         assert_eq!(own.poll(), Duration::from_mins(1));
-        assert_eq!(own.line().exchange, Duration::from_mins(10));
+        assert_eq!(
+            own.connection_policy().exchange_timeout,
+            Duration::from_mins(10)
+        );
         let hasty = uplink("exchange_s = 2");
-        assert_eq!(hasty.line().exchange, Duration::from_secs(2));
+        assert_eq!(
+            hasty.connection_policy().exchange_timeout,
+            Duration::from_secs(2)
+        );
         let wrong = WHOLE.replace("poll_s = 21600", "profile = \"modem\"");
         let said = message(&wrong);
         assert!(

@@ -25,7 +25,7 @@ use crate::ship::{Latest, Ship};
 use crate::short_burst::{self, FileModem};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
 use crate::status::{InputReport, ModelStatus, Status};
-use crate::uplink::{self, Plan, Told};
+use crate::uplink::{self, UplinkHandle, UploadPlan};
 use anyhow::Context;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
@@ -65,8 +65,8 @@ struct Agent {
     spool: Spool,
     spool_limit_bytes: u64,
     raw_log: RawLog,
-    plan: Plan,
-    told: Told,
+    plan: UploadPlan,
+    uplink_handle: UplinkHandle,
     /// What officers reported.
     reports: Vec<StoredReport>,
     observations: mpsc::Receiver<Vec<Observation>>,
@@ -108,12 +108,12 @@ impl Agent {
         spool: Spool,
         shutdown: &CancellationToken,
     ) -> anyhow::Result<Agent> {
-        let (uplink, told) = uplink::prepare(&config.uplink, &spool).await?;
+        let (uplink, uplink_handle) = uplink::prepare(&config.uplink, &spool).await?;
         let hold = spool.hold().await?;
         let stored_alert = spool.alert().await?;
-        let judged_by = told.model.borrow().as_ref().map(|model| model.id);
-        let settings = told.settings.borrow().clone();
-        let last_contact = told.link.borrow().last_contact;
+        let judged_by = uplink_handle.model.borrow().as_ref().map(|model| model.id);
+        let settings = uplink_handle.settings.borrow().clone();
+        let last_contact = uplink_handle.link.borrow().last_contact;
         let stale_s = config.silence.stale_s.0;
         let mut ship = Ship::new(&config.roles, stale_s, settings, hold);
         let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
@@ -141,7 +141,7 @@ impl Agent {
             status: status.subscribe(),
             hold: hold.clone(),
             acknowledged,
-            news: told.sealed.clone(),
+            news: uplink_handle.sealed.clone(),
         };
         let page = page::serve(config.page.as_ref(), served, shutdown).await?;
         let uplink = tokio::spawn(uplink.run(shutdown.clone()));
@@ -169,7 +169,7 @@ impl Agent {
             spool_limit_bytes: config.spool_mb.bytes(),
             raw_log: RawLog::open(&config.data_dir, config.raw_log_mb.bytes()),
             plan: config.uplink.plan(),
-            told,
+            uplink_handle,
             reports,
             observations,
             inputs,
@@ -201,12 +201,12 @@ impl Agent {
                 Some(observations) = self.observations.recv() => self.observe(&observations).await,
                 _ = second.tick() => self.every_second().await,
                 _ = output.tick() => self.send_heading(),
-                Ok(()) = self.told.settings.changed() => {
-                    let settings = self.told.settings.borrow_and_update().clone();
+                Ok(()) = self.uplink_handle.settings.changed() => {
+                    let settings = self.uplink_handle.settings.borrow_and_update().clone();
                     self.ship.sampler.set_settings(settings);
                 }
-                Ok(()) = self.told.link.changed() => {
-                    let contact = self.told.link.borrow_and_update().last_contact;
+                Ok(()) = self.uplink_handle.link.changed() => {
+                    let contact = self.uplink_handle.link.borrow_and_update().last_contact;
                     if let Some(time) = contact.filter(|_| contact != self.last_contact) {
                         self.ship.correct_reference_time(time, Instant::now());
                     }
@@ -274,7 +274,7 @@ impl Agent {
             self.store(seal).await;
         }
         self.save_alert().await;
-        self.told.ship_time.send_replace(self.ship.time());
+        self.uplink_handle.ship_time.send_replace(self.ship.time());
         match self.spool.hold().await {
             Ok(hold) => {
                 // The command line sets it there when it finds no page.
@@ -294,7 +294,7 @@ impl Agent {
     /// Looks at what has settled since; the samples of an alert end with it.
     fn update_alert(&mut self) {
         let withdrawn = self.withdrawn();
-        let model = self.told.model.borrow();
+        let model = self.uplink_handle.model.borrow();
         let card = Card {
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
@@ -344,9 +344,9 @@ impl Agent {
 
     /// Why the model holds no more, by the shore's word or the officers'.
     fn withdrawn(&self) -> Option<CardWithdrawn> {
-        let by_shore = self.told.withdrawn.borrow().clone();
+        let by_shore = self.uplink_handle.withdrawn.borrow().clone();
         by_shore.or_else(|| {
-            let model = self.told.model.borrow();
+            let model = self.uplink_handle.model.borrow();
             let now = self.ship.time().unwrap_or_else(clock::now);
             card_invalidation::find_invalidation(model.as_ref()?, &self.reports, now)
         })
@@ -354,7 +354,7 @@ impl Agent {
 
     fn correct(&self) -> (Corrected, Vec<corrected::CardRow>) {
         let withdrawn = self.withdrawn();
-        let model = self.told.model.borrow();
+        let model = self.uplink_handle.model.borrow();
         let now = Instant::now();
         let readings = &self.ship.readings;
         let from = Ingredients {
@@ -386,7 +386,7 @@ impl Agent {
 
     fn model_status(&self) -> Option<ModelStatus> {
         let withdrawn = self.withdrawn();
-        let model = self.told.model.borrow();
+        let model = self.uplink_handle.model.borrow();
         let model = model.as_ref()?;
         let now = self.ship.time().unwrap_or_else(clock::now);
         Some(ModelStatus {
@@ -421,7 +421,7 @@ impl Agent {
         status.inputs = inputs
             .map(|(name, stats)| InputReport::new(name, stats.status()))
             .collect();
-        status.link = self.told.link.borrow().clone();
+        status.link = self.uplink_handle.link.borrow().clone();
         status.raw_log = self.raw_log.status();
         status.clock_problem = self.ship.clock_problem();
         status.storage_problem = self.unstored.problem.as_ref().map(|problem| {

@@ -35,7 +35,7 @@ impl Agent {
 
     /// As the profile has it, unless the shore wants other than the usual.
     fn seal_s(&self) -> u32 {
-        let asked = self.told.settings.borrow().seal_s;
+        let asked = self.uplink_handle.settings.borrow().seal_s;
         if asked == Settings::default().seal_s {
             self.plan.seal_s
         } else {
@@ -44,7 +44,7 @@ impl Agent {
     }
 
     pub(super) async fn store(&mut self, seal: Seal) {
-        self.told.ship_time.send_replace(self.ship.time());
+        self.uplink_handle.ship_time.send_replace(self.ship.time());
         let unstored = &mut self.unstored;
         let tally = unstored.tally.by_name();
         let has_evidence = !unstored.alerts.is_empty();
@@ -62,7 +62,7 @@ impl Agent {
                 if has_evidence {
                     self.stored_alert = self.lookout.aboard().copied();
                     unstored.alerts.clear();
-                    self.told.urgent.notify_one();
+                    self.uplink_handle.urgent.notify_one();
                 }
                 unstored.samples.clear();
                 unstored.tally = Tally::default();
@@ -75,7 +75,7 @@ impl Agent {
                 }
                 if sealed > 0 {
                     self.save_clock_checkpoint().await;
-                    self.told.sealed.notify_one();
+                    self.uplink_handle.sealed.notify_one();
                 }
             }
             Err(error) => {
@@ -118,12 +118,12 @@ impl Agent {
             Ok(())
         };
         let within_disk = self.spool.shrink_to_limit(self.spool_limit_bytes).await;
-        let within_messages = match self.plan.batch_octets() {
-            Some(octets) => self.spool.thin_batches_to(octets).await,
+        let within_messages = match self.plan.max_batch_bytes() {
+            Some(bytes) => self.spool.thin_batches_to(bytes).await,
             None => Ok(()),
         };
-        let within_budget = match self.plan.backlog_octets() {
-            Some(octets) => self.spool.thin_backlog(octets).await,
+        let within_budget = match self.plan.max_backlog_bytes() {
+            Some(bytes) => self.spool.thin_backlog(bytes).await,
             None => Ok(()),
         };
         if let Err(error) = merged
@@ -137,7 +137,7 @@ impl Agent {
 
     /// Whether what is sealed now is not sent at once, and not in messages either.
     fn batches_wait(&self) -> bool {
-        let is_up = self.told.link.borrow().state == LinkState::Up;
-        self.plan.batch_octets().is_none() && (!is_up || self.plan.day_octets.is_some())
+        let is_up = self.uplink_handle.link.borrow().state == LinkState::Up;
+        self.plan.max_batch_bytes().is_none() && (!is_up || self.plan.daily_bytes.is_some())
     }
 }

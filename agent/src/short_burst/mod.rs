@@ -29,7 +29,7 @@ const RETRY_PAUSE: Duration = Duration::from_mins(2);
 pub(crate) const MESSAGES_A_BATCH: usize = 3;
 
 /// The octets of those.
-pub(crate) fn batch_octets() -> usize {
+pub(crate) fn max_batch_bytes() -> usize {
     capacity(MESSAGES_A_BATCH)
 }
 

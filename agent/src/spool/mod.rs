@@ -35,7 +35,7 @@ pub(crate) use thinning::{MAX_PENDING, is_disk_full};
 use crate::alert::Aboard;
 use crate::clock_checkpoint::ClockCheckpoint;
 use crate::hold::Hold;
-use crate::uplink::Account;
+use crate::uplink::BudgetAccount;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::batch::StreamId;
@@ -270,12 +270,12 @@ impl Spool {
     }
 
     /// What is left of the budget of the link.
-    pub(crate) async fn account(&self) -> sqlx::Result<Option<Account>> {
+    pub(crate) async fn account(&self) -> sqlx::Result<Option<BudgetAccount>> {
         self.get(ACCOUNT).await
     }
 
     /// Keeps what is left of the budget.
-    pub(crate) async fn save_account(&self, account: &Account) -> sqlx::Result<()> {
+    pub(crate) async fn save_account(&self, account: &BudgetAccount) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, ACCOUNT, account).await?;
         tx.commit().await

@@ -9,7 +9,7 @@
 //!   and the batch says how many. What each window of the tally became can be told.
 
 use super::{Spool, THINNED, acknowledged, get, put};
-use crate::uplink::REQUEST_OCTETS;
+use crate::uplink::REQUEST_BYTES;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::Thinned;
@@ -115,7 +115,7 @@ async fn backlog_bytes(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
     )
     .fetch_one(connection)
     .await?;
-    Ok(bytes.unsigned_abs() + batches.unsigned_abs() * REQUEST_OCTETS)
+    Ok(bytes.unsigned_abs() + batches.unsigned_abs() * REQUEST_BYTES)
 }
 
 pub(super) async fn used_bytes(connection: &mut SqliteConnection) -> sqlx::Result<u64> {

@@ -5,7 +5,7 @@
 //! harbour's network or a proxy says, with whatever status and in whatever form, is a
 //! failure of the link.
 
-use super::request::Aboard;
+use super::request::BatchContext;
 use crate::spool::{Identity, SealedBatch, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
@@ -32,41 +32,41 @@ use uuid::Uuid;
 
 /// A TLS handshake over a satellite takes five seconds and may lose packets.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
-/// Between two bytes. A whole exchange has [`Line::exchange`].
+/// Between two bytes. A whole exchange has [`ConnectionPolicy::exchange_timeout`].
 const READ_TIMEOUT: Duration = Duration::from_secs(90);
 /// TLS sessions to resume; there is one shore.
-const SESSIONS: usize = 4;
+const MAX_TLS_SESSIONS: usize = 4;
 /// However long somebody on the way asks the agent to stay away.
-const LONGEST_RETRY_AFTER: Duration = Duration::from_hours(6);
+const MAX_RETRY_AFTER: Duration = Duration::from_hours(6);
 /// No answer is longer.
-const LARGEST_ANSWER: usize = 1 << 20;
+const MAX_RESPONSE_BYTES: usize = 1 << 20;
 
 /// The shore, as far as HTTP goes.
 #[derive(Clone, Debug)]
-pub(crate) struct Shore {
+pub(crate) struct ServerClient {
     http: reqwest::Client,
     /// Remembers the session, whatever becomes of the connections.
     tls: rustls::ClientConfig,
-    idle_connection: Duration,
-    exchange: Duration,
+    idle_timeout: Duration,
+    exchange_timeout: Duration,
     /// Of answers, since it was last asked.
-    octets: Arc<AtomicU64>,
+    received_bytes: Arc<AtomicU64>,
 }
 
 /// How connections are used.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Line {
+pub(crate) struct ConnectionPolicy {
     /// A connection serves again when it was idle for less than this.
-    pub(crate) idle: Duration,
+    pub(crate) idle_timeout: Duration,
     /// Whether a TLS session is offered again: for a day, no ticket holds longer.
-    pub(crate) resumes: bool,
+    pub(crate) resumes_tls: bool,
     /// An exchange that takes longer is given up, however busy whoever answers looks.
-    pub(crate) exchange: Duration,
+    pub(crate) exchange_timeout: Duration,
 }
 
 /// What the agent already has of what the shore decides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Have {
+pub(crate) struct KnownVersions {
     /// The model's id.
     pub(crate) model: Option<Uuid>,
     /// The settings' version.
@@ -75,7 +75,7 @@ pub(crate) struct Have {
 
 /// Why a request did not succeed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Trouble {
+pub(crate) enum RequestError {
     /// No answer, or none from the shore: try again.
     Link(String),
     /// Not even a connection: try again.
@@ -90,29 +90,29 @@ pub(crate) enum Trouble {
     /// This number was used for other bytes: the stream has forked.
     Forked,
     /// The token is not known (any more).
-    Unknown(String),
+    Unauthorized(String),
     /// There is no such thing: of a stream, that the shore lost it.
     NotFound(String),
     /// The shore will never take these bytes.
     Refused(String),
 }
 
-impl fmt::Display for Trouble {
+impl fmt::Display for RequestError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Trouble::Link(problem)
-            | Trouble::NoConnection(problem)
-            | Trouble::Unknown(problem)
-            | Trouble::NotFound(problem)
-            | Trouble::Refused(problem)
-            | Trouble::Busy { problem, .. } => f.write_str(problem),
-            Trouble::Forked => f.write_str("the shore has another batch of this number"),
+            RequestError::Link(problem)
+            | RequestError::NoConnection(problem)
+            | RequestError::Unauthorized(problem)
+            | RequestError::NotFound(problem)
+            | RequestError::Refused(problem)
+            | RequestError::Busy { problem, .. } => f.write_str(problem),
+            RequestError::Forked => f.write_str("the shore has another batch of this number"),
         }
     }
 }
 
 /// What the types of the shore's problems have in common, and others' have not.
-const KINDS: &str = "/problems/";
+const PROBLEM_TYPE_PATH: &str = "/problems/";
 
 /// RFC 9457, as far as it is read.
 #[derive(Deserialize)]
@@ -125,63 +125,73 @@ struct Problem {
     detail: String,
 }
 
-impl Shore {
+impl ServerClient {
     /// A client that believes the usual authorities, or only the pinned one.
-    pub(crate) fn new(pinned_ca: Option<&Path>, line: &Line) -> anyhow::Result<Shore> {
+    pub(crate) fn new(
+        pinned_ca: Option<&Path>,
+        policy: &ConnectionPolicy,
+    ) -> anyhow::Result<ServerClient> {
         let mut tls = match pinned_ca {
             // Who pins an authority has a shore of today: older versions need not be offered.
             Some(path) => rustls::ClientConfig::builder_with_protocol_versions(&[&TLS13])
-                .with_root_certificates(authorities(path)?)
+                .with_root_certificates(load_root_store(path)?)
                 .with_no_client_auth(),
             None => rustls::ClientConfig::builder()
                 .with_platform_verifier()
                 .context("cannot set up TLS")?
                 .with_no_client_auth(),
         };
-        tls.resumption = if line.resumes {
-            Resumption::in_memory_sessions(SESSIONS)
+        tls.resumption = if policy.resumes_tls {
+            Resumption::in_memory_sessions(MAX_TLS_SESSIONS)
         } else {
             // A server that is not ours may refuse who offers nothing that it speaks.
             tls.alpn_protocols = vec![ONCE.to_vec(), b"http/1.1".to_vec()];
             Resumption::disabled()
         };
-        Ok(Shore {
-            http: client(&tls, line.idle, line.exchange)?,
+        Ok(ServerClient {
+            http: client(&tls, policy.idle_timeout, policy.exchange_timeout)?,
             tls,
-            idle_connection: line.idle,
-            exchange: line.exchange,
-            octets: Arc::default(),
+            idle_timeout: policy.idle_timeout,
+            exchange_timeout: policy.exchange_timeout,
+            received_bytes: Arc::default(),
         })
     }
 
     /// Closes the connection, if there is one: the next request opens another and resumes
     /// its TLS session.
-    pub(crate) fn hang_up(&mut self) {
-        match client(&self.tls, self.idle_connection, self.exchange) {
+    pub(crate) fn close_connection(&mut self) {
+        match client(&self.tls, self.idle_timeout, self.exchange_timeout) {
             Ok(http) => self.http = http,
             Err(error) => tracing::error!("{error:#}"),
         }
     }
 
     /// The octets of answers since the last call.
-    pub(crate) fn take_octets(&self) -> u64 {
-        self.octets.swap(0, Ordering::Relaxed)
+    pub(crate) fn take_received_bytes(&self) -> u64 {
+        self.received_bytes.swap(0, Ordering::Relaxed)
     }
 
     /// Exchanges a one-time code for a token.
-    pub(crate) async fn enrol(&self, server: &str, code: &str) -> Result<EnrolAnswer, Trouble> {
+    pub(crate) async fn enrol(
+        &self,
+        server: &str,
+        code: &str,
+    ) -> Result<EnrolAnswer, RequestError> {
         let request = EnrolRequest {
             code: code.to_owned(),
             agent_version: env!("CARGO_PKG_VERSION").to_owned(),
         };
         let url = format!("{server}/api/v1/agents/enrol");
-        self.answer(self.http.post(url).json(&request)).await
+        self.send(self.http.post(url).json(&request)).await
     }
 
     /// A token that may take the place of the agent's.
-    pub(crate) async fn propose_token(&self, identity: &Identity) -> Result<NewToken, Trouble> {
+    pub(crate) async fn propose_token(
+        &self,
+        identity: &Identity,
+    ) -> Result<NewToken, RequestError> {
         let url = format!("{}/api/v1/agents/token", identity.server);
-        self.answer(self.http.post(url).bearer_auth(&identity.token))
+        self.send(self.http.post(url).bearer_auth(&identity.token))
             .await
     }
 
@@ -190,17 +200,20 @@ impl Shore {
         &self,
         identity: &Identity,
         new: &NewToken,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), RequestError> {
         let url = format!("{}/api/v1/agents/token", identity.server);
         let request = self.http.put(url).bearer_auth(&identity.token).json(new);
-        answer(&self.octets, request, |body| body.is_empty().then_some(())).await
+        send(&self.received_bytes, request, |body| {
+            body.is_empty().then_some(())
+        })
+        .await
     }
 
     /// Opens a new stream for the same compass.
-    pub(crate) async fn open_stream(&self, identity: &Identity) -> Result<StreamId, Trouble> {
+    pub(crate) async fn open_stream(&self, identity: &Identity) -> Result<StreamId, RequestError> {
         let url = format!("{}/api/v1/streams", identity.server);
         let request = self.http.post(url).bearer_auth(&identity.token);
-        let opened: OpenStreamAnswer = self.answer(request).await?;
+        let opened: OpenStreamAnswer = self.send(request).await?;
         Ok(opened.stream)
     }
 
@@ -209,19 +222,19 @@ impl Shore {
         &self,
         identity: &Identity,
         batch: &SealedBatch,
-        have: Have,
-        aboard: Aboard,
-    ) -> Result<Downlink, Trouble> {
+        known: KnownVersions,
+        context: BatchContext,
+    ) -> Result<Downlink, RequestError> {
         let path = format!("batches/{}", batch.seq);
-        let mut url = stream_url(identity, &path, have);
-        url.push_str(&aboard.with(batch));
+        let mut url = stream_url(identity, &path, known);
+        url.push_str(&context.query(batch));
         let request = self
             .http
             .put(url)
             .bearer_auth(&identity.token)
             // No content type: they are octets (RFC 9110, 8.3).
             .body(batch.bytes.clone());
-        self.downlink_of(request).await
+        self.send_for_downlink(request).await
     }
 
     /// Sends a report for the logbook.
@@ -229,37 +242,37 @@ impl Shore {
         &self,
         identity: &Identity,
         report: &StoredReport,
-    ) -> Result<LogbookAnswer, Trouble> {
+    ) -> Result<LogbookAnswer, RequestError> {
         let url = format!("{}/api/v1/agents/logbook/{}", identity.server, report.id);
         let request = self.http.put(url).bearer_auth(&identity.token);
-        self.answer(request.json(&report.sent)).await
+        self.send(request.json(&report.sent)).await
     }
 
     /// Asks for news.
     pub(crate) async fn downlink(
         &self,
         identity: &Identity,
-        have: Have,
-    ) -> Result<Downlink, Trouble> {
+        known: KnownVersions,
+    ) -> Result<Downlink, RequestError> {
         let request = self
             .http
-            .get(stream_url(identity, "downlink", have))
+            .get(stream_url(identity, "downlink", known))
             .bearer_auth(&identity.token);
-        self.downlink_of(request).await
+        self.send_for_downlink(request).await
     }
 }
 
-impl Shore {
-    async fn answer<T: DeserializeOwned>(&self, request: RequestBuilder) -> Result<T, Trouble> {
-        answer(&self.octets, request, |body| {
+impl ServerClient {
+    async fn send<T: DeserializeOwned>(&self, request: RequestBuilder) -> Result<T, RequestError> {
+        send(&self.received_bytes, request, |body| {
             serde_json::from_slice(body).ok()
         })
         .await
     }
 
     /// The compact form, or JSON of a shore that does not know it.
-    async fn downlink_of(&self, request: RequestBuilder) -> Result<Downlink, Trouble> {
-        answer(&self.octets, request, |body| {
+    async fn send_for_downlink(&self, request: RequestBuilder) -> Result<Downlink, RequestError> {
+        send(&self.received_bytes, request, |body| {
             if downlink::is_compact(body) {
                 downlink::decode(body).ok()
             } else {
@@ -273,8 +286,8 @@ impl Shore {
 /// No protocol of HTTP is offered: then a server speaks HTTP/1.1, which is what is wanted.
 fn client(
     tls: &rustls::ClientConfig,
-    idle_connection: Duration,
-    exchange: Duration,
+    idle_timeout: Duration,
+    exchange_timeout: Duration,
 ) -> anyhow::Result<reqwest::Client> {
     let mut builder = reqwest::Client::builder()
         .tls_backend_preconfigured(tls.clone())
@@ -282,9 +295,9 @@ fn client(
         .redirect(redirect::Policy::none())
         .connect_timeout(CONNECT_TIMEOUT)
         .read_timeout(READ_TIMEOUT)
-        .timeout(exchange)
+        .timeout(exchange_timeout)
         .tcp_keepalive(None)
-        .pool_idle_timeout(idle_connection)
+        .pool_idle_timeout(idle_timeout)
         .pool_max_idle_per_host(1);
     #[cfg(target_os = "linux")]
     {
@@ -293,7 +306,7 @@ fn client(
     builder.build().context("cannot set up TLS")
 }
 
-fn authorities(path: &Path) -> anyhow::Result<RootCertStore> {
+fn load_root_store(path: &Path) -> anyhow::Result<RootCertStore> {
     let name = path.display();
     let certificates: Vec<CertificateDer<'static>> = CertificateDer::pem_file_iter(path)
         .with_context(|| format!("{name}: pinned_ca"))?
@@ -311,92 +324,96 @@ fn authorities(path: &Path) -> anyhow::Result<RootCertStore> {
     Ok(roots)
 }
 
-fn stream_url(identity: &Identity, path: &str, have: Have) -> String {
+fn stream_url(identity: &Identity, path: &str, known: KnownVersions) -> String {
     let (server, stream) = (&identity.server, identity.stream);
-    let card = have.model.map(|id| format!("&card={}", card_tag(id)));
+    let card = known.model.map(|id| format!("&card={}", card_tag(id)));
     let card = card.unwrap_or_default();
-    let settings = match have.settings {
+    let settings = match known.settings {
         0 => String::new(),
         version => format!("&settings={version}"),
     };
     format!("{server}/api/v1/streams/{stream}/{path}?form={FORM}{card}{settings}")
 }
 
-async fn answer<T>(
-    octets: &AtomicU64,
+async fn send<T>(
+    received_bytes: &AtomicU64,
     request: RequestBuilder,
     read: impl FnOnce(&[u8]) -> Option<T>,
-) -> Result<T, Trouble> {
-    let response = request.send().await.map_err(|e| link_trouble(&e))?;
+) -> Result<T, RequestError> {
+    let response = request.send().await.map_err(|e| link_error(&e))?;
     let status = response.status();
     let retry_after = retry_after(&response);
-    let body = body(octets, response).await?;
+    let body = body(received_bytes, response).await?;
     if status.is_success() {
-        return read(&body).ok_or_else(|| not_the_shore(status));
+        return read(&body).ok_or_else(|| foreign_response(status));
     }
     let problem = serde_json::from_slice::<Problem>(&body).ok();
-    let Some(problem) = problem.filter(|problem| problem.kind.contains(KINDS)) else {
+    let Some(problem) = problem.filter(|problem| problem.kind.contains(PROBLEM_TYPE_PATH)) else {
         if status.is_server_error() || status == StatusCode::TOO_MANY_REQUESTS {
-            return Err(Trouble::Busy {
+            return Err(RequestError::Busy {
                 problem: format!("the shore answered {status}"),
                 retry_after,
             });
         }
-        return Err(not_the_shore(status));
+        return Err(foreign_response(status));
     };
-    Err(trouble(status, &problem, retry_after))
+    Err(classify_problem(status, &problem, retry_after))
 }
 
-fn trouble(status: StatusCode, problem: &Problem, retry_after: Option<Duration>) -> Trouble {
+fn classify_problem(
+    status: StatusCode,
+    problem: &Problem,
+    retry_after: Option<Duration>,
+) -> RequestError {
     let text = if problem.detail.is_empty() {
         format!("{} {}", status.as_u16(), problem.title)
     } else {
         format!("{} {}: {}", status.as_u16(), problem.title, problem.detail)
     };
     match status {
-        StatusCode::CONFLICT if problem.kind.ends_with("stream-forked") => Trouble::Forked,
+        StatusCode::CONFLICT if problem.kind.ends_with("stream-forked") => RequestError::Forked,
         StatusCode::UNAUTHORIZED | StatusCode::FORBIDDEN | StatusCode::GONE => {
-            Trouble::Unknown(text)
+            RequestError::Unauthorized(text)
         }
-        StatusCode::NOT_FOUND => Trouble::NotFound(text),
+        StatusCode::NOT_FOUND => RequestError::NotFound(text),
         StatusCode::TOO_MANY_REQUESTS | StatusCode::REQUEST_TIMEOUT | StatusCode::TOO_EARLY => {
-            Trouble::Busy {
+            RequestError::Busy {
                 problem: text,
                 retry_after,
             }
         }
-        status if status.is_client_error() => Trouble::Refused(text),
-        _ => Trouble::Busy {
+        status if status.is_client_error() => RequestError::Refused(text),
+        _ => RequestError::Busy {
             problem: text,
             retry_after,
         },
     }
 }
 
-fn not_the_shore(status: StatusCode) -> Trouble {
-    Trouble::Link(format!(
+fn foreign_response(status: StatusCode) -> RequestError {
+    RequestError::Link(format!(
         "something other than the shore answered ({status}): a network's login page, or a wrong address?"
     ))
 }
 
 fn retry_after(response: &Response) -> Option<Duration> {
-    asked_pause(response.headers().get(RETRY_AFTER)?.to_str().ok()?)
+    parse_retry_after(response.headers().get(RETRY_AFTER)?.to_str().ok()?)
 }
 
 /// Whole seconds, within reason; the other form, a date, would need the shore's
 /// clock.
-fn asked_pause(text: &str) -> Option<Duration> {
-    let asked = text.trim().parse().ok().map(Duration::from_secs)?;
-    Some(asked.min(LONGEST_RETRY_AFTER))
+fn parse_retry_after(text: &str) -> Option<Duration> {
+    let requested = text.trim().parse().ok().map(Duration::from_secs)?;
+    Some(requested.min(MAX_RETRY_AFTER))
 }
 
-async fn body(octets: &AtomicU64, mut response: Response) -> Result<Vec<u8>, Trouble> {
+async fn body(received_bytes: &AtomicU64, mut response: Response) -> Result<Vec<u8>, RequestError> {
     let mut body = Vec::new();
-    while let Some(chunk) = response.chunk().await.map_err(|e| link_trouble(&e))? {
-        octets.fetch_add(chunk.len() as u64, Ordering::Relaxed);
+    while let Some(chunk) = response.chunk().await.map_err(|e| link_error(&e))? {
+        received_bytes.fetch_add(chunk.len() as u64, Ordering::Relaxed);
         body.extend_from_slice(&chunk);
-        if body.len() > LARGEST_ANSWER {
-            return Err(not_the_shore(response.status()));
+        if body.len() > MAX_RESPONSE_BYTES {
+            return Err(foreign_response(response.status()));
         }
     }
     Ok(body)
@@ -404,18 +421,18 @@ async fn body(octets: &AtomicU64, mut response: Response) -> Result<Vec<u8>, Tro
 
 /// What went wrong while hands were shaken: then there was somebody, and it cost
 /// something.
-fn tls_error<'a>(error: &'a (dyn std::error::Error + 'static)) -> Option<&'a rustls::Error> {
+fn find_tls_error<'a>(error: &'a (dyn std::error::Error + 'static)) -> Option<&'a rustls::Error> {
     // What an input or output error wraps is not among its causes.
     let wrapped = error.downcast_ref::<std::io::Error>();
     let wrapped = wrapped.and_then(std::io::Error::get_ref);
     error
         .downcast_ref::<rustls::Error>()
-        .or_else(|| wrapped.and_then(|inner| tls_error(inner)))
-        .or_else(|| error.source().and_then(tls_error))
+        .or_else(|| wrapped.and_then(|inner| find_tls_error(inner)))
+        .or_else(|| error.source().and_then(find_tls_error))
 }
 
 /// What is wrong with the certificate of whoever answered, in an officer's words.
-fn certificate_trouble(error: &rustls::Error) -> Option<&'static str> {
+fn describe_certificate_error(error: &rustls::Error) -> Option<&'static str> {
     let rustls::Error::InvalidCertificate(error) = error else {
         return None;
     };
@@ -439,7 +456,7 @@ fn certificate_trouble(error: &rustls::Error) -> Option<&'static str> {
 }
 
 /// The innermost cause says most: "connection refused", "certificate expired".
-fn link_trouble(error: &reqwest::Error) -> Trouble {
+fn link_error(error: &reqwest::Error) -> RequestError {
     let mut cause: &dyn std::error::Error = error;
     while let Some(inner) = cause.source() {
         cause = inner;
@@ -451,15 +468,15 @@ fn link_trouble(error: &reqwest::Error) -> Trouble {
     } else {
         "the connection broke"
     };
-    let tls = tls_error(error);
-    let problem = match tls.and_then(certificate_trouble) {
-        Some(trouble) => trouble.to_owned(),
+    let tls = find_tls_error(error);
+    let problem = match tls.and_then(describe_certificate_error) {
+        Some(classify_problem) => classify_problem.to_owned(),
         None => format!("{kind}: {cause}"),
     };
     if error.is_connect() && tls.is_none() {
-        Trouble::NoConnection(problem)
+        RequestError::NoConnection(problem)
     } else {
-        Trouble::Link(problem)
+        RequestError::Link(problem)
     }
 }
 
@@ -469,12 +486,12 @@ mod tests {
 
     #[test]
     fn nobody_on_the_way_can_silence_the_agent_for_good() {
-        assert_eq!(asked_pause(" 120 "), Some(Duration::from_mins(2)));
+        assert_eq!(parse_retry_after(" 120 "), Some(Duration::from_mins(2)));
         for endless in ["100000000", "18446744073709551615"] {
-            assert_eq!(asked_pause(endless), Some(LONGEST_RETRY_AFTER));
+            assert_eq!(parse_retry_after(endless), Some(MAX_RETRY_AFTER));
         }
         for nothing in ["", "-1", "Fri, 31 Dec 2027 23:59:59 GMT"] {
-            assert_eq!(asked_pause(nothing), None);
+            assert_eq!(parse_retry_after(nothing), None);
         }
     }
 }

@@ -22,15 +22,15 @@ mod response;
 mod start;
 mod status;
 
-pub(crate) use budget::{Account, EXCHANGE, Plan, Profile, REQUEST_OCTETS};
-pub(crate) use client::{Line, Shore, Trouble};
-pub(crate) use start::{Told, prepare};
-pub(crate) use status::{LinkState, LinkStatus, Tell};
+pub(crate) use budget::{BudgetAccount, EXCHANGE_TIMEOUT, Profile, REQUEST_BYTES, UploadPlan};
+pub(crate) use client::{ConnectionPolicy, RequestError, ServerClient};
+pub(crate) use start::{UplinkHandle, prepare};
+pub(crate) use status::{LinkState, LinkStatus, Publisher};
 
 use backoff::Backoff;
-use budget::{Budget, Class, Now};
-use client::Have;
-use request::Aboard;
+use budget::{Budget, ClockReading, Priority};
+use client::KnownVersions;
+use request::BatchContext;
 
 use crate::spool::{Identity, Spool};
 use binnacle_magnetics::time::Timestamp;
@@ -42,31 +42,31 @@ use tokio::time::{Instant, timeout};
 use tokio_util::sync::CancellationToken;
 
 /// How often a pause or idleness is interrupted to see whether the agent was enrolled anew.
-const LOOK_FOR_ENROLMENT: Duration = Duration::from_secs(5);
+const ENROLMENT_POLL_INTERVAL: Duration = Duration::from_secs(5);
 /// What the shore refused is offered again so often: it may be another version by then.
-const OFFER_AGAIN: Duration = Duration::from_hours(24);
+const RETRY_PARKED_INTERVAL: Duration = Duration::from_hours(24);
 
 /// Everything the uplink works with.
 #[derive(Debug)]
 pub(crate) struct Uplink {
     pub(crate) spool: Spool,
-    pub(crate) shore: Shore,
+    pub(crate) client: ServerClient,
     pub(crate) backoff: Backoff,
     /// Asks for news when nothing was sent for so long.
     pub(crate) poll: Duration,
     pub(crate) budget: Budget,
     pub(crate) ship_time: watch::Receiver<Option<Timestamp>>,
-    pub(crate) tell: Tell,
+    pub(crate) publisher: Publisher,
     /// Whether the connection stays open when all is said.
-    pub(crate) keeps_line: bool,
+    pub(crate) keeps_connection: bool,
     /// Whether something was sent since all was said.
-    pub(crate) in_touch: bool,
+    pub(crate) exchange_open: bool,
     /// The token that the model and settings in effect came with.
     pub(crate) token: Option<String>,
     /// The token that the shore did not know when it last answered.
-    pub(crate) refused: Option<String>,
+    pub(crate) refused_token: Option<String>,
     /// A shore that knows no reports is not asked again before this.
-    pub(crate) no_reports_before: Option<Instant>,
+    pub(crate) reports_paused_until: Option<Instant>,
     /// Rings when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
     /// Rings when evidence of an alert has been sealed.
@@ -75,9 +75,9 @@ pub(crate) struct Uplink {
 }
 
 /// What to do next.
-enum Next {
+enum NextStep {
     /// Look for work at once.
-    GoOn,
+    Continue,
     /// Wait for a sealed batch, or for so long.
     Idle(Duration),
     /// Wait for so long, work or no work.
@@ -90,19 +90,19 @@ impl Uplink {
         if let Err(error) = self.spool.unpark().await {
             tracing::error!(%error, "cannot look at the parked batches");
         }
-        let mut offer_again = Instant::now() + OFFER_AGAIN;
+        let mut retry_parked_at = Instant::now() + RETRY_PARKED_INTERVAL;
         if let Err(error) = self.spool.save_account(&self.budget.account()).await {
             tracing::error!(%error, "the budget cannot be kept");
         }
-        let mut answered = None;
+        let mut last_response = None;
         loop {
-            if offer_again <= Instant::now() {
-                offer_again = Instant::now() + OFFER_AGAIN;
+            if retry_parked_at <= Instant::now() {
+                retry_parked_at = Instant::now() + RETRY_PARKED_INTERVAL;
                 if let Err(error) = self.spool.unpark_first().await {
                     tracing::error!(%error, "cannot look at the parked batches");
                 }
             }
-            let work = self.step(&mut answered);
+            let work = self.step(&mut last_response);
             let Some(next) = shutdown.run_until_cancelled(work).await else {
                 return;
             };
@@ -113,98 +113,99 @@ impl Uplink {
         }
     }
 
-    /// One request at most; `answered` is when the shore last answered.
-    async fn step(&mut self, answered: &mut Option<Instant>) -> Next {
-        match self.try_step(answered).await {
+    /// One request at most; `last_response` is when the shore last answered.
+    async fn step(&mut self, last_response: &mut Option<Instant>) -> NextStep {
+        match self.try_step(last_response).await {
             Ok(next) => next,
             Err(error) => {
                 tracing::error!(%error, "the spool cannot be used");
-                Next::Pause(self.backoff.next(&mut self.rng))
+                NextStep::Pause(self.backoff.next(&mut self.rng))
             }
         }
     }
 
-    async fn try_step(&mut self, answered: &mut Option<Instant>) -> sqlx::Result<Next> {
+    async fn try_step(&mut self, last_response: &mut Option<Instant>) -> sqlx::Result<NextStep> {
         let Some(identity) = self.spool.identity().await? else {
-            self.tell.link.send_replace(LinkStatus::default());
-            return Ok(Next::Idle(LOOK_FOR_ENROLMENT));
+            self.publisher.link.send_replace(LinkStatus::default());
+            return Ok(NextStep::Idle(ENROLMENT_POLL_INTERVAL));
         };
         if self.token.as_ref() != Some(&identity.token) {
-            self.enrolled_anew(&identity).await?;
-            *answered = None;
+            self.load_enrolment(&identity).await?;
+            *last_response = None;
         }
-        if answered.is_none() {
-            self.connecting();
+        if last_response.is_none() {
+            self.publish_connecting();
         }
         let batch = self.spool.next_batch().await?;
         let has_evidence = batch.as_ref().is_some_and(|batch| batch.urgent);
         if !has_evidence && let Some(report) = self.next_report().await? {
             return self.send_report(&identity, &report).await;
         }
-        let have = Have {
-            model: self.tell.model.borrow().as_ref().map(|model| model.id),
-            settings: self.tell.settings.borrow().version,
+        let known = KnownVersions {
+            model: self.publisher.model.borrow().as_ref().map(|model| model.id),
+            settings: self.publisher.settings.borrow().version,
         };
-        let (class, octets) = match &batch {
-            Some(batch) if batch.urgent => (Class::Alert, batch.bytes.len()),
-            Some(batch) if batch.samples > 0 => (Class::Samples, batch.bytes.len()),
-            Some(batch) => (Class::Rest, batch.bytes.len()),
-            None => (Class::Rest, 0),
+        let (priority, bytes) = match &batch {
+            Some(batch) if batch.urgent => (Priority::Alert, batch.bytes.len()),
+            Some(batch) if batch.samples > 0 => (Priority::Samples, batch.bytes.len()),
+            Some(batch) => (Priority::Other, batch.bytes.len()),
+            None => (Priority::Other, 0),
         };
         if batch.is_none() {
-            let idle = answered.map(|at| at.elapsed());
+            let idle = last_response.map(|at| at.elapsed());
             if let Some(left) = idle.and_then(|idle| self.poll.checked_sub(idle)) {
                 self.end_exchange();
-                return Ok(Next::Idle(left));
+                return Ok(NextStep::Idle(left));
             }
         }
-        if let Some(wait) = self.budget.wait(class, octets, self.now()) {
-            return Ok(Next::Idle(wait));
+        if let Some(wait) = self.budget.delay_for(priority, bytes, self.now()) {
+            return Ok(NextStep::Idle(wait));
         }
         if let Some(batch) = &batch
             && !self.spool.mark_tried(batch).await?
         {
-            return Ok(Next::GoOn);
+            return Ok(NextStep::Continue);
         }
-        let cost = self.spend(octets).await?;
+        let cost = self.charge(bytes).await?;
         let result = match &batch {
             Some(batch) => {
-                let aboard = Aboard {
-                    waits: self.spool.count_other_waiting(batch.seq).await?,
-                    budget: self.budget.short_percent(),
+                let context = BatchContext {
+                    waiting_batches: self.spool.count_other_waiting(batch.seq).await?,
+                    budget_percent: self.budget.remaining_percent(),
                 };
-                let sent = self.shore.put_batch(&identity, batch, have, aboard);
+                let sent = self.client.put_batch(&identity, batch, known, context);
                 sent.await
             }
-            None => self.shore.downlink(&identity, have).await,
+            None => self.client.downlink(&identity, known).await,
         };
-        self.settle(cost, result.as_ref().err()).await?;
+        self.settle_cost(cost, result.as_ref().err()).await?;
         match result {
             Ok(downlink) => {
-                *answered = Some(Instant::now());
-                self.succeed(&identity, batch.as_ref(), downlink).await
+                *last_response = Some(Instant::now());
+                self.handle_success(&identity, batch.as_ref(), downlink)
+                    .await
             }
-            Err(trouble) => self.fail(&identity, batch.as_ref(), trouble).await,
+            Err(error) => self.handle_failure(&identity, batch.as_ref(), error).await,
         }
     }
 
     /// Whether another stream has taken the place of this one meanwhile: an answer for
     /// it changes nothing any more. Another token changes nothing about what was said.
-    async fn has_left(&self, identity: &Identity) -> sqlx::Result<bool> {
+    async fn has_changed_stream(&self, identity: &Identity) -> sqlx::Result<bool> {
         let now = self.spool.identity().await?;
         Ok(now.is_none_or(|now| now.stream != identity.stream))
     }
 
     /// All is said for now.
     fn end_exchange(&mut self) {
-        if self.in_touch && !self.keeps_line {
-            self.shore.hang_up();
+        if self.exchange_open && !self.keeps_connection {
+            self.client.close_connection();
         }
-        self.in_touch = false;
+        self.exchange_open = false;
     }
 
-    fn now(&self) -> Now {
-        Now {
+    fn now(&self) -> ClockReading {
+        ClockReading {
             monotonic: Instant::now(),
             ship: *self.ship_time.borrow(),
         }
@@ -212,38 +213,39 @@ impl Uplink {
 
     /// Pays for a request, and keeps that: an agent that dies of it again and again
     /// does not spend more.
-    async fn spend(&mut self, octets: usize) -> sqlx::Result<f64> {
-        self.in_touch = true;
-        let cost = self.budget.spend(octets, self.now());
+    async fn charge(&mut self, bytes: usize) -> sqlx::Result<f64> {
+        self.exchange_open = true;
+        let cost = self.budget.charge(bytes, self.now());
         self.spool.save_account(&self.budget.account()).await?;
         Ok(cost)
     }
 
     /// Pays for the answer, or takes back what no connection cost.
-    async fn settle(&mut self, cost: f64, trouble: Option<&Trouble>) -> sqlx::Result<()> {
-        if let Some(Trouble::NoConnection(_)) = trouble {
-            self.budget.take_back(cost);
+    async fn settle_cost(&mut self, cost: f64, error: Option<&RequestError>) -> sqlx::Result<()> {
+        if let Some(RequestError::NoConnection(_)) = error {
+            self.budget.refund(cost);
         }
-        self.budget.answered(self.shore.take_octets());
+        self.budget
+            .charge_response(self.client.take_received_bytes());
         self.spool.save_account(&self.budget.account()).await
     }
 
     /// What the spool has is in effect: nothing of another compass, if it is one.
-    async fn enrolled_anew(&mut self, identity: &Identity) -> sqlx::Result<()> {
-        self.tell.model.send_replace(self.spool.model().await?);
-        self.tell
+    async fn load_enrolment(&mut self, identity: &Identity) -> sqlx::Result<()> {
+        self.publisher.model.send_replace(self.spool.model().await?);
+        self.publisher
             .withdrawn
             .send_replace(self.spool.card_withdrawn().await?);
-        self.tell
+        self.publisher
             .settings
             .send_replace(self.spool.settings().await?);
         self.token = Some(identity.token.clone());
-        self.no_reports_before = None;
+        self.reports_paused_until = None;
         Ok(())
     }
 
-    fn connecting(&self) {
-        self.tell.link.send_if_modified(|link| {
+    fn publish_connecting(&self) {
+        self.publisher.link.send_if_modified(|link| {
             let first = link.state == LinkState::NotEnrolled;
             if first {
                 link.state = LinkState::Connecting;
@@ -252,15 +254,15 @@ impl Uplink {
         });
     }
 
-    async fn wait(&mut self, next: Next) {
+    async fn wait(&mut self, next: NextStep) {
         match next {
-            Next::GoOn => {}
-            Next::Idle(longest) => {
+            NextStep::Continue => {}
+            NextStep::Idle(longest) => {
                 // A batch that was sealed meanwhile has left its ring behind.
-                let longest = longest.min(LOOK_FOR_ENROLMENT);
+                let longest = longest.min(ENROLMENT_POLL_INTERVAL);
                 timeout(longest, self.sealed.notified()).await.ok();
             }
-            Next::Pause(pause) => {
+            NextStep::Pause(pause) => {
                 let urgent = self.urgent.clone();
                 tokio::select! {
                     () = self.pause(pause) => return,
@@ -276,7 +278,7 @@ impl Uplink {
         let until = Instant::now() + pause;
         let before = self.spool.identity().await.ok().flatten();
         while Instant::now() < until {
-            tokio::time::sleep_until(until.min(Instant::now() + LOOK_FOR_ENROLMENT)).await;
+            tokio::time::sleep_until(until.min(Instant::now() + ENROLMENT_POLL_INTERVAL)).await;
             let Ok(identity) = self.spool.identity().await else {
                 continue;
             };

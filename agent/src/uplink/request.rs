@@ -8,23 +8,23 @@ const WAIT_FOR_ANALYSIS: &str = "&wait=20";
 
 /// How it is on board, for whoever looks after the ship.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Aboard {
+pub(crate) struct BatchContext {
     /// How many batches wait besides this one.
-    pub(crate) waits: u64,
+    pub(crate) waiting_batches: u64,
     /// What is left of the budget where that is less than a day's, in hundredths of it.
-    pub(crate) budget: Option<i32>,
+    pub(crate) budget_percent: Option<i32>,
 }
 
-impl Aboard {
+impl BatchContext {
     /// With a batch; of an ordinary one nothing but that none follows it.
-    pub(super) fn with(self, batch: &SealedBatch) -> String {
-        let budget = self.budget.map(|left| format!("&budget={left}"));
-        let waits = if batch.samples > 0 && self.waits == 0 {
+    pub(super) fn query(self, batch: &SealedBatch) -> String {
+        let budget = self.budget_percent.map(|left| format!("&budget={left}"));
+        let waiting_batches = if batch.samples > 0 && self.waiting_batches == 0 {
             // What it shows comes with this answer, and not half a day later with the next.
             WAIT_FOR_ANALYSIS.to_owned()
         } else {
-            format!("&waits={}", self.waits)
+            format!("&waits={}", self.waiting_batches)
         };
-        waits + &budget.unwrap_or_default()
+        waiting_batches + &budget.unwrap_or_default()
     }
 }

@@ -1,6 +1,6 @@
 //! An uplink made ready, and what it and the rest of the agent tell each other.
 
-use super::{Backoff, Budget, LinkStatus, Shore, Tell, Uplink};
+use super::{Backoff, Budget, LinkStatus, Publisher, ServerClient, Uplink};
 use crate::config::UplinkConfig;
 use crate::spool::Spool;
 use binnacle_magnetics::time::Timestamp;
@@ -13,7 +13,7 @@ use tokio::time::Instant;
 
 /// The agent's side of it.
 #[derive(Debug)]
-pub(crate) struct Told {
+pub(crate) struct UplinkHandle {
     /// The model to steer by.
     pub(crate) model: watch::Receiver<Option<ModelDownlink>>,
     /// Why that model holds no more.
@@ -34,8 +34,8 @@ pub(crate) struct Told {
 pub(crate) async fn prepare(
     config: &UplinkConfig,
     spool: &Spool,
-) -> anyhow::Result<(Uplink, Told)> {
-    let tell = Tell {
+) -> anyhow::Result<(Uplink, UplinkHandle)> {
+    let publisher = Publisher {
         model: watch::Sender::new(spool.model().await?),
         withdrawn: watch::Sender::new(spool.card_withdrawn().await?),
         settings: watch::Sender::new(spool.settings().await?),
@@ -44,37 +44,42 @@ pub(crate) async fn prepare(
             ..LinkStatus::default()
         }),
     };
-    let told = Told {
-        model: tell.model.subscribe(),
-        withdrawn: tell.withdrawn.subscribe(),
-        settings: tell.settings.subscribe(),
-        link: tell.link.subscribe(),
+    let uplink_handle = UplinkHandle {
+        model: publisher.model.subscribe(),
+        withdrawn: publisher.withdrawn.subscribe(),
+        settings: publisher.settings.subscribe(),
+        link: publisher.link.subscribe(),
         ship_time: watch::Sender::new(None),
         sealed: Arc::default(),
         urgent: Arc::default(),
     };
     let account = spool.account().await?;
     let plan = config.plan();
-    let line = config.line();
+    let connection_policy = config.connection_policy();
     let uplink = Uplink {
         spool: spool.clone(),
         token: spool.identity().await?.map(|identity| identity.token),
-        refused: None,
-        shore: Shore::new(config.pinned_ca.as_deref(), &line)?,
+        refused_token: None,
+        client: ServerClient::new(config.pinned_ca.as_deref(), &connection_policy)?,
         backoff: Backoff::new(
             config.retry_min_s.get_ref().duration(),
             config.retry_max_s.get_ref().duration(),
         ),
         poll: config.poll(),
-        budget: Budget::new(&plan, account, line.idle, Instant::now()),
-        ship_time: told.ship_time.subscribe(),
-        tell,
-        keeps_line: plan.keeps_line(),
-        in_touch: false,
-        no_reports_before: None,
-        sealed: told.sealed.clone(),
-        urgent: told.urgent.clone(),
+        budget: Budget::new(
+            &plan,
+            account,
+            connection_policy.idle_timeout,
+            Instant::now(),
+        ),
+        ship_time: uplink_handle.ship_time.subscribe(),
+        publisher,
+        keeps_connection: plan.keeps_connection(),
+        exchange_open: false,
+        reports_paused_until: None,
+        sealed: uplink_handle.sealed.clone(),
+        urgent: uplink_handle.urgent.clone(),
         rng: StdRng::from_rng(&mut rand::rng()),
     };
-    Ok((uplink, told))
+    Ok((uplink, uplink_handle))
 }

@@ -35,7 +35,7 @@ pub(crate) enum LinkState {
 
 /// What the shore decides, as it is now.
 #[derive(Debug)]
-pub(crate) struct Tell {
+pub(crate) struct Publisher {
     /// The model to steer by.
     pub(crate) model: watch::Sender<Option<ModelDownlink>>,
     /// Why that model holds no more.

@@ -215,8 +215,8 @@ async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
         ..Fake::default()
     };
     let mut rig = rig(1, fake).await;
-    let refused = rig.link.wait_for(|link| link.state == LinkState::Refused);
-    let problem = refused.await.unwrap().problem.clone().unwrap();
+    let refused_token = rig.link.wait_for(|link| link.state == LinkState::Refused);
+    let problem = refused_token.await.unwrap().problem.clone().unwrap();
     assert!(problem.contains("enrol it again"), "{problem}");
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);

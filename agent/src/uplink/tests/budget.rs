@@ -3,11 +3,11 @@
 use super::alerts::seal_evidence;
 use super::*;
 
-fn left(octets: f64) -> Account {
-    Account {
+fn left(bytes: f64) -> BudgetAccount {
+    BudgetAccount {
         profile: Profile::Metered,
-        day_octets: Some(8_000.0),
-        left_octets: octets,
+        daily_bytes: Some(8_000.0),
+        remaining_bytes: bytes,
         ship_time: Some(time()),
     }
 }
@@ -23,7 +23,7 @@ async fn what_cannot_be_afforded_waits_until_the_ships_clock_has_earned_it() {
     up.await.unwrap();
     assert_eq!(rig.seqs(STREAM), [3], "the evidence, on credit");
     let overdrawn = rig.spool.account().await.unwrap().unwrap();
-    assert!(overdrawn.left_octets < 0.0, "{overdrawn:?}");
+    assert!(overdrawn.remaining_bytes < 0.0, "{overdrawn:?}");
     rig.ship_time
         .send_replace(Some(time().plus_seconds(2.0 * 86_400.0)));
     rig.sealed.notify_one();
@@ -55,8 +55,9 @@ async fn what_waits_is_told_and_the_budget_where_it_is_short() {
 
     let mut rig = rig_with(1, Fake::default(), &plenty, Some(left(6_000.0))).await;
     rig.all_sent().await;
-    let [[waits, wait, budget]]: &[[Option<String>; 3]; 1] = &said(&rig).try_into().unwrap();
-    assert_eq!((waits, wait), (&None, &word("20")));
+    let [[waiting_batches, wait, budget]]: &[[Option<String>; 3]; 1] =
+        &said(&rig).try_into().unwrap();
+    assert_eq!((waiting_batches, wait), (&None, &word("20")));
     // Less than a day's, and a connection with its request is paid for.
     let budget: i32 = budget.as_ref().expect("it is short").parse().unwrap();
     assert!((40..50).contains(&budget), "{budget} %");
@@ -74,7 +75,10 @@ async fn a_request_is_paid_for_before_it_is_made_and_the_answer_after() {
     let answer = 13;
     // A connection, a request, and the segments of both bodies.
     let cost = 1_700.0 + 389.0 + 1.07 * (sent + answer) as f64;
-    assert!((kept.left_octets + cost - 8_000.0).abs() < 1.0, "{kept:?}");
+    assert!(
+        (kept.remaining_bytes + cost - 8_000.0).abs() < 1.0,
+        "{kept:?}"
+    );
 }
 
 #[tokio::test]

@@ -125,8 +125,8 @@ fn answer_in_form(fake: &Fake, stream: Uuid, query: &HashMap<String, String>) ->
         return Json(sent).into_response();
     }
     let sent = serde_json::from_value(sent).unwrap();
-    let octets = binnacle_wire::downlink::encode(&sent).unwrap();
-    octets.into_response()
+    let bytes = binnacle_wire::downlink::encode(&sent).unwrap();
+    bytes.into_response()
 }
 
 async fn open_stream(State(fake): State<Shared>) -> Response {
@@ -180,7 +180,12 @@ async fn rig(batches: i64, fake: Fake) -> Rig {
 }
 
 /// The same with a budget, of which so much is left.
-async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account>) -> Rig {
+async fn rig_with(
+    batches: i64,
+    fake: Fake,
+    plan: &UploadPlan,
+    account: Option<BudgetAccount>,
+) -> Rig {
     rustls::crypto::ring::default_provider()
         .install_default()
         .ok();
@@ -211,21 +216,26 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
     let uplink = Uplink {
         spool: spool.clone(),
         token: Some(identity.token.clone()),
-        refused: None,
-        shore: Shore::new(None, &plan.line()).unwrap(),
+        refused_token: None,
+        client: ServerClient::new(None, &plan.connection_policy()).unwrap(),
         backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
         poll: Duration::from_hours(1),
-        budget: Budget::new(plan, account, plan.line().idle, Instant::now()),
+        budget: Budget::new(
+            plan,
+            account,
+            plan.connection_policy().idle_timeout,
+            Instant::now(),
+        ),
         ship_time: ship_time.subscribe(),
-        tell: Tell {
+        publisher: Publisher {
             model: watch::channel(None).0,
             withdrawn: withdrawn_tx,
             settings: settings_tx,
             link: link_tx,
         },
-        keeps_line: plan.keeps_line(),
-        in_touch: false,
-        no_reports_before: None,
+        keeps_connection: plan.keeps_connection(),
+        exchange_open: false,
+        reports_paused_until: None,
         sealed: sealed.clone(),
         urgent: urgent.clone(),
         rng: StdRng::seed_from_u64(1),

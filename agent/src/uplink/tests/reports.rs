@@ -54,9 +54,9 @@ async fn a_report_is_sent_until_it_is_answered() {
 
 #[tokio::test]
 async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes() {
-    let refused = problem(StatusCode::UNPROCESSABLE_ENTITY, "invalid");
+    let refused_token = problem(StatusCode::UNPROCESSABLE_ENTITY, "invalid");
     let fake = Fake {
-        report_answers: VecDeque::from([refused]),
+        report_answers: VecDeque::from([refused_token]),
         ..Fake::default()
     };
     let rig = rig(0, fake).await;
@@ -64,8 +64,8 @@ async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes(
     rig.reports_settled().await;
     rig.report(2).await;
     rig.reports_settled().await;
-    let (ashore, refused) = (ReportState::Ashore, ReportState::Refused);
-    assert_eq!(rig.states().await, [ashore, refused]);
+    let (ashore, refused_token) = (ReportState::Ashore, ReportState::Refused);
+    assert_eq!(rig.states().await, [ashore, refused_token]);
     let reports = rig.spool.reports().await.unwrap();
     assert_eq!(reports[1].problem.as_deref(), Some("422 invalid: why"));
 }
