@@ -14,11 +14,11 @@
 //! that of Basterretxea-Iribar, Sotés & Uriarte 2016, J. Navigation.
 
 mod outcome;
-mod stretch;
+mod sample_builder;
 mod track;
 
 pub(crate) use outcome::{Outcome, Tally};
-pub(crate) use stretch::{WINDOW_S, Window, median};
+pub(crate) use sample_builder::{WINDOW_S, Window, median};
 
 use crate::hold::Hold;
 use crate::roles::Signal;
@@ -28,7 +28,7 @@ use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::Settings;
-use stretch::Stretch;
+use sample_builder::SampleBuilder;
 use track::{Span, Track};
 
 /// Fewer readings than this in ten seconds make no mean.
@@ -58,7 +58,7 @@ pub(crate) struct Sampler {
     position: Option<(Position, i64)>,
     speed: Option<(f64, i64)>,
     turns: Turns,
-    stretch: Stretch,
+    builder: SampleBuilder,
     samples: Vec<Sample>,
     settled: Vec<Window>,
     tally: Tally,
@@ -89,7 +89,7 @@ impl Sampler {
             position: None,
             speed: None,
             turns: Turns::default(),
-            stretch: Stretch::default(),
+            builder: SampleBuilder::default(),
             samples: Vec::new(),
             settled: Vec::new(),
             tally: Tally::default(),
@@ -144,7 +144,7 @@ impl Sampler {
 
     /// Makes a sample of what has settled so far, and goes on with another.
     pub(crate) fn cut(&mut self) {
-        self.samples.extend(self.stretch.finish());
+        self.samples.extend(self.builder.finish());
     }
 
     /// Windows by outcome since this was last asked.
@@ -155,7 +155,7 @@ impl Sampler {
     /// Ends the stretch that is open, as when the agent stops: what has settled
     /// so far becomes a sample. The open window is dropped.
     pub(crate) fn finish(&mut self) {
-        self.samples.extend(self.stretch.finish());
+        self.samples.extend(self.builder.finish());
         self.begin(None);
     }
 
@@ -177,14 +177,14 @@ impl Sampler {
         for track in [&mut self.compass, &mut self.gyro, &mut self.satellite] {
             track.forget();
         }
-        self.samples.extend(self.stretch.expire(now));
+        self.samples.extend(self.builder.expire(now));
     }
 
     fn jump(&mut self, now: i64) {
         if self.window.is_some() {
             self.tally.add(Outcome::Clock, 1);
         }
-        self.samples.extend(self.stretch.finish());
+        self.samples.extend(self.builder.finish());
         self.begin(Some(now));
     }
 
@@ -204,12 +204,12 @@ impl Sampler {
         let outcome = match self.judge(index) {
             Ok(window) => {
                 self.settled.push(window);
-                let finished = self.stretch.add(window, self.settings.sample_s);
+                let finished = self.builder.add(window, self.settings.sample_s);
                 self.samples.extend(finished);
                 Outcome::Accepted
             }
             Err(reason) => {
-                self.samples.extend(self.stretch.expire(index));
+                self.samples.extend(self.builder.expire(index));
                 reason
             }
         };

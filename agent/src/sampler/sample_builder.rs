@@ -37,11 +37,11 @@ pub(crate) struct Window {
 
 /// Settled windows in order of time, all on one heading.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Stretch {
+pub(super) struct SampleBuilder {
     windows: Vec<Window>,
 }
 
-impl Stretch {
+impl SampleBuilder {
     /// Adds a window; when it does not belong, what was there becomes a sample
     /// and the window begins anew.
     pub(super) fn add(&mut self, window: Window, sample_s: u32) -> Option<Sample> {
@@ -252,16 +252,23 @@ mod tests {
 
     #[test]
     fn a_stretch_ends_by_length_by_heading_and_by_a_gap() {
-        let mut stretch = Stretch::default();
+        let mut sample_builder = SampleBuilder::default();
         for index in 0..60 {
-            assert_eq!(stretch.add(window(index, 100.0, Some(98.0)), 600), None);
+            assert_eq!(
+                sample_builder.add(window(index, 100.0, Some(98.0)), 600),
+                None
+            );
         }
-        let whole = stretch.add(window(60, 100.0, Some(98.0)), 600).unwrap();
+        let whole = sample_builder
+            .add(window(60, 100.0, Some(98.0)), 600)
+            .unwrap();
         assert_eq!((whole.windows, whole.time.micros()), (60, 300_000_000));
-        let turned = stretch.add(window(61, 105.5, Some(98.0)), 600).unwrap();
+        let turned = sample_builder
+            .add(window(61, 105.5, Some(98.0)), 600)
+            .unwrap();
         assert_eq!((turned.windows, turned.time.micros()), (1, 605_000_000));
-        assert_eq!(stretch.add(window(67, 105.5, Some(98.0)), 600), None);
-        assert_eq!(stretch.expire(73), None);
-        assert_eq!(stretch.expire(74).unwrap().windows, 2);
+        assert_eq!(sample_builder.add(window(67, 105.5, Some(98.0)), 600), None);
+        assert_eq!(sample_builder.expire(73), None);
+        assert_eq!(sample_builder.expire(74).unwrap().windows, 2);
     }
 }
