@@ -110,21 +110,21 @@ impl Ship {
             return;
         }
         for signal in self.roles.observe(seen).into_iter().flatten() {
-            self.sampler.take(signal);
-            self.readings.take(signal, heard);
+            self.sampler.apply(signal);
+            self.readings.apply(signal, heard);
         }
     }
 
     /// Takes the time that a recording gives a line.
     fn observe_recorded_time(&mut self, stamp: Timestamp) {
         if let Some(signal) = self.roles.observe_recorded_time(stamp) {
-            self.sampler.take(signal);
+            self.sampler.apply(signal);
         }
     }
 }
 
 impl Readings {
-    fn take(&mut self, signal: Signal, heard: Instant) {
+    fn apply(&mut self, signal: Signal, heard: Instant) {
         match signal {
             Signal::Compass(value) => self.compass = Some(Latest { value, heard }),
             Signal::Gyro(value) => self.gyro = Some(Latest { value, heard }),

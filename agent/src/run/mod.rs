@@ -313,7 +313,7 @@ impl Agent {
         if let Some(aboard) = self.lookout.aboard() {
             tracing::warn!("{}", aboard.status().says);
         }
-        self.ship.sampler.cut();
+        self.ship.sampler.cut_sample();
         self.unstored.alerts.extend(revisions);
     }
 

@@ -29,16 +29,16 @@ use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::Settings;
 use sample_builder::SampleBuilder;
-use track::{Span, Track};
+use track::{HeadingSpan, HeadingTrack};
 
 /// Fewer readings than this in ten seconds make no mean.
-const LEAST_READINGS: u32 = 4;
+const MIN_READINGS: u32 = 4;
 /// A change of heading beyond this is a turn.
 const TURN_DEG: f64 = 10.0;
 /// Without a heading for more than so many windows, there may have been a turn.
-const LONGEST_BLIND_WINDOWS: i64 = 3;
+const MAX_BLIND_WINDOWS: i64 = 3;
 /// Positions and speeds serve for so many windows.
-const FIX_LASTS_WINDOWS: i64 = 2;
+const FIX_VALID_WINDOWS: i64 = 2;
 const WINDOW_MICROS: i64 = WINDOW_S * 1_000_000;
 /// What a ship and her instruments can say; anything else is not taken.
 const SPEED_KN: std::ops::RangeInclusive<f64> = 0.0..=100.0;
@@ -51,13 +51,13 @@ pub(crate) struct Sampler {
     hold: Option<Hold>,
     /// The open window, in tens of seconds since 1970.
     window: Option<i64>,
-    compass: Track,
-    gyro: Track,
-    satellite: Track,
+    compass: HeadingTrack,
+    gyro: HeadingTrack,
+    satellite: HeadingTrack,
     rate_of_turn: (f64, u32),
     position: Option<(Position, i64)>,
     speed: Option<(f64, i64)>,
-    turns: Turns,
+    turns: TurnTracker,
     builder: SampleBuilder,
     samples: Vec<Sample>,
     settled: Vec<Window>,
@@ -66,7 +66,7 @@ pub(crate) struct Sampler {
 
 /// Where the ship last steadied, and when the compass has come to rest.
 #[derive(Debug, Default)]
-struct Turns {
+struct TurnTracker {
     /// The heading that a turn is measured from, unwound.
     anchor: Option<f64>,
     /// The first window that may be settled.
@@ -82,13 +82,13 @@ impl Sampler {
             settings,
             hold,
             window: None,
-            compass: Track::default(),
-            gyro: Track::default(),
-            satellite: Track::default(),
+            compass: HeadingTrack::default(),
+            gyro: HeadingTrack::default(),
+            satellite: HeadingTrack::default(),
             rate_of_turn: (0.0, 0),
             position: None,
             speed: None,
-            turns: Turns::default(),
+            turns: TurnTracker::default(),
             builder: SampleBuilder::default(),
             samples: Vec::new(),
             settled: Vec::new(),
@@ -107,14 +107,14 @@ impl Sampler {
     }
 
     /// Takes what an instrument said.
-    pub(crate) fn take(&mut self, signal: Signal) {
+    pub(crate) fn apply(&mut self, signal: Signal) {
         match signal {
             Signal::Time(now) => self.advance(window_of(now)),
             Signal::Jump(now) => self.jump(window_of(now)),
-            Signal::Compass(heading) => self.compass.take(heading.degrees()),
-            Signal::Gyro(heading) => self.gyro.take(heading.degrees()),
+            Signal::Compass(heading) => self.compass.add(heading.degrees()),
+            Signal::Gyro(heading) => self.gyro.add(heading.degrees()),
             Signal::GyroInvalid => self.gyro.invalidate(),
-            Signal::Satellite(heading) => self.satellite.take(heading.degrees()),
+            Signal::Satellite(heading) => self.satellite.add(heading.degrees()),
             Signal::SatelliteInvalid => self.satellite.invalidate(),
             Signal::Position(position) => self.position = self.window.map(|w| (position, w)),
             Signal::Speed(knots) if SPEED_KN.contains(&knots) => {
@@ -143,7 +143,7 @@ impl Sampler {
     }
 
     /// Makes a sample of what has settled so far, and goes on with another.
-    pub(crate) fn cut(&mut self) {
+    pub(crate) fn cut_sample(&mut self) {
         self.samples.extend(self.builder.finish());
     }
 
@@ -156,12 +156,12 @@ impl Sampler {
     /// so far becomes a sample. The open window is dropped.
     pub(crate) fn finish(&mut self) {
         self.samples.extend(self.builder.finish());
-        self.begin(None);
+        self.reset(None);
     }
 
     fn advance(&mut self, now: i64) {
         let Some(open) = self.window else {
-            self.begin(Some(now));
+            self.reset(Some(now));
             return;
         };
         if now <= open {
@@ -185,11 +185,11 @@ impl Sampler {
             self.tally.add(Outcome::Clock, 1);
         }
         self.samples.extend(self.builder.finish());
-        self.begin(Some(now));
+        self.reset(Some(now));
     }
 
     /// Forgets everything that was open and begins at a window.
-    fn begin(&mut self, window: Option<i64>) {
+    fn reset(&mut self, window: Option<i64>) {
         self.window = window;
         self.compass.forget();
         self.gyro.forget();
@@ -197,11 +197,11 @@ impl Sampler {
         self.rate_of_turn = (0.0, 0);
         self.position = None;
         self.speed = None;
-        self.turns = Turns::default();
+        self.turns = TurnTracker::default();
     }
 
     fn close(&mut self, index: i64) {
-        let outcome = match self.judge(index) {
+        let outcome = match self.evaluate(index) {
             Ok(window) => {
                 self.settled.push(window);
                 let finished = self.builder.add(window, self.settings.sample_s);
@@ -221,10 +221,10 @@ impl Sampler {
     }
 
     /// The window's means, or the first reason to refuse it.
-    fn judge(&mut self, index: i64) -> Result<Window, Outcome> {
+    fn evaluate(&mut self, index: i64) -> Result<Window, Outcome> {
         let rate = self.rate_of_turn_deg_min();
         let turning = rate.is_some_and(|r| r.abs() > self.settings.max_rate_of_turn_deg_min);
-        let settled = self.follow_turns(index, turning);
+        let settled = self.track_turns(index, turning);
         if let Some(hold) = self.hold {
             return Err(hold.outcome());
         }
@@ -233,16 +233,16 @@ impl Sampler {
         if gyro.or(satellite).is_none() {
             return Err(Outcome::NoReference);
         }
-        let position = fresh(self.position, index).ok_or(Outcome::NoPosition)?;
+        let position = if_fresh(self.position, index).ok_or(Outcome::NoPosition)?;
         if is_weak(position, start_of(index)?) {
             return Err(Outcome::HighLatitude);
         }
-        let enough = |span: &Span| span.readings >= LEAST_READINGS;
+        let enough = |span: &HeadingSpan| span.readings >= MIN_READINGS;
         let (gyro, satellite) = (gyro.filter(enough), satellite.filter(enough));
         if !enough(&compass) || gyro.or(satellite).is_none() {
             return Err(Outcome::Sparse);
         }
-        let sog_kn = fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
+        let sog_kn = if_fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
         if sog_kn < self.settings.min_sog_kn {
             return Err(Outcome::Slow);
         }
@@ -255,7 +255,7 @@ impl Sampler {
         if self.heading_track().swing_deg() > 2.0 * self.settings.max_swing_deg {
             return Err(Outcome::Swinging);
         }
-        let degrees = |span: Span| wrap_360(span.mean);
+        let degrees = |span: HeadingSpan| wrap_360(span.mean);
         Ok(Window {
             index,
             compass_deg: degrees(compass),
@@ -268,7 +268,7 @@ impl Sampler {
     }
 
     /// Notes turns and blind stretches; whether the compass has come to rest.
-    fn follow_turns(&mut self, index: i64, turning: bool) -> bool {
+    fn track_turns(&mut self, index: i64, turning: bool) -> bool {
         let Some(span) = self.heading_track().span() else {
             return false;
         };
@@ -277,7 +277,7 @@ impl Sampler {
         let turns = &mut self.turns;
         let blind = turns
             .seen
-            .is_none_or(|seen| index - seen > LONGEST_BLIND_WINDOWS);
+            .is_none_or(|seen| index - seen > MAX_BLIND_WINDOWS);
         let turned = turns
             .anchor
             .is_none_or(|anchor| wrap_180(heading - anchor).abs() > TURN_DEG);
@@ -295,7 +295,7 @@ impl Sampler {
     }
 
     /// The best heading to tell turns and swings by.
-    fn heading_track(&self) -> &Track {
+    fn heading_track(&self) -> &HeadingTrack {
         [&self.gyro, &self.satellite]
             .into_iter()
             .find(|track| track.span().is_some())
@@ -321,9 +321,9 @@ fn start_of(window: i64) -> Result<Timestamp, Outcome> {
     Timestamp::from_micros(micros).map_err(|_| Outcome::Clock)
 }
 
-fn fresh<T: Copy>(last: Option<(T, i64)>, index: i64) -> Option<T> {
+fn if_fresh<T: Copy>(last: Option<(T, i64)>, index: i64) -> Option<T> {
     let (value, at) = last?;
-    (index - at < FIX_LASTS_WINDOWS).then_some(value)
+    (index - at < FIX_VALID_WINDOWS).then_some(value)
 }
 
 #[cfg(test)]

@@ -12,15 +12,15 @@ use binnacle_magnetics::time::Timestamp;
 /// Seconds in a window.
 pub(crate) const WINDOW_S: i64 = 10;
 /// A stretch is on one heading while it stays this near to where it began.
-const SAME_HEADING_DEG: f64 = 5.0;
+const MAX_HEADING_CHANGE_DEG: f64 = 5.0;
 /// Refused windows in between that end a stretch: more than a minute.
-const LONGEST_GAP_WINDOWS: i64 = 6;
+const MAX_GAP_WINDOWS: i64 = 6;
 /// Windows further from the median than so many standard deviations are outliers.
 const OUTLIER_SIGMAS: f64 = 3.0;
 /// A normal distribution's standard deviation over its median absolute deviation.
 const SIGMA_PER_MAD: f64 = 1.4826;
 /// Nothing nearer to the median than this is an outlier.
-const LEAST_OUTLIER_DEG: f64 = 0.2;
+const MIN_OUTLIER_DEG: f64 = 0.2;
 
 /// One settled window.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl SampleBuilder {
     /// Adds a window; when it does not belong, what was there becomes a sample
     /// and the window begins anew.
     pub(super) fn add(&mut self, window: Window, sample_s: u32) -> Option<Sample> {
-        let finished = if self.takes(&window, sample_s) {
+        let finished = if self.accepts(&window, sample_s) {
             None
         } else {
             self.finish()
@@ -57,7 +57,7 @@ impl SampleBuilder {
     /// Ends the stretch if no window after `index` can belong to it.
     pub(super) fn expire(&mut self, index: i64) -> Option<Sample> {
         let last = self.windows.last()?;
-        if index - last.index <= LONGEST_GAP_WINDOWS {
+        if index - last.index <= MAX_GAP_WINDOWS {
             return None;
         }
         self.finish()
@@ -65,36 +65,36 @@ impl SampleBuilder {
 
     /// Ends the stretch.
     pub(super) fn finish(&mut self) -> Option<Sample> {
-        let sample = sample_of(&self.windows);
+        let sample = build_sample(&self.windows);
         self.windows.clear();
         sample
     }
 
-    fn takes(&self, window: &Window, sample_s: u32) -> bool {
+    fn accepts(&self, window: &Window, sample_s: u32) -> bool {
         let (Some(first), Some(last)) = (self.windows.first(), self.windows.last()) else {
             return true;
         };
         let length_s = (window.index - first.index + 1) * WINDOW_S;
         length_s <= i64::from(sample_s)
             && self.windows.len() < usize::from(u16::MAX)
-            && window.index - last.index <= LONGEST_GAP_WINDOWS
-            && wrap_180(window.compass_deg - first.compass_deg).abs() <= SAME_HEADING_DEG
+            && window.index - last.index <= MAX_GAP_WINDOWS
+            && wrap_180(window.compass_deg - first.compass_deg).abs() <= MAX_HEADING_CHANGE_DEG
     }
 }
 
-fn sample_of(windows: &[Window]) -> Option<Sample> {
+fn build_sample(windows: &[Window]) -> Option<Sample> {
     let kept = without_outliers(windows);
     let (first, last) = (windows.first()?, windows.last()?);
     let middle_s = (first.index + last.index + 1) * WINDOW_S / 2;
     let origin = first.compass_deg;
     let compass_deg = origin + mean(kept.iter().map(|w| wrap_180(w.compass_deg - origin)))?;
     let reference = |of: fn(&Window) -> Option<f64>| {
-        let lead = mean_lead(&kept, of)?;
-        TrueHeading::new(compass_deg - lead)
+        let difference = mean_difference(&kept, of)?;
+        TrueHeading::new(compass_deg - difference)
     };
     Some(Sample {
         time: Timestamp::from_micros(middle_s * 1_000_000).ok()?,
-        position: nearest(&kept, middle_s / WINDOW_S)?.position,
+        position: nearest_window(&kept, middle_s / WINDOW_S)?.position,
         compass: CompassHeading::new(compass_deg)?,
         gyro: reference(|w| w.gyro_deg),
         satellite: reference(|w| w.satellite_deg),
@@ -106,18 +106,25 @@ fn sample_of(windows: &[Window]) -> Option<Sample> {
 }
 
 /// Compass less a reference, where at least half of the windows have it.
-fn mean_lead(windows: &[Window], of: fn(&Window) -> Option<f64>) -> Option<f64> {
-    let leads = leads(windows, of);
-    if leads.is_empty() || leads.len() * 2 < windows.len() {
+fn mean_difference(windows: &[Window], of: fn(&Window) -> Option<f64>) -> Option<f64> {
+    let differences = differences(windows, of);
+    if differences.is_empty() || differences.len() * 2 < windows.len() {
         return None;
     }
-    let origin = leads[0];
-    Some(origin + mean(leads.iter().map(|lead| wrap_180(lead - origin)))?)
+    let origin = differences[0];
+    Some(
+        origin
+            + mean(
+                differences
+                    .iter()
+                    .map(|difference| wrap_180(difference - origin)),
+            )?,
+    )
 }
 
-fn leads(windows: &[Window], of: fn(&Window) -> Option<f64>) -> Vec<f64> {
-    let lead = |w: &Window| Some(wrap_180(w.compass_deg - of(w)?));
-    windows.iter().filter_map(lead).collect()
+fn differences(windows: &[Window], of: fn(&Window) -> Option<f64>) -> Vec<f64> {
+    let difference = |w: &Window| Some(wrap_180(w.compass_deg - of(w)?));
+    windows.iter().filter_map(difference).collect()
 }
 
 /// The reference that more windows have; the gyro when both have as many.
@@ -134,33 +141,41 @@ fn main_reference(windows: &[Window]) -> fn(&Window) -> Option<f64> {
 /// Leaves out windows whose compass less reference lies far from the median.
 fn without_outliers(windows: &[Window]) -> Vec<Window> {
     let of = main_reference(windows);
-    let leads = leads(windows, of);
-    let Some(&origin) = leads.first() else {
+    let differences = differences(windows, of);
+    let Some(&origin) = differences.first() else {
         return windows.to_vec();
     };
-    let middle = median(leads.iter().map(|lead| wrap_180(lead - origin)));
-    let distance = |lead: f64| (wrap_180(lead - origin) - middle).abs();
-    let mad = median(leads.iter().map(|lead| distance(*lead)));
-    let limit = (OUTLIER_SIGMAS * SIGMA_PER_MAD * mad).max(LEAST_OUTLIER_DEG);
+    let middle = median(
+        differences
+            .iter()
+            .map(|difference| wrap_180(difference - origin)),
+    );
+    let distance = |difference: f64| (wrap_180(difference - origin) - middle).abs();
+    let mad = median(differences.iter().map(|difference| distance(*difference)));
+    let limit = (OUTLIER_SIGMAS * SIGMA_PER_MAD * mad).max(MIN_OUTLIER_DEG);
     let near = |w: &&Window| of(w).is_none_or(|r| distance(wrap_180(w.compass_deg - r)) <= limit);
     windows.iter().filter(near).copied().collect()
 }
 
 /// Standard deviation of compass less reference; none for a single window.
 fn spread(windows: &[Window]) -> Option<f64> {
-    let leads = leads(windows, main_reference(windows));
-    if leads.len() < 2 {
+    let differences = differences(windows, main_reference(windows));
+    if differences.len() < 2 {
         return None;
     }
-    let origin = leads[0];
-    let middle = mean(leads.iter().map(|lead| wrap_180(lead - origin)))?;
-    let squares = leads
+    let origin = differences[0];
+    let middle = mean(
+        differences
+            .iter()
+            .map(|difference| wrap_180(difference - origin)),
+    )?;
+    let squares = differences
         .iter()
-        .map(|lead| (wrap_180(lead - origin) - middle).powi(2));
-    Some((squares.sum::<f64>() / (leads.len() - 1) as f64).sqrt())
+        .map(|difference| (wrap_180(difference - origin) - middle).powi(2));
+    Some((squares.sum::<f64>() / (differences.len() - 1) as f64).sqrt())
 }
 
-fn nearest(windows: &[Window], index: i64) -> Option<&Window> {
+fn nearest_window(windows: &[Window], index: i64) -> Option<&Window> {
     windows.iter().min_by_key(|w| (w.index - index).abs())
 }
 
@@ -196,7 +211,7 @@ mod tests {
     }
 
     fn sample(windows: &[Window]) -> Sample {
-        sample_of(windows).unwrap()
+        build_sample(windows).unwrap()
     }
 
     #[test]
@@ -246,7 +261,7 @@ mod tests {
         let compass = sample.compass.degrees();
         assert!((compass - sample.satellite.unwrap().degrees() - 4.0).abs() < 1e-9);
         assert!((compass - sample.gyro.unwrap().degrees() - 3.0).abs() < 1e-9);
-        let seldom = sample_of(&windows[..35]).unwrap();
+        let seldom = build_sample(&windows[..35]).unwrap();
         assert_eq!(seldom.satellite, None);
     }
 

@@ -39,7 +39,7 @@ fn sampler() -> Sampler {
 
 fn feed(sampler: &mut Sampler, signals: impl IntoIterator<Item = Signal>) {
     for signal in signals {
-        sampler.take(signal);
+        sampler.apply(signal);
     }
 }
 
@@ -77,7 +77,7 @@ fn nothing_is_sampled_beside_a_magnetic_pole() {
     let pole = Position::new(-64.0, 136.0).unwrap();
     for time in 0..1200 {
         feed(&mut sampler, second(time, 1.0));
-        sampler.take(Signal::Position(pole));
+        sampler.apply(Signal::Position(pole));
     }
     let (samples, tally) = finished(sampler);
     assert_eq!(samples, []);
@@ -114,7 +114,7 @@ fn a_fast_turn_counts_as_turning_by_the_instrument_or_by_the_heading() {
                 } else {
                     0.0
                 };
-                sampler.take(Signal::RateOfTurn(rate));
+                sampler.apply(Signal::RateOfTurn(rate));
             }
         }
         let (_, tally) = finished(sampler);
@@ -165,12 +165,12 @@ fn slow_sparse_and_held_windows_are_named() {
     let mut sparse = sampler();
     for time in 0..601 {
         for signal in second(time, 90.0) {
-            slow.take(match signal {
+            slow.apply(match signal {
                 Signal::Speed(_) => Signal::Speed(3.9),
                 other => other,
             });
             if time % 4 == 0 || !matches!(signal, Signal::Compass(_)) {
-                sparse.take(signal);
+                sparse.apply(signal);
             }
         }
     }
@@ -189,8 +189,8 @@ fn a_satellite_compass_that_says_invalid_is_absent() {
     let mut sampler = sampler();
     for time in 0..601 {
         feed(&mut sampler, second(time, 90.0));
-        sampler.take(Signal::Satellite(TrueHeading::new(170.0).unwrap()));
-        sampler.take(Signal::SatelliteInvalid);
+        sampler.apply(Signal::Satellite(TrueHeading::new(170.0).unwrap()));
+        sampler.apply(Signal::SatelliteInvalid);
     }
     let (samples, _) = finished(sampler);
     assert_eq!(samples.len(), 1);
@@ -201,7 +201,7 @@ fn a_satellite_compass_that_says_invalid_is_absent() {
 fn a_clock_that_jumps_voids_the_open_window_and_settles_anew() {
     let mut sampler = sampler();
     sail(&mut sampler, 0..605, |_| 90.0);
-    sampler.take(Signal::Jump(at(-9000)));
+    sampler.apply(Signal::Jump(at(-9000)));
     sail(&mut sampler, -8999..-8400, |_| 90.0);
     let (samples, tally) = finished(sampler);
     assert_eq!(tally.of(Outcome::Clock), 1);
@@ -278,11 +278,11 @@ proptest! {
         let mut sampler = sampler();
         for time in 0..800 {
             let yaw = (time as f64 / 5.0).sin();
-            sampler.take(Signal::Time(at(time)));
-            sampler.take(Signal::Position(place()));
-            sampler.take(Signal::Speed(12.0));
-            sampler.take(compass(heading + yaw + lead));
-            sampler.take(gyro(heading + yaw));
+            sampler.apply(Signal::Time(at(time)));
+            sampler.apply(Signal::Position(place()));
+            sampler.apply(Signal::Speed(12.0));
+            sampler.apply(compass(heading + yaw + lead));
+            sampler.apply(gyro(heading + yaw));
         }
         let (samples, _) = finished(sampler);
         prop_assert!(!samples.is_empty());

@@ -4,7 +4,7 @@ use binnacle_magnetics::angle::wrap_180;
 
 /// A heading as it was in one window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
+pub(super) struct HeadingSpan {
     /// Mean of the readings, unwound.
     pub(super) mean: f64,
     /// Least, unwound.
@@ -17,7 +17,7 @@ pub(super) struct Span {
 
 /// The readings of one instrument: the open window and the two before it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Track {
+pub(super) struct HeadingTrack {
     /// The latest reading, in degrees that go on past a full circle.
     unwound: Option<f64>,
     sum: f64,
@@ -25,12 +25,12 @@ pub(super) struct Track {
     high: f64,
     readings: u32,
     invalid: bool,
-    earlier: [Option<Span>; 2],
+    earlier: [Option<HeadingSpan>; 2],
 }
 
-impl Track {
+impl HeadingTrack {
     /// Takes a heading in degrees.
-    pub(super) fn take(&mut self, degrees: f64) {
+    pub(super) fn add(&mut self, degrees: f64) {
         let unwound = match self.unwound {
             Some(last) => last + wrap_180(degrees - last),
             None => degrees,
@@ -51,11 +51,11 @@ impl Track {
     }
 
     /// The heading in the open window, if there was any.
-    pub(super) fn span(&self) -> Option<Span> {
+    pub(super) fn span(&self) -> Option<HeadingSpan> {
         if self.readings == 0 || self.invalid {
             return None;
         }
-        Some(Span {
+        Some(HeadingSpan {
             mean: self.sum / f64::from(self.readings),
             low: self.low,
             high: self.high,
@@ -87,7 +87,7 @@ impl Track {
 
     /// Forgets the windows before, which no longer adjoin this one.
     pub(super) fn forget(&mut self) {
-        *self = Track::default();
+        *self = HeadingTrack::default();
     }
 }
 
@@ -98,9 +98,9 @@ mod tests {
 
     #[test]
     fn a_mean_across_north_is_north() {
-        let mut track = Track::default();
+        let mut track = HeadingTrack::default();
         for degrees in [359.0, 1.0, 358.0, 2.0] {
-            track.take(degrees);
+            track.add(degrees);
         }
         let mean = wrap_180(track.span().unwrap().mean);
         assert!(mean.abs() < 1e-9, "{}", wrap_360(mean));
@@ -109,26 +109,26 @@ mod tests {
 
     #[test]
     fn swing_looks_back_two_windows_and_no_further() {
-        let mut track = Track::default();
-        track.take(10.0);
+        let mut track = HeadingTrack::default();
+        track.add(10.0);
         track.close();
         for _ in 0..2 {
-            track.take(20.0);
+            track.add(20.0);
             assert!((track.swing_deg() - 10.0).abs() < 1e-9);
             track.close();
         }
-        track.take(20.0);
+        track.add(20.0);
         assert!(track.swing_deg() < 1e-9);
     }
 
     #[test]
     fn an_invalid_reading_spoils_its_window_only() {
-        let mut track = Track::default();
-        track.take(10.0);
+        let mut track = HeadingTrack::default();
+        track.add(10.0);
         track.invalidate();
         assert_eq!(track.span(), None);
         track.close();
-        track.take(10.0);
+        track.add(10.0);
         assert!(track.span().is_some());
     }
 }
