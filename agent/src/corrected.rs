@@ -3,7 +3,7 @@
 //!
 //! Nothing is made up: what cannot be told is absent, with the reason in words.
 
-use crate::alert::Aboard;
+use crate::alert::AlertRecord;
 use crate::weak_field::LEAST_H_NT;
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
@@ -29,7 +29,7 @@ pub(crate) struct Ingredients<'a> {
     /// Why that model holds no more; the shore has no other one yet.
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
     /// The ship's own alert, once there was one.
-    pub(crate) alert: Option<&'a Aboard>,
+    pub(crate) alert: Option<&'a AlertRecord>,
     /// Whether the heading before this one was known too badly to be given out.
     pub(crate) withheld: bool,
 }
@@ -122,7 +122,7 @@ fn fill(corrected: &mut Corrected, from: Ingredients<'_>) -> Result<(), String> 
     if let Some(withdrawn) = from.withdrawn {
         return Err(withdrawn.in_words());
     }
-    if from.alert.is_some_and(Aboard::is_of_the_compass) {
+    if from.alert.is_some_and(AlertRecord::suspects_compass) {
         return Err("the alert says not to steer by it".to_owned());
     }
     let foretold = model
@@ -294,7 +294,7 @@ pub(crate) mod tests {
         let model = model(2_400.0, None);
         let at = Timestamp::parse("2026-11-21T06:00:00Z").unwrap();
         let of = |state, gyro, satellite| {
-            let alert = Aboard {
+            let alert = AlertRecord {
                 alert: ShipAlert {
                     id: uuid::Uuid::from_u128(1),
                     revision: 1,

@@ -1,6 +1,6 @@
 //! How everything is, without a running agent.
 
-use crate::alert::Aboard;
+use crate::alert::AlertRecord;
 use crate::spool::Spool;
 use crate::status::{ModelStatus, Status};
 use crate::uplink::{LinkState, LinkStatus};
@@ -43,7 +43,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
         },
         spool: spool.status().await?,
         budget: spool.account().await?,
-        alert: spool.alert().await?.as_ref().map(Aboard::status),
+        alert: spool.alert().await?.as_ref().map(AlertRecord::status),
         ..Status::default()
     })
 }

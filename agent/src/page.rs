@@ -6,7 +6,7 @@
 //! needs a header that no form can send, and names that resolve elsewhere are
 //! refused.
 
-use crate::alert::Aboard;
+use crate::alert::AlertRecord;
 use crate::config::PageConfig;
 use crate::hold::Hold;
 use crate::http_limits::LimitedListener;
@@ -160,12 +160,12 @@ async fn acknowledge(
 
 /// Keeps that an alert was seen, if it is the last one.
 async fn acknowledged(spool: &Spool, id: Uuid) -> sqlx::Result<bool> {
-    let Some(aboard) = spool.alert().await?.filter(|known| known.alert.id == id) else {
+    let Some(record) = spool.alert().await?.filter(|known| known.alert.id == id) else {
         return Ok(false);
     };
-    let seen = Aboard {
+    let seen = AlertRecord {
         acknowledged: true,
-        ..aboard
+        ..record
     };
     spool.save_alert(&seen).await?;
     Ok(true)
@@ -311,7 +311,7 @@ pub(crate) mod tests {
         let (_directory, page, router) = page().await;
         let at = binnacle_magnetics::time::Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
         let id = Uuid::from_u128(0xa1);
-        let aboard = Aboard {
+        let record = AlertRecord {
             alert: ShipAlert {
                 id,
                 revision: 1,
@@ -329,7 +329,7 @@ pub(crate) mod tests {
             raised_by_deg: None,
             is_doubted: false,
         };
-        page.spool.save_alert(&aboard).await.unwrap();
+        page.spool.save_alert(&record).await.unwrap();
         let press = |id: Uuid, guard: &str| {
             Request::post("/api/alert/acknowledge")
                 .header("content-type", "application/json")

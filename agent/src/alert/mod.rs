@@ -12,10 +12,10 @@
 //! - What is known of it is in the spool before it is anywhere else, together with
 //!   the batch that carries it ashore.
 
-mod aboard;
-mod lookout;
+mod monitor;
+mod record;
 mod sentence;
 
-pub(crate) use aboard::{Aboard, AlertStatus};
-pub(crate) use lookout::{Card, Lookout};
+pub(crate) use monitor::{AlertMonitor, Card};
+pub(crate) use record::{AlertRecord, AlertStatus};
 pub(crate) use sentence::AlarmSentence;

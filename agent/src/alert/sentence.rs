@@ -4,7 +4,7 @@
 //! while the alert is open and V else; acknowledged A or V. It is said at once when
 //! something changed, and again every half minute.
 
-use super::Aboard;
+use super::AlertRecord;
 use crate::sentences::{TALKER, framed};
 use binnacle_wire::alert::ShipAlertState;
 use std::time::Duration;
@@ -22,8 +22,8 @@ pub(crate) struct AlarmSentence {
 
 impl AlarmSentence {
     /// The sentence with its line end, when it is due.
-    pub(crate) fn due(&mut self, aboard: Option<&Aboard>, now: Instant) -> Option<Vec<u8>> {
-        let body = body(aboard);
+    pub(crate) fn due(&mut self, record: Option<&AlertRecord>, now: Instant) -> Option<Vec<u8>> {
+        let body = body(record);
         let is_due = self
             .said
             .as_ref()
@@ -37,12 +37,12 @@ impl AlarmSentence {
     }
 }
 
-fn body(aboard: Option<&Aboard>) -> String {
+fn body(record: Option<&AlertRecord>) -> String {
     let talker = String::from_utf8_lossy(&TALKER);
-    let Some(aboard) = aboard else {
+    let Some(record) = record else {
         return format!("{talker}ALR,,{NUMBER},V,A,NO ALERT OF THE COMPASS");
     };
-    let time = aboard.alert.at.to_string();
+    let time = record.alert.at.to_string();
     // 2026-11-21T07:05:00Z
     let time: String = time
         .chars()
@@ -50,13 +50,13 @@ fn body(aboard: Option<&Aboard>) -> String {
         .take(8)
         .filter(|c| *c != ':')
         .collect();
-    let (condition, so) = match aboard.alert.state {
+    let (condition, so) = match record.alert.state {
         ShipAlertState::Open => ('A', "PARTED"),
         ShipAlertState::Agree => ('V', "AGREE"),
         ShipAlertState::NotJudged => ('V', "NOT JUDGED"),
     };
-    let reference = aboard.alert.reference().to_uppercase();
-    let acknowledged = if aboard.acknowledged { 'A' } else { 'V' };
+    let reference = record.alert.reference().to_uppercase();
+    let acknowledged = if record.acknowledged { 'A' } else { 'V' };
     format!(
         "{talker}ALR,{time}.00,{NUMBER},{condition},{acknowledged},COMPASS AND {reference} {so}"
     )
@@ -69,9 +69,9 @@ mod tests {
     use binnacle_wire::alert::ShipAlert;
     use uuid::Uuid;
 
-    fn aboard(state: ShipAlertState, acknowledged: bool) -> Aboard {
+    fn record(state: ShipAlertState, acknowledged: bool) -> AlertRecord {
         let at = Timestamp::parse("2026-11-21T07:05:09Z").unwrap();
-        Aboard {
+        AlertRecord {
             alert: ShipAlert {
                 id: Uuid::from_u128(1),
                 revision: 1,
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn the_checksum_is_the_exclusive_or_of_what_lies_between_dollar_and_star() {
-        let open = aboard(ShipAlertState::Open, false);
+        let open = record(ShipAlertState::Open, false);
         let said = text(AlarmSentence::default().due(Some(&open), Instant::now()));
 
         assert_eq!(
@@ -115,12 +115,12 @@ mod tests {
         assert!(text(alarm.due(None, start)).starts_with("$IIALR,,001,V,A,"));
         assert_eq!(alarm.due(None, after(29)), None);
         assert!(alarm.due(None, after(30)).is_some());
-        let open = aboard(ShipAlertState::Open, false);
+        let open = record(ShipAlertState::Open, false);
         assert!(text(alarm.due(Some(&open), after(31))).contains(",001,A,V,"));
         assert_eq!(alarm.due(Some(&open), after(32)), None);
-        let seen = aboard(ShipAlertState::Open, true);
+        let seen = record(ShipAlertState::Open, true);
         assert!(text(alarm.due(Some(&seen), after(33))).contains(",001,A,A,"));
-        let over = aboard(ShipAlertState::Agree, true);
+        let over = record(ShipAlertState::Agree, true);
         let said = text(alarm.due(Some(&over), after(34)));
         assert!(said.contains(",001,V,A,COMPASS AND GYRO AGREE*"), "{said}");
     }
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn it_names_the_satellite_compass_where_there_is_no_gyro() {
         for state in [ShipAlertState::Open, ShipAlertState::NotJudged] {
-            let mut open = aboard(state, false);
+            let mut open = record(state, false);
             open.alert.gyro_departure_deg = None;
             open.alert.satellite_departure_deg = Some(20.0);
             let said = text(AlarmSentence::default().due(Some(&open), Instant::now()));
@@ -139,9 +139,9 @@ mod tests {
 
     #[test]
     fn what_nobody_judged_is_not_said_to_agree() {
-        let withdrawn = aboard(ShipAlertState::NotJudged, true);
-        for aboard in [Some(&withdrawn), None] {
-            let said = text(AlarmSentence::default().due(aboard, Instant::now()));
+        let withdrawn = record(ShipAlertState::NotJudged, true);
+        for record in [Some(&withdrawn), None] {
+            let said = text(AlarmSentence::default().due(record, Instant::now()));
             assert!(said.contains(",001,V,"), "{said}");
             assert!(!said.contains("AGREE"), "{said}");
         }

@@ -7,7 +7,7 @@
 
 mod store_samples;
 
-use crate::alert::{Aboard, AlarmSentence, Card, Lookout};
+use crate::alert::{AlarmSentence, AlertMonitor, AlertRecord, Card};
 use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
@@ -74,9 +74,9 @@ struct Agent {
     outputs: Outputs,
     interval: Duration,
     hold: watch::Sender<Option<Hold>>,
-    lookout: Lookout,
+    alert_monitor: AlertMonitor,
     /// What the spool has of the lookout's alert.
-    stored_alert: Option<Aboard>,
+    stored_alert: Option<AlertRecord>,
     /// Whether the last heading sent was known too badly to be given out.
     withheld: bool,
     acknowledged: watch::Receiver<Option<Uuid>>,
@@ -176,7 +176,7 @@ impl Agent {
             outputs,
             interval: config.output.interval_s.duration(),
             hold,
-            lookout: Lookout::new(config.alert, stored_alert, judged_by),
+            alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
             stored_alert,
             withheld: false,
             acknowledged: acknowledged_rx,
@@ -219,7 +219,7 @@ impl Agent {
                 Ok(()) = self.acknowledged.changed() => {
                     let seen = *self.acknowledged.borrow_and_update();
                     if let Some(id) = seen {
-                        self.lookout.acknowledge(id);
+                        self.alert_monitor.acknowledge(id);
                     }
                 }
             }
@@ -303,15 +303,15 @@ impl Agent {
         let settled = self.ship.sampler.take_settled();
         let revisions = settled
             .iter()
-            .filter_map(|w| self.lookout.take(w, card, new_id));
+            .filter_map(|w| self.alert_monitor.take(w, card, new_id));
         let mut revisions: Vec<ShipAlert> = revisions.collect();
         let now = self.ship.time();
-        revisions.extend(now.and_then(|now| self.lookout.follow(card, now)));
+        revisions.extend(now.and_then(|now| self.alert_monitor.follow(card, now)));
         if revisions.is_empty() {
             return;
         }
-        if let Some(aboard) = self.lookout.aboard() {
-            tracing::warn!("{}", aboard.status().says);
+        if let Some(record) = self.alert_monitor.record() {
+            tracing::warn!("{}", record.status().says);
         }
         self.ship.sampler.cut_sample();
         self.unstored.alerts.extend(revisions);
@@ -319,14 +319,14 @@ impl Agent {
 
     /// Keeps what only those aboard need to know of the alert.
     async fn save_alert(&mut self) {
-        let Some(aboard) = self.lookout.aboard().copied() else {
+        let Some(record) = self.alert_monitor.record().copied() else {
             return;
         };
-        if self.stored_alert == Some(aboard) || !self.unstored.alerts.is_empty() {
+        if self.stored_alert == Some(record) || !self.unstored.alerts.is_empty() {
             return;
         }
-        match self.spool.save_alert(&aboard).await {
-            Ok(()) => self.stored_alert = Some(aboard),
+        match self.spool.save_alert(&record).await {
+            Ok(()) => self.stored_alert = Some(record),
             Err(error) => tracing::error!(%error, "the alert cannot be stored"),
         }
     }
@@ -363,7 +363,7 @@ impl Agent {
             time: self.ship.time(),
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
-            alert: self.lookout.aboard(),
+            alert: self.alert_monitor.record(),
             withheld: self.withheld,
         };
         (corrected::correct(from), corrected::card(from))
@@ -378,7 +378,7 @@ impl Agent {
         });
         let mut said = sentences(&corrected, quality);
         if let Some(alarm) = &mut self.alarm {
-            let due = alarm.due(self.lookout.aboard(), Instant::now());
+            let due = alarm.due(self.alert_monitor.record(), Instant::now());
             said.extend(due.into_iter().flatten());
         }
         self.outputs.send(said);
@@ -408,7 +408,7 @@ impl Agent {
         status.ship_time = self.ship.time();
         status.heading = heading;
         status.card = card;
-        status.alert = self.lookout.aboard().map(Aboard::status);
+        status.alert = self.alert_monitor.record().map(AlertRecord::status);
         status.gyro_deg = Latest::within(readings.gyro, stale, now);
         status.satellite_deg = Latest::within(readings.satellite, stale, now);
         status.sog_kn = Latest::within(readings.sog_kn, stale, now);

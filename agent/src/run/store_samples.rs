@@ -49,10 +49,10 @@ impl Agent {
         let tally = unstored.tally.by_name();
         let has_evidence = !unstored.alerts.is_empty();
         let stored = if has_evidence {
-            let aboard = self.lookout.aboard();
+            let record = self.alert_monitor.record();
             let (samples, alerts) = (&unstored.samples, &unstored.alerts);
             let spool = &self.spool;
-            spool.store_evidence(samples, &tally, alerts, aboard).await
+            spool.store_evidence(samples, &tally, alerts, record).await
         } else {
             self.spool.store(&unstored.samples, &tally, seal).await
         };
@@ -60,7 +60,7 @@ impl Agent {
             Ok((pending, sealed)) => {
                 unstored.problem = None;
                 if has_evidence {
-                    self.stored_alert = self.lookout.aboard().copied();
+                    self.stored_alert = self.alert_monitor.record().copied();
                     unstored.alerts.clear();
                     self.uplink_handle.urgent.notify_one();
                 }

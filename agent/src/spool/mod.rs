@@ -32,7 +32,7 @@ pub(crate) use reports::{ReportState, SaveReportError, StoredReport};
 pub(crate) use seal::{Pending, Seal};
 pub(crate) use thinning::{MAX_PENDING, is_disk_full};
 
-use crate::alert::Aboard;
+use crate::alert::AlertRecord;
 use crate::clock_checkpoint::ClockCheckpoint;
 use crate::hold::Hold;
 use crate::uplink::BudgetAccount;
@@ -258,14 +258,14 @@ impl Spool {
     }
 
     /// The last alert of the agent's own.
-    pub(crate) async fn alert(&self) -> sqlx::Result<Option<Aboard>> {
+    pub(crate) async fn alert(&self) -> sqlx::Result<Option<AlertRecord>> {
         self.get(ALERT).await
     }
 
     /// Keeps what is known of the alert aboard alone.
-    pub(crate) async fn save_alert(&self, aboard: &Aboard) -> sqlx::Result<()> {
+    pub(crate) async fn save_alert(&self, record: &AlertRecord) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        put(&mut tx, ALERT, aboard).await?;
+        put(&mut tx, ALERT, record).await?;
         tx.commit().await
     }
 

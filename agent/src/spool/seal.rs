@@ -1,7 +1,7 @@
 //! From samples to sealed batches, in one transaction.
 
 use super::{ALERT, IDENTITY, Identity, NEXT_SEQ, Spool, THINNED, forget, get, put};
-use crate::alert::Aboard;
+use crate::alert::AlertRecord;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::ShipAlert;
@@ -74,7 +74,7 @@ impl Spool {
         samples: &[Sample],
         tally: &BTreeMap<String, u64>,
         alerts: &[ShipAlert],
-        aboard: Option<&Aboard>,
+        record: Option<&AlertRecord>,
     ) -> sqlx::Result<(Pending, usize)> {
         let mut tx = self.write().await?;
         for sample in samples {
@@ -83,8 +83,8 @@ impl Spool {
         for (reason, windows) in tally {
             add_to_tally(&mut tx, reason, *windows).await?;
         }
-        if let Some(aboard) = aboard {
-            put(&mut tx, ALERT, aboard).await?;
+        if let Some(record) = record {
+            put(&mut tx, ALERT, record).await?;
         }
         let mut sealed = 0;
         if let Some(identity) = get::<Identity>(&mut tx, IDENTITY).await? {

@@ -46,7 +46,7 @@ struct Errors {
 }
 
 struct Ship {
-    lookout: Lookout,
+    monitor: AlertMonitor,
     card: ModelDownlink,
     withdrawn: Option<CardWithdrawn>,
     index: i64,
@@ -56,7 +56,7 @@ struct Ship {
 fn ship() -> Ship {
     let card = model(1);
     Ship {
-        lookout: Lookout::new(AlertConfig::default(), None, Some(card.id)),
+        monitor: AlertMonitor::new(AlertConfig::default(), None, Some(card.id)),
         card,
         withdrawn: None,
         index: START,
@@ -111,7 +111,7 @@ impl Ship {
         };
         let id = Uuid::from_u128(window.index.unsigned_abs().into());
         self.revisions
-            .extend(self.lookout.take(window, card, || id));
+            .extend(self.monitor.take(window, card, || id));
     }
 
     fn states(&self) -> Vec<(u32, ShipAlertState)> {
@@ -189,7 +189,7 @@ fn the_limit_is_the_band_and_the_gyros_error_and_grows_towards_the_poles() {
             rate_of_turn_deg_min: None,
         };
         let now = end_of(window.index).unwrap();
-        let apart = ship.lookout.compare(&window, ship.card(), now);
+        let apart = ship.monitor.compare(&window, ship.card(), now);
         apart.unwrap().limit_deg - USUAL_BAND_DEG
     };
     assert!((limit_deg(0.0) - 2.5).abs() < 1e-9);
@@ -379,7 +379,7 @@ fn without_a_card_there_is_no_alert_and_one_that_is_open_ends() {
     assert_eq!(ship.states(), [(1, Open), (2, NotJudged)]);
     let none = Card::default();
     let now = end_of(ship.index).unwrap();
-    assert_eq!(ship.lookout.follow(none, now), None, "it has ended already");
+    assert_eq!(ship.monitor.follow(none, now), None, "it has ended already");
 }
 
 #[test]
@@ -400,9 +400,9 @@ fn another_model_judges_anew_on_the_course_on_which_they_parted() {
 fn a_restart_goes_on_with_the_same_alert() {
     let mut ship = ship();
     ship.sail(100, 90.0, STRUCK);
-    let kept = serde_json::to_string(&ship.lookout.aboard()).unwrap();
+    let kept = serde_json::to_string(&ship.monitor.record()).unwrap();
     let kept = serde_json::from_str(&kept).unwrap();
-    ship.lookout = Lookout::new(AlertConfig::default(), kept, Some(ship.card.id));
+    ship.monitor = AlertMonitor::new(AlertConfig::default(), kept, Some(ship.card.id));
     ship.sail(60, 90.0, STRUCK);
     assert_eq!(ship.states(), [(1, Open)]);
     ship.sail(60, 180.0, WELL);
@@ -449,7 +449,7 @@ fn a_wider_error_of_the_gyro_asks_for_more() {
         gyro_error_deg: GyroError(30.0),
         ..AlertConfig::default()
     };
-    ship.lookout = Lookout::new(config, None, Some(ship.card.id));
+    ship.monitor = AlertMonitor::new(config, None, Some(ship.card.id));
     ship.sail(100, 90.0, STRUCK);
     assert_eq!(ship.revisions, []);
 }

@@ -73,10 +73,10 @@ fn a_compass_struck_while_the_satellite_compass_is_silent_is_borne_out_no_more()
     ship.sail(100, 90.0, beside(9.0, None));
     ship.sail(100, 90.0, beside(29.0, None));
     assert_eq!(verdict(&ship), Suspect::Unknown);
-    assert!(ship.lookout.aboard().unwrap().is_of_the_compass());
+    assert!(ship.monitor.record().unwrap().suspects_compass());
     // Nor again when it is back, though by then it may look so.
     ship.sail(100, 90.0, beside(9.0, Some(9.2)));
-    assert!(ship.lookout.aboard().unwrap().is_of_the_compass());
+    assert!(ship.monitor.record().unwrap().suspects_compass());
 }
 
 #[test]
@@ -84,8 +84,8 @@ fn a_compass_that_moves_to_a_bad_gyro_is_not_borne_out_by_it() {
     for struck_deg in [5.9, 6.3, 7.5, 8.9, 12.0] {
         let mut ship = with_a_gyro_at_fault();
         ship.sail(400, 90.0, beside(9.0 - struck_deg, Some(9.2)));
-        let aboard = ship.lookout.aboard().unwrap();
-        assert!(aboard.is_of_the_compass(), "{struck_deg}: {aboard:?}");
+        let record = ship.monitor.record().unwrap();
+        assert!(record.suspects_compass(), "{struck_deg}: {record:?}");
     }
 }
 
@@ -119,7 +119,7 @@ fn a_verdict_at_the_limit_does_not_come_and_go() {
 fn a_gyro_that_is_switched_off_does_not_agree_again() {
     let mut ship = with_a_gyro_at_fault();
     sail_without_gyro(&mut ship, 300, 0.0);
-    assert!(ship.lookout.aboard().unwrap().is_open());
+    assert!(ship.monitor.record().unwrap().is_open());
 }
 
 #[test]

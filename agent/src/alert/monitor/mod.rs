@@ -8,7 +8,7 @@
 //! minutes after a manoeuvre a gyro may be off by one or two degrees. 2.5° at the
 //! equator lies above both.
 
-use super::aboard::Aboard;
+use super::record::AlertRecord;
 use crate::config::AlertConfig;
 use crate::corrected::{Ingredients, foretell};
 use crate::sampler::{WINDOW_S, Window, median};
@@ -31,7 +31,7 @@ const LONGEST_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
 const FOLLOW_WINDOWS: usize = 1800 / WINDOW_S as usize;
 /// After so many settled hours of agreement it is over, whatever the heading: a day.
 const AGREE_ANYWHERE_WINDOWS: usize = 24 * 3600 / WINDOW_S as usize;
-/// Degrees of heading by the reference that one bit of [`Aboard::parted`] stands for. What a magnet
+/// Degrees of heading by the reference that one bit of [`AlertRecord::parted`] stands for. What a magnet
 /// does is nothing on two courses and at its most a quarter of a circle from them, so that
 /// agreement on one course says little of the next: a magnet that turns the compass by 14° does
 /// as good as nothing within 10° of either.
@@ -68,13 +68,13 @@ struct Apart {
 
 /// The state between two windows.
 #[derive(Debug)]
-pub(crate) struct Lookout {
+pub(crate) struct AlertMonitor {
     config: AlertConfig,
     /// The latest windows, oldest first: twice as many as raise an alert.
     recent: VecDeque<Apart>,
     /// The model that they were judged by.
     model: Option<Uuid>,
-    aboard: Option<Aboard>,
+    record: Option<AlertRecord>,
     /// Settled windows since the alert was raised, or the agent was started.
     since_raised: usize,
     /// Settled windows of agreement in a row, and a bit for each sector they were of.
@@ -82,15 +82,19 @@ pub(crate) struct Lookout {
     agreed_on: u64,
 }
 
-impl Lookout {
+impl AlertMonitor {
     /// A lookout that goes on where the last one was relieved, with the model that
     /// was in use then.
-    pub(crate) fn new(config: AlertConfig, aboard: Option<Aboard>, model: Option<Uuid>) -> Lookout {
-        Lookout {
+    pub(crate) fn new(
+        config: AlertConfig,
+        record: Option<AlertRecord>,
+        model: Option<Uuid>,
+    ) -> AlertMonitor {
+        AlertMonitor {
             config,
             recent: VecDeque::new(),
             model,
-            aboard,
+            record,
             since_raised: 0,
             agreed: 0,
             agreed_on: 0,
@@ -98,15 +102,15 @@ impl Lookout {
     }
 
     /// The last alert, open or not.
-    pub(crate) fn aboard(&self) -> Option<&Aboard> {
-        self.aboard.as_ref()
+    pub(crate) fn record(&self) -> Option<&AlertRecord> {
+        self.record.as_ref()
     }
 
     /// An officer has seen the alert.
     pub(crate) fn acknowledge(&mut self, id: Uuid) {
-        let alert = self.aboard.as_mut().filter(|aboard| aboard.alert.id == id);
-        if let Some(aboard) = alert {
-            aboard.acknowledged = true;
+        let alert = self.record.as_mut().filter(|record| record.alert.id == id);
+        if let Some(record) = alert {
+            record.acknowledged = true;
         }
     }
 
@@ -144,7 +148,7 @@ impl Lookout {
         if stand.is_apart() {
             self.mark(stand.sector);
         }
-        if !self.aboard.is_some_and(|aboard| aboard.is_open()) {
+        if !self.record.is_some_and(|record| record.is_open()) {
             let version = card.in_use()?.version;
             return stand
                 .is_apart()
@@ -266,7 +270,7 @@ impl Lookout {
             limit_deg: tenth(stand.limit_deg),
             model_version,
         };
-        self.aboard = Some(Aboard {
+        self.record = Some(AlertRecord {
             alert,
             acknowledged: false,
             followed: false,
@@ -283,8 +287,8 @@ impl Lookout {
 
     fn mark(&mut self, sector: u32) {
         self.disagree();
-        if let Some(aboard) = self.aboard.as_mut().filter(|aboard| aboard.is_open()) {
-            aboard.parted |= 1 << sector;
+        if let Some(record) = self.record.as_mut().filter(|record| record.is_open()) {
+            record.parted |= 1 << sector;
         }
     }
 
@@ -300,25 +304,25 @@ impl Lookout {
     fn agrees(&mut self, raise: usize) -> bool {
         let stand = self.stand(2 * raise);
         let on_course = stand.filter(|stand| self.is_on_course(2 * raise, stand.sector));
-        let Some((stand, aboard)) = on_course.zip(self.aboard.as_mut()) else {
+        let Some((stand, record)) = on_course.zip(self.record.as_mut()) else {
             return false;
         };
-        let alert = &aboard.alert;
-        let raised_by_deg = aboard.raised_by_deg.unwrap_or(alert.limit_deg);
+        let alert = &record.alert;
+        let raised_by_deg = record.raised_by_deg.unwrap_or(alert.limit_deg);
         // A model that hardly knows the heading agrees with anything.
         if stand.band_deg > raised_by_deg {
             return false;
         }
         let limit_deg = AGREE_SHARE * stand.limit_deg.min(raised_by_deg);
         let is_near = |deg: f64| deg.abs() <= limit_deg;
-        let (judged_deg, other_deg) = stand.judged_deg(aboard);
+        let (judged_deg, other_deg) = stand.judged_deg(record);
         if !judged_deg.is_some_and(is_near) || !other_deg.is_none_or(is_near) {
             self.disagree();
             return false;
         }
         let is_sound = is_trusting(alert.suspect());
-        aboard.parted &= !(1 << stand.sector);
-        let is_settled = aboard.parted == 0 || is_sound;
+        record.parted &= !(1 << stand.sector);
+        let is_settled = record.parted == 0 || is_sound;
         self.agreed = self.agreed.saturating_add(1);
         self.agreed_on |= 1 << stand.sector;
         is_settled || is_across(self.agreed_on) || self.agreed >= AGREE_ANYWHERE_WINDOWS
@@ -340,35 +344,35 @@ impl Lookout {
         if !self.is_on_course(2 * raise, stand.sector) {
             return None;
         }
-        let aboard = self.aboard.as_mut()?;
-        let before = aboard.alert.suspect();
-        let said = judged_anew(aboard, stand.said(&aboard.alert))?;
-        aboard.is_doubted |= is_trusting(before);
-        aboard.alert = said;
+        let record = self.record.as_mut()?;
+        let before = record.alert.suspect();
+        let said = judged_anew(record, stand.said(&record.alert))?;
+        record.is_doubted |= is_trusting(before);
+        record.alert = said;
         self.revise(ShipAlertState::Open, now)
     }
 
     fn follow_up(&mut self, stand: Stand, now: Timestamp) -> Option<ShipAlert> {
-        let aboard = self.aboard.as_mut()?;
-        if aboard.followed || self.since_raised < FOLLOW_WINDOWS {
+        let record = self.record.as_mut()?;
+        if record.followed || self.since_raised < FOLLOW_WINDOWS {
             return None;
         }
-        aboard.followed = true;
-        let said = stand.said(&aboard.alert);
-        let is_of_same = !lacks(&aboard.alert, &said) && said.suspect() == aboard.alert.suspect();
+        record.followed = true;
+        let said = stand.said(&record.alert);
+        let is_of_same = !lacks(&record.alert, &said) && said.suspect() == record.alert.suspect();
         if stand.is_apart() && is_of_same {
-            aboard.alert = said;
+            record.alert = said;
         }
         self.revise(ShipAlertState::Open, now)
     }
 
     /// The next revision of the open alert, if there is one.
     fn revise(&mut self, state: ShipAlertState, now: Timestamp) -> Option<ShipAlert> {
-        let aboard = self.aboard.as_mut().filter(|aboard| aboard.is_open())?;
-        aboard.alert.revision = aboard.alert.revision.saturating_add(1);
-        aboard.alert.state = state;
-        aboard.alert.at = now;
-        Some(aboard.alert)
+        let record = self.record.as_mut().filter(|record| record.is_open())?;
+        record.alert.revision = record.alert.revision.saturating_add(1);
+        record.alert.state = state;
+        record.alert.at = now;
+        Some(record.alert)
     }
 }
 
@@ -395,13 +399,13 @@ impl Stand {
 
     /// The departure whose end is that of an alert, and the other, if that is to have ended,
     /// too: where an instrument was borne out, both.
-    fn judged_deg(&self, aboard: &Aboard) -> (Option<f64>, Option<f64>) {
+    fn judged_deg(&self, record: &AlertRecord) -> (Option<f64>, Option<f64>) {
         let (gyro_deg, satellite_deg) = (self.gyro_deg, self.satellite_deg);
-        match aboard.alert.suspect() {
+        match record.alert.suspect() {
             Suspect::Gyro => (gyro_deg, satellite_deg),
             Suspect::Satellite => (satellite_deg, gyro_deg),
-            _ if aboard.is_doubted => (self.main_deg(), satellite_deg),
-            _ if aboard.alert.gyro_departure_deg.is_none() => (satellite_deg.or(gyro_deg), None),
+            _ if record.is_doubted => (self.main_deg(), satellite_deg),
+            _ if record.alert.gyro_departure_deg.is_none() => (satellite_deg.or(gyro_deg), None),
             _ => (self.main_deg(), None),
         }
     }
@@ -433,11 +437,11 @@ fn lacks(before: &ShipAlert, said: &ShipAlert) -> bool {
 /// silent takes nothing back of what it has proven, as long as the other says what it said. The
 /// compass is borne out at most once: what speaks against that takes it back for the rest of
 /// the alert, for a bad reference and a compass that moves to it look like a bad other one.
-fn judged_anew(aboard: &Aboard, said: ShipAlert) -> Option<ShipAlert> {
-    let before = &aboard.alert;
+fn judged_anew(record: &AlertRecord, said: ShipAlert) -> Option<ShipAlert> {
+    let before = &record.alert;
     let (was, is) = (before.suspect(), said.suspect());
     if !is_trusting(was) {
-        let may_be = is == Suspect::Compass || (is_trusting(is) && !aboard.is_doubted);
+        let may_be = is == Suspect::Compass || (is_trusting(is) && !record.is_doubted);
         return (was == Suspect::Unknown && may_be).then_some(said);
     }
     if lacks(before, &said) {

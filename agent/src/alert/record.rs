@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// The last alert: open, or how it ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Aboard {
+pub(crate) struct AlertRecord {
     /// Its last revision.
     pub(crate) alert: ShipAlert,
     /// Whether an officer said that it was seen.
@@ -40,10 +40,11 @@ pub(crate) struct AlertStatus {
     /// What to do; nothing once it is over.
     pub(crate) advice: String,
     /// Whether the corrected heading and the card are not to be used while it goes on.
-    pub(crate) is_of_the_compass: bool,
+    #[serde(rename = "is_of_the_compass")]
+    pub(crate) suspects_compass: bool,
 }
 
-impl Aboard {
+impl AlertRecord {
     /// Whether it goes on.
     pub(crate) fn is_open(&self) -> bool {
         self.alert.state == ShipAlertState::Open
@@ -51,7 +52,7 @@ impl Aboard {
 
     /// Whether the corrected heading is not to be steered by while it goes on: unless
     /// the compass and one reference speak against the other.
-    pub(crate) fn is_of_the_compass(&self) -> bool {
+    pub(crate) fn suspects_compass(&self) -> bool {
         self.is_open() && matches!(self.alert.suspect(), Suspect::Compass | Suspect::Unknown)
     }
 
@@ -62,7 +63,7 @@ impl Aboard {
             acknowledged: self.acknowledged,
             says: says(&self.alert),
             advice: advice(&self.alert).to_owned(),
-            is_of_the_compass: self.is_of_the_compass(),
+            suspects_compass: self.suspects_compass(),
         }
     }
 }
@@ -135,7 +136,7 @@ mod tests {
             limit_deg: 3.9,
             model_version: 1,
         };
-        let aboard = Aboard {
+        let record = AlertRecord {
             alert,
             acknowledged: false,
             followed: false,
@@ -143,7 +144,7 @@ mod tests {
             raised_by_deg: None,
             is_doubted: false,
         };
-        aboard.status()
+        record.status()
     }
 
     #[test]
