@@ -307,10 +307,10 @@ pub(crate) mod tests {
                     model_version: 1,
                 },
                 acknowledged: true,
-                followed: false,
-                parted: 1,
-                raised_by_deg: None,
-                is_doubted: false,
+                followed_up: false,
+                departed_sectors: 1,
+                raised_limit_deg: None,
+                clearance_revoked: false,
             };
             correct(Ingredients {
                 alert: Some(&alert),

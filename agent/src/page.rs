@@ -324,10 +324,10 @@ pub(crate) mod tests {
                 model_version: 1,
             },
             acknowledged: false,
-            followed: false,
-            parted: 1,
-            raised_by_deg: None,
-            is_doubted: false,
+            followed_up: false,
+            departed_sectors: 1,
+            raised_limit_deg: None,
+            clearance_revoked: false,
         };
         page.spool.save_alert(&record).await.unwrap();
         let press = |id: Uuid, guard: &str| {

@@ -200,14 +200,14 @@ impl Status {
             return Ok(());
         };
         if alert.alert.state != ShipAlertState::Open {
-            return writeln!(out, "alert      {}", alert.says);
+            return writeln!(out, "alert      {}", alert.summary);
         }
         let seen = if alert.acknowledged {
             " (acknowledged)"
         } else {
             ""
         };
-        writeln!(out, "ALERT      {}{seen}", alert.says)?;
+        writeln!(out, "ALERT      {}{seen}", alert.summary)?;
         writeln!(out, "           {}", alert.advice)
     }
 

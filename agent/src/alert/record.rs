@@ -12,20 +12,21 @@ pub(crate) struct AlertRecord {
     /// Whether an officer said that it was seen.
     pub(crate) acknowledged: bool,
     /// Whether the revision that follows some time after the first was made.
-    pub(crate) followed: bool,
+    #[serde(rename = "followed")]
+    pub(crate) followed_up: bool,
     /// A bit for each 10° of the reference's heading on which they were last seen apart; where that
     /// was not kept, all.
-    #[serde(default = "everywhere")]
-    pub(crate) parted: u64,
+    #[serde(rename = "parted", default = "all_sectors")]
+    pub(crate) departed_sectors: u64,
     /// What they were allowed when they parted, degrees.
-    #[serde(default)]
-    pub(crate) raised_by_deg: Option<f64>,
+    #[serde(rename = "raised_by_deg", default)]
+    pub(crate) raised_limit_deg: Option<f64>,
     /// Whether two instruments bore the compass out, and do no more.
-    #[serde(default)]
-    pub(crate) is_doubted: bool,
+    #[serde(rename = "is_doubted", default)]
+    pub(crate) clearance_revoked: bool,
 }
 
-fn everywhere() -> u64 {
+fn all_sectors() -> u64 {
     u64::MAX
 }
 
@@ -36,7 +37,8 @@ pub(crate) struct AlertStatus {
     pub(crate) alert: ShipAlert,
     pub(crate) acknowledged: bool,
     /// What is so.
-    pub(crate) says: String,
+    #[serde(rename = "says")]
+    pub(crate) summary: String,
     /// What to do; nothing once it is over.
     pub(crate) advice: String,
     /// Whether the corrected heading and the card are not to be used while it goes on.
@@ -61,14 +63,14 @@ impl AlertRecord {
         AlertStatus {
             alert: self.alert,
             acknowledged: self.acknowledged,
-            says: says(&self.alert),
+            summary: summary(&self.alert),
             advice: advice(&self.alert).to_owned(),
             suspects_compass: self.suspects_compass(),
         }
     }
 }
 
-fn says(alert: &ShipAlert) -> String {
+fn summary(alert: &ShipAlert) -> String {
     let reference = alert.reference();
     let minute = |time: Timestamp| time.to_string().get(..16).map(|t| t.replace('T', " "));
     let (since, at) = (
@@ -139,10 +141,10 @@ mod tests {
         let record = AlertRecord {
             alert,
             acknowledged: false,
-            followed: false,
-            parted: 0,
-            raised_by_deg: None,
-            is_doubted: false,
+            followed_up: false,
+            departed_sectors: 0,
+            raised_limit_deg: None,
+            clearance_revoked: false,
         };
         record.status()
     }
@@ -151,10 +153,10 @@ mod tests {
     fn it_says_what_is_so_and_what_to_do() {
         let open = status(ShipAlertState::Open, Some(-28.4), None);
         assert!(
-            open.says
+            open.summary
                 .starts_with("compass and gyro parted at 2026-11-21 07:00 UTC, by 28.4°"),
             "{}",
-            open.says
+            open.summary
         );
         for wanted in ["Steer by gyro", "take an azimuth", "check the gyro"] {
             assert!(open.advice.contains(wanted), "{}", open.advice);
@@ -178,7 +180,11 @@ mod tests {
     #[test]
     fn nobody_is_sent_to_a_gyro_that_gave_nothing() {
         let alone = status(ShipAlertState::Open, None, Some(-7.2));
-        assert!(alone.says.contains("compass and satellite compass parted"));
+        assert!(
+            alone
+                .summary
+                .contains("compass and satellite compass parted")
+        );
         assert!(!alone.advice.contains("gyro"), "{}", alone.advice);
         assert!(alone.advice.contains("take an azimuth"));
     }
@@ -187,7 +193,7 @@ mod tests {
     fn what_is_over_says_so_and_asks_for_nothing() {
         let over = status(ShipAlertState::Agree, Some(0.4), None);
         assert_eq!(
-            over.says,
+            over.summary,
             "compass and gyro agree again since 2026-11-21 07:05 UTC"
         );
         assert_eq!(over.advice, "");

@@ -10,29 +10,28 @@ use binnacle_wire::alert::ShipAlertState;
 use std::time::Duration;
 use tokio::time::Instant;
 
-const AGAIN: Duration = Duration::from_secs(30);
+const REPEAT_INTERVAL: Duration = Duration::from_secs(30);
 /// This agent has one alarm.
-const NUMBER: &str = "001";
+const ALARM_NUMBER: &str = "001";
 
 /// What was last said, and when.
 #[derive(Debug, Default)]
 pub(crate) struct AlarmSentence {
-    said: Option<(String, Instant)>,
+    last_sent: Option<(String, Instant)>,
 }
 
 impl AlarmSentence {
     /// The sentence with its line end, when it is due.
     pub(crate) fn due(&mut self, record: Option<&AlertRecord>, now: Instant) -> Option<Vec<u8>> {
         let body = body(record);
-        let is_due = self
-            .said
-            .as_ref()
-            .is_none_or(|(said, at)| *said != body || now.saturating_duration_since(*at) >= AGAIN);
+        let is_due = self.last_sent.as_ref().is_none_or(|(last_sent, at)| {
+            *last_sent != body || now.saturating_duration_since(*at) >= REPEAT_INTERVAL
+        });
         if !is_due {
             return None;
         }
         let sentence = framed(&body);
-        self.said = Some((body, now));
+        self.last_sent = Some((body, now));
         Some(sentence)
     }
 }
@@ -40,7 +39,7 @@ impl AlarmSentence {
 fn body(record: Option<&AlertRecord>) -> String {
     let talker = String::from_utf8_lossy(&TALKER);
     let Some(record) = record else {
-        return format!("{talker}ALR,,{NUMBER},V,A,NO ALERT OF THE COMPASS");
+        return format!("{talker}ALR,,{ALARM_NUMBER},V,A,NO ALERT OF THE COMPASS");
     };
     let time = record.alert.at.to_string();
     // 2026-11-21T07:05:00Z
@@ -50,7 +49,7 @@ fn body(record: Option<&AlertRecord>) -> String {
         .take(8)
         .filter(|c| *c != ':')
         .collect();
-    let (condition, so) = match record.alert.state {
+    let (condition, state) = match record.alert.state {
         ShipAlertState::Open => ('A', "PARTED"),
         ShipAlertState::Agree => ('V', "AGREE"),
         ShipAlertState::NotJudged => ('V', "NOT JUDGED"),
@@ -58,7 +57,7 @@ fn body(record: Option<&AlertRecord>) -> String {
     let reference = record.alert.reference().to_uppercase();
     let acknowledged = if record.acknowledged { 'A' } else { 'V' };
     format!(
-        "{talker}ALR,{time}.00,{NUMBER},{condition},{acknowledged},COMPASS AND {reference} {so}"
+        "{talker}ALR,{time}.00,{ALARM_NUMBER},{condition},{acknowledged},COMPASS AND {reference} {state}"
     )
 }
 
@@ -84,10 +83,10 @@ mod tests {
                 model_version: 1,
             },
             acknowledged,
-            followed: false,
-            parted: 1,
-            raised_by_deg: None,
-            is_doubted: false,
+            followed_up: false,
+            departed_sectors: 1,
+            raised_limit_deg: None,
+            clearance_revoked: false,
         }
     }
 
@@ -98,13 +97,13 @@ mod tests {
     #[test]
     fn the_checksum_is_the_exclusive_or_of_what_lies_between_dollar_and_star() {
         let open = record(ShipAlertState::Open, false);
-        let said = text(AlarmSentence::default().due(Some(&open), Instant::now()));
+        let last_sent = text(AlarmSentence::default().due(Some(&open), Instant::now()));
 
         assert_eq!(
-            said,
+            last_sent,
             "$IIALR,070509.00,001,A,V,COMPASS AND GYRO PARTED*5E\r\n"
         );
-        assert!(said.len() <= 82, "{}", said.len());
+        assert!(last_sent.len() <= 82, "{}", last_sent.len());
     }
 
     #[test]
@@ -121,8 +120,11 @@ mod tests {
         let seen = record(ShipAlertState::Open, true);
         assert!(text(alarm.due(Some(&seen), after(33))).contains(",001,A,A,"));
         let over = record(ShipAlertState::Agree, true);
-        let said = text(alarm.due(Some(&over), after(34)));
-        assert!(said.contains(",001,V,A,COMPASS AND GYRO AGREE*"), "{said}");
+        let last_sent = text(alarm.due(Some(&over), after(34)));
+        assert!(
+            last_sent.contains(",001,V,A,COMPASS AND GYRO AGREE*"),
+            "{last_sent}"
+        );
     }
 
     #[test]
@@ -131,9 +133,12 @@ mod tests {
             let mut open = record(state, false);
             open.alert.gyro_departure_deg = None;
             open.alert.satellite_departure_deg = Some(20.0);
-            let said = text(AlarmSentence::default().due(Some(&open), Instant::now()));
-            assert!(said.contains(",COMPASS AND SATELLITE COMPASS "), "{said}");
-            assert!(said.len() <= 82, "{said}");
+            let last_sent = text(AlarmSentence::default().due(Some(&open), Instant::now()));
+            assert!(
+                last_sent.contains(",COMPASS AND SATELLITE COMPASS "),
+                "{last_sent}"
+            );
+            assert!(last_sent.len() <= 82, "{last_sent}");
         }
     }
 
@@ -141,9 +146,9 @@ mod tests {
     fn what_nobody_judged_is_not_said_to_agree() {
         let withdrawn = record(ShipAlertState::NotJudged, true);
         for record in [Some(&withdrawn), None] {
-            let said = text(AlarmSentence::default().due(record, Instant::now()));
-            assert!(said.contains(",001,V,"), "{said}");
-            assert!(!said.contains("AGREE"), "{said}");
+            let last_sent = text(AlarmSentence::default().due(record, Instant::now()));
+            assert!(last_sent.contains(",001,V,"), "{last_sent}");
+            assert!(!last_sent.contains("AGREE"), "{last_sent}");
         }
     }
 }

@@ -7,7 +7,7 @@
 
 mod store_samples;
 
-use crate::alert::{AlarmSentence, AlertMonitor, AlertRecord, Card};
+use crate::alert::{ActiveCard, AlarmSentence, AlertMonitor, AlertRecord};
 use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
@@ -295,7 +295,7 @@ impl Agent {
     fn update_alert(&mut self) {
         let withdrawn = self.withdrawn();
         let model = self.uplink_handle.model.borrow();
-        let card = Card {
+        let card = ActiveCard {
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
         };
@@ -303,15 +303,15 @@ impl Agent {
         let settled = self.ship.sampler.take_settled();
         let revisions = settled
             .iter()
-            .filter_map(|w| self.alert_monitor.take(w, card, new_id));
+            .filter_map(|w| self.alert_monitor.observe(w, card, new_id));
         let mut revisions: Vec<ShipAlert> = revisions.collect();
         let now = self.ship.time();
-        revisions.extend(now.and_then(|now| self.alert_monitor.follow(card, now)));
+        revisions.extend(now.and_then(|now| self.alert_monitor.update_card(card, now)));
         if revisions.is_empty() {
             return;
         }
         if let Some(record) = self.alert_monitor.record() {
-            tracing::warn!("{}", record.status().says);
+            tracing::warn!("{}", record.status().summary);
         }
         self.ship.sampler.cut_sample();
         self.unstored.alerts.extend(revisions);

@@ -20,18 +20,18 @@ use std::collections::VecDeque;
 use uuid::Uuid;
 
 /// Where a model gives no band.
-const USUAL_BAND_DEG: f64 = 2.0;
+const DEFAULT_BAND_DEG: f64 = 2.0;
 /// Nearer to a pole than this nobody steers by a gyro's usual error.
-const HIGHEST_LAT_DEG: f64 = 75.0;
+const MAX_LAT_DEG: f64 = 75.0;
 /// They agree again when they are so much nearer than what parted them.
-const AGREE_SHARE: f64 = 0.75;
+const AGREEMENT_SHARE: f64 = 0.75;
 /// Windows further apart than half an hour do not belong together.
-const LONGEST_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
+const MAX_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
 /// After half an hour of settled windows what came since the alert goes ashore too.
 const FOLLOW_WINDOWS: usize = 1800 / WINDOW_S as usize;
 /// After so many settled hours of agreement it is over, whatever the heading: a day.
-const AGREE_ANYWHERE_WINDOWS: usize = 24 * 3600 / WINDOW_S as usize;
-/// Degrees of heading by the reference that one bit of [`AlertRecord::parted`] stands for. What a magnet
+const AGREE_ON_ANY_HEADING_WINDOWS: usize = 24 * 3600 / WINDOW_S as usize;
+/// Degrees of heading by the reference that one bit of [`AlertRecord::departed_sectors`] stands for. What a magnet
 /// does is nothing on two courses and at its most a quarter of a circle from them, so that
 /// agreement on one course says little of the next: a magnet that turns the compass by 14° does
 /// as good as nothing within 10° of either.
@@ -39,21 +39,21 @@ const SECTOR_DEG: f64 = 10.0;
 const SECTORS: u32 = 36;
 /// Agreement on three courses, each so many sectors from the next, speaks for all: neither a
 /// magnet, with its two nulls, nor soft iron, with its four, does little on all of them.
-const ACROSS: std::ops::RangeInclusive<u32> = 4..=8;
+const COURSE_SPACING_SECTORS: std::ops::RangeInclusive<u32> = 4..=8;
 /// A ship's clock that is so far behind the model's data is wrong, and so is what
 /// variation is taken for it.
-const BEHIND_MODEL_S: f64 = 86_400.0;
+const MAX_CLOCK_LAG_S: f64 = 86_400.0;
 
 /// The card in use.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Card<'a> {
+pub(crate) struct ActiveCard<'a> {
     pub(crate) model: Option<&'a ModelDownlink>,
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
 }
 
 /// How compass and references stood in one settled window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Apart {
+struct Departure {
     index: i64,
     /// Corrected compass less gyro.
     gyro_deg: Option<f64>,
@@ -71,15 +71,15 @@ struct Apart {
 pub(crate) struct AlertMonitor {
     config: AlertConfig,
     /// The latest windows, oldest first: twice as many as raise an alert.
-    recent: VecDeque<Apart>,
+    recent: VecDeque<Departure>,
     /// The model that they were judged by.
     model: Option<Uuid>,
     record: Option<AlertRecord>,
     /// Settled windows since the alert was raised, or the agent was started.
     since_raised: usize,
     /// Settled windows of agreement in a row, and a bit for each sector they were of.
-    agreed: usize,
-    agreed_on: u64,
+    agreed_windows: usize,
+    agreed_sectors: u64,
 }
 
 impl AlertMonitor {
@@ -96,8 +96,8 @@ impl AlertMonitor {
             model,
             record,
             since_raised: 0,
-            agreed: 0,
-            agreed_on: 0,
+            agreed_windows: 0,
+            agreed_sectors: 0,
         }
     }
 
@@ -116,12 +116,16 @@ impl AlertMonitor {
 
     /// Follows the card: what another one was judged by is forgotten, and without
     /// one an alert ends. Gives the revision that says so.
-    pub(crate) fn follow(&mut self, card: Card<'_>, now: Timestamp) -> Option<ShipAlert> {
+    pub(crate) fn update_card(
+        &mut self,
+        card: ActiveCard<'_>,
+        now: Timestamp,
+    ) -> Option<ShipAlert> {
         let model = card.in_use().map(|model| model.id);
         if model != self.model {
             self.model = model;
             self.recent.clear();
-            self.disagree();
+            self.reset_agreement();
         }
         if model.is_some() {
             return None;
@@ -130,40 +134,40 @@ impl AlertMonitor {
     }
 
     /// Takes a settled window; gives the revision that it calls for.
-    pub(crate) fn take(
+    pub(crate) fn observe(
         &mut self,
         window: &Window,
-        card: Card<'_>,
+        card: ActiveCard<'_>,
         new_id: impl FnOnce() -> Uuid,
     ) -> Option<ShipAlert> {
         let now = end_of(window.index)?;
-        if let Some(ended) = self.follow(card, now) {
+        if let Some(ended) = self.update_card(card, now) {
             return Some(ended);
         }
-        let apart = self.compare(window, card, now)?;
-        self.remember(apart);
+        let departure = self.compare(window, card, now)?;
+        self.push_recent(departure);
         self.since_raised = self.since_raised.saturating_add(1);
         let raise = self.config.settled_windows();
-        let stand = self.stand(raise)?;
-        if stand.is_apart() {
-            self.mark(stand.sector);
+        let median = self.median_over(raise)?;
+        if median.exceeds_limit() {
+            self.mark_sector(median.sector);
         }
         if !self.record.is_some_and(|record| record.is_open()) {
             let version = card.in_use()?.version;
-            return stand
-                .is_apart()
-                .then(|| self.raise(stand, version, now, new_id()));
+            return median
+                .exceeds_limit()
+                .then(|| self.raise(median, version, now, new_id()));
         }
-        if self.agrees(raise) {
+        if self.check_agreement(raise) {
             return self.revise(ShipAlertState::Agree, now);
         }
-        self.judge_anew(raise, now)
-            .or_else(|| self.follow_up(stand, now))
+        self.reassess(raise, now)
+            .or_else(|| self.follow_up(median, now))
     }
 
-    fn compare(&self, window: &Window, card: Card<'_>, now: Timestamp) -> Option<Apart> {
+    fn compare(&self, window: &Window, card: ActiveCard<'_>, now: Timestamp) -> Option<Departure> {
         let model = card.in_use()?;
-        if now.seconds_since(model.data_until) < -BEHIND_MODEL_S {
+        if now.seconds_since(model.data_until) < -MAX_CLOCK_LAG_S {
             return None;
         }
         let corrected = foretell(Ingredients {
@@ -181,10 +185,10 @@ impl AlertMonitor {
         // By the reference: that of a compass gone astray is another on the same course.
         let reference = window.gyro_deg.or(window.satellite_deg);
         let heading_deg = reference.unwrap_or(true_deg);
-        let lat_deg = window.position.lat_deg().abs().min(HIGHEST_LAT_DEG);
+        let lat_deg = window.position.lat_deg().abs().min(MAX_LAT_DEG);
         let gyro_error_deg = self.config.gyro_error_deg.0 / lat_deg.to_radians().cos();
-        let band_deg = corrected.band95_deg.unwrap_or(USUAL_BAND_DEG);
-        Some(Apart {
+        let band_deg = corrected.band95_deg.unwrap_or(DEFAULT_BAND_DEG);
+        Some(Departure {
             index: window.index,
             gyro_deg: window.gyro_deg.map(departure),
             satellite_deg: window.satellite_deg.map(departure),
@@ -194,14 +198,14 @@ impl AlertMonitor {
         })
     }
 
-    fn remember(&mut self, apart: Apart) {
-        let goes_on = self.recent.back().is_none_or(|last| {
-            (last.index + 1..=last.index + LONGEST_GAP_WINDOWS).contains(&apart.index)
+    fn push_recent(&mut self, departure: Departure) {
+        let is_continuous = self.recent.back().is_none_or(|last| {
+            (last.index + 1..=last.index + MAX_GAP_WINDOWS).contains(&departure.index)
         });
-        if !goes_on {
+        if !is_continuous {
             self.recent.clear();
         }
-        self.recent.push_back(apart);
+        self.recent.push_back(departure);
         if self.recent.len() > 2 * self.config.settled_windows() {
             self.recent.pop_front();
         }
@@ -209,7 +213,7 @@ impl AlertMonitor {
 
     /// How they stand over the last so many windows; none when there are fewer. Half of the
     /// windows speak for all, and for both references the same ones.
-    fn stand(&self, windows: usize) -> Option<Stand> {
+    fn median_over(&self, windows: usize) -> Option<MedianDeparture> {
         let from = self.recent.len().checked_sub(windows)?;
         let last = self.recent.back()?;
         let middle = |departures: Vec<f64>| {
@@ -217,20 +221,21 @@ impl AlertMonitor {
             let middle = median(departures.iter().map(|deg| wrap_180(deg - origin)));
             (departures.len() * 2 >= windows).then(|| wrap_180(origin + middle))
         };
-        let of = |departure: fn(&Apart) -> Option<f64>| {
+        let of = |departure: fn(&Departure) -> Option<f64>| {
             middle(self.recent.range(from..).filter_map(departure).collect())
         };
         let both = || {
             let both = self.recent.range(from..);
-            both.filter_map(|apart| apart.gyro_deg.zip(apart.satellite_deg))
+            both.filter_map(|departure| departure.gyro_deg.zip(departure.satellite_deg))
         };
         let gyro_deg = middle(both().map(|(gyro, _)| gyro).collect());
         let satellite_deg = middle(both().map(|(_, satellite)| satellite).collect());
-        let (gyro_deg, satellite_deg) = match gyro_deg.or_else(|| of(|apart| apart.gyro_deg)) {
-            Some(gyro_deg) => (Some(gyro_deg), satellite_deg),
-            None => (None, of(|apart| apart.satellite_deg)),
-        };
-        Some(Stand {
+        let (gyro_deg, satellite_deg) =
+            match gyro_deg.or_else(|| of(|departure| departure.gyro_deg)) {
+                Some(gyro_deg) => (Some(gyro_deg), satellite_deg),
+                None => (None, of(|departure| departure.satellite_deg)),
+            };
+        Some(MedianDeparture {
             gyro_deg,
             satellite_deg,
             band_deg: last.band_deg,
@@ -241,10 +246,10 @@ impl AlertMonitor {
 
     /// So many of the latest windows are apart: from where those beyond the limit
     /// begin to prevail.
-    fn parted_windows(&self, limit_deg: f64) -> usize {
+    fn count_departed_windows(&self, limit_deg: f64) -> usize {
         let (mut sum, mut most, mut windows) = (0, 0, 0);
-        for (before, apart) in self.recent.iter().rev().enumerate() {
-            let departure = apart.gyro_deg.or(apart.satellite_deg);
+        for (before, departure) in self.recent.iter().rev().enumerate() {
+            let departure = departure.gyro_deg.or(departure.satellite_deg);
             let beyond = departure.is_some_and(|deg| deg.abs() > limit_deg);
             sum += if beyond { 1 } else { -1 };
             if sum > most {
@@ -254,46 +259,52 @@ impl AlertMonitor {
         windows
     }
 
-    fn raise(&mut self, stand: Stand, model_version: u32, now: Timestamp, id: Uuid) -> ShipAlert {
-        let parted = self.parted_windows(stand.limit_deg);
-        let first = self.recent.iter().rev().nth(parted.saturating_sub(1));
-        let since = first.and_then(|apart| start_of(apart.index));
-        let stand = self.stand(parted).unwrap_or(stand);
+    fn raise(
+        &mut self,
+        median: MedianDeparture,
+        model_version: u32,
+        now: Timestamp,
+        id: Uuid,
+    ) -> ShipAlert {
+        let departed = self.count_departed_windows(median.limit_deg);
+        let first = self.recent.iter().rev().nth(departed.saturating_sub(1));
+        let since = first.and_then(|departure| start_of(departure.index));
+        let median = self.median_over(departed).unwrap_or(median);
         let alert = ShipAlert {
             id,
             revision: 1,
             state: ShipAlertState::Open,
             since: since.unwrap_or(now),
             at: now,
-            gyro_departure_deg: stand.gyro_deg.map(tenth),
-            satellite_departure_deg: stand.satellite_deg.map(tenth),
-            limit_deg: tenth(stand.limit_deg),
+            gyro_departure_deg: median.gyro_deg.map(round_to_tenth),
+            satellite_departure_deg: median.satellite_deg.map(round_to_tenth),
+            limit_deg: round_to_tenth(median.limit_deg),
             model_version,
         };
         self.record = Some(AlertRecord {
             alert,
             acknowledged: false,
-            followed: false,
-            parted: 1 << stand.sector,
-            raised_by_deg: Some(alert.limit_deg),
-            is_doubted: false,
+            followed_up: false,
+            departed_sectors: 1 << median.sector,
+            raised_limit_deg: Some(alert.limit_deg),
+            clearance_revoked: false,
         });
         self.since_raised = 0;
-        self.disagree();
+        self.reset_agreement();
         // What agreed before the alert is no sign of its end.
         self.recent.clear();
         alert
     }
 
-    fn mark(&mut self, sector: u32) {
-        self.disagree();
+    fn mark_sector(&mut self, sector: u32) {
+        self.reset_agreement();
         if let Some(record) = self.record.as_mut().filter(|record| record.is_open()) {
-            record.parted |= 1 << sector;
+            record.departed_sectors |= 1 << sector;
         }
     }
 
-    fn disagree(&mut self) {
-        (self.agreed, self.agreed_on) = (0, 0);
+    fn reset_agreement(&mut self) {
+        (self.agreed_windows, self.agreed_sectors) = (0, 0);
     }
 
     /// Whether an open alert is over: they agree on every heading on which they were
@@ -301,37 +312,39 @@ impl AlertMonitor {
     /// courses that speak for all; or long enough. A band that is wider than when they parted
     /// makes none of what is as far apart as then, one that is far wider nothing at all, and
     /// what was read before a turn is of another course.
-    fn agrees(&mut self, raise: usize) -> bool {
-        let stand = self.stand(2 * raise);
-        let on_course = stand.filter(|stand| self.is_on_course(2 * raise, stand.sector));
-        let Some((stand, record)) = on_course.zip(self.record.as_mut()) else {
+    fn check_agreement(&mut self, raise: usize) -> bool {
+        let median = self.median_over(2 * raise);
+        let on_course = median.filter(|median| self.is_on_course(2 * raise, median.sector));
+        let Some((median, record)) = on_course.zip(self.record.as_mut()) else {
             return false;
         };
         let alert = &record.alert;
-        let raised_by_deg = record.raised_by_deg.unwrap_or(alert.limit_deg);
+        let raised_limit_deg = record.raised_limit_deg.unwrap_or(alert.limit_deg);
         // A model that hardly knows the heading agrees with anything.
-        if stand.band_deg > raised_by_deg {
+        if median.band_deg > raised_limit_deg {
             return false;
         }
-        let limit_deg = AGREE_SHARE * stand.limit_deg.min(raised_by_deg);
+        let limit_deg = AGREEMENT_SHARE * median.limit_deg.min(raised_limit_deg);
         let is_near = |deg: f64| deg.abs() <= limit_deg;
-        let (judged_deg, other_deg) = stand.judged_deg(record);
-        if !judged_deg.is_some_and(is_near) || !other_deg.is_none_or(is_near) {
-            self.disagree();
+        let (assessed_deg, other_deg) = median.assessed_deg(record);
+        if !assessed_deg.is_some_and(is_near) || !other_deg.is_none_or(is_near) {
+            self.reset_agreement();
             return false;
         }
-        let is_sound = is_trusting(alert.suspect());
-        record.parted &= !(1 << stand.sector);
-        let is_settled = record.parted == 0 || is_sound;
-        self.agreed = self.agreed.saturating_add(1);
-        self.agreed_on |= 1 << stand.sector;
-        is_settled || is_across(self.agreed_on) || self.agreed >= AGREE_ANYWHERE_WINDOWS
+        let is_sound = clears_compass(alert.suspect());
+        record.departed_sectors &= !(1 << median.sector);
+        let is_settled = record.departed_sectors == 0 || is_sound;
+        self.agreed_windows = self.agreed_windows.saturating_add(1);
+        self.agreed_sectors |= 1 << median.sector;
+        is_settled
+            || covers_all_courses(self.agreed_sectors)
+            || self.agreed_windows >= AGREE_ON_ANY_HEADING_WINDOWS
     }
 
     /// Whether so many of the latest windows are of one course, but for yaw.
     fn is_on_course(&self, windows: usize, sector: u32) -> bool {
-        let is_near = |apart: &Apart| {
-            let turned = (apart.sector + SECTORS - sector) % SECTORS;
+        let is_near = |departure: &Departure| {
+            let turned = (departure.sector + SECTORS - sector) % SECTORS;
             turned <= 1 || turned == SECTORS - 1
         };
         self.recent.iter().rev().take(windows).all(is_near)
@@ -339,29 +352,30 @@ impl AlertMonitor {
 
     /// Whose fault it is shows when a reference speaks again that was silent, and another
     /// instrument may fail, too. Readings from before a turn have no part in it.
-    fn judge_anew(&mut self, raise: usize, now: Timestamp) -> Option<ShipAlert> {
-        let stand = self.stand(2 * raise)?;
-        if !self.is_on_course(2 * raise, stand.sector) {
+    fn reassess(&mut self, raise: usize, now: Timestamp) -> Option<ShipAlert> {
+        let median = self.median_over(2 * raise)?;
+        if !self.is_on_course(2 * raise, median.sector) {
             return None;
         }
         let record = self.record.as_mut()?;
         let before = record.alert.suspect();
-        let said = judged_anew(record, stand.said(&record.alert))?;
-        record.is_doubted |= is_trusting(before);
-        record.alert = said;
+        let updated = reassessed_alert(record, median.updated(&record.alert))?;
+        record.clearance_revoked |= clears_compass(before);
+        record.alert = updated;
         self.revise(ShipAlertState::Open, now)
     }
 
-    fn follow_up(&mut self, stand: Stand, now: Timestamp) -> Option<ShipAlert> {
+    fn follow_up(&mut self, median: MedianDeparture, now: Timestamp) -> Option<ShipAlert> {
         let record = self.record.as_mut()?;
-        if record.followed || self.since_raised < FOLLOW_WINDOWS {
+        if record.followed_up || self.since_raised < FOLLOW_WINDOWS {
             return None;
         }
-        record.followed = true;
-        let said = stand.said(&record.alert);
-        let is_of_same = !lacks(&record.alert, &said) && said.suspect() == record.alert.suspect();
-        if stand.is_apart() && is_of_same {
-            record.alert = said;
+        record.followed_up = true;
+        let updated = median.updated(&record.alert);
+        let is_of_same = !has_lost_reference(&record.alert, &updated)
+            && updated.suspect() == record.alert.suspect();
+        if median.exceeds_limit() && is_of_same {
+            record.alert = updated;
         }
         self.revise(ShipAlertState::Open, now)
     }
@@ -378,7 +392,7 @@ impl AlertMonitor {
 
 /// Medians over some windows.
 #[derive(Clone, Copy, Debug)]
-struct Stand {
+struct MedianDeparture {
     gyro_deg: Option<f64>,
     satellite_deg: Option<f64>,
     band_deg: f64,
@@ -386,97 +400,109 @@ struct Stand {
     sector: u32,
 }
 
-impl Stand {
+impl MedianDeparture {
     /// From the gyro, or where there is none from the satellite compass.
     fn main_deg(&self) -> Option<f64> {
         self.gyro_deg.or(self.satellite_deg)
     }
 
-    fn is_apart(&self) -> bool {
+    fn exceeds_limit(&self) -> bool {
         self.main_deg()
             .is_some_and(|deg| deg.abs() > self.limit_deg)
     }
 
     /// The departure whose end is that of an alert, and the other, if that is to have ended,
     /// too: where an instrument was borne out, both.
-    fn judged_deg(&self, record: &AlertRecord) -> (Option<f64>, Option<f64>) {
+    fn assessed_deg(&self, record: &AlertRecord) -> (Option<f64>, Option<f64>) {
         let (gyro_deg, satellite_deg) = (self.gyro_deg, self.satellite_deg);
         match record.alert.suspect() {
             Suspect::Gyro => (gyro_deg, satellite_deg),
             Suspect::Satellite => (satellite_deg, gyro_deg),
-            _ if record.is_doubted => (self.main_deg(), satellite_deg),
+            _ if record.clearance_revoked => (self.main_deg(), satellite_deg),
             _ if record.alert.gyro_departure_deg.is_none() => (satellite_deg.or(gyro_deg), None),
             _ => (self.main_deg(), None),
         }
     }
 
     /// The alert with these figures.
-    fn said(&self, alert: &ShipAlert) -> ShipAlert {
+    fn updated(&self, alert: &ShipAlert) -> ShipAlert {
         ShipAlert {
-            gyro_departure_deg: self.gyro_deg.map(tenth),
-            satellite_departure_deg: self.satellite_deg.map(tenth),
-            limit_deg: tenth(self.limit_deg),
+            gyro_departure_deg: self.gyro_deg.map(round_to_tenth),
+            satellite_departure_deg: self.satellite_deg.map(round_to_tenth),
+            limit_deg: round_to_tenth(self.limit_deg),
             ..*alert
         }
     }
 }
 
 /// Whether two instruments bear the compass out, so that it is steered by.
-fn is_trusting(suspect: Suspect) -> bool {
+fn clears_compass(suspect: Suspect) -> bool {
     matches!(suspect, Suspect::Gyro | Suspect::Satellite)
 }
 
 /// Whether a reference that has spoken is silent.
-fn lacks(before: &ShipAlert, said: &ShipAlert) -> bool {
+fn has_lost_reference(before: &ShipAlert, updated: &ShipAlert) -> bool {
     let is_silent = |was: Option<f64>, is: Option<f64>| was.is_some() && is.is_none();
-    is_silent(before.gyro_departure_deg, said.gyro_departure_deg)
-        || is_silent(before.satellite_departure_deg, said.satellite_departure_deg)
+    is_silent(before.gyro_departure_deg, updated.gyro_departure_deg)
+        || is_silent(
+            before.satellite_departure_deg,
+            updated.satellite_departure_deg,
+        )
 }
 
 /// What an open alert is to say by new figures, if it is another verdict. A reference that falls
 /// silent takes nothing back of what it has proven, as long as the other says what it said. The
 /// compass is borne out at most once: what speaks against that takes it back for the rest of
 /// the alert, for a bad reference and a compass that moves to it look like a bad other one.
-fn judged_anew(record: &AlertRecord, said: ShipAlert) -> Option<ShipAlert> {
+fn reassessed_alert(record: &AlertRecord, updated: ShipAlert) -> Option<ShipAlert> {
     let before = &record.alert;
-    let (was, is) = (before.suspect(), said.suspect());
-    if !is_trusting(was) {
-        let may_be = is == Suspect::Compass || (is_trusting(is) && !record.is_doubted);
-        return (was == Suspect::Unknown && may_be).then_some(said);
+    let (was, is) = (before.suspect(), updated.suspect());
+    if !clears_compass(was) {
+        let may_be = is == Suspect::Compass || (clears_compass(is) && !record.clearance_revoked);
+        return (was == Suspect::Unknown && may_be).then_some(updated);
     }
-    if lacks(before, &said) {
+    if has_lost_reference(before, &updated) {
         let moved = |was: Option<f64>, is: Option<f64>| {
             was.zip(is)
-                .is_some_and(|(was, is)| wrap_180(is - was).abs() > said.limit_deg)
+                .is_some_and(|(was, is)| wrap_180(is - was).abs() > updated.limit_deg)
         };
-        let has_moved = moved(before.gyro_departure_deg, said.gyro_departure_deg)
-            || moved(before.satellite_departure_deg, said.satellite_departure_deg);
-        return has_moved.then_some(said);
+        let has_moved = moved(before.gyro_departure_deg, updated.gyro_departure_deg)
+            || moved(
+                before.satellite_departure_deg,
+                updated.satellite_departure_deg,
+            );
+        return has_moved.then_some(updated);
     }
     let bears_out = match was {
-        Suspect::Gyro => said.satellite_departure_deg,
-        _ => said.gyro_departure_deg,
+        Suspect::Gyro => updated.satellite_departure_deg,
+        _ => updated.gyro_departure_deg,
     };
-    if bears_out.is_none_or(|deg| deg.abs() <= said.limit_deg) {
+    if bears_out.is_none_or(|deg| deg.abs() <= updated.limit_deg) {
         return None;
     }
     // By one reference alone nobody is borne out.
     Some(ShipAlert {
-        satellite_departure_deg: said.satellite_departure_deg.filter(|_| !is_trusting(is)),
-        ..said
+        satellite_departure_deg: updated
+            .satellite_departure_deg
+            .filter(|_| !clears_compass(is)),
+        ..updated
     })
 }
 
-impl<'a> Card<'a> {
+impl<'a> ActiveCard<'a> {
     fn in_use(self) -> Option<&'a ModelDownlink> {
         self.model.filter(|_| self.withdrawn.is_none())
     }
 }
 
 /// Whether three of the sectors speak for all.
-fn is_across(sectors: u64) -> bool {
+fn covers_all_courses(sectors: u64) -> bool {
     let is_in = |sector: u32| sectors & (1 << (sector % SECTORS)) != 0;
-    let next = |one: u32| ACROSS.map(move |far| one + far).filter(|two| is_in(*two));
+    let next = |one: u32| {
+        COURSE_SPACING_SECTORS
+            .map(move |far| one + far)
+            .filter(|two| is_in(*two))
+    };
     (0..SECTORS).any(|one| is_in(one) && next(one).any(|two| next(two).next().is_some()))
 }
 
@@ -488,7 +514,7 @@ fn end_of(window: i64) -> Option<Timestamp> {
     start_of(window.checked_add(1)?)
 }
 
-fn tenth(degrees: f64) -> f64 {
+fn round_to_tenth(degrees: f64) -> f64 {
     (degrees * 10.0).round() / 10.0
 }
 

@@ -6,10 +6,10 @@ fn record(revision: u32) -> AlertRecord {
     AlertRecord {
         alert: alert(revision),
         acknowledged: false,
-        followed: false,
-        parted: 8,
-        raised_by_deg: None,
-        is_doubted: false,
+        followed_up: false,
+        departed_sectors: 8,
+        raised_limit_deg: None,
+        clearance_revoked: false,
     }
 }
 

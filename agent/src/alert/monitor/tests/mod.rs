@@ -65,8 +65,8 @@ fn ship() -> Ship {
 }
 
 impl Ship {
-    fn card(&self) -> Card<'_> {
-        Card {
+    fn card(&self) -> ActiveCard<'_> {
+        ActiveCard {
             model: Some(&self.card),
             withdrawn: self.withdrawn.as_ref(),
         }
@@ -105,13 +105,13 @@ impl Ship {
     }
 
     fn feed(&mut self, window: &Window) {
-        let card = Card {
+        let card = ActiveCard {
             model: Some(&self.card),
             withdrawn: self.withdrawn.as_ref(),
         };
         let id = Uuid::from_u128(window.index.unsigned_abs().into());
         self.revisions
-            .extend(self.monitor.take(window, card, || id));
+            .extend(self.monitor.observe(window, card, || id));
     }
 
     fn states(&self) -> Vec<(u32, ShipAlertState)> {
@@ -190,7 +190,7 @@ fn the_limit_is_the_band_and_the_gyros_error_and_grows_towards_the_poles() {
         };
         let now = end_of(window.index).unwrap();
         let apart = ship.monitor.compare(&window, ship.card(), now);
-        apart.unwrap().limit_deg - USUAL_BAND_DEG
+        apart.unwrap().limit_deg - DEFAULT_BAND_DEG
     };
     assert!((limit_deg(0.0) - 2.5).abs() < 1e-9);
     assert!((limit_deg(60.0) - 5.0).abs() < 1e-9);
@@ -377,9 +377,13 @@ fn without_a_card_there_is_no_alert_and_one_that_is_open_ends() {
     });
     ship.sail(60, 90.0, STRUCK);
     assert_eq!(ship.states(), [(1, Open), (2, NotJudged)]);
-    let none = Card::default();
+    let none = ActiveCard::default();
     let now = end_of(ship.index).unwrap();
-    assert_eq!(ship.monitor.follow(none, now), None, "it has ended already");
+    assert_eq!(
+        ship.monitor.update_card(none, now),
+        None,
+        "it has ended already"
+    );
 }
 
 #[test]
