@@ -11,10 +11,10 @@
 
 mod config;
 mod decode;
-mod delta;
 mod link;
 mod pump;
 mod readings;
+mod signalk_delta;
 mod stats;
 
 mod file;

@@ -1,8 +1,8 @@
 //! Deltas from a Signal K server over a WebSocket.
 
 use super::config::SignalKUrl;
-use super::delta::{Deltas, PATHS};
 use super::link::{CONNECT_LIMIT, End, Link, connect};
+use super::signalk_delta::{DeltaReader, PATHS};
 use binnacle_nmea::Tally;
 use futures_util::{SinkExt, StreamExt};
 use serde_json::json;
@@ -29,7 +29,7 @@ pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
         .await
         .map_err(io::Error::other)?;
     link.opened();
-    let mut deltas = Deltas::new(link.name.clone());
+    let mut deltas = DeltaReader::new(link.name.clone());
     while let Some(message) = socket.next().await {
         let message = message.map_err(io::Error::other)?;
         link.stats.heard(message.len(), &Tally::default());

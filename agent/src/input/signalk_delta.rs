@@ -38,9 +38,9 @@ pub(super) const PATHS: [&str; 10] = [
 const TALKER: [u8; 2] = *b"SK";
 const KNOTS_A_METRE_PER_SECOND: f64 = 3600.0 / 1852.0;
 /// No ship is faster.
-const FASTEST_M_S: f64 = 100.0;
+const MAX_SPEED_M_S: f64 = 100.0;
 /// No ship turns faster.
-const FASTEST_TURN_RAD_S: f64 = PI;
+const MAX_TURN_RAD_S: f64 = PI;
 /// Servers round: four decimals of a full circle may exceed it.
 const ROUNDING_RAD: f64 = 1e-4;
 /// Where the values of the server's own computations come from.
@@ -48,7 +48,7 @@ const DERIVED: &str = "derived-data";
 
 /// Reads the messages of one connection.
 #[derive(Debug)]
-pub(super) struct Deltas {
+pub(super) struct DeltaReader {
     input: Arc<str>,
     /// `vessels.urn:…`, once the server has said who it is.
     own_ship: Option<String>,
@@ -91,17 +91,17 @@ struct Attitude {
 }
 
 #[derive(Deserialize)]
-struct Place {
+struct LatLon {
     latitude: f64,
     longitude: f64,
 }
 
 /// A value that is not what its path must hold.
-struct Bad;
+struct InvalidValue;
 
-impl Deltas {
-    pub(super) fn new(input: Arc<str>) -> Deltas {
-        Deltas {
+impl DeltaReader {
+    pub(super) fn new(input: Arc<str>) -> DeltaReader {
+        DeltaReader {
             input,
             own_ship: None,
             deviation: None,
@@ -117,7 +117,7 @@ impl Deltas {
             return out;
         };
         if let Some(own_ship) = message.own_ship {
-            self.own_ship = Some(vessel(&own_ship).to_owned());
+            self.own_ship = Some(strip_vessel_prefix(&own_ship).to_owned());
         }
         if !self.is_own_ship(message.context.as_deref()) {
             stats.refuse("another vessel");
@@ -134,25 +134,30 @@ impl Deltas {
                 .iter()
                 .partition(|value| value.path.starts_with("navigation.magnetic"));
             for value in differences.into_iter().chain(others) {
-                self.value(value, stats, &mut out);
+                self.read_value(value, stats, &mut out);
             }
         }
         out
     }
 
     fn is_own_ship(&self, context: Option<&str>) -> bool {
-        match context.map(vessel) {
+        match context.map(strip_vessel_prefix) {
             None | Some("self") => true,
             Some(context) => self.own_ship.as_deref() == Some(context),
         }
     }
 
-    fn value(&mut self, value: &PathValue<'_>, stats: &InputStats, out: &mut Vec<Observation>) {
+    fn read_value(
+        &mut self,
+        value: &PathValue<'_>,
+        stats: &InputStats,
+        out: &mut Vec<Observation>,
+    ) {
         let Some(path) = PATHS.into_iter().find(|path| *path == value.path) else {
             return stats.refuse("unknown path");
         };
         let before = out.len();
-        let mut say = |sentence: &[u8; 3], reading| {
+        let mut push = |sentence: &[u8; 3], reading| {
             out.push(Observation {
                 input: Arc::clone(&self.input),
                 talker: TALKER,
@@ -161,13 +166,13 @@ impl Deltas {
             });
         };
         let read = match path {
-            "navigation.magneticDeviation" => difference(&value.value).map(|deg| {
+            "navigation.magneticDeviation" => difference_deg(&value.value).map(|deg| {
                 self.deviation = deg.and_then(Deviation::new);
             }),
-            "navigation.magneticVariation" => difference(&value.value).map(|deg| {
+            "navigation.magneticVariation" => difference_deg(&value.value).map(|deg| {
                 self.variation = deg.and_then(Variation::new);
             }),
-            "navigation.headingCompass" => direction(&value.value).map(|deg| {
+            "navigation.headingCompass" => direction_deg(&value.value).map(|deg| {
                 if let Some(raw) = deg.and_then(CompassHeading::new) {
                     let (deviation, variation) = (self.deviation, self.variation);
                     let reading = Reading::Compass {
@@ -175,10 +180,10 @@ impl Deltas {
                         deviation,
                         variation,
                     };
-                    say(b"HDG", reading);
+                    push(b"HDG", reading);
                 }
             }),
-            _ => plain(path, &value.value, &mut say),
+            _ => read_standalone(path, &value.value, &mut push),
         };
         if read.is_err() {
             out.truncate(before);
@@ -189,65 +194,70 @@ impl Deltas {
 }
 
 /// The paths whose values stand alone.
-fn plain(path: &str, value: &Value, say: &mut impl FnMut(&[u8; 3], Reading)) -> Result<(), Bad> {
+fn read_standalone(
+    path: &str,
+    value: &Value,
+    push: &mut impl FnMut(&[u8; 3], Reading),
+) -> Result<(), InvalidValue> {
     if value.is_null() {
         return Ok(());
     }
     match path {
         "navigation.headingMagnetic" => {
-            let heading = direction(value)?.and_then(MagneticHeading::new);
-            say(b"HDM", Reading::Magnetic(heading.ok_or(Bad)?));
+            let heading = direction_deg(value)?.and_then(MagneticHeading::new);
+            push(b"HDM", Reading::Magnetic(heading.ok_or(InvalidValue)?));
         }
         "navigation.headingTrue" => {
-            let heading = direction(value)?.and_then(TrueHeading::new);
-            say(b"HDT", Reading::True(heading.ok_or(Bad)?));
+            let heading = direction_deg(value)?.and_then(TrueHeading::new);
+            push(b"HDT", Reading::True(heading.ok_or(InvalidValue)?));
         }
         "navigation.rateOfTurn" => {
             let rate = number(value)?;
-            if rate.abs() > FASTEST_TURN_RAD_S {
-                return Err(Bad);
+            if rate.abs() > MAX_TURN_RAD_S {
+                return Err(InvalidValue);
             }
             let deg_min = rate.to_degrees() * 60.0;
-            say(b"ROT", Reading::RateOfTurn { deg_min });
+            push(b"ROT", Reading::RateOfTurn { deg_min });
         }
         "navigation.attitude" => {
-            let attitude = Attitude::deserialize(value).map_err(|_| Bad)?;
+            let attitude = Attitude::deserialize(value).map_err(|_| InvalidValue)?;
             if let Some(pitch) = attitude.pitch {
-                let deg = heel(pitch)?;
-                say(b"XDR", Reading::Pitch { deg });
+                let deg = tilt_deg(pitch)?;
+                push(b"XDR", Reading::Pitch { deg });
             }
             if let Some(roll) = attitude.roll {
-                let deg = heel(roll)?;
-                say(b"XDR", Reading::Roll { deg });
+                let deg = tilt_deg(roll)?;
+                push(b"XDR", Reading::Roll { deg });
             }
         }
         "navigation.position" => {
-            let place = Place::deserialize(value).map_err(|_| Bad)?;
+            let lat_lon = LatLon::deserialize(value).map_err(|_| InvalidValue)?;
             let fix = Reading::Fix {
-                position: Position::new(place.latitude, place.longitude).map_err(|_| Bad)?,
+                position: Position::new(lat_lon.latitude, lat_lon.longitude)
+                    .map_err(|_| InvalidValue)?,
                 time: None,
                 sog_kn: None,
             };
-            say(b"RMC", fix);
+            push(b"RMC", fix);
         }
         "navigation.speedOverGround" => {
             let speed_m_s = number(value)?;
-            if !(0.0..=FASTEST_M_S).contains(&speed_m_s) {
-                return Err(Bad);
+            if !(0.0..=MAX_SPEED_M_S).contains(&speed_m_s) {
+                return Err(InvalidValue);
             }
             let sog_kn = speed_m_s * KNOTS_A_METRE_PER_SECOND;
-            say(b"VTG", Reading::Speed { sog_kn });
+            push(b"VTG", Reading::Speed { sog_kn });
         }
         _ => {
-            let text = value.as_str().ok_or(Bad)?;
-            let at = Timestamp::parse(text).map_err(|_| Bad)?;
-            say(b"ZDA", Reading::Time(at));
+            let text = value.as_str().ok_or(InvalidValue)?;
+            let at = Timestamp::parse(text).map_err(|_| InvalidValue)?;
+            push(b"ZDA", Reading::Time(at));
         }
     }
     Ok(())
 }
 
-fn vessel(context: &str) -> &str {
+fn strip_vessel_prefix(context: &str) -> &str {
     context.strip_prefix("vessels.").unwrap_or(context)
 }
 
@@ -255,37 +265,40 @@ fn is_derived(source: &str) -> bool {
     source == DERIVED || source.starts_with("derived-data.")
 }
 
-fn number(value: &Value) -> Result<f64, Bad> {
+fn number(value: &Value) -> Result<f64, InvalidValue> {
     value
         .as_f64()
         .filter(|number| number.is_finite())
-        .ok_or(Bad)
+        .ok_or(InvalidValue)
 }
 
 /// Radians from 0 to a full circle as degrees; `None` for null.
-fn direction(value: &Value) -> Result<Option<f64>, Bad> {
-    bounded(value, 0.0 - ROUNDING_RAD..=TAU + ROUNDING_RAD)
+fn direction_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
+    bounded_deg(value, 0.0 - ROUNDING_RAD..=TAU + ROUNDING_RAD)
 }
 
 /// Radians from −π to π as degrees; `None` for null.
-fn difference(value: &Value) -> Result<Option<f64>, Bad> {
-    bounded(value, -PI - ROUNDING_RAD..=PI + ROUNDING_RAD)
+fn difference_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
+    bounded_deg(value, -PI - ROUNDING_RAD..=PI + ROUNDING_RAD)
 }
 
-fn bounded(value: &Value, range: std::ops::RangeInclusive<f64>) -> Result<Option<f64>, Bad> {
+fn bounded_deg(
+    value: &Value,
+    range: std::ops::RangeInclusive<f64>,
+) -> Result<Option<f64>, InvalidValue> {
     if value.is_null() {
         return Ok(None);
     }
     let radians = number(value)?;
     if !range.contains(&radians) {
-        return Err(Bad);
+        return Err(InvalidValue);
     }
     Ok(Some(radians.to_degrees()))
 }
 
-fn heel(radians: f64) -> Result<f64, Bad> {
+fn tilt_deg(radians: f64) -> Result<f64, InvalidValue> {
     if radians.abs() > PI {
-        return Err(Bad);
+        return Err(InvalidValue);
     }
     Ok(radians.to_degrees())
 }
@@ -297,10 +310,10 @@ mod tests {
 
     fn read_all(messages: &[Value]) -> (Vec<Observation>, InputStats) {
         let stats = InputStats::default();
-        let mut deltas = Deltas::new("sk".into());
+        let mut reader = DeltaReader::new("sk".into());
         let mut out = Vec::new();
         for message in messages {
-            out.extend(deltas.read(&message.to_string(), &stats));
+            out.extend(reader.read(&message.to_string(), &stats));
         }
         (out, stats)
     }
@@ -457,7 +470,7 @@ mod tests {
     #[test]
     fn what_is_no_delta_is_counted() {
         let stats = InputStats::default();
-        let mut deltas = Deltas::new("sk".into());
+        let mut reader = DeltaReader::new("sk".into());
         for text in [
             "",
             "{",
@@ -466,7 +479,7 @@ mod tests {
             "{\"updates\": 5}",
             "{\"updates\":[{\"values\":[{}]}]}",
         ] {
-            assert_eq!(deltas.read(text, &stats), []);
+            assert_eq!(reader.read(text, &stats), []);
         }
         assert_eq!(stats.status().rejected["bad delta"], 6);
     }
