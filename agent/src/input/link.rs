@@ -11,14 +11,14 @@ use tokio::sync::mpsc;
 use tokio::sync::mpsc::error::TrySendError;
 
 /// How long a connection may take to open.
-pub(super) const CONNECT_LIMIT: Duration = Duration::from_secs(10);
+pub(super) const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The system would let tens of megabytes gather, days of a voyage that is
 /// played fast: all lost if the agent is killed. This is a minute of a busy bridge.
 const RECEIVE_BUFFER_BYTES: usize = 128 * 1024;
 
-const FIRST_PAUSE: Duration = Duration::from_millis(100);
-const LONGEST_PAUSE: Duration = Duration::from_secs(10);
+const MIN_PAUSE: Duration = Duration::from_millis(100);
+const MAX_PAUSE: Duration = Duration::from_secs(10);
 
 /// How a session ended without an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,7 +58,7 @@ impl Link {
     }
 
     /// Whether nobody takes observations any more.
-    pub(super) fn is_abandoned(&self) -> bool {
+    pub(super) fn is_receiver_closed(&self) -> bool {
         self.tx.is_closed()
     }
 
@@ -68,8 +68,11 @@ impl Link {
             return Ok(());
         }
         let count = observations.len();
-        self.tx.send(observations).await.map_err(|_| abandoned())?;
-        self.stats.handed_on(count);
+        self.tx
+            .send(observations)
+            .await
+            .map_err(|_| receiver_closed())?;
+        self.stats.count_delivered(count);
         Ok(())
     }
 
@@ -80,15 +83,15 @@ impl Link {
         }
         let count = observations.len();
         match self.tx.try_send(observations) {
-            Ok(()) => self.stats.handed_on(count),
-            Err(TrySendError::Full(_)) => self.stats.dropped(count),
-            Err(TrySendError::Closed(_)) => return Err(abandoned()),
+            Ok(()) => self.stats.count_delivered(count),
+            Err(TrySendError::Full(_)) => self.stats.count_dropped(count),
+            Err(TrySendError::Closed(_)) => return Err(receiver_closed()),
         }
         Ok(())
     }
 }
 
-fn abandoned() -> io::Error {
+fn receiver_closed() -> io::Error {
     io::Error::new(
         io::ErrorKind::BrokenPipe,
         "nobody takes the observations any more",
@@ -98,7 +101,7 @@ fn abandoned() -> io::Error {
 /// Connects, with a limit, and lets the system notice a peer that has gone
 /// without a word: its power may fail at sea.
 pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
-    let stream = tokio::time::timeout(CONNECT_LIMIT, TcpStream::connect(host_port))
+    let stream = tokio::time::timeout(CONNECT_TIMEOUT, TcpStream::connect(host_port))
         .await
         .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "no answer to the connection"))??;
     let keepalive = socket2::TcpKeepalive::new()
@@ -116,14 +119,14 @@ pub(super) struct Backoff(Duration);
 
 impl Default for Backoff {
     fn default() -> Backoff {
-        Backoff(FIRST_PAUSE)
+        Backoff(MIN_PAUSE)
     }
 }
 
 impl Backoff {
     pub(super) fn next_pause(&mut self) -> Duration {
         let pause = self.0;
-        self.0 = (pause * 2).min(LONGEST_PAUSE);
+        self.0 = (pause * 2).min(MAX_PAUSE);
         pause
     }
 }

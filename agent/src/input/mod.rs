@@ -64,7 +64,7 @@ async fn run(config: &InputConfig, link: &Link) {
             Ok(End::Closed) => "the other side has closed the connection".to_owned(),
             Err(error) => error.to_string(),
         };
-        if link.is_abandoned() {
+        if link.is_receiver_closed() {
             return;
         }
         link.closed(&why);

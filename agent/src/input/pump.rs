@@ -21,14 +21,14 @@ pub(super) async fn pump(
             break;
         }
         decoder.chunk(&buffer[..count]);
-        link.stats.heard(count, &decoder.take_tally());
+        link.stats.count_received(count, &decoder.take_tally());
         link.deliver(decoder.take_observations()).await?;
     }
     // The last line of a connection that broke off is a part of a sentence;
     // that of a recording may be whole.
     if source == Source::Recording {
         decoder.finish();
-        link.stats.heard(0, &decoder.take_tally());
+        link.stats.count_received(0, &decoder.take_tally());
         link.deliver(decoder.take_observations()).await?;
     }
     Ok(End::Closed)

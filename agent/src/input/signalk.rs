@@ -1,7 +1,7 @@
 //! Deltas from a Signal K server over a WebSocket.
 
 use super::config::SignalKUrl;
-use super::link::{CONNECT_LIMIT, End, Link, connect};
+use super::link::{CONNECT_TIMEOUT, End, Link, connect};
 use super::signalk_delta::{DeltaReader, PATHS};
 use binnacle_nmea::Tally;
 use futures_util::{SinkExt, StreamExt};
@@ -12,15 +12,15 @@ use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 
 /// Deltas are some hundred bytes; a server that sends more is not one.
-const LONGEST_MESSAGE_BYTES: usize = 1024 * 1024;
+const MAX_MESSAGE_BYTES: usize = 1024 * 1024;
 
 pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
     let stream = connect(&url.host_port()).await?;
     let limits = WebSocketConfig::default()
-        .max_message_size(Some(LONGEST_MESSAGE_BYTES))
-        .max_frame_size(Some(LONGEST_MESSAGE_BYTES));
+        .max_message_size(Some(MAX_MESSAGE_BYTES))
+        .max_frame_size(Some(MAX_MESSAGE_BYTES));
     let handshake = client_async_with_config(url.uri(), stream, Some(limits));
-    let (mut socket, _) = tokio::time::timeout(CONNECT_LIMIT, handshake)
+    let (mut socket, _) = tokio::time::timeout(CONNECT_TIMEOUT, handshake)
         .await
         .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "no answer to the handshake"))?
         .map_err(io::Error::other)?;
@@ -32,10 +32,10 @@ pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
     let mut deltas = DeltaReader::new(link.name.clone());
     while let Some(message) = socket.next().await {
         let message = message.map_err(io::Error::other)?;
-        link.stats.heard(message.len(), &Tally::default());
+        link.stats.count_received(message.len(), &Tally::default());
         match message {
             Message::Text(text) => link.deliver(deltas.read(&text, &link.stats)).await?,
-            Message::Binary(_) => link.stats.refuse("bad delta"),
+            Message::Binary(_) => link.stats.reject("bad delta"),
             Message::Close(_) => return Ok(End::Closed),
             Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}
         }

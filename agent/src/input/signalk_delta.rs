@@ -113,19 +113,19 @@ impl DeltaReader {
     pub(super) fn read(&mut self, text: &str, stats: &InputStats) -> Vec<Observation> {
         let mut out = Vec::new();
         let Ok(message) = serde_json::from_str::<Message<'_>>(text) else {
-            stats.refuse("bad delta");
+            stats.reject("bad delta");
             return out;
         };
         if let Some(own_ship) = message.own_ship {
             self.own_ship = Some(strip_vessel_prefix(&own_ship).to_owned());
         }
         if !self.is_own_ship(message.context.as_deref()) {
-            stats.refuse("another vessel");
+            stats.reject("another vessel");
             return out;
         }
         for update in &message.updates {
             if update.source.as_deref().is_some_and(is_derived) {
-                stats.refuse("computed by the server");
+                stats.reject("computed by the server");
                 continue;
             }
             // A compass reading goes with the deviation beside it.
@@ -154,7 +154,7 @@ impl DeltaReader {
         out: &mut Vec<Observation>,
     ) {
         let Some(path) = PATHS.into_iter().find(|path| *path == value.path) else {
-            return stats.refuse("unknown path");
+            return stats.reject("unknown path");
         };
         let before = out.len();
         let mut push = |sentence: &[u8; 3], reading| {
@@ -187,9 +187,9 @@ impl DeltaReader {
         };
         if read.is_err() {
             out.truncate(before);
-            return stats.refuse("bad value");
+            return stats.reject("bad value");
         }
-        stats.value(path);
+        stats.count_value(path);
     }
 }
 

@@ -21,7 +21,7 @@ struct Counts {
     sentences: Tally,
     /// Signal K values used, and deltas and values refused.
     values: BTreeMap<&'static str, u64>,
-    refused: BTreeMap<&'static str, u64>,
+    rejected_values: BTreeMap<&'static str, u64>,
     last_heard: Option<Instant>,
 }
 
@@ -55,7 +55,7 @@ impl InputStats {
         let mut sentences: BTreeMap<_, _> = counts.sentences.sentences().collect();
         sentences.extend(&counts.values);
         let mut rejected: BTreeMap<_, _> = counts.sentences.rejected().collect();
-        rejected.extend(&counts.refused);
+        rejected.extend(&counts.rejected_values);
         InputStatus {
             connected: counts.connected,
             problem: counts.problem.clone(),
@@ -92,27 +92,27 @@ impl InputStats {
     }
 
     /// A chunk came and was read.
-    pub(super) fn heard(&self, bytes: usize, sentences: &Tally) {
+    pub(super) fn count_received(&self, bytes: usize, sentences: &Tally) {
         let mut counts = self.lock();
         counts.bytes += bytes as u64;
         counts.sentences.add(sentences);
         counts.last_heard = Some(Instant::now());
     }
 
-    pub(super) fn handed_on(&self, observations: usize) {
+    pub(super) fn count_delivered(&self, observations: usize) {
         self.lock().observations += observations as u64;
     }
 
-    pub(super) fn dropped(&self, observations: usize) {
+    pub(super) fn count_dropped(&self, observations: usize) {
         self.lock().dropped += observations as u64;
     }
 
-    pub(super) fn value(&self, kind: &'static str) {
+    pub(super) fn count_value(&self, kind: &'static str) {
         *self.lock().values.entry(kind).or_default() += 1;
     }
 
-    pub(super) fn refuse(&self, reason: &'static str) {
-        *self.lock().refused.entry(reason).or_default() += 1;
+    pub(super) fn reject(&self, reason: &'static str) {
+        *self.lock().rejected_values.entry(reason).or_default() += 1;
     }
 
     /// Counts stay sound when a thread dies between two of them.

@@ -11,9 +11,9 @@ use std::io;
 use std::net::SocketAddr;
 use tokio::net::UdpSocket;
 
-const LONGEST_DATAGRAM: usize = 65_536;
+const MAX_DATAGRAM_BYTES: usize = 65_536;
 /// Datagrams that are already there are handed on together, up to so many.
-const MOST_AT_ONCE: usize = 64;
+const MAX_DATAGRAMS_AT_ONCE: usize = 64;
 /// Room in the kernel for a burst while the agent is busy.
 const RECEIVE_BUFFER_BYTES: usize = 1024 * 1024;
 
@@ -39,7 +39,7 @@ async fn receive(socket: Socket, decode: fn(&mut Decoder, &[u8]), link: &Link) -
     let socket = UdpSocket::from_std(socket.into())?;
     link.opened();
     let mut decoder = Decoder::new(link.name.clone(), Source::Live);
-    let mut buffer = vec![0; LONGEST_DATAGRAM];
+    let mut buffer = vec![0; MAX_DATAGRAM_BYTES];
     loop {
         let mut waiting = Some(socket.recv(&mut buffer).await?);
         let (mut datagrams, mut bytes) = (0, 0);
@@ -47,10 +47,10 @@ async fn receive(socket: Socket, decode: fn(&mut Decoder, &[u8]), link: &Link) -
             decode(&mut decoder, &buffer[..count]);
             datagrams += 1;
             bytes += count;
-            let more = datagrams < MOST_AT_ONCE;
+            let more = datagrams < MAX_DATAGRAMS_AT_ONCE;
             waiting = more.then(|| socket.try_recv(&mut buffer).ok()).flatten();
         }
-        link.stats.heard(bytes, &decoder.take_tally());
+        link.stats.count_received(bytes, &decoder.take_tally());
         link.offer(decoder.take_observations())?;
     }
 }
