@@ -5,12 +5,12 @@
 
 use crate::atomic_file::write_atomically;
 use crate::config::{Config, ConfigError, RolesConfig, SilenceConfig};
-use crate::hold::Hold;
 use crate::offline::offline_status;
-use crate::page::{GUARD_HEADER, HoldRequest};
+use crate::page::{ExclusionRequest, GUARD_HEADER};
 use crate::raw_log::{self, Span};
 use crate::replay;
 use crate::run;
+use crate::sampler::Exclusion;
 use crate::spool::{Identity, Spool};
 use crate::status::Status;
 use crate::uplink::{RequestError, ServerClient};
@@ -182,7 +182,7 @@ fn execute(command: Command) -> anyhow::Result<()> {
                 config,
             } => enrol(&load(&config)?, &server, &code).await,
             Command::RotateToken { config } => rotate_token(&load(&config)?).await,
-            Command::Hold { config, hold } => set_hold(&load(&config)?, hold).await,
+            Command::Hold { config, hold } => set_exclusion(&load(&config)?, hold).await,
             Command::Export {
                 config,
                 from,
@@ -313,28 +313,28 @@ async fn ask_running(spool: &Spool) -> Option<Status> {
     response.json().await.ok()
 }
 
-async fn set_hold(config: &Config, argument: HoldArgument) -> anyhow::Result<()> {
-    let hold = match argument {
-        HoldArgument::Berthed => Some(Hold::Berthed),
-        HoldArgument::MagneticCargo => Some(Hold::MagneticCargo),
-        HoldArgument::Degaussing => Some(Hold::Degaussing),
+async fn set_exclusion(config: &Config, argument: HoldArgument) -> anyhow::Result<()> {
+    let exclusion = match argument {
+        HoldArgument::Berthed => Some(Exclusion::Berthed),
+        HoldArgument::MagneticCargo => Some(Exclusion::MagneticCargo),
+        HoldArgument::Degaussing => Some(Exclusion::Degaussing),
         HoldArgument::Off => None,
     };
     let spool = Spool::open(&config.data_dir).await?;
     // A running agent looks into the spool every second, but obeys its page at once.
-    spool.set_hold(hold).await?;
+    spool.set_exclusion(exclusion).await?;
     if let Some(page) = page_of(&spool).await {
         let response = local_client()?
             .post(format!("http://{page}/api/hold"))
             .header(GUARD_HEADER, "1")
-            .json(&HoldRequest { hold })
+            .json(&ExclusionRequest { exclusion })
             .send()
             .await;
         if let Err(error) = response {
             tracing::debug!(%error, "no running agent answers");
         }
     }
-    let said = hold.map_or_else(
+    let said = exclusion.map_or_else(
         || "sampling resumes".to_owned(),
         |h| format!("on hold: {h}"),
     );

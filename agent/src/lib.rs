@@ -13,7 +13,6 @@ mod observation;
 
 mod alert;
 mod gnss_clock;
-mod hold;
 mod roles;
 mod sampler;
 mod ship;

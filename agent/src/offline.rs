@@ -35,7 +35,7 @@ pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
             withdrawn,
             replaces: model.replaces,
         }),
-        hold: spool.hold().await?,
+        exclusion: spool.exclusion().await?,
         link: LinkStatus {
             state,
             problem: None,

@@ -8,9 +8,9 @@
 
 use crate::alert::AlertRecord;
 use crate::config::PageConfig;
-use crate::hold::Hold;
 use crate::http_limits::LimitedListener;
 use crate::reports;
+use crate::sampler::Exclusion;
 use crate::spool::Spool;
 use crate::status::Status;
 use anyhow::Context;
@@ -34,7 +34,7 @@ use uuid::Uuid;
 pub(crate) struct Page {
     pub(crate) spool: Spool,
     pub(crate) status: watch::Receiver<Arc<Status>>,
-    pub(crate) hold: watch::Sender<Option<Hold>>,
+    pub(crate) exclusion: watch::Sender<Option<Exclusion>>,
     /// The alert that an officer has seen.
     pub(crate) acknowledged: watch::Sender<Option<Uuid>>,
     /// Rings when there is something to send.
@@ -50,9 +50,10 @@ pub(crate) const GUARD_HEADER: &str = "x-binnacle-request";
 /// What a hold button sends; `null` ends the hold.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct HoldRequest {
+pub(crate) struct ExclusionRequest {
     /// The hold that is to be.
-    pub(crate) hold: Option<Hold>,
+    #[serde(rename = "hold")]
+    pub(crate) exclusion: Option<Exclusion>,
 }
 
 /// Serves the page until `shutdown`, where it is configured; notes where in the spool.
@@ -94,7 +95,7 @@ pub(crate) fn router(page: Page) -> Router {
     Router::new()
         .route("/", get(show))
         .route("/api/status", get(status))
-        .route("/api/hold", post(set_hold))
+        .route("/api/hold", post(set_exclusion))
         .route("/api/alert/acknowledge", post(acknowledge))
         .route("/api/reports", get(reports::list))
         .route("/api/reports/{id}", put(reports::put))
@@ -116,15 +117,15 @@ async fn status(State(page): State<Page>) -> Json<Arc<Status>> {
     Json(page.status.borrow().clone())
 }
 
-async fn set_hold(
+async fn set_exclusion(
     State(page): State<Page>,
     headers: HeaderMap,
-    Json(request): Json<HoldRequest>,
+    Json(request): Json<ExclusionRequest>,
 ) -> Response {
     if let Err(refusal) = guarded(&headers) {
         return refusal.into_response();
     }
-    if let Err(error) = page.spool.set_hold(request.hold).await {
+    if let Err(error) = page.spool.set_exclusion(request.exclusion).await {
         tracing::error!(%error, "a hold cannot be stored");
         return (
             StatusCode::INTERNAL_SERVER_ERROR,
@@ -132,7 +133,7 @@ async fn set_hold(
         )
             .into_response();
     }
-    page.hold.send_replace(request.hold);
+    page.exclusion.send_replace(request.exclusion);
     Json(request).into_response()
 }
 
@@ -231,7 +232,7 @@ pub(crate) mod tests {
         let page = Page {
             spool,
             status: watch::channel(Arc::new(Status::default())).1,
-            hold: watch::Sender::new(None),
+            exclusion: watch::Sender::new(None),
             acknowledged: watch::Sender::new(None),
             news: Arc::new(Notify::new()),
         };
@@ -239,7 +240,7 @@ pub(crate) mod tests {
         (directory, page, router)
     }
 
-    fn hold(headers: &[(&str, &str)]) -> Request {
+    fn exclusion(headers: &[(&str, &str)]) -> Request {
         let mut request = Request::post("/api/hold")
             .header("content-type", "application/json")
             .header("host", "192.168.1.9:8090");
@@ -256,10 +257,13 @@ pub(crate) mod tests {
             ("x-binnacle-request", "1"),
             ("origin", "http://192.168.1.9:8090"),
         ];
-        let answer = router.oneshot(hold(&own)).await.unwrap();
+        let answer = router.oneshot(exclusion(&own)).await.unwrap();
         assert_eq!(answer.status(), StatusCode::OK);
-        assert_eq!(*page.hold.borrow(), Some(Hold::Berthed));
-        assert_eq!(page.spool.hold().await.unwrap(), Some(Hold::Berthed));
+        assert_eq!(*page.exclusion.borrow(), Some(Exclusion::Berthed));
+        assert_eq!(
+            page.spool.exclusion().await.unwrap(),
+            Some(Exclusion::Berthed)
+        );
     }
 
     #[tokio::test]
@@ -274,10 +278,10 @@ pub(crate) mod tests {
             &[("origin", "null"), ("x-binnacle-request", "1")],
         ];
         for headers in tricks {
-            let answer = router.clone().oneshot(hold(headers)).await.unwrap();
+            let answer = router.clone().oneshot(exclusion(headers)).await.unwrap();
             assert_eq!(answer.status(), StatusCode::FORBIDDEN, "{headers:?}");
         }
-        assert_eq!(*page.hold.borrow(), None);
+        assert_eq!(*page.exclusion.borrow(), None);
     }
 
     #[tokio::test]

@@ -2,10 +2,10 @@
 
 use crate::clock_checkpoint::ClockCheckpoint;
 use crate::config::RolesConfig;
-use crate::hold::Hold;
 use crate::input::is_recorded_time;
 use crate::observation::{Observation, Reading};
 use crate::roles::{Roles, Signal};
+use crate::sampler::Exclusion;
 use crate::sampler::Sampler;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
@@ -60,11 +60,11 @@ impl Ship {
         roles: &RolesConfig,
         stale_s: f64,
         settings: Settings,
-        hold: Option<Hold>,
+        exclusion: Option<Exclusion>,
     ) -> Ship {
         Ship {
             roles: Roles::new(roles, stale_s),
-            sampler: Sampler::new(settings, hold),
+            sampler: Sampler::new(settings, exclusion),
             readings: Readings::default(),
         }
     }

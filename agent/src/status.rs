@@ -2,9 +2,9 @@
 
 use crate::alert::AlertStatus;
 use crate::corrected::{CardRow, Corrected};
-use crate::hold::Hold;
 use crate::input::InputStatus;
 use crate::raw_log::RawLogStatus;
+use crate::sampler::Exclusion;
 use crate::spool::SpoolStatus;
 use crate::uplink::{BudgetAccount, LinkStatus};
 use binnacle_magnetics::angle::TrueHeading;
@@ -44,7 +44,8 @@ pub(crate) struct Status {
     pub(crate) model: Option<ModelStatus>,
     /// Deviation on every 15° at the ship's place.
     pub(crate) card: Vec<CardRow>,
-    pub(crate) hold: Option<Hold>,
+    #[serde(rename = "hold")]
+    pub(crate) exclusion: Option<Exclusion>,
     /// Ten-second windows by outcome since the agent started.
     pub(crate) windows: BTreeMap<String, u64>,
     pub(crate) inputs: Vec<InputReport>,
@@ -182,8 +183,8 @@ impl Status {
             }
             None => writeln!(out, "model      none")?,
         }
-        if let Some(hold) = self.hold {
-            writeln!(out, "hold       {hold}: nothing is sampled")?;
+        if let Some(exclusion) = self.exclusion {
+            writeln!(out, "hold       {exclusion}: nothing is sampled")?;
         }
         self.write_link(out)?;
         for input in &self.inputs {
@@ -294,7 +295,7 @@ mod tests {
     fn the_text_says_what_is_wrong() {
         let status = Status {
             agent_version: "0.1.0".to_owned(),
-            hold: Some(Hold::Berthed),
+            exclusion: Some(Exclusion::Berthed),
             clock_problem: Some("the receiver's time jumped".to_owned()),
             storage_problem: Some("samples cannot be stored".to_owned()),
             heading: Corrected {

@@ -12,13 +12,13 @@ use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
 use crate::corrected::{self, Corrected, Ingredients};
-use crate::hold::Hold;
 use crate::input::{self, InputConfig, InputStats};
 use crate::observation::Observation;
 use crate::offline::offline_status;
 use crate::output::Outputs;
 use crate::page::{self, Page};
 use crate::raw_log::{RawLog, Second};
+use crate::sampler::Exclusion;
 use crate::sampler::Tally;
 use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
@@ -73,7 +73,7 @@ struct Agent {
     inputs: Vec<(String, Arc<InputStats>)>,
     outputs: Outputs,
     interval: Duration,
-    hold: watch::Sender<Option<Hold>>,
+    exclusion: watch::Sender<Option<Exclusion>>,
     alert_monitor: AlertMonitor,
     /// What the spool has of the lookout's alert.
     stored_alert: Option<AlertRecord>,
@@ -109,13 +109,13 @@ impl Agent {
         shutdown: &CancellationToken,
     ) -> anyhow::Result<Agent> {
         let (uplink, uplink_handle) = uplink::prepare(&config.uplink, &spool).await?;
-        let hold = spool.hold().await?;
+        let exclusion = spool.exclusion().await?;
         let stored_alert = spool.alert().await?;
         let judged_by = uplink_handle.model.borrow().as_ref().map(|model| model.id);
         let settings = uplink_handle.settings.borrow().clone();
         let last_contact = uplink_handle.link.borrow().last_contact;
         let stale_s = config.silence.stale_s.0;
-        let mut ship = Ship::new(&config.roles, stale_s, settings, hold);
+        let mut ship = Ship::new(&config.roles, stale_s, settings, exclusion);
         let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
         if !config.inputs.values().any(is_recorded) {
             // The computer may have lost its time with its power.
@@ -132,14 +132,14 @@ impl Agent {
         };
 
         let outputs = Outputs::open(&config.output, shutdown).await?;
-        let hold = watch::Sender::new(hold);
+        let exclusion = watch::Sender::new(exclusion);
         let status = watch::Sender::new(Arc::new(Status::default()));
         let acknowledged = watch::Sender::new(None);
         let acknowledged_rx = acknowledged.subscribe();
         let served = Page {
             spool: spool.clone(),
             status: status.subscribe(),
-            hold: hold.clone(),
+            exclusion: exclusion.clone(),
             acknowledged,
             news: uplink_handle.sealed.clone(),
         };
@@ -175,7 +175,7 @@ impl Agent {
             inputs,
             outputs,
             interval: config.output.interval_s.duration(),
-            hold,
+            exclusion,
             alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
             stored_alert,
             withheld: false,
@@ -194,7 +194,7 @@ impl Agent {
         for ticks in [&mut second, &mut output] {
             ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         }
-        let mut hold = self.hold.subscribe();
+        let mut exclusion = self.exclusion.subscribe();
         loop {
             tokio::select! {
                 () = shutdown.cancelled() => break,
@@ -212,9 +212,9 @@ impl Agent {
                     }
                     self.last_contact = contact;
                 }
-                Ok(()) = hold.changed() => {
-                    let hold = *hold.borrow_and_update();
-                    self.ship.sampler.set_hold(hold);
+                Ok(()) = exclusion.changed() => {
+                    let exclusion = *exclusion.borrow_and_update();
+                    self.ship.sampler.set_exclusion(exclusion);
                 }
                 Ok(()) = self.acknowledged.changed() => {
                     let seen = *self.acknowledged.borrow_and_update();
@@ -275,11 +275,11 @@ impl Agent {
         }
         self.save_alert().await;
         self.uplink_handle.ship_time.send_replace(self.ship.time());
-        match self.spool.hold().await {
-            Ok(hold) => {
+        match self.spool.exclusion().await {
+            Ok(exclusion) => {
                 // The command line sets it there when it finds no page.
-                self.hold
-                    .send_if_modified(|known| std::mem::replace(known, hold) != hold);
+                self.exclusion
+                    .send_if_modified(|known| std::mem::replace(known, exclusion) != exclusion);
             }
             Err(error) => tracing::error!(%error, "the spool cannot be read"),
         }
@@ -415,7 +415,7 @@ impl Agent {
         status.rate_of_turn_deg_min = Latest::within(readings.rate_of_turn_deg_min, stale, now);
         status.roll_deg = Latest::within(readings.roll_deg, stale, now);
         status.model = self.model_status();
-        status.hold = *self.hold.borrow();
+        status.exclusion = *self.exclusion.borrow();
         status.windows = self.windows.by_name();
         let inputs = self.inputs.iter();
         status.inputs = inputs

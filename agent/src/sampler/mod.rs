@@ -13,14 +13,15 @@
 //! refused until [`Settings::settle_s`] has passed. The limit on swinging is
 //! that of Basterretxea-Iribar, Sotés & Uriarte 2016, J. Navigation.
 
+mod exclusion;
 mod outcome;
 mod sample_builder;
 mod track;
 
+pub(crate) use exclusion::Exclusion;
 pub(crate) use outcome::{Outcome, Tally};
 pub(crate) use sample_builder::{WINDOW_S, Window, median};
 
-use crate::hold::Hold;
 use crate::roles::Signal;
 use crate::weak_field::is_weak;
 use binnacle_magnetics::angle::{wrap_180, wrap_360};
@@ -48,7 +49,7 @@ const RATE_OF_TURN_DEG_MIN: std::ops::RangeInclusive<f64> = -720.0..=720.0;
 #[derive(Debug)]
 pub(crate) struct Sampler {
     settings: Settings,
-    hold: Option<Hold>,
+    exclusion: Option<Exclusion>,
     /// The open window, in tens of seconds since 1970.
     window: Option<i64>,
     compass: HeadingTrack,
@@ -77,10 +78,10 @@ struct TurnTracker {
 
 impl Sampler {
     /// A sampler that has heard nothing yet.
-    pub(crate) fn new(settings: Settings, hold: Option<Hold>) -> Sampler {
+    pub(crate) fn new(settings: Settings, exclusion: Option<Exclusion>) -> Sampler {
         Sampler {
             settings,
-            hold,
+            exclusion,
             window: None,
             compass: HeadingTrack::default(),
             gyro: HeadingTrack::default(),
@@ -102,8 +103,8 @@ impl Sampler {
     }
 
     /// Begins or ends a hold, from the open window on.
-    pub(crate) fn set_hold(&mut self, hold: Option<Hold>) {
-        self.hold = hold;
+    pub(crate) fn set_exclusion(&mut self, exclusion: Option<Exclusion>) {
+        self.exclusion = exclusion;
     }
 
     /// Takes what an instrument said.
@@ -225,8 +226,8 @@ impl Sampler {
         let rate = self.rate_of_turn_deg_min();
         let turning = rate.is_some_and(|r| r.abs() > self.settings.max_rate_of_turn_deg_min);
         let settled = self.track_turns(index, turning);
-        if let Some(hold) = self.hold {
-            return Err(hold.outcome());
+        if let Some(exclusion) = self.exclusion {
+            return Err(exclusion.outcome());
         }
         let compass = self.compass.span().ok_or(Outcome::NoCompass)?;
         let (gyro, satellite) = (self.gyro.span(), self.satellite.span());

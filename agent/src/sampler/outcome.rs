@@ -8,11 +8,11 @@ pub(crate) enum Outcome {
     /// Went into a sample.
     Accepted,
     /// The crew said that the ship lies alongside.
-    HoldBerthed,
+    ExcludedBerthed,
     /// The crew said that magnetic cargo is aboard.
-    HoldMagneticCargo,
+    ExcludedMagneticCargo,
     /// The crew said that degaussing is under way.
-    HoldDegaussing,
+    ExcludedDegaussing,
     /// The ship's clock jumped while it was open.
     Clock,
     /// No time stamp fell into it.
@@ -41,9 +41,9 @@ pub(crate) enum Outcome {
 
 const ALL: [(Outcome, &str); 16] = [
     (Outcome::Accepted, "accepted"),
-    (Outcome::HoldBerthed, "hold_berthed"),
-    (Outcome::HoldMagneticCargo, "hold_magnetic_cargo"),
-    (Outcome::HoldDegaussing, "hold_degaussing"),
+    (Outcome::ExcludedBerthed, "hold_berthed"),
+    (Outcome::ExcludedMagneticCargo, "hold_magnetic_cargo"),
+    (Outcome::ExcludedDegaussing, "hold_degaussing"),
     (Outcome::Clock, "clock"),
     (Outcome::NoTime, "no_time"),
     (Outcome::NoCompass, "no_compass"),

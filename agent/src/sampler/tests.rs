@@ -176,11 +176,15 @@ fn slow_sparse_and_held_windows_are_named() {
     }
     assert_eq!(finished(slow).1.of(Outcome::Slow), 60);
     assert_eq!(finished(sparse).1.of(Outcome::Sparse), 60);
-    for hold in [Hold::Berthed, Hold::MagneticCargo, Hold::Degaussing] {
-        let mut sampler = Sampler::new(Settings::default(), Some(hold));
+    for exclusion in [
+        Exclusion::Berthed,
+        Exclusion::MagneticCargo,
+        Exclusion::Degaussing,
+    ] {
+        let mut sampler = Sampler::new(Settings::default(), Some(exclusion));
         sail(&mut sampler, 0..601, |_| 90.0);
         let (samples, tally) = finished(sampler);
-        assert_eq!((samples.len(), tally.of(hold.outcome())), (0, 60));
+        assert_eq!((samples.len(), tally.of(exclusion.outcome())), (0, 60));
     }
 }
 

@@ -34,7 +34,7 @@ pub(crate) use thinning::{MAX_PENDING, is_disk_full};
 
 use crate::alert::AlertRecord;
 use crate::clock_checkpoint::ClockCheckpoint;
-use crate::hold::Hold;
+use crate::sampler::Exclusion;
 use crate::uplink::BudgetAccount;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
@@ -96,7 +96,7 @@ const CONTIGUOUS_SEQ: &str = "contiguous_seq";
 const MODEL: &str = "model";
 const WITHDRAWN: &str = "card_withdrawn";
 const SETTINGS: &str = "settings";
-const HOLD: &str = "hold";
+const EXCLUSION: &str = "hold";
 const PAGE: &str = "page";
 const LAST_CONTACT: &str = "last_contact";
 const ALERT: &str = "alert";
@@ -303,21 +303,21 @@ impl Spool {
 
     /// The crew's hold. One that cannot be read is still a hold: a sample less
     /// is better than one of the quay.
-    pub(crate) async fn hold(&self) -> sqlx::Result<Option<Hold>> {
+    pub(crate) async fn exclusion(&self) -> sqlx::Result<Option<Exclusion>> {
         let mut connection = self.pool.acquire().await?;
-        let Some(text) = text(&mut connection, HOLD).await? else {
+        let Some(text) = text(&mut connection, EXCLUSION).await? else {
             return Ok(None);
         };
         Ok(serde_json::from_str(&text).unwrap_or_else(|error| {
             tracing::error!(%error, "the hold in the spool cannot be read; it counts as berthed");
-            Some(Hold::Berthed)
+            Some(Exclusion::Berthed)
         }))
     }
 
     /// Keeps the crew's hold.
-    pub(crate) async fn set_hold(&self, hold: Option<Hold>) -> sqlx::Result<()> {
+    pub(crate) async fn set_exclusion(&self, exclusion: Option<Exclusion>) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        put(&mut tx, HOLD, &hold).await?;
+        put(&mut tx, EXCLUSION, &exclusion).await?;
         tx.commit().await
     }
 

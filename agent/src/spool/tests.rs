@@ -254,14 +254,14 @@ async fn a_damaged_batch_is_put_aside_and_the_others_go_on() {
 #[tokio::test]
 async fn a_hold_that_cannot_be_read_is_still_a_hold() {
     let (_directory, spool) = enrolled().await;
-    assert_eq!(spool.hold().await.unwrap(), None);
+    assert_eq!(spool.exclusion().await.unwrap(), None);
     sqlx::query("INSERT INTO state (name, value) VALUES ('hold', '\"degau')")
         .execute(&spool.pool)
         .await
         .unwrap();
-    assert_eq!(spool.hold().await.unwrap(), Some(Hold::Berthed));
-    spool.set_hold(None).await.unwrap();
-    assert_eq!(spool.hold().await.unwrap(), None);
+    assert_eq!(spool.exclusion().await.unwrap(), Some(Exclusion::Berthed));
+    spool.set_exclusion(None).await.unwrap();
+    assert_eq!(spool.exclusion().await.unwrap(), None);
 }
 
 /// The last free octets of a disk are for samples.
@@ -286,7 +286,7 @@ async fn everything_is_there_after_opening_again() {
         .store(&[sample(5)], &BTreeMap::new(), Seal::Full)
         .await
         .unwrap();
-    spool.set_hold(Some(Hold::Berthed)).await.unwrap();
+    spool.set_exclusion(Some(Exclusion::Berthed)).await.unwrap();
     let settings = Settings {
         version: 4,
         min_sog_kn: 6.0,
@@ -300,12 +300,12 @@ async fn everything_is_there_after_opening_again() {
     drop(spool);
     let spool = Spool::open(directory.path()).await.unwrap();
     assert_eq!(spool.identity().await.unwrap(), Some(identity(7)));
-    assert_eq!(spool.hold().await.unwrap(), Some(Hold::Berthed));
+    assert_eq!(spool.exclusion().await.unwrap(), Some(Exclusion::Berthed));
     assert_eq!(spool.settings().await.unwrap(), settings);
     assert_eq!(spool.pending().await.unwrap().samples, 1);
     assert_eq!(spool.next_batch().await.unwrap().unwrap().seq, 1);
-    spool.set_hold(None).await.unwrap();
-    assert_eq!(spool.hold().await.unwrap(), None);
+    spool.set_exclusion(None).await.unwrap();
+    assert_eq!(spool.exclusion().await.unwrap(), None);
 }
 
 #[tokio::test]

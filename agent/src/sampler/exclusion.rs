@@ -1,13 +1,13 @@
 //! The crew's word that the compass tells nothing of the ship herself for now.
 
-use crate::sampler::Outcome;
+use super::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Why nothing is sampled until the crew says otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Hold {
+pub(crate) enum Exclusion {
     /// Alongside: the quay's steel disturbs the field.
     Berthed,
     /// Cargo or gear aboard that is magnetic.
@@ -16,23 +16,23 @@ pub(crate) enum Hold {
     Degaussing,
 }
 
-impl Hold {
+impl Exclusion {
     /// How its windows are counted.
     pub(crate) fn outcome(self) -> Outcome {
         match self {
-            Hold::Berthed => Outcome::HoldBerthed,
-            Hold::MagneticCargo => Outcome::HoldMagneticCargo,
-            Hold::Degaussing => Outcome::HoldDegaussing,
+            Exclusion::Berthed => Outcome::ExcludedBerthed,
+            Exclusion::MagneticCargo => Outcome::ExcludedMagneticCargo,
+            Exclusion::Degaussing => Outcome::ExcludedDegaussing,
         }
     }
 }
 
-impl fmt::Display for Hold {
+impl fmt::Display for Exclusion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Hold::Berthed => "berthed",
-            Hold::MagneticCargo => "magnetic-cargo",
-            Hold::Degaussing => "degaussing",
+            Exclusion::Berthed => "berthed",
+            Exclusion::MagneticCargo => "magnetic-cargo",
+            Exclusion::Degaussing => "degaussing",
         })
     }
 }
