@@ -63,7 +63,7 @@ mod tests {
     }
 
     fn model(data_until: &str, epoch_from: Option<&str>) -> ModelDownlink {
-        let mut model = crate::corrected::tests::model(1_000.0, None);
+        let mut model = crate::corrected_heading::tests::model(1_000.0, None);
         model.data_until = at(data_until);
         model.replaces = epoch_from.map(|from| CardWithdrawn {
             since: at(from),

@@ -25,7 +25,7 @@ mod short_burst;
 mod uplink;
 
 mod card_invalidation;
-mod corrected;
+mod corrected_heading;
 mod output;
 mod sentences;
 

@@ -8,7 +8,7 @@
 //! take it for the compass. What is not known is an empty field, and THS then
 //! has mode V.
 
-use crate::corrected::Corrected;
+use crate::corrected_heading::CorrectedHeading;
 use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
@@ -26,7 +26,7 @@ pub(crate) struct Quality {
 }
 
 /// HDG, THS and PBINQ, each with its line end.
-pub(crate) fn sentences(corrected: &Corrected, quality: Option<Quality>) -> Vec<u8> {
+pub(crate) fn sentences(corrected: &CorrectedHeading, quality: Option<Quality>) -> Vec<u8> {
     let mut out = Vec::with_capacity(128);
     let hdg = Hdg {
         reading_deg: corrected
@@ -65,7 +65,7 @@ pub(crate) fn sentences(corrected: &Corrected, quality: Option<Quality>) -> Vec<
     out
 }
 
-fn write_quality(corrected: &Corrected, quality: Option<Quality>, out: &mut Vec<u8>) {
+fn write_quality(corrected: &CorrectedHeading, quality: Option<Quality>, out: &mut Vec<u8>) {
     let status = if corrected.true_deg.is_some() {
         'A'
     } else {
@@ -100,15 +100,15 @@ fn tenth(degrees: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn text(corrected: &Corrected, quality: Option<Quality>) -> String {
+    fn text(corrected: &CorrectedHeading, quality: Option<Quality>) -> String {
         String::from_utf8(sentences(corrected, quality)).unwrap()
     }
 
-    fn corrected(compass: f64, deviation: f64, variation: f64) -> Corrected {
+    fn corrected(compass: f64, deviation: f64, variation: f64) -> CorrectedHeading {
         let compass = CompassHeading::new(compass).unwrap();
         let deviation = Deviation::new(deviation).unwrap();
         let variation = Variation::new(variation).unwrap();
-        Corrected {
+        CorrectedHeading {
             compass_deg: Some(compass),
             deviation_deg: Some(deviation),
             standard_error_deg: Some(0.25),
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn what_is_not_known_is_empty_and_not_valid() {
-        let said = text(&Corrected::default(), None);
+        let said = text(&CorrectedHeading::default(), None);
         assert!(said.starts_with("$IIHDG,,,,,*"), "{said}");
         assert!(said.contains("$IITHS,,V*"), "{said}");
         assert!(said.contains("$PBINQ,V,,,*"), "{said}");

@@ -1,7 +1,7 @@
 //! How everything is, in one value: for the local page and for `status`.
 
 use crate::alert::AlertStatus;
-use crate::corrected::{CardRow, Corrected};
+use crate::corrected_heading::{CardRow, CorrectedHeading};
 use crate::input::InputStatus;
 use crate::raw_log::RawLogStatus;
 use crate::sampler::Exclusion;
@@ -32,7 +32,7 @@ pub(crate) struct Status {
     /// Why samples cannot be stored.
     #[serde(default)]
     pub(crate) storage_problem: Option<String>,
-    pub(crate) heading: Corrected,
+    pub(crate) heading: CorrectedHeading,
     /// The agent's last alert of its own: open, or how it ended.
     #[serde(default)]
     pub(crate) alert: Option<AlertStatus>,
@@ -298,9 +298,9 @@ mod tests {
             exclusion: Some(Exclusion::Berthed),
             clock_problem: Some("the receiver's time jumped".to_owned()),
             storage_problem: Some("samples cannot be stored".to_owned()),
-            heading: Corrected {
+            heading: CorrectedHeading {
                 problem: Some("there is no model yet".to_owned()),
-                ..Corrected::default()
+                ..CorrectedHeading::default()
             },
             budget: Some(BudgetAccount {
                 profile: Profile::Metered,

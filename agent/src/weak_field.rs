@@ -6,12 +6,12 @@ use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 
 /// Some 12 % of what a compass has at mid-latitudes.
-pub(crate) const LEAST_H_NT: f64 = 2_000.0;
+pub(crate) const MIN_H_NT: f64 = 2_000.0;
 
 /// Whether a compass is of no use here; not where the field is not known.
 pub(crate) fn is_weak(position: Position, time: Timestamp) -> bool {
     field(FieldModel::Igrf14, position, 0.0, time)
-        .is_ok_and(|field| field.for_ship().h_nt < LEAST_H_NT)
+        .is_ok_and(|field| field.for_ship().h_nt < MIN_H_NT)
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::alert::{ActiveCard, AlarmSentence, AlertMonitor, AlertRecord};
 use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, SilenceConfig};
-use crate::corrected::{self, Corrected, Ingredients};
+use crate::corrected_heading::{self, CorrectedHeading, CorrectionInputs};
 use crate::input::{self, InputConfig, InputStats};
 use crate::observation::Observation;
 use crate::offline::offline_status;
@@ -352,12 +352,12 @@ impl Agent {
         })
     }
 
-    fn correct(&self) -> (Corrected, Vec<corrected::CardRow>) {
+    fn correct(&self) -> (CorrectedHeading, Vec<corrected_heading::CardRow>) {
         let withdrawn = self.withdrawn();
         let model = self.uplink_handle.model.borrow();
         let now = Instant::now();
         let readings = &self.ship.readings;
-        let from = Ingredients {
+        let inputs = CorrectionInputs {
             compass: Latest::within(readings.compass, self.silence.stale_s.duration(), now),
             position: Latest::within(readings.position, POSITION_MAX_AGE, now),
             time: self.ship.time(),
@@ -366,7 +366,10 @@ impl Agent {
             alert: self.alert_monitor.record(),
             withheld: self.withheld,
         };
-        (corrected::correct(from), corrected::card(from))
+        (
+            corrected_heading::correct(inputs),
+            corrected_heading::card(inputs),
+        )
     }
 
     fn send_heading(&mut self) {

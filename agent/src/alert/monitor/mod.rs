@@ -10,7 +10,7 @@
 
 use super::record::AlertRecord;
 use crate::config::AlertConfig;
-use crate::corrected::{Ingredients, foretell};
+use crate::corrected_heading::{CorrectionInputs, predict};
 use crate::sampler::{WINDOW_S, Window, median};
 use binnacle_magnetics::angle::{CompassHeading, wrap_180};
 use binnacle_magnetics::time::Timestamp;
@@ -170,7 +170,7 @@ impl AlertMonitor {
         if now.seconds_since(model.data_until) < -MAX_CLOCK_LAG_S {
             return None;
         }
-        let corrected = foretell(Ingredients {
+        let corrected = predict(CorrectionInputs {
             compass: CompassHeading::new(window.compass_deg),
             position: Some(window.position),
             time: Some(now),

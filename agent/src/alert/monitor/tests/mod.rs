@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::config::GyroError;
-use crate::corrected::foretell;
+use crate::corrected_heading::predict;
 use binnacle_magnetics::model::{Model, Parameters};
 use binnacle_magnetics::position::Position;
 
@@ -81,7 +81,7 @@ impl Ship {
             let noise_deg = [0.4, -0.5, 0.1, -0.3, 0.6, -0.2][self.index.rem_euclid(6) as usize];
             let position = Position::new(43.5, -3.0).unwrap();
             let reading = CompassHeading::new(heading_deg);
-            let right = foretell(Ingredients {
+            let right = predict(CorrectionInputs {
                 compass: reading,
                 position: Some(position),
                 time: end_of(START),

@@ -4,7 +4,7 @@
 //! Nothing is made up: what cannot be told is absent, with the reason in words.
 
 use crate::alert::AlertRecord;
-use crate::weak_field::LEAST_H_NT;
+use crate::weak_field::MIN_H_NT;
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
 };
@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 /// What the ship says that the correction needs.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Ingredients<'a> {
+pub(crate) struct CorrectionInputs<'a> {
     /// The raw compass, unless it has fallen silent.
     pub(crate) compass: Option<CompassHeading>,
     /// Where the ship is, unless that is old.
@@ -36,7 +36,7 @@ pub(crate) struct Ingredients<'a> {
 
 /// One heading in three ways, as far as they can be told.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Corrected {
+pub(crate) struct CorrectedHeading {
     /// The raw reading.
     pub(crate) compass_deg: Option<CompassHeading>,
     /// The model's deviation on this heading, here and now.
@@ -69,19 +69,19 @@ pub(crate) struct CardRow {
 
 /// A heading that may be off by more than this, one time in twenty, is none to steer by:
 /// nobody sees the band on an autopilot.
-const WIDEST_BAND_DEG: f64 = 10.0;
+const MAX_BAND_DEG: f64 = 10.0;
 /// One that was withheld is given out again at this: it does not come and go as she yaws.
-const WIDEST_BAND_AGAIN_DEG: f64 = 9.0;
+const RELEASE_BAND_DEG: f64 = 9.0;
 
 /// Corrects the compass as far as the ingredients go, and as far as it can be steered by.
-pub(crate) fn correct(from: Ingredients<'_>) -> Corrected {
-    let mut corrected = foretell(from);
-    let widest_deg = if from.withheld {
-        WIDEST_BAND_AGAIN_DEG
+pub(crate) fn correct(inputs: CorrectionInputs<'_>) -> CorrectedHeading {
+    let mut corrected = predict(inputs);
+    let max_band_deg = if inputs.withheld {
+        RELEASE_BAND_DEG
     } else {
-        WIDEST_BAND_DEG
+        MAX_BAND_DEG
     };
-    let is_wide = |band_deg: &f64| *band_deg > widest_deg;
+    let is_wide = |band_deg: &f64| *band_deg > max_band_deg;
     if let Some(band_deg) = corrected.band95_deg.filter(is_wide) {
         (corrected.magnetic_deg, corrected.true_deg) = (None, None);
         corrected.problem = Some(format!(
@@ -91,7 +91,7 @@ pub(crate) fn correct(from: Ingredients<'_>) -> Corrected {
     corrected
 }
 
-impl Corrected {
+impl CorrectedHeading {
     /// Whether it is known, but too badly to be steered by.
     pub(crate) fn is_withheld(&self) -> bool {
         self.band95_deg.is_some() && self.true_deg.is_none()
@@ -99,68 +99,71 @@ impl Corrected {
 }
 
 /// Corrects the compass as far as the ingredients go, however little is known.
-pub(crate) fn foretell(from: Ingredients<'_>) -> Corrected {
-    let mut corrected = Corrected {
-        compass_deg: from.compass,
-        ..Corrected::default()
+pub(crate) fn predict(inputs: CorrectionInputs<'_>) -> CorrectedHeading {
+    let mut corrected = CorrectedHeading {
+        compass_deg: inputs.compass,
+        ..CorrectedHeading::default()
     };
-    if let Err(problem) = fill(&mut corrected, from) {
+    if let Err(problem) = apply_model(&mut corrected, inputs) {
         corrected.problem = Some(problem);
     }
     corrected
 }
 
-fn fill(corrected: &mut Corrected, from: Ingredients<'_>) -> Result<(), String> {
-    let (earth, variation) = earth_at(from)?;
+fn apply_model(
+    corrected: &mut CorrectedHeading,
+    inputs: CorrectionInputs<'_>,
+) -> Result<(), String> {
+    let (earth, variation) = field_at(inputs)?;
     corrected.variation_deg = Some(variation);
-    if earth.h_nt < LEAST_H_NT {
+    if earth.h_nt < MIN_H_NT {
         return Err("the field is too weak for a magnetic compass".to_owned());
     }
-    let compass = from.compass.ok_or("the compass is silent")?;
-    let model = from.model.ok_or("there is no model yet")?;
+    let compass = inputs.compass.ok_or("the compass is silent")?;
+    let model = inputs.model.ok_or("there is no model yet")?;
     // Better no heading than one by magnetism that the ship no longer has.
-    if let Some(withdrawn) = from.withdrawn {
+    if let Some(withdrawn) = inputs.withdrawn {
         return Err(withdrawn.in_words());
     }
-    if from.alert.is_some_and(AlertRecord::suspects_compass) {
+    if inputs.alert.is_some_and(AlertRecord::suspects_compass) {
         return Err("the alert says not to steer by it".to_owned());
     }
-    let foretold = model
+    let predicted = model
         .model
         .deviation(compass, earth)
         .map_err(|e| e.to_string())?;
-    let magnetic = compass + foretold.deviation;
-    corrected.deviation_deg = Some(foretold.deviation);
-    corrected.standard_error_deg = foretold.standard_error_deg;
-    corrected.band95_deg = foretold.band95_deg;
+    let magnetic = compass + predicted.deviation;
+    corrected.deviation_deg = Some(predicted.deviation);
+    corrected.standard_error_deg = predicted.standard_error_deg;
+    corrected.band95_deg = predicted.band95_deg;
     corrected.magnetic_deg = Some(magnetic);
     corrected.true_deg = Some(magnetic + variation);
     Ok(())
 }
 
 /// The card at the ship's place: every 15°, or nothing.
-pub(crate) fn card(from: Ingredients<'_>) -> Vec<CardRow> {
-    let (Ok((earth, _)), Some(model)) = (earth_at(from), from.model) else {
+pub(crate) fn card(inputs: CorrectionInputs<'_>) -> Vec<CardRow> {
+    let (Ok((earth, _)), Some(model)) = (field_at(inputs), inputs.model) else {
         return Vec::new();
     };
-    if earth.h_nt < LEAST_H_NT || from.withdrawn.is_some() {
+    if earth.h_nt < MIN_H_NT || inputs.withdrawn.is_some() {
         return Vec::new();
     }
     let row = |step: u32| {
         let compass = CompassHeading::new(f64::from(step * 15))?;
-        let foretold = model.model.deviation(compass, earth).ok()?;
+        let predicted = model.model.deviation(compass, earth).ok()?;
         Some(CardRow {
             compass_deg: compass.degrees(),
-            deviation_deg: foretold.deviation,
-            band95_deg: foretold.band95_deg,
+            deviation_deg: predicted.deviation,
+            band95_deg: predicted.band95_deg,
         })
     };
     (0..24).filter_map(row).collect()
 }
 
-fn earth_at(from: Ingredients<'_>) -> Result<(EarthField, Variation), String> {
-    let position = from.position.ok_or("the position is not known")?;
-    let time = from.time.ok_or("the time is not known")?;
+fn field_at(inputs: CorrectionInputs<'_>) -> Result<(EarthField, Variation), String> {
+    let position = inputs.position.ok_or("the position is not known")?;
+    let time = inputs.time.ok_or("the time is not known")?;
     let field = field(FieldModel::Igrf14, position, 0.0, time).map_err(|e| e.to_string())?;
     Ok((field.for_ship(), field.declination()))
 }
@@ -203,8 +206,8 @@ pub(crate) mod tests {
         }
     }
 
-    fn ingredients(model: Option<&ModelDownlink>) -> Ingredients<'_> {
-        Ingredients {
+    fn inputs(model: Option<&ModelDownlink>) -> CorrectionInputs<'_> {
+        CorrectionInputs {
             compass: CompassHeading::new(90.0),
             position: Position::new(43.3, -3.0).ok(),
             time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
@@ -219,7 +222,7 @@ pub(crate) mod tests {
     fn a_fore_and_aft_magnet_deviates_east_on_east() {
         // sin(deviation) = bx/H on compass east: 2400 nT against some 24 000 nT.
         let model = model(2_400.0, None);
-        let corrected = correct(ingredients(Some(&model)));
+        let corrected = correct(inputs(Some(&model)));
         let deviation = corrected.deviation_deg.unwrap();
         assert!(
             (4.0..8.0).contains(&deviation.degrees_east()),
@@ -238,9 +241,9 @@ pub(crate) mod tests {
     fn a_heading_known_to_no_better_than_ten_degrees_is_none_to_steer_by() {
         let known = |sd_deg: f64, withheld: bool| {
             let model = model(0.0, Some(sd_deg * sd_deg));
-            let corrected = correct(Ingredients {
+            let corrected = correct(CorrectionInputs {
                 withheld,
-                ..ingredients(Some(&model))
+                ..inputs(Some(&model))
             });
             assert_eq!(corrected.is_withheld(), corrected.true_deg.is_none());
             (corrected.true_deg.is_some(), corrected.problem)
@@ -260,10 +263,10 @@ pub(crate) mod tests {
     #[test]
     fn the_band_follows_from_the_covariance() {
         let model = model(0.0, Some(0.25));
-        let corrected = correct(ingredients(Some(&model)));
+        let corrected = correct(inputs(Some(&model)));
         assert!((corrected.standard_error_deg.unwrap() - 0.5).abs() < 1e-12);
         assert!((corrected.band95_deg.unwrap() - 0.98).abs() < 1e-3);
-        let card = card(ingredients(Some(&model)));
+        let card = card(inputs(Some(&model)));
         assert_eq!(card.len(), 24);
         assert!(card.iter().all(|row| row.band95_deg.is_some()));
     }
@@ -275,18 +278,18 @@ pub(crate) mod tests {
             since: Timestamp::parse("2026-11-21T06:00:00Z").unwrap(),
             reason: "corrector_change".to_owned(),
         };
-        let from = Ingredients {
+        let inputs = CorrectionInputs {
             withdrawn: Some(&withdrawn),
-            ..ingredients(Some(&model))
+            ..inputs(Some(&model))
         };
-        let corrected = correct(from);
+        let corrected = correct(inputs);
         assert!(corrected.compass_deg.is_some() && corrected.variation_deg.is_some());
         assert_eq!((corrected.deviation_deg, corrected.true_deg), (None, None));
         assert_eq!(
             corrected.problem.as_deref(),
             Some("the card has not held since 2026-11-21T06:00:00Z (corrector change)")
         );
-        assert!(card(from).is_empty());
+        assert!(card(inputs).is_empty());
     }
 
     #[test]
@@ -312,9 +315,9 @@ pub(crate) mod tests {
                 raised_limit_deg: None,
                 clearance_revoked: false,
             };
-            correct(Ingredients {
+            correct(CorrectionInputs {
                 alert: Some(&alert),
-                ..ingredients(Some(&model))
+                ..inputs(Some(&model))
             })
         };
         let open = ShipAlertState::Open;
@@ -332,34 +335,34 @@ pub(crate) mod tests {
     #[test]
     fn nothing_is_corrected_beside_a_magnetic_pole() {
         let model = model(0.0, None);
-        let from = Ingredients {
+        let inputs = CorrectionInputs {
             position: Position::new(-64.0, 136.0).ok(),
-            ..ingredients(Some(&model))
+            ..inputs(Some(&model))
         };
-        let corrected = correct(from);
+        let corrected = correct(inputs);
         assert!(corrected.compass_deg.is_some() && corrected.true_deg.is_none());
         assert!(corrected.problem.unwrap().contains("too weak"));
-        assert!(card(from).is_empty());
+        assert!(card(inputs).is_empty());
     }
 
     #[test]
     fn what_is_missing_is_named_and_the_rest_is_given() {
-        let no_model = correct(ingredients(None));
+        let no_model = correct(inputs(None));
         assert!(no_model.variation_deg.is_some() && no_model.true_deg.is_none());
         assert_eq!(no_model.problem.as_deref(), Some("there is no model yet"));
         let model = model(0.0, None);
-        let silent = correct(Ingredients {
+        let silent = correct(CorrectionInputs {
             compass: None,
-            ..ingredients(Some(&model))
+            ..inputs(Some(&model))
         });
         assert_eq!(silent.problem.as_deref(), Some("the compass is silent"));
-        let lost = correct(Ingredients {
+        let lost = correct(CorrectionInputs {
             position: None,
-            ..ingredients(Some(&model))
+            ..inputs(Some(&model))
         });
         assert!(lost.compass_deg.is_some() && lost.deviation_deg.is_none());
         let ambiguous = self::model(1e6, None);
-        assert!(correct(ingredients(Some(&ambiguous))).problem.is_some());
-        assert!(card(ingredients(Some(&ambiguous))).is_empty());
+        assert!(correct(inputs(Some(&ambiguous))).problem.is_some());
+        assert!(card(inputs(Some(&ambiguous))).is_empty());
     }
 }
