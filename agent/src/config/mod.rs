@@ -5,16 +5,17 @@
 //! file are relative to the file.
 
 mod alert;
+mod input;
 mod roles;
 mod uplink;
 
 pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
+pub(crate) use input::{Group, HostPort, InputConfig, SignalKUrl};
 pub(crate) use roles::{RolesConfig, SourceConfig};
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
-use crate::input::InputConfig;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;

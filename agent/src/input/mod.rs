@@ -9,7 +9,6 @@
 //!   those that find no room are counted.
 //! - Every line that is not used is counted by reason.
 
-mod config;
 mod decode;
 mod link;
 mod pump;
@@ -26,11 +25,11 @@ mod udp;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use config::InputConfig;
 pub(crate) use decode::is_recorded_time;
 pub(crate) use file::replay;
 pub(crate) use stats::{InputStats, InputStatus};
 
+use crate::config::InputConfig;
 use crate::observation::Observation;
 use link::{Backoff, End, Link};
 use std::io;

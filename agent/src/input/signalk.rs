@@ -1,8 +1,8 @@
 //! Deltas from a Signal K server over a WebSocket.
 
-use super::config::SignalKUrl;
 use super::link::{CONNECT_TIMEOUT, End, Link, connect};
 use super::signalk_delta::{DeltaReader, PATHS};
+use crate::config::SignalKUrl;
 use binnacle_nmea::Tally;
 use futures_util::{SinkExt, StreamExt};
 use serde_json::json;

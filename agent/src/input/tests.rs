@@ -1,6 +1,7 @@
 //! Inputs over real sockets, a real pseudo-terminal and real files.
 
-use super::{InputConfig, InputStats, spawn};
+use super::{InputStats, spawn};
+use crate::config::InputConfig;
 use crate::observation::{Observation, Reading};
 use futures_util::{SinkExt, StreamExt};
 use std::net::Ipv4Addr;

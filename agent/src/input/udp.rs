@@ -3,9 +3,9 @@
 //!
 //! Senders of datagrams do not wait: what finds no room is dropped and counted.
 
-use super::config::Group;
 use super::decode::{Decoder, Source};
 use super::link::{End, Link};
+use crate::config::Group;
 use socket2::{Domain, Protocol, Socket, Type};
 use std::io;
 use std::net::SocketAddr;
