@@ -5,8 +5,8 @@ use crate::corrected_heading::{CardRow, CorrectedHeading};
 use crate::input::InputStatus;
 use crate::raw_log::RawLogStatus;
 use crate::sampler::Exclusion;
-use crate::spool::SpoolStatus;
-use crate::uplink::{BudgetAccount, LinkStatus};
+use crate::spool::{BudgetAccount, SpoolStatus};
+use crate::uplink::LinkStatus;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::ShipAlertState;
@@ -289,7 +289,7 @@ impl Status {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uplink::Profile;
+    use crate::config::Profile;
 
     #[test]
     fn the_text_says_what_is_wrong() {

@@ -6,6 +6,7 @@
 
 mod alert;
 mod input;
+mod profile;
 mod roles;
 mod uplink;
 
@@ -13,6 +14,9 @@ pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
 pub(crate) use input::{Group, HostPort, InputConfig, SignalKUrl};
+#[cfg(test)]
+pub(crate) use profile::max_burst_batch_bytes;
+pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
 pub(crate) use roles::{RolesConfig, SourceConfig};
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 

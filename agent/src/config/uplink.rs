@@ -1,7 +1,7 @@
 //! How the shore is spoken to, and over what.
 
+use super::profile::{ConnectionPolicy, EXCHANGE_TIMEOUT, Profile, UploadPlan};
 use super::{PositiveSeconds, Wrong};
-use crate::uplink::{ConnectionPolicy, EXCHANGE_TIMEOUT, Profile, UploadPlan};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -47,7 +47,7 @@ impl UplinkConfig {
     pub(crate) fn plan(&self) -> UploadPlan {
         self.profile
             .get_ref()
-            .plan(self.day_kb.map(DailyBudget::octets))
+            .plan(self.day_kb.map(DailyBudget::bytes))
     }
 
     /// How connections are used.
@@ -126,7 +126,7 @@ pub(crate) struct DailyBudget(f64);
 
 impl DailyBudget {
     /// In octets.
-    pub(crate) fn octets(self) -> f64 {
+    pub(crate) fn bytes(self) -> f64 {
         self.0 * 1e3
     }
 }

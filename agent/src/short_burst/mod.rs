@@ -16,7 +16,7 @@ mod file;
 pub(crate) use file::FileModem;
 
 use crate::spool::Spool;
-use binnacle_wire::burst::{StreamTag, capacity, read_ack, split};
+use binnacle_wire::burst::{StreamTag, read_ack, split};
 use std::io;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
@@ -25,14 +25,6 @@ use tokio_util::sync::CancellationToken;
 const POLL_INTERVAL: Duration = Duration::from_secs(5);
 /// After a modem that did not take a message.
 const RETRY_PAUSE: Duration = Duration::from_mins(2);
-/// A batch is thinned until it fits into so many messages.
-pub(crate) const MESSAGES_A_BATCH: usize = 3;
-
-/// The octets of those.
-pub(crate) fn max_batch_bytes() -> usize {
-    capacity(MESSAGES_A_BATCH)
-}
-
 /// What takes messages to the shore and back.
 pub(crate) trait Modem: Send {
     /// Hands one message over; it is on its way when this succeeds.

@@ -1,6 +1,7 @@
 //! The modem's turn, with folders for a modem and a shore that joins what is in them.
 
 use super::*;
+use crate::config::max_burst_batch_bytes;
 use crate::spool::Seal;
 use crate::spool::tests::{accepted, alert, identity, restless, sample};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
@@ -154,7 +155,10 @@ async fn a_batch_is_thinned_until_it_fits_into_three_messages_and_evidence_is_no
     let counts = accepted(500);
     spool.store(&restless, &counts, Seal::All).await.unwrap();
     evidence(&spool, &restless[..200]).await;
-    spool.thin_batches_to(max_batch_bytes()).await.unwrap();
+    spool
+        .thin_batches_to(max_burst_batch_bytes())
+        .await
+        .unwrap();
     exchange(&spool, &mut modem).await.unwrap();
     let mut joiner = Joiner::default();
     let sent = outbox(directory.path());
@@ -165,7 +169,7 @@ async fn a_batch_is_thinned_until_it_fits_into_three_messages_and_evidence_is_no
         thinned.samples.len() as u64 + thinned.thinned.unwrap().samples,
         500
     );
-    assert!(binnacle_wire::encode(thinned).unwrap().len() <= max_batch_bytes());
+    assert!(binnacle_wire::encode(thinned).unwrap().len() <= max_burst_batch_bytes());
     let evidence = batches.iter().find(|batch| batch.seq == 2).unwrap();
     assert_eq!((evidence.samples.len(), evidence.alerts.len()), (200, 1));
 }

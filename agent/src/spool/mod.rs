@@ -18,6 +18,7 @@
 //!   [`crate::run::SAMPLES_PER_COMMIT`], whichever is less, and the stretch of at most
 //!   ten minutes that the sampler is still in.
 
+mod account;
 mod acknowledged;
 mod batches;
 mod merge;
@@ -27,6 +28,7 @@ mod seal;
 mod short_bursts;
 mod thinning;
 
+pub(crate) use account::{BudgetAccount, REQUEST_BYTES};
 pub(crate) use batches::{SealedBatch, SpoolStatus};
 pub(crate) use reports::{ReportState, SaveReportError, StoredReport};
 pub(crate) use seal::{Pending, Seal};
@@ -35,7 +37,6 @@ pub(crate) use thinning::{MAX_PENDING, is_disk_full};
 use crate::alert::AlertRecord;
 use crate::clock_checkpoint::ClockCheckpoint;
 use crate::sampler::Exclusion;
-use crate::uplink::BudgetAccount;
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::batch::StreamId;

@@ -8,8 +8,8 @@
 //! - Samples are left out by heading, time and length alone, in each batch by itself,
 //!   and the batch says how many. What each window of the tally became can be told.
 
+use super::account::REQUEST_BYTES;
 use super::{Spool, THINNED, acknowledged, get, put};
-use crate::uplink::REQUEST_BYTES;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::sample::Sample;
 use binnacle_wire::batch::Thinned;

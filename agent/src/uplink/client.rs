@@ -6,6 +6,7 @@
 //! failure of the link.
 
 use super::request::BatchContext;
+use crate::config::ConnectionPolicy;
 use crate::spool::{Identity, SealedBatch, StoredReport};
 use anyhow::Context;
 use binnacle_wire::batch::StreamId;
@@ -51,17 +52,6 @@ pub(crate) struct ServerClient {
     exchange_timeout: Duration,
     /// Of answers, since it was last asked.
     received_bytes: Arc<AtomicU64>,
-}
-
-/// How connections are used.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ConnectionPolicy {
-    /// A connection serves again when it was idle for less than this.
-    pub(crate) idle_timeout: Duration,
-    /// Whether a TLS session is offered again: for a day, no ticket holds longer.
-    pub(crate) resumes_tls: bool,
-    /// An exchange that takes longer is given up, however busy whoever answers looks.
-    pub(crate) exchange_timeout: Duration,
 }
 
 /// What the agent already has of what the shore decides.

@@ -22,8 +22,7 @@ mod response;
 mod start;
 mod status;
 
-pub(crate) use budget::{BudgetAccount, EXCHANGE_TIMEOUT, Profile, REQUEST_BYTES, UploadPlan};
-pub(crate) use client::{ConnectionPolicy, RequestError, ServerClient};
+pub(crate) use client::{RequestError, ServerClient};
 pub(crate) use start::{UplinkHandle, prepare};
 pub(crate) use status::{LinkState, LinkStatus, Publisher};
 

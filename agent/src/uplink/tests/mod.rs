@@ -9,7 +9,8 @@ mod reports;
 mod token;
 
 use super::*;
-use crate::spool::Seal;
+use crate::config::{Profile, UploadPlan};
+use crate::spool::{BudgetAccount, Seal};
 use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
