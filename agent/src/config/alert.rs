@@ -1,6 +1,6 @@
 //! `[alert]`: when the agent says that compass and gyro have parted.
 
-use crate::config::PositiveSeconds;
+use super::limits::PositiveSeconds;
 use crate::sampler::WINDOW_S;
 use serde::Deserialize;
 

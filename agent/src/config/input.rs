@@ -1,6 +1,6 @@
 //! `[inputs.NAME]`: one input, of exactly one kind.
 
-use super::SerialConfig;
+use super::output::SerialConfig;
 use serde::Deserialize;
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,8 @@
 //! How the shore is spoken to, and over what.
 
+use super::error::Problem;
+use super::limits::PositiveSeconds;
 use super::profile::{ConnectionPolicy, EXCHANGE_TIMEOUT, Profile, UploadPlan};
-use super::{PositiveSeconds, Wrong};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -59,17 +60,17 @@ impl UplinkConfig {
     }
 
     /// Whether the settings go together.
-    pub(super) fn check(&self, modem: Option<&ModemConfig>) -> Result<(), Wrong> {
+    pub(super) fn check(&self, modem: Option<&ModemConfig>) -> Result<(), Problem> {
         let is_burst = *self.profile.get_ref() == Profile::ShortBurst;
         match modem {
             None if is_burst => {
-                return Err(Wrong {
+                return Err(Problem {
                     span: Some(self.profile.span()),
                     problem: "short-burst needs a [modem]".to_owned(),
                 });
             }
             Some(modem) if !is_burst => {
-                return Err(Wrong {
+                return Err(Problem {
                     span: Some(modem.directory.span()),
                     problem: "a modem serves the profile short-burst only".to_owned(),
                 });
@@ -84,7 +85,7 @@ impl UplinkConfig {
             } else {
                 (min, format!("more than retry_max_s, {}", max.get_ref().0))
             };
-            return Err(Wrong {
+            return Err(Problem {
                 span: Some(wrong.span()),
                 problem: format!("{} is {other}", wrong.get_ref().0),
             });
