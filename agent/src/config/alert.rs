@@ -1,7 +1,6 @@
 //! `[alert]`: when the agent says that compass and gyro have parted.
 
 use super::limits::PositiveSeconds;
-use crate::sampler::WINDOW_S;
 use serde::Deserialize;
 
 /// When the agent raises its own alert.
@@ -20,15 +19,6 @@ impl Default for AlertConfig {
             gyro_error_deg: GyroError(2.5),
             settled_s: PositiveSeconds(300.0),
         }
-    }
-}
-
-impl AlertConfig {
-    /// Windows that [`AlertConfig::settled_s`] stands for: a minute's at least, a
-    /// day's at most.
-    pub(crate) fn settled_windows(&self) -> usize {
-        let windows = self.settled_s.0 / WINDOW_S as f64;
-        windows.round().clamp(6.0, 8640.0) as usize
     }
 }
 

@@ -8,16 +8,22 @@
 //! minutes after a manoeuvre a gyro may be off by one or two degrees. 2.5° at the
 //! equator lies above both.
 
+mod departures;
+mod verdict;
+
 use super::record::AlertRecord;
 use crate::config::AlertConfig;
 use crate::corrected_heading::{CorrectionInputs, predict};
-use crate::sampler::{WINDOW_S, Window, median};
+use crate::sampler::{WINDOW_S, Window};
 use binnacle_magnetics::angle::{CompassHeading, wrap_180};
 use binnacle_magnetics::time::Timestamp;
-use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
+use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
-use std::collections::VecDeque;
+use departures::{
+    Departure, MedianDeparture, RecentDepartures, SECTOR_DEG, SECTORS, round_to_tenth,
+};
 use uuid::Uuid;
+use verdict::{clears_compass, has_lost_reference, reassessed_alert};
 
 /// Where a model gives no band.
 const DEFAULT_BAND_DEG: f64 = 2.0;
@@ -25,18 +31,10 @@ const DEFAULT_BAND_DEG: f64 = 2.0;
 const MAX_LAT_DEG: f64 = 75.0;
 /// They agree again when they are so much nearer than what parted them.
 const AGREEMENT_SHARE: f64 = 0.75;
-/// Windows further apart than half an hour do not belong together.
-const MAX_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
 /// After half an hour of settled windows what came since the alert goes ashore too.
 const FOLLOW_WINDOWS: usize = 1800 / WINDOW_S as usize;
 /// After so many settled hours of agreement it is over, whatever the heading: a day.
 const AGREE_ON_ANY_HEADING_WINDOWS: usize = 24 * 3600 / WINDOW_S as usize;
-/// Degrees of heading by the reference that one bit of [`AlertRecord::departed_sectors`] stands for. What a magnet
-/// does is nothing on two courses and at its most a quarter of a circle from them, so that
-/// agreement on one course says little of the next: a magnet that turns the compass by 14° does
-/// as good as nothing within 10° of either.
-const SECTOR_DEG: f64 = 10.0;
-const SECTORS: u32 = 36;
 /// Agreement on three courses, each so many sectors from the next, speaks for all: neither a
 /// magnet, with its two nulls, nor soft iron, with its four, does little on all of them.
 const COURSE_SPACING_SECTORS: std::ops::RangeInclusive<u32> = 4..=8;
@@ -51,27 +49,12 @@ pub(crate) struct ActiveCard<'a> {
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
 }
 
-/// How compass and references stood in one settled window.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Departure {
-    index: i64,
-    /// Corrected compass less gyro.
-    gyro_deg: Option<f64>,
-    /// Corrected compass less satellite compass.
-    satellite_deg: Option<f64>,
-    /// What the model may err on this heading.
-    band_deg: f64,
-    /// The same, with what a sound reference may.
-    limit_deg: f64,
-    sector: u32,
-}
-
 /// The state between two windows.
 #[derive(Debug)]
 pub(crate) struct AlertMonitor {
     config: AlertConfig,
     /// The latest windows, oldest first: twice as many as raise an alert.
-    recent: VecDeque<Departure>,
+    recent: RecentDepartures,
     /// The model that they were judged by.
     model: Option<Uuid>,
     record: Option<AlertRecord>,
@@ -92,7 +75,7 @@ impl AlertMonitor {
     ) -> AlertMonitor {
         AlertMonitor {
             config,
-            recent: VecDeque::new(),
+            recent: RecentDepartures::new(2 * settled_windows(&config)),
             model,
             record,
             since_raised: 0,
@@ -145,10 +128,10 @@ impl AlertMonitor {
             return Some(ended);
         }
         let departure = self.compare(window, card, now)?;
-        self.push_recent(departure);
+        self.recent.push(departure);
         self.since_raised = self.since_raised.saturating_add(1);
-        let raise = self.config.settled_windows();
-        let median = self.median_over(raise)?;
+        let raise = settled_windows(&self.config);
+        let median = self.recent.median_over(raise)?;
         if median.exceeds_limit() {
             self.mark_sector(median.sector);
         }
@@ -198,67 +181,6 @@ impl AlertMonitor {
         })
     }
 
-    fn push_recent(&mut self, departure: Departure) {
-        let is_continuous = self.recent.back().is_none_or(|last| {
-            (last.index + 1..=last.index + MAX_GAP_WINDOWS).contains(&departure.index)
-        });
-        if !is_continuous {
-            self.recent.clear();
-        }
-        self.recent.push_back(departure);
-        if self.recent.len() > 2 * self.config.settled_windows() {
-            self.recent.pop_front();
-        }
-    }
-
-    /// How they stand over the last so many windows; none when there are fewer. Half of the
-    /// windows speak for all, and for both references the same ones.
-    fn median_over(&self, windows: usize) -> Option<MedianDeparture> {
-        let from = self.recent.len().checked_sub(windows)?;
-        let last = self.recent.back()?;
-        let middle = |departures: Vec<f64>| {
-            let origin = *departures.first()?;
-            let middle = median(departures.iter().map(|deg| wrap_180(deg - origin)));
-            (departures.len() * 2 >= windows).then(|| wrap_180(origin + middle))
-        };
-        let of = |departure: fn(&Departure) -> Option<f64>| {
-            middle(self.recent.range(from..).filter_map(departure).collect())
-        };
-        let both = || {
-            let both = self.recent.range(from..);
-            both.filter_map(|departure| departure.gyro_deg.zip(departure.satellite_deg))
-        };
-        let gyro_deg = middle(both().map(|(gyro, _)| gyro).collect());
-        let satellite_deg = middle(both().map(|(_, satellite)| satellite).collect());
-        let (gyro_deg, satellite_deg) =
-            match gyro_deg.or_else(|| of(|departure| departure.gyro_deg)) {
-                Some(gyro_deg) => (Some(gyro_deg), satellite_deg),
-                None => (None, of(|departure| departure.satellite_deg)),
-            };
-        Some(MedianDeparture {
-            gyro_deg,
-            satellite_deg,
-            band_deg: last.band_deg,
-            limit_deg: last.limit_deg,
-            sector: last.sector,
-        })
-    }
-
-    /// So many of the latest windows are apart: from where those beyond the limit
-    /// begin to prevail.
-    fn count_departed_windows(&self, limit_deg: f64) -> usize {
-        let (mut sum, mut most, mut windows) = (0, 0, 0);
-        for (before, departure) in self.recent.iter().rev().enumerate() {
-            let departure = departure.gyro_deg.or(departure.satellite_deg);
-            let beyond = departure.is_some_and(|deg| deg.abs() > limit_deg);
-            sum += if beyond { 1 } else { -1 };
-            if sum > most {
-                (most, windows) = (sum, before + 1);
-            }
-        }
-        windows
-    }
-
     fn raise(
         &mut self,
         median: MedianDeparture,
@@ -266,10 +188,10 @@ impl AlertMonitor {
         now: Timestamp,
         id: Uuid,
     ) -> ShipAlert {
-        let departed = self.count_departed_windows(median.limit_deg);
-        let first = self.recent.iter().rev().nth(departed.saturating_sub(1));
+        let departed = self.recent.count_departed_windows(median.limit_deg);
+        let first = self.recent.nth_latest(departed);
         let since = first.and_then(|departure| start_of(departure.index));
-        let median = self.median_over(departed).unwrap_or(median);
+        let median = self.recent.median_over(departed).unwrap_or(median);
         let alert = ShipAlert {
             id,
             revision: 1,
@@ -313,8 +235,8 @@ impl AlertMonitor {
     /// makes none of what is as far apart as then, one that is far wider nothing at all, and
     /// what was read before a turn is of another course.
     fn check_agreement(&mut self, raise: usize) -> bool {
-        let median = self.median_over(2 * raise);
-        let on_course = median.filter(|median| self.is_on_course(2 * raise, median.sector));
+        let median = self.recent.median_over(2 * raise);
+        let on_course = median.filter(|median| self.recent.is_on_course(2 * raise, median.sector));
         let Some((median, record)) = on_course.zip(self.record.as_mut()) else {
             return false;
         };
@@ -341,20 +263,11 @@ impl AlertMonitor {
             || self.agreed_windows >= AGREE_ON_ANY_HEADING_WINDOWS
     }
 
-    /// Whether so many of the latest windows are of one course, but for yaw.
-    fn is_on_course(&self, windows: usize, sector: u32) -> bool {
-        let is_near = |departure: &Departure| {
-            let turned = (departure.sector + SECTORS - sector) % SECTORS;
-            turned <= 1 || turned == SECTORS - 1
-        };
-        self.recent.iter().rev().take(windows).all(is_near)
-    }
-
     /// Whose fault it is shows when a reference speaks again that was silent, and another
     /// instrument may fail, too. Readings from before a turn have no part in it.
     fn reassess(&mut self, raise: usize, now: Timestamp) -> Option<ShipAlert> {
-        let median = self.median_over(2 * raise)?;
-        if !self.is_on_course(2 * raise, median.sector) {
+        let median = self.recent.median_over(2 * raise)?;
+        if !self.recent.is_on_course(2 * raise, median.sector) {
             return None;
         }
         let record = self.record.as_mut()?;
@@ -390,103 +303,11 @@ impl AlertMonitor {
     }
 }
 
-/// Medians over some windows.
-#[derive(Clone, Copy, Debug)]
-struct MedianDeparture {
-    gyro_deg: Option<f64>,
-    satellite_deg: Option<f64>,
-    band_deg: f64,
-    limit_deg: f64,
-    sector: u32,
-}
-
-impl MedianDeparture {
-    /// From the gyro, or where there is none from the satellite compass.
-    fn main_deg(&self) -> Option<f64> {
-        self.gyro_deg.or(self.satellite_deg)
-    }
-
-    fn exceeds_limit(&self) -> bool {
-        self.main_deg()
-            .is_some_and(|deg| deg.abs() > self.limit_deg)
-    }
-
-    /// The departure whose end is that of an alert, and the other, if that is to have ended,
-    /// too: where an instrument was borne out, both.
-    fn assessed_deg(&self, record: &AlertRecord) -> (Option<f64>, Option<f64>) {
-        let (gyro_deg, satellite_deg) = (self.gyro_deg, self.satellite_deg);
-        match record.alert.suspect() {
-            Suspect::Gyro => (gyro_deg, satellite_deg),
-            Suspect::Satellite => (satellite_deg, gyro_deg),
-            _ if record.clearance_revoked => (self.main_deg(), satellite_deg),
-            _ if record.alert.gyro_departure_deg.is_none() => (satellite_deg.or(gyro_deg), None),
-            _ => (self.main_deg(), None),
-        }
-    }
-
-    /// The alert with these figures.
-    fn updated(&self, alert: &ShipAlert) -> ShipAlert {
-        ShipAlert {
-            gyro_departure_deg: self.gyro_deg.map(round_to_tenth),
-            satellite_departure_deg: self.satellite_deg.map(round_to_tenth),
-            limit_deg: round_to_tenth(self.limit_deg),
-            ..*alert
-        }
-    }
-}
-
-/// Whether two instruments bear the compass out, so that it is steered by.
-fn clears_compass(suspect: Suspect) -> bool {
-    matches!(suspect, Suspect::Gyro | Suspect::Satellite)
-}
-
-/// Whether a reference that has spoken is silent.
-fn has_lost_reference(before: &ShipAlert, updated: &ShipAlert) -> bool {
-    let is_silent = |was: Option<f64>, is: Option<f64>| was.is_some() && is.is_none();
-    is_silent(before.gyro_departure_deg, updated.gyro_departure_deg)
-        || is_silent(
-            before.satellite_departure_deg,
-            updated.satellite_departure_deg,
-        )
-}
-
-/// What an open alert is to say by new figures, if it is another verdict. A reference that falls
-/// silent takes nothing back of what it has proven, as long as the other says what it said. The
-/// compass is borne out at most once: what speaks against that takes it back for the rest of
-/// the alert, for a bad reference and a compass that moves to it look like a bad other one.
-fn reassessed_alert(record: &AlertRecord, updated: ShipAlert) -> Option<ShipAlert> {
-    let before = &record.alert;
-    let (was, is) = (before.suspect(), updated.suspect());
-    if !clears_compass(was) {
-        let may_be = is == Suspect::Compass || (clears_compass(is) && !record.clearance_revoked);
-        return (was == Suspect::Unknown && may_be).then_some(updated);
-    }
-    if has_lost_reference(before, &updated) {
-        let moved = |was: Option<f64>, is: Option<f64>| {
-            was.zip(is)
-                .is_some_and(|(was, is)| wrap_180(is - was).abs() > updated.limit_deg)
-        };
-        let has_moved = moved(before.gyro_departure_deg, updated.gyro_departure_deg)
-            || moved(
-                before.satellite_departure_deg,
-                updated.satellite_departure_deg,
-            );
-        return has_moved.then_some(updated);
-    }
-    let bears_out = match was {
-        Suspect::Gyro => updated.satellite_departure_deg,
-        _ => updated.gyro_departure_deg,
-    };
-    if bears_out.is_none_or(|deg| deg.abs() <= updated.limit_deg) {
-        return None;
-    }
-    // By one reference alone nobody is borne out.
-    Some(ShipAlert {
-        satellite_departure_deg: updated
-            .satellite_departure_deg
-            .filter(|_| !clears_compass(is)),
-        ..updated
-    })
+/// Returns the windows that [`AlertConfig::settled_s`] stands for: a minute's at least, a
+/// day's at most.
+fn settled_windows(config: &AlertConfig) -> usize {
+    let windows = config.settled_s.0 / WINDOW_S as f64;
+    windows.round().clamp(6.0, 8640.0) as usize
 }
 
 impl<'a> ActiveCard<'a> {
@@ -512,10 +333,6 @@ fn start_of(window: i64) -> Option<Timestamp> {
 
 fn end_of(window: i64) -> Option<Timestamp> {
     start_of(window.checked_add(1)?)
-}
-
-fn round_to_tenth(degrees: f64) -> f64 {
-    (degrees * 10.0).round() / 10.0
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Which instrument two others speak against, and for how long.
 
 use super::*;
+use binnacle_wire::alert::Suspect;
 
 fn beside(compass_deg: f64, satellite_deg: Option<f64>) -> Errors {
     Errors {
