@@ -3,7 +3,6 @@
 //!
 //! Nothing is made up: what cannot be told is absent, with the reason in words.
 
-use crate::alert::AlertRecord;
 use crate::weak_field::MIN_H_NT;
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
@@ -29,7 +28,7 @@ pub(crate) struct CorrectionInputs<'a> {
     /// Why that model holds no more; the shore has no other one yet.
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
     /// The ship's own alert, once there was one.
-    pub(crate) alert: Option<&'a AlertRecord>,
+    pub(crate) compass_suspected: bool,
     /// Whether the heading before this one was known too badly to be given out.
     pub(crate) withheld: bool,
 }
@@ -125,7 +124,7 @@ fn apply_model(
     if let Some(withdrawn) = inputs.withdrawn {
         return Err(withdrawn.in_words());
     }
-    if inputs.alert.is_some_and(AlertRecord::suspects_compass) {
+    if inputs.compass_suspected {
         return Err("the alert says not to steer by it".to_owned());
     }
     let predicted = model
@@ -171,6 +170,7 @@ fn field_at(inputs: CorrectionInputs<'_>) -> Result<(EarthField, Variation), Str
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::alert::AlertRecord;
     use binnacle_magnetics::model::{Model, Parameters};
     use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
@@ -213,7 +213,7 @@ pub(crate) mod tests {
             time: Timestamp::parse("2026-11-21T07:00:00Z").ok(),
             model,
             withdrawn: None,
-            alert: None,
+            compass_suspected: false,
             withheld: false,
         }
     }
@@ -316,7 +316,7 @@ pub(crate) mod tests {
                 clearance_revoked: false,
             };
             correct(CorrectionInputs {
-                alert: Some(&alert),
+                compass_suspected: alert.suspects_compass(),
                 ..inputs(Some(&model))
             })
         };

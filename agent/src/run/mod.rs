@@ -363,7 +363,10 @@ impl Agent {
             time: self.ship.time(),
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
-            alert: self.alert_monitor.record(),
+            compass_suspected: self
+                .alert_monitor
+                .record()
+                .is_some_and(AlertRecord::suspects_compass),
             withheld: self.withheld,
         };
         (

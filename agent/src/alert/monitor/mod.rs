@@ -160,7 +160,7 @@ impl AlertMonitor {
             model: Some(model),
             withdrawn: None,
             // The compass is judged on, whatever was said of it.
-            alert: None,
+            compass_suspected: false,
             withheld: false,
         });
         let true_deg = corrected.true_deg?.degrees();

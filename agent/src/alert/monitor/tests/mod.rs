@@ -87,7 +87,7 @@ impl Ship {
                 time: end_of(START),
                 model: Some(&self.card),
                 withdrawn: None,
-                alert: None,
+                compass_suspected: false,
                 withheld: false,
             });
             let gyro_deg = right.true_deg.unwrap().degrees();
