@@ -27,7 +27,6 @@ mod uplink;
 mod card_invalidation;
 mod corrected_heading;
 mod output;
-mod sentences;
 
 mod http_limits;
 mod offline;

@@ -11,6 +11,10 @@ use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 use std::sync::Arc;
 
+/// Talker of the agent's own sentences. Sources without a configured talker never match its
+/// HDG and THS.
+pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
+
 /// One reading from one source.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Observation {

@@ -6,8 +6,7 @@
 
 use crate::config::{RolesConfig, SourceConfig};
 use crate::gnss_clock::{GnssClock, Step};
-use crate::observation::{Observation, Reading};
-use crate::sentences;
+use crate::observation::{AGENT_TALKER, Observation, Reading};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
@@ -273,7 +272,7 @@ impl Source {
         // With the talker left out, the agent's own output is not meant: on a
         // shared line a compass that has died would live on as its echo.
         if self.config.talker.is_none()
-            && seen.talker == sentences::TALKER
+            && seen.talker == AGENT_TALKER
             && matches!(&seen.sentence, b"HDG" | b"THS")
         {
             return false;

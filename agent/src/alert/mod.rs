@@ -14,8 +14,6 @@
 
 mod monitor;
 mod record;
-mod sentence;
 
 pub(crate) use monitor::{ActiveCard, AlertMonitor};
 pub(crate) use record::{AlertRecord, AlertStatus};
-pub(crate) use sentence::AlarmSentence;

@@ -7,7 +7,7 @@
 
 mod store_samples;
 
-use crate::alert::{ActiveCard, AlarmSentence, AlertMonitor, AlertRecord};
+use crate::alert::{ActiveCard, AlertMonitor, AlertRecord};
 use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, InputConfig, SilenceConfig, UploadPlan};
@@ -15,12 +15,11 @@ use crate::corrected_heading::{self, CorrectedHeading, CorrectionInputs};
 use crate::input::{self, InputStats};
 use crate::observation::Observation;
 use crate::offline::offline_status;
-use crate::output::Outputs;
+use crate::output::{AlarmSentence, Outputs, Quality, heading_sentences};
 use crate::page::{self, Page};
 use crate::raw_log::{RawLog, Second};
 use crate::sampler::Exclusion;
 use crate::sampler::Tally;
-use crate::sentences::{Quality, sentences};
 use crate::ship::{Latest, Ship};
 use crate::short_burst::{self, FileModem};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
@@ -382,12 +381,12 @@ impl Agent {
             version: model.version,
             age_days: model.age_days.unwrap_or_default(),
         });
-        let mut said = sentences(&corrected, quality);
+        let mut sentences = heading_sentences(&corrected, quality);
         if let Some(alarm) = &mut self.alarm {
             let due = alarm.due(self.alert_monitor.record(), Instant::now());
-            said.extend(due.into_iter().flatten());
+            sentences.extend(due.into_iter().flatten());
         }
-        self.outputs.send(said);
+        self.outputs.send(sentences);
     }
 
     fn model_status(&self) -> Option<ModelStatus> {

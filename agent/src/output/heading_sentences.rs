@@ -8,13 +8,12 @@
 //! take it for the compass. What is not known is an empty field, and THS then
 //! has mode V.
 
+use super::framing::frame_sentence;
 use crate::corrected_heading::CorrectedHeading;
+use crate::observation::AGENT_TALKER;
 use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
-
-/// Whose HDG and THS a source must ask for by name to hear them.
-pub(crate) const TALKER: [u8; 2] = *b"II";
 
 /// The model that a heading was corrected with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +25,7 @@ pub(crate) struct Quality {
 }
 
 /// HDG, THS and PBINQ, each with its line end.
-pub(crate) fn sentences(corrected: &CorrectedHeading, quality: Option<Quality>) -> Vec<u8> {
+pub(crate) fn heading_sentences(corrected: &CorrectedHeading, quality: Option<Quality>) -> Vec<u8> {
     let mut out = Vec::with_capacity(128);
     let hdg = Hdg {
         reading_deg: corrected
@@ -55,7 +54,7 @@ pub(crate) fn sentences(corrected: &CorrectedHeading, quality: Option<Quality>) 
     for data in [Data::Hdg(hdg), Data::Ths(ths)] {
         write(
             &Sentence {
-                talker: TALKER,
+                talker: AGENT_TALKER,
                 data,
             },
             &mut out,
@@ -82,13 +81,9 @@ fn write_quality(corrected: &CorrectedHeading, quality: Option<Quality>, out: &m
         .standard_error_deg
         .map(|error| format!("{error:.2}"))
         .unwrap_or_default();
-    out.extend(framed(&format!("PBINQ,{status},{version},{age},{error}")));
-}
-
-/// A sentence from what stands between `$` and `*`.
-pub(crate) fn framed(body: &str) -> Vec<u8> {
-    let sum = body.bytes().fold(0, |sum, byte| sum ^ byte);
-    format!("${body}*{sum:02X}\r\n").into_bytes()
+    out.extend(frame_sentence(&format!(
+        "PBINQ,{status},{version},{age},{error}"
+    )));
 }
 
 /// Sensors give tenths of a degree; more would only look better.
@@ -101,7 +96,7 @@ mod tests {
     use super::*;
 
     fn text(corrected: &CorrectedHeading, quality: Option<Quality>) -> String {
-        String::from_utf8(sentences(corrected, quality)).unwrap()
+        String::from_utf8(heading_sentences(corrected, quality)).unwrap()
     }
 
     fn corrected(compass: f64, deviation: f64, variation: f64) -> CorrectedHeading {

@@ -4,8 +4,9 @@
 //! while the alert is open and V else; acknowledged A or V. It is said at once when
 //! something changed, and again every half minute.
 
-use super::AlertRecord;
-use crate::sentences::{TALKER, framed};
+use super::framing::frame_sentence;
+use crate::alert::AlertRecord;
+use crate::observation::AGENT_TALKER;
 use binnacle_wire::alert::ShipAlertState;
 use std::time::Duration;
 use tokio::time::Instant;
@@ -30,14 +31,14 @@ impl AlarmSentence {
         if !is_due {
             return None;
         }
-        let sentence = framed(&body);
+        let sentence = frame_sentence(&body);
         self.last_sent = Some((body, now));
         Some(sentence)
     }
 }
 
 fn body(record: Option<&AlertRecord>) -> String {
-    let talker = String::from_utf8_lossy(&TALKER);
+    let talker = String::from_utf8_lossy(&AGENT_TALKER);
     let Some(record) = record else {
         return format!("{talker}ALR,,{ALARM_NUMBER},V,A,NO ALERT OF THE COMPASS");
     };
