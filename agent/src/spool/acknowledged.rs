@@ -8,7 +8,8 @@
 //!   all that it does not say it has are sent again, byte for byte. What it has after
 //!   all is not stored twice.
 
-use super::{CONTIGUOUS_SEQ, Spool, get};
+use super::database::{Spool, get};
+use super::keys::CONTIGUOUS_SEQ;
 use binnacle_wire::messages::Downlink;
 use sqlx::SqliteConnection;
 

@@ -1,11 +1,13 @@
 //! Sealed batches: which is next, what became of it, and a new stream.
 
 use super::acknowledged;
+use super::database::{Spool, get, put};
+use super::identity::Identity;
+use super::keys::{CONTIGUOUS_SEQ, IDENTITY, NEXT_SEQ};
 use super::seal::insert_batch;
-use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, put, save_downlink};
+use super::state::save_downlink;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::messages::Downlink;
-use serde::{Deserialize, Serialize};
 use sqlx::SqliteConnection;
 use std::collections::BTreeMap;
 
@@ -23,31 +25,6 @@ pub(crate) struct SealedBatch {
     pub(crate) urgent: bool,
     /// How many it holds.
     pub(crate) samples: u64,
-}
-
-/// How far the shore has come with what is here.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct SpoolStatus {
-    /// Samples that are in no batch yet.
-    pub(crate) pending_samples: u64,
-    /// Sealed batches that were not acknowledged.
-    pub(crate) waiting_batches: u64,
-    /// Batches that the shore refused; kept, and offered again.
-    pub(crate) parked_batches: u64,
-    /// Why the last of those was refused.
-    pub(crate) parked_because: Option<String>,
-    /// Batches that the shore acknowledged, as far as they are remembered.
-    pub(crate) acknowledged_batches: u64,
-    /// The samples in those.
-    pub(crate) acknowledged_samples: u64,
-    /// Every batch up to this one is durable on shore.
-    pub(crate) contiguous_seq: u64,
-    /// What all of that takes on the disk.
-    #[serde(default)]
-    pub(crate) used_bytes: u64,
-    /// Batches that were thinned for want of room and wait.
-    #[serde(default)]
-    pub(crate) thinned_batches: u64,
 }
 
 impl Spool {
@@ -186,37 +163,6 @@ impl Spool {
             .await?;
         let next = get::<u64>(&mut connection, NEXT_SEQ).await?.unwrap_or(1);
         Ok(here.is_none() && wanted < next)
-    }
-
-    /// How far the shore has come.
-    pub(crate) async fn status(&self) -> sqlx::Result<SpoolStatus> {
-        let pending_samples = self.pending().await?.samples;
-        let mut connection = self.pool.acquire().await?;
-        let (waiting, parked, thinned, because): (i64, i64, i64, Option<String>) = sqlx::query_as(
-            "SELECT COUNT(*) FILTER (WHERE standing = 'waiting'),
-                    COUNT(*) FILTER (WHERE standing = 'parked'),
-                    COUNT(*) FILTER (WHERE standing <> 'acknowledged' AND thinned > 0),
-                    (SELECT problem FROM batches WHERE standing = 'parked'
-                     ORDER BY seq DESC LIMIT 1)
-             FROM batches",
-        )
-        .fetch_one(&mut *connection)
-        .await?;
-        let (batches, samples): (i64, i64) =
-            sqlx::query_as("SELECT COUNT(*), COALESCE(SUM(samples), 0) FROM acknowledged")
-                .fetch_one(&mut *connection)
-                .await?;
-        Ok(SpoolStatus {
-            pending_samples,
-            waiting_batches: waiting.cast_unsigned(),
-            parked_batches: parked.cast_unsigned(),
-            parked_because: because,
-            acknowledged_batches: batches.cast_unsigned(),
-            acknowledged_samples: samples.cast_unsigned(),
-            contiguous_seq: get(&mut connection, CONTIGUOUS_SEQ).await?.unwrap_or(0),
-            used_bytes: super::thinning::used_bytes(&mut connection).await?,
-            thinned_batches: thinned.cast_unsigned(),
-        })
     }
 }
 

@@ -9,9 +9,10 @@
 //! - What is joined goes into one packet, head and all, and through a proxy that cuts
 //!   after a kilobyte.
 
+use super::database::{Spool, put};
+use super::keys::NEXT_SEQ;
 use super::seal::SAMPLES_PER_BATCH;
 use super::thinning::add;
-use super::{NEXT_SEQ, Spool, put};
 
 /// A request's head takes some 300 octets.
 const MAX_BYTES: usize = 700;

@@ -1,8 +1,9 @@
 //! A damaged spool is put aside, and what can still be read is carried over: a
 //! ship must not have to wait in port for somebody to delete a file.
 
+use super::database::{Spool, connect, create_private};
+use super::reports;
 use super::seal::insert_batch;
-use super::{Spool, connect, reports};
 use anyhow::Context;
 use sqlx::{FromRow, Row, SqlitePool};
 use std::fs::{File, TryLockError};
@@ -21,7 +22,7 @@ const NOT_A_DATABASE: i32 = 26;
 impl Spool {
     /// Opens the spool for the agent itself: alone, and repaired if need be.
     pub(crate) async fn open_for_agent(directory: &Path) -> anyhow::Result<(Spool, Lock)> {
-        super::create_private(directory, &directory.join("spool.db"))
+        create_private(directory, &directory.join("spool.db"))
             .with_context(|| format!("{}: cannot create the spool", directory.display()))?;
         let lock = lock(directory)?;
         let error = match open_checked(directory).await {

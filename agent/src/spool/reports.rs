@@ -4,7 +4,7 @@
 //! its revision and makes it wait again; an answer counts only for the revision
 //! that was sent.
 
-use super::Spool;
+use super::database::Spool;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::logbook::Report;
 use binnacle_wire::messages::{LogbookAnswer, LogbookReport};

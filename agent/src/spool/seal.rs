@@ -1,6 +1,8 @@
 //! From samples to sealed batches, in one transaction.
 
-use super::{ALERT, IDENTITY, Identity, NEXT_SEQ, Spool, THINNED, forget, get, put};
+use super::database::{Spool, forget, get, put};
+use super::identity::Identity;
+use super::keys::{ALERT, IDENTITY, NEXT_SEQ, THINNED};
 use crate::alert::AlertRecord;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;

@@ -1,7 +1,9 @@
 //! Which batches went out as short messages.
 
 use super::batches::{SealedBatch, record_acknowledged};
-use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, Spool, get, put};
+use super::database::{Spool, get, put};
+use super::identity::Identity;
+use super::keys::{CONTIGUOUS_SEQ, IDENTITY};
 
 /// In place of the number of messages that are out.
 const COMPLETE: i64 = -1;

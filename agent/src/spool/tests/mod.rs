@@ -3,10 +3,15 @@
 mod alerts;
 
 use super::*;
+use crate::alert::AlertRecord;
+use crate::sampler::Exclusion;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
+use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
+use binnacle_wire::batch::StreamId;
+use binnacle_wire::messages::{CardWithdrawn, Downlink, Settings};
 use std::collections::BTreeMap;
 use tempfile::TempDir;
 use uuid::Uuid;

@@ -1,0 +1,222 @@
+//! Keeps the spool within its limit, and what waits within what the link may cost: what
+//! has waited longest is thinned, again and again if need be, and never dropped whole.
+//!
+//! What always holds:
+//!
+//! - Bytes that were tried are never touched: the shore may have them.
+//! - Evidence of alerts is never touched.
+//! - Samples are left out by heading, time and length alone, in each batch by itself,
+//!   and the batch says how many. What each window of the tally became can be told.
+
+mod selection;
+
+pub(super) use selection::add;
+
+use super::account::REQUEST_BYTES;
+use super::acknowledged;
+use super::database::{Spool, get, put};
+use super::keys::THINNED;
+use binnacle_magnetics::sample::Sample;
+use binnacle_wire::batch::Thinned;
+use selection::{MAX_LEVEL, select_rows, thin, thinned_sample};
+use sqlx::SqliteConnection;
+
+/// Thinning begins when so much of the limit is used, and goes on until it is less.
+const FULL_SHARE: f64 = 0.9;
+/// So many batches are thinned in one transaction.
+const THIN_AT_ONCE: i64 = 64;
+/// Without an identity nothing is sealed: more samples than these are thinned as they are.
+pub(crate) const MAX_PENDING: u64 = 20_000;
+/// Batches that cannot be read are for a person to look at; more than these are not.
+const MAX_QUARANTINED: i64 = 100;
+
+/// SQLite's primary result codes for a file that cannot be read or written, as on a disk
+/// without room for the journal's index, and for a full disk.
+const IO_ERROR: i32 = 10;
+const DISK_FULL: i32 = 13;
+
+/// Whether a disk with more room would have helped, as far as can be told.
+pub(crate) fn is_disk_full(error: &sqlx::Error) -> bool {
+    let sqlx::Error::Database(error) = error else {
+        return false;
+    };
+    let code = error.code().and_then(|code| code.parse::<i32>().ok());
+    code.is_some_and(|code| matches!(code & 0xff, IO_ERROR | DISK_FULL))
+}
+
+impl Spool {
+    /// Thins until what is in use is within the limit, or nothing is left to thin.
+    pub(crate) async fn shrink_to_limit(&self, limit_bytes: u64) -> sqlx::Result<()> {
+        let full = (limit_bytes as f64 * FULL_SHARE) as u64;
+        loop {
+            let mut tx = self.write().await?;
+            if used_bytes(&mut tx).await? <= full {
+                return Ok(());
+            }
+            sqlx::query("DELETE FROM quarantine WHERE id <= (SELECT MAX(id) FROM quarantine) - $1")
+                .bind(MAX_QUARANTINED)
+                .execute(&mut *tx)
+                .await?;
+            // What the shore has goes before what it has not.
+            if acknowledged::delete_oldest(&mut tx).await? > 0 {
+                tx.commit().await?;
+                continue;
+            }
+            let touched = thin_batches(&mut tx, 0).await? + thin_pending(&mut tx).await?;
+            tx.commit().await?;
+            if touched == 0 {
+                tracing::warn!(limit_bytes, "the spool is full of what cannot be thinned");
+                return Ok(());
+            }
+        }
+    }
+}
+
+impl Spool {
+    /// Thins until what waits costs no more than so many octets to send, or nothing is
+    /// left to thin.
+    pub(crate) async fn thin_backlog(&self, limit_bytes: u64) -> sqlx::Result<()> {
+        loop {
+            let mut tx = self.write().await?;
+            if backlog_bytes(&mut tx).await? <= limit_bytes || thin_batches(&mut tx, 0).await? == 0
+            {
+                return Ok(());
+            }
+            tx.commit().await?;
+        }
+    }
+
+    /// Thins every batch until it has no more than so many octets, as far as it may be.
+    pub(crate) async fn thin_batches_to(&self, max_bytes: usize) -> sqlx::Result<()> {
+        loop {
+            let mut tx = self.write().await?;
+            if thin_batches(&mut tx, max_bytes).await? == 0 {
+                return Ok(());
+            }
+            tx.commit().await?;
+        }
+    }
+}
+
+async fn backlog_bytes(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
+    let (bytes, batches): (i64, i64) = sqlx::query_as(
+        "SELECT COALESCE(SUM(LENGTH(bytes)), 0), COUNT(*) FROM batches
+         WHERE standing = 'waiting'",
+    )
+    .fetch_one(connection)
+    .await?;
+    Ok(bytes.unsigned_abs() + batches.unsigned_abs() * REQUEST_BYTES)
+}
+
+pub(super) async fn used_bytes(connection: &mut SqliteConnection) -> sqlx::Result<u64> {
+    let (pages, free, size): (i64, i64, i64) = sqlx::query_as(
+        "SELECT page_count, freelist_count, page_size
+         FROM pragma_page_count, pragma_freelist_count, pragma_page_size",
+    )
+    .fetch_one(connection)
+    .await?;
+    Ok(((pages - free) * size).unsigned_abs())
+}
+
+/// Thins the oldest of those batches, larger than this, that were thinned least; says how
+/// many.
+async fn thin_batches(tx: &mut SqliteConnection, min_bytes: usize) -> sqlx::Result<usize> {
+    let rows: Vec<(i64, Vec<u8>, i64)> = sqlx::query_as(
+        "SELECT seq, bytes, thinned FROM batches
+         WHERE standing <> 'acknowledged' AND NOT tried AND NOT urgent AND thinned < $1
+               AND LENGTH(bytes) > $3
+         ORDER BY thinned, seq LIMIT $2",
+    )
+    .bind(MAX_LEVEL)
+    .bind(THIN_AT_ONCE)
+    .bind(i64::try_from(min_bytes).unwrap_or(i64::MAX))
+    .fetch_all(&mut *tx)
+    .await?;
+    for (seq, bytes, level) in &rows {
+        let level = level + 1;
+        let (bytes, samples) = match thin_batch(bytes, level) {
+            Ok(thin_batch) => thin_batch,
+            Err(problem) => {
+                tracing::error!(seq, problem, "a batch cannot be thinned");
+                (bytes.clone(), 0)
+            }
+        };
+        // Written anew rather than in place: shorter rows in place leave every page half
+        // empty, and none of them free.
+        sqlx::query(
+            "INSERT OR REPLACE INTO batches
+                    (seq, bytes, samples, standing, problem, urgent, tried, thinned)
+             SELECT seq, $2, CASE WHEN $4 > 0 THEN $4 ELSE samples END,
+                    standing, problem, urgent, tried, $3
+             FROM batches WHERE seq = $1",
+        )
+        .bind(seq)
+        .bind(bytes)
+        .bind(level)
+        .bind(samples)
+        .execute(&mut *tx)
+        .await?;
+    }
+    Ok(rows.len())
+}
+
+/// A batch with fewer samples, and how many they are.
+fn thin_batch(bytes: &[u8], level: i64) -> Result<(Vec<u8>, i64), String> {
+    let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
+    let before = std::mem::take(&mut batch.samples);
+    let (kept, dropped) = thin(before, level);
+    if dropped.samples == 0 {
+        return Ok((bytes.to_vec(), count(&kept)));
+    }
+    batch.samples = kept;
+    batch.thinned = Some(add(batch.thinned.unwrap_or_default(), dropped));
+    let bytes = binnacle_wire::encode(&batch).map_err(|e| e.to_string())?;
+    Ok((bytes, count(&batch.samples)))
+}
+
+/// Thins samples that are not sealed, where there are very many; says how many.
+async fn thin_pending(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
+    let rows: Vec<(i64, String)> = sqlx::query_as(
+        "SELECT id, sample FROM pending_samples
+         WHERE (SELECT COUNT(*) FROM pending_samples) > $1 ORDER BY time_micros, id",
+    )
+    .bind(MAX_PENDING.cast_signed())
+    .fetch_all(&mut *tx)
+    .await?;
+    if rows.is_empty() {
+        return Ok(0);
+    }
+    let read = |(id, text): &(i64, String)| Some((*id, serde_json::from_str::<Sample>(text).ok()?));
+    let samples: Vec<(i64, Sample)> = rows.iter().filter_map(read).collect();
+    for level in 1..=MAX_LEVEL {
+        let keep = select_rows(samples.iter().map(|(_, sample)| sample), level);
+        let dropped: Vec<&(i64, Sample)> = samples
+            .iter()
+            .zip(&keep)
+            .filter(|(_, keep)| !**keep)
+            .map(|(row, _)| row)
+            .collect();
+        // Little at a time would come back with every sample.
+        if dropped.len() * 4 < samples.len() && level < MAX_LEVEL {
+            continue;
+        }
+        let mut thinned = get::<Thinned>(tx, THINNED).await?.unwrap_or_default();
+        for (id, sample) in &dropped {
+            sqlx::query("DELETE FROM pending_samples WHERE id = $1")
+                .bind(id)
+                .execute(&mut *tx)
+                .await?;
+            thinned = add(thinned, thinned_sample(sample));
+        }
+        put(tx, THINNED, &thinned).await?;
+        return Ok(dropped.len());
+    }
+    Ok(0)
+}
+
+fn count(samples: &[Sample]) -> i64 {
+    i64::try_from(samples.len()).unwrap_or(i64::MAX)
+}
+
+#[cfg(test)]
+mod tests;
