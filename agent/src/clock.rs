@@ -1,5 +1,5 @@
 //! The computer's clock: for the page and the uplink's pauses only. Samples
-//! carry the ship's own time (see [`crate::gnss_clock`]).
+//! carry the ship's own time (see [`crate::instruments::gnss_clock`]).
 
 use binnacle_magnetics::time::Timestamp;
 

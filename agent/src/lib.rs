@@ -9,13 +9,11 @@ mod run;
 mod config;
 
 mod input;
-mod observation;
+mod instruments;
 
+mod acquisition;
 mod alert;
-mod gnss_clock;
-mod roles;
 mod sampler;
-mod ship;
 mod weak_field;
 
 mod raw_log;
@@ -38,4 +36,3 @@ mod atomic_file;
 mod replay;
 
 mod clock;
-mod clock_checkpoint;

@@ -2,10 +2,10 @@
 //!
 //! Nothing is written before everything was read: a table that is there is whole.
 
+use crate::acquisition::Acquisition;
 use crate::config::RolesConfig;
 use crate::input;
 use crate::sampler::Tally;
-use crate::ship::Ship;
 use anyhow::Context;
 use binnacle_magnetics::angle::TrueHeading;
 use binnacle_magnetics::sample::Sample;
@@ -45,17 +45,18 @@ pub(crate) fn replay(
     roles: &RolesConfig,
     stale_s: f64,
 ) -> anyhow::Result<Replayed> {
-    let mut ship = Ship::new(&roles.of_any_input(), stale_s, Settings::default(), None);
+    let mut acquisition =
+        Acquisition::new(&roles.of_any_input(), stale_s, Settings::default(), None);
     let mut replayed = Replayed::default();
     let heard = Instant::now();
     for file in files {
         let read = input::replay(file, |observations| {
             for observation in observations {
-                ship.observe(observation, heard);
+                acquisition.observe(observation, heard);
             }
-            replayed.samples.extend(ship.sampler.take_samples());
+            replayed.samples.extend(acquisition.sampler.take_samples());
             // Nobody stands lookout over a recording.
-            drop(ship.sampler.take_settled());
+            drop(acquisition.sampler.take_settled());
         });
         let read = read.with_context(|| file.display().to_string())?;
         anyhow::ensure!(
@@ -66,9 +67,9 @@ pub(crate) fn replay(
         );
         replayed.sentences.add(&read);
     }
-    ship.sampler.finish();
-    replayed.samples.extend(ship.sampler.take_samples());
-    replayed.windows = ship.sampler.take_tally();
+    acquisition.sampler.finish();
+    replayed.samples.extend(acquisition.sampler.take_samples());
+    replayed.windows = acquisition.sampler.take_tally();
     Ok(replayed)
 }
 

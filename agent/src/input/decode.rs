@@ -1,19 +1,11 @@
 //! From bytes to observations: cut into lines, read, counted.
 
 use super::readings::{readings, timestamp};
-use crate::observation::{Observation, Reading};
+use crate::instruments::{Observation, RECORDED_TIME, Reading};
 use binnacle_magnetics::time::Timestamp;
 use binnacle_nmea::lines::Line;
 use binnacle_nmea::{Lines, Rejected, Tally, datagram};
 use std::sync::Arc;
-
-/// Talker and sentence of a time that the recording gave, not an instrument.
-const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
-
-/// Whether an observation is the time that a recording gives its lines.
-pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
-    (seen.talker, seen.sentence) == RECORDED_TIME
-}
 
 /// What the lines of an input may have before the sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,6 +155,7 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instruments::is_recorded_time;
 
     const HEADING: &str = "$GPHDT,274.07,T*03";
 

@@ -3,7 +3,7 @@
 use super::decode::{Decoder, Source};
 use super::link::{End, Link};
 use super::pump::pump;
-use crate::observation::Observation;
+use crate::instruments::Observation;
 use binnacle_nmea::Tally;
 use std::fs::File;
 use std::io::{self, Read};

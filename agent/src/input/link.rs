@@ -2,7 +2,7 @@
 //! how long to wait before the next try.
 
 use super::stats::InputStats;
-use crate::observation::Observation;
+use crate::instruments::Observation;
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;

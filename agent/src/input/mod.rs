@@ -25,12 +25,11 @@ mod udp;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use decode::is_recorded_time;
 pub(crate) use file::replay;
 pub(crate) use stats::{InputStats, InputStatus};
 
 use crate::config::InputConfig;
-use crate::observation::Observation;
+use crate::instruments::Observation;
 use link::{Backoff, End, Link};
 use std::io;
 use std::sync::Arc;

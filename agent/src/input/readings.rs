@@ -3,7 +3,7 @@
 //! VHW, HBT and courses over ground say nothing: VHW repeats the heading of
 //! another instrument without its status, and a course is never a heading.
 
-use crate::observation::Reading;
+use crate::instruments::Reading;
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
 };

@@ -9,7 +9,7 @@
 //! magnetic one is no reference for the compass. So are other vessels.
 
 use super::stats::InputStats;
-use crate::observation::{Observation, Reading};
+use crate::instruments::{Observation, Reading};
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
 };

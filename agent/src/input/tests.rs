@@ -2,7 +2,7 @@
 
 use super::{InputStats, spawn};
 use crate::config::InputConfig;
-use crate::observation::{Observation, Reading};
+use crate::instruments::{Observation, Reading, is_recorded_time};
 use futures_util::{SinkExt, StreamExt};
 use std::net::Ipv4Addr;
 use std::sync::Arc;
@@ -234,7 +234,7 @@ async fn a_file_is_read_to_its_end_once() {
         seen.extend(more);
     }
     assert_eq!(seen.len(), 3);
-    assert!(super::is_recorded_time(&seen[0]));
+    assert!(is_recorded_time(&seen[0]));
     assert!(seen[1..].iter().all(is_heading));
     input.stop().await;
 

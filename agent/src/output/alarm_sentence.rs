@@ -6,7 +6,7 @@
 
 use super::framing::frame_sentence;
 use crate::alert::AlertRecord;
-use crate::observation::AGENT_TALKER;
+use crate::instruments::AGENT_TALKER;
 use binnacle_wire::alert::ShipAlertState;
 use std::time::Duration;
 use tokio::time::Instant;

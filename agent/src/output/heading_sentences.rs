@@ -10,7 +10,7 @@
 
 use super::framing::frame_sentence;
 use crate::corrected_heading::CorrectedHeading;
-use crate::observation::AGENT_TALKER;
+use crate::instruments::AGENT_TALKER;
 use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variation};
 use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};

@@ -15,7 +15,7 @@ mod export;
 
 pub(crate) use export::{Span, export};
 
-use crate::ship::{Latest, Readings};
+use crate::instruments::{Latest, Readings};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;

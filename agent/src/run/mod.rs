@@ -7,20 +7,21 @@
 
 mod store_samples;
 
+use crate::acquisition::Acquisition;
 use crate::alert::{ActiveCard, AlertMonitor, AlertRecord};
 use crate::card_invalidation;
 use crate::clock;
 use crate::config::{Config, InputConfig, SilenceConfig, UploadPlan};
 use crate::corrected_heading::{self, CorrectedHeading, CorrectionInputs};
 use crate::input::{self, InputStats};
-use crate::observation::Observation;
+use crate::instruments::Latest;
+use crate::instruments::Observation;
 use crate::offline::offline_status;
 use crate::output::{AlarmSentence, Outputs, Quality, heading_sentences};
 use crate::page::{self, Page};
 use crate::raw_log::{RawLog, Second};
 use crate::sampler::Exclusion;
 use crate::sampler::Tally;
-use crate::ship::{Latest, Ship};
 use crate::short_burst::{self, FileModem};
 use crate::spool::{Pending, Seal, Spool, StoredReport};
 use crate::status::{InputReport, ModelStatus, Status};
@@ -57,7 +58,7 @@ pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::
 }
 
 struct Agent {
-    ship: Ship,
+    acquisition: Acquisition,
     /// The shore's time when it was last heard of.
     last_contact: Option<Timestamp>,
     silence: SilenceConfig,
@@ -114,14 +115,14 @@ impl Agent {
         let settings = uplink_handle.settings.borrow().clone();
         let last_contact = uplink_handle.link.borrow().last_contact;
         let stale_s = config.silence.stale_s.0;
-        let mut ship = Ship::new(&config.roles, stale_s, settings, exclusion);
+        let mut acquisition = Acquisition::new(&config.roles, stale_s, settings, exclusion);
         let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
         if !config.inputs.values().any(is_recorded) {
             // The computer may have lost its time with its power.
             let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
-            ship.set_reference_time(known, Instant::now());
+            acquisition.set_reference_time(known, Instant::now());
             if let Some(before) = spool.clock_checkpoint().await? {
-                ship.restore_clock_checkpoint(before);
+                acquisition.restore_clock_checkpoint(before);
             }
         }
         let reports = spool.reports().await?;
@@ -161,7 +162,7 @@ impl Agent {
         let output = outputs.tcp_address.map(|address| address.to_string());
         tracing::info!(page, output, inputs = inputs.len(), "ready");
         Ok(Agent {
-            ship,
+            acquisition,
             last_contact,
             silence: config.silence,
             spool,
@@ -202,18 +203,18 @@ impl Agent {
                 _ = output.tick() => self.send_heading(),
                 Ok(()) = self.uplink_handle.settings.changed() => {
                     let settings = self.uplink_handle.settings.borrow_and_update().clone();
-                    self.ship.sampler.set_settings(settings);
+                    self.acquisition.sampler.set_settings(settings);
                 }
                 Ok(()) = self.uplink_handle.link.changed() => {
                     let contact = self.uplink_handle.link.borrow_and_update().last_contact;
                     if let Some(time) = contact.filter(|_| contact != self.last_contact) {
-                        self.ship.correct_reference_time(time, Instant::now());
+                        self.acquisition.correct_reference_time(time, Instant::now());
                     }
                     self.last_contact = contact;
                 }
                 Ok(()) = exclusion.changed() => {
                     let exclusion = *exclusion.borrow_and_update();
-                    self.ship.sampler.set_exclusion(exclusion);
+                    self.acquisition.sampler.set_exclusion(exclusion);
                 }
                 Ok(()) = self.acknowledged.changed() => {
                     let seen = *self.acknowledged.borrow_and_update();
@@ -229,7 +230,7 @@ impl Agent {
     /// Keeps what has settled, and lets the uplink finish its sentence.
     async fn stop(mut self) {
         self.observations.close();
-        self.ship.sampler.finish();
+        self.acquisition.sampler.finish();
         self.collect();
         self.store(Seal::Full).await;
         self.save_clock_checkpoint().await;
@@ -243,15 +244,16 @@ impl Agent {
     async fn observe(&mut self, observations: &[Observation]) {
         let heard = Instant::now();
         for observation in observations {
-            self.ship.observe(observation, heard);
-            if let Some(time) = self.ship.time() {
-                let (readings, stale) = (&self.ship.readings, self.silence.stale_s.duration());
+            self.acquisition.observe(observation, heard);
+            if let Some(time) = self.acquisition.time() {
+                let (readings, stale) =
+                    (&self.acquisition.readings, self.silence.stale_s.duration());
                 let second = || Second::of(time, readings, stale, heard);
                 self.raw_log.record(time, second, heard);
             }
         }
         self.update_alert();
-        if !self.ship.sampler.has_samples() {
+        if !self.acquisition.sampler.has_samples() {
             return;
         }
         self.collect();
@@ -273,7 +275,9 @@ impl Agent {
             self.store(seal).await;
         }
         self.save_alert().await;
-        self.uplink_handle.ship_time.send_replace(self.ship.time());
+        self.uplink_handle
+            .ship_time
+            .send_replace(self.acquisition.time());
         match self.spool.exclusion().await {
             Ok(exclusion) => {
                 // The command line sets it there when it finds no page.
@@ -299,12 +303,12 @@ impl Agent {
             withdrawn: withdrawn.as_ref(),
         };
         let new_id = || uuid::Builder::from_random_bytes(rand::rng().random()).into_uuid();
-        let settled = self.ship.sampler.take_settled();
+        let settled = self.acquisition.sampler.take_settled();
         let revisions = settled
             .iter()
             .filter_map(|w| self.alert_monitor.observe(w, card, new_id));
         let mut revisions: Vec<ShipAlert> = revisions.collect();
-        let now = self.ship.time();
+        let now = self.acquisition.time();
         revisions.extend(now.and_then(|now| self.alert_monitor.update_card(card, now)));
         if revisions.is_empty() {
             return;
@@ -312,7 +316,7 @@ impl Agent {
         if let Some(record) = self.alert_monitor.record() {
             tracing::warn!("{}", record.status().summary);
         }
-        self.ship.sampler.cut_sample();
+        self.acquisition.sampler.cut_sample();
         self.unstored.alerts.extend(revisions);
     }
 
@@ -331,13 +335,13 @@ impl Agent {
     }
 
     fn collect(&mut self) {
-        let tally = self.ship.sampler.take_tally();
+        let tally = self.acquisition.sampler.take_tally();
         self.windows.plus(&tally);
         self.unstored.tally.plus(&tally);
-        let samples = self.ship.sampler.take_samples();
+        let samples = self.acquisition.sampler.take_samples();
         self.unstored.samples.extend(samples);
         if self.unstored.tally_since.is_none() {
-            self.unstored.tally_since = self.ship.time();
+            self.unstored.tally_since = self.acquisition.time();
         }
     }
 
@@ -346,7 +350,7 @@ impl Agent {
         let by_shore = self.uplink_handle.withdrawn.borrow().clone();
         by_shore.or_else(|| {
             let model = self.uplink_handle.model.borrow();
-            let now = self.ship.time().unwrap_or_else(clock::now);
+            let now = self.acquisition.time().unwrap_or_else(clock::now);
             card_invalidation::find_invalidation(model.as_ref()?, &self.reports, now)
         })
     }
@@ -355,11 +359,11 @@ impl Agent {
         let withdrawn = self.withdrawn();
         let model = self.uplink_handle.model.borrow();
         let now = Instant::now();
-        let readings = &self.ship.readings;
+        let readings = &self.acquisition.readings;
         let inputs = CorrectionInputs {
             compass: Latest::within(readings.compass, self.silence.stale_s.duration(), now),
             position: Latest::within(readings.position, POSITION_MAX_AGE, now),
-            time: self.ship.time(),
+            time: self.acquisition.time(),
             model: model.as_ref(),
             withdrawn: withdrawn.as_ref(),
             compass_suspected: self
@@ -393,7 +397,7 @@ impl Agent {
         let withdrawn = self.withdrawn();
         let model = self.uplink_handle.model.borrow();
         let model = model.as_ref()?;
-        let now = self.ship.time().unwrap_or_else(clock::now);
+        let now = self.acquisition.time().unwrap_or_else(clock::now);
         Some(ModelStatus {
             version: model.version,
             data_until: model.data_until,
@@ -406,11 +410,11 @@ impl Agent {
     async fn build_status(&self) -> Status {
         let now = Instant::now();
         let stale = self.silence.stale_s.duration();
-        let readings = &self.ship.readings;
+        let readings = &self.acquisition.readings;
         let (heading, card) = self.correct();
         let mut status = offline_status(&self.spool).await.unwrap_or_default();
         status.running = true;
-        status.ship_time = self.ship.time();
+        status.ship_time = self.acquisition.time();
         status.heading = heading;
         status.card = card;
         status.alert = self.alert_monitor.record().map(AlertRecord::status);
@@ -428,7 +432,7 @@ impl Agent {
             .collect();
         status.link = self.uplink_handle.link.borrow().clone();
         status.raw_log = self.raw_log.status();
-        status.clock_problem = self.ship.clock_problem();
+        status.clock_problem = self.acquisition.clock_problem();
         status.storage_problem = self.unstored.problem.as_ref().map(|problem| {
             let waiting = self.unstored.samples.len();
             format!("samples cannot be stored: {problem}; {waiting} wait in memory")

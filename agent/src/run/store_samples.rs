@@ -3,7 +3,7 @@
 
 use super::Agent;
 use crate::clock;
-use crate::clock_checkpoint::ClockCheckpoint;
+use crate::instruments::ClockCheckpoint;
 use crate::sampler::Tally;
 use crate::spool::{MAX_PENDING, Seal, is_disk_full};
 use crate::uplink::LinkState;
@@ -19,7 +19,7 @@ const MAX_UNSTORED: usize = 20_000;
 impl Agent {
     /// By the ship's time; after a jump of her clock, whichever way.
     pub(super) fn seal_due(&self) -> Seal {
-        let Some(now) = self.ship.time() else {
+        let Some(now) = self.acquisition.time() else {
             return Seal::Full;
         };
         let seal_s = f64::from(self.seal_s());
@@ -44,7 +44,9 @@ impl Agent {
     }
 
     pub(super) async fn store(&mut self, seal: Seal) {
-        self.uplink_handle.ship_time.send_replace(self.ship.time());
+        self.uplink_handle
+            .ship_time
+            .send_replace(self.acquisition.time());
         let unstored = &mut self.unstored;
         let tally = unstored.tally.by_name();
         let has_evidence = !unstored.alerts.is_empty();
@@ -68,7 +70,7 @@ impl Agent {
                 unstored.tally = Tally::default();
                 unstored.pending = pending;
                 if has_evidence || seal == Seal::All {
-                    unstored.tally_since = self.ship.time();
+                    unstored.tally_since = self.acquisition.time();
                 }
                 if sealed > 0 || unstored.pending.samples > MAX_PENDING {
                     self.limit_spool().await;
@@ -97,7 +99,7 @@ impl Agent {
 
     /// For the first time stamp after a restart.
     pub(super) async fn save_clock_checkpoint(&self) {
-        let Some(ship) = self.ship.reliable_time() else {
+        let Some(ship) = self.acquisition.reliable_time() else {
             return;
         };
         let computer = clock::now();

@@ -22,7 +22,7 @@ pub(crate) use exclusion::Exclusion;
 pub(crate) use outcome::{Outcome, Tally};
 pub(crate) use sample_builder::{WINDOW_S, Window, median};
 
-use crate::roles::Signal;
+use crate::instruments::Signal;
 use crate::weak_field::is_weak;
 use binnacle_magnetics::angle::{wrap_180, wrap_360};
 use binnacle_magnetics::position::Position;

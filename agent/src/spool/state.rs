@@ -6,7 +6,7 @@ use super::keys::{
     ACCOUNT, ALERT, CLOCK_CHECKPOINT, EXCLUSION, LAST_CONTACT, MODEL, PAGE, SETTINGS, WITHDRAWN,
 };
 use crate::alert::AlertRecord;
-use crate::clock_checkpoint::ClockCheckpoint;
+use crate::instruments::ClockCheckpoint;
 use crate::sampler::Exclusion;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, Downlink, ModelDownlink, Settings};

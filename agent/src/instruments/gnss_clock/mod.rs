@@ -9,13 +9,13 @@
 //!   back where it would have been, the shore's or the computer's time decides, or the
 //!   new time has lasted for a day with nothing that speaks against it.
 //! - Aboard, the first stamp after a restart is in doubt too where what was noted before
-//!   speaks against it ([`crate::clock_checkpoint`]).
+//!   speaks against it ([`super::clock_checkpoint`]).
 //! - Aboard, a date that is right but for some times 1,024 weeks, after which GPS counts
 //!   them from 0 again (IS-GPS-200, 20.3.3.3.1.1), is put right.
 //! - Recorded and accelerated data work: without [`GnssClock::set_reference`] no other clock
 //!   is asked, and a jump is a jump.
 
-use crate::clock_checkpoint::ClockCheckpoint;
+use super::clock_checkpoint::ClockCheckpoint;
 use binnacle_magnetics::time::Timestamp;
 use tokio::time::Instant;
 

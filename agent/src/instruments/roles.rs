@@ -4,9 +4,9 @@
 //! for the time of silence; the better one is used again as soon as it speaks.
 //! An instrument that says itself that it is not to be trusted counts as silent.
 
+use super::gnss_clock::{GnssClock, Step};
+use super::observation::{AGENT_TALKER, Observation, Reading};
 use crate::config::{RolesConfig, SourceConfig};
-use crate::gnss_clock::{GnssClock, Step};
-use crate::observation::{AGENT_TALKER, Observation, Reading};
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;

@@ -15,6 +15,14 @@ use std::sync::Arc;
 /// HDG and THS.
 pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
 
+/// Talker and sentence of a time that the recording gave, not an instrument.
+pub(crate) const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
+
+/// Whether an observation is the time that a recording gives its lines.
+pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
+    (seen.talker, seen.sentence) == RECORDED_TIME
+}
+
 /// One reading from one source.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Observation {

@@ -1,52 +1,18 @@
 //! The ship as her instruments tell it: roles and sampler, and the latest readings.
 
-use crate::clock_checkpoint::ClockCheckpoint;
 use crate::config::RolesConfig;
-use crate::input::is_recorded_time;
-use crate::observation::{Observation, Reading};
-use crate::roles::{Roles, Signal};
+use crate::instruments::{
+    ClockCheckpoint, Observation, Reading, Readings, Roles, is_recorded_time,
+};
 use crate::sampler::Exclusion;
 use crate::sampler::Sampler;
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::Settings;
-use std::time::Duration;
 use tokio::time::Instant;
-
-/// A reading and when the computer heard it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Latest<T> {
-    value: T,
-    heard: Instant,
-}
-
-impl<T: Copy> Latest<T> {
-    /// The reading, unless it is older than `age` by the computer's clock.
-    ///
-    /// Not by the ship's: that one stands still when the receiver fails, and a
-    /// heading must not look alive because of it.
-    pub(crate) fn within(this: Option<Latest<T>>, age: Duration, now: Instant) -> Option<T> {
-        let latest = this?;
-        (now.saturating_duration_since(latest.heard) <= age).then_some(latest.value)
-    }
-}
-
-/// What the instruments said last.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Readings {
-    pub(crate) compass: Option<Latest<CompassHeading>>,
-    pub(crate) gyro: Option<Latest<TrueHeading>>,
-    pub(crate) satellite: Option<Latest<TrueHeading>>,
-    pub(crate) position: Option<Latest<Position>>,
-    pub(crate) sog_kn: Option<Latest<f64>>,
-    pub(crate) rate_of_turn_deg_min: Option<Latest<f64>>,
-    pub(crate) roll_deg: Option<Latest<f64>>,
-}
 
 /// Roles, sampler and readings.
 #[derive(Debug)]
-pub(crate) struct Ship {
+pub(crate) struct Acquisition {
     roles: Roles,
     /// Makes samples of what the instruments say.
     pub(crate) sampler: Sampler,
@@ -54,15 +20,15 @@ pub(crate) struct Ship {
     pub(crate) readings: Readings,
 }
 
-impl Ship {
+impl Acquisition {
     /// A ship that has said nothing yet.
     pub(crate) fn new(
         roles: &RolesConfig,
         stale_s: f64,
         settings: Settings,
         exclusion: Option<Exclusion>,
-    ) -> Ship {
-        Ship {
+    ) -> Acquisition {
+        Acquisition {
             roles: Roles::new(roles, stale_s),
             sampler: Sampler::new(settings, exclusion),
             readings: Readings::default(),
@@ -123,32 +89,14 @@ impl Ship {
     }
 }
 
-impl Readings {
-    fn apply(&mut self, signal: Signal, heard: Instant) {
-        match signal {
-            Signal::Compass(value) => self.compass = Some(Latest { value, heard }),
-            Signal::Gyro(value) => self.gyro = Some(Latest { value, heard }),
-            Signal::GyroInvalid => self.gyro = None,
-            Signal::Satellite(value) => self.satellite = Some(Latest { value, heard }),
-            Signal::SatelliteInvalid => self.satellite = None,
-            Signal::Position(value) => self.position = Some(Latest { value, heard }),
-            Signal::Speed(value) => self.sog_kn = Some(Latest { value, heard }),
-            Signal::RateOfTurn(value) => {
-                self.rate_of_turn_deg_min = Some(Latest { value, heard });
-            }
-            Signal::Roll(value) => self.roll_deg = Some(Latest { value, heard }),
-            Signal::Time(_) | Signal::Jump(_) => {}
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_time_of_a_recording_ranks_behind_the_receivers() {
-        let mut ship = Ship::new(&RolesConfig::usual(), 15.0, Settings::default(), None);
+        let mut acquisition =
+            Acquisition::new(&RolesConfig::usual(), 15.0, Settings::default(), None);
         let at = |text| Timestamp::parse(text).unwrap();
         let mut say = |talker, sentence, time| {
             let seen = Observation {
@@ -157,8 +105,8 @@ mod tests {
                 sentence,
                 reading: Reading::Time(at(time)),
             };
-            ship.observe(&seen, Instant::now());
-            ship.time()
+            acquisition.observe(&seen, Instant::now());
+            acquisition.time()
         };
         // A recorder in the zone of her port, and a receiver.
         let (log, zda) = ((*b"--", *b"LOG"), (*b"GP", *b"ZDA"));
@@ -175,7 +123,7 @@ mod tests {
             position: Vec::new(),
             ..RolesConfig::usual()
         };
-        let mut ship = Ship::new(&roles, 15.0, Settings::default(), None);
+        let mut acquisition = Acquisition::new(&roles, 15.0, Settings::default(), None);
         let at = Timestamp::parse("2026-01-02T13:00:01Z").unwrap();
         let seen = Observation {
             input: "log".into(),
@@ -183,7 +131,7 @@ mod tests {
             sentence: *b"LOG",
             reading: Reading::Time(at),
         };
-        ship.observe(&seen, Instant::now());
-        assert_eq!(ship.time(), Some(at));
+        acquisition.observe(&seen, Instant::now());
+        assert_eq!(acquisition.time(), Some(at));
     }
 }
