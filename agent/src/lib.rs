@@ -26,10 +26,8 @@ mod card_invalidation;
 mod corrected_heading;
 mod output;
 
-mod http_limits;
 mod offline;
 mod page;
-mod reports;
 mod status;
 
 mod atomic_file;

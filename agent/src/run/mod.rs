@@ -18,7 +18,7 @@ use crate::instruments::Latest;
 use crate::instruments::Observation;
 use crate::offline::offline_status;
 use crate::output::{AlarmSentence, Outputs, Quality, heading_sentences};
-use crate::page::{self, Page};
+use crate::page::{self, PageState};
 use crate::raw_log::{RawLog, Second};
 use crate::sampler::Exclusion;
 use crate::sampler::Tally;
@@ -136,12 +136,12 @@ impl Agent {
         let status = watch::Sender::new(Arc::new(Status::default()));
         let acknowledged = watch::Sender::new(None);
         let acknowledged_rx = acknowledged.subscribe();
-        let served = Page {
+        let served = PageState {
             spool: spool.clone(),
             status: status.subscribe(),
             exclusion: exclusion.clone(),
             acknowledged,
-            news: uplink_handle.sealed.clone(),
+            upload_wakeup: uplink_handle.sealed.clone(),
         };
         let page = page::serve(config.page.as_ref(), served, shutdown).await?;
         let uplink = tokio::spawn(uplink.run(shutdown.clone()));

@@ -3,8 +3,9 @@
 //! What always holds: what the page was told is kept is in the spool. The page makes
 //! a report's id, so that one sent twice by an impatient finger is one report.
 
+use super::request_guard::require_guard_header;
+use super::state::PageState;
 use crate::clock;
-use crate::page::{Page, guarded};
 use crate::spool::{SaveReportError, StoredReport};
 use axum::Json;
 use axum::extract::{Path, State};
@@ -15,7 +16,7 @@ use uuid::Uuid;
 
 /// What the form sends.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Written {
+pub(crate) struct ReportForm {
     #[serde(default)]
     reporter: String,
     #[serde(default)]
@@ -28,45 +29,50 @@ pub(crate) struct Written {
 pub(crate) type Refusal = (StatusCode, String);
 
 /// The latest reports.
-pub(crate) async fn list(State(page): State<Page>) -> Result<Json<Vec<StoredReport>>, Refusal> {
+pub(super) async fn list_reports(
+    State(page): State<PageState>,
+) -> Result<Json<Vec<StoredReport>>, Refusal> {
     let found = page.spool.reports().await;
     found
         .map(Json)
-        .map_err(|error| not_kept(&SaveReportError::Spool(error)))
+        .map_err(|error| refuse_unsaved(&SaveReportError::Spool(error)))
 }
 
 /// Takes a report, or a change of one.
-pub(crate) async fn put(
-    State(page): State<Page>,
+pub(super) async fn put_report(
+    State(page): State<PageState>,
     Path(id): Path<Uuid>,
     headers: HeaderMap,
-    Json(written): Json<Written>,
+    Json(written): Json<ReportForm>,
 ) -> Result<Json<StoredReport>, Refusal> {
-    guarded(&headers).map_err(|(status, why)| (status, why.to_owned()))?;
+    require_guard_header(&headers).map_err(|(status, why)| (status, why.to_owned()))?;
     // Either clock may stand far back; neither is ahead without reason.
     let ship_time = page.status.borrow().ship_time;
     let now = ship_time.map_or_else(clock::now, |time| time.max(clock::now()));
-    let reporter = reporter(&written.reporter).map_err(|error| wrong(&error))?;
-    let mut report = written.report.checked(now).map_err(|error| wrong(&error))?;
+    let reporter = reporter(&written.reporter).map_err(|error| refuse_invalid(&error))?;
+    let mut report = written
+        .report
+        .checked(now)
+        .map_err(|error| refuse_invalid(&error))?;
     if !written.withdrawn {
         report = report
             .ending_within_a_year(now)
-            .map_err(|error| wrong(&error))?;
+            .map_err(|error| refuse_invalid(&error))?;
     }
     let stored = page
         .spool
         .save_report(id, report, reporter, written.withdrawn, now)
         .await
-        .map_err(|error| not_kept(&error))?;
-    page.news.notify_one();
+        .map_err(|error| refuse_unsaved(&error))?;
+    page.upload_wakeup.notify_one();
     Ok(Json(stored))
 }
 
-fn wrong(error: &ReportError) -> Refusal {
+fn refuse_invalid(error: &ReportError) -> Refusal {
     (StatusCode::UNPROCESSABLE_ENTITY, error.to_string())
 }
 
-fn not_kept(error: &SaveReportError) -> Refusal {
+fn refuse_unsaved(error: &SaveReportError) -> Refusal {
     let status = match error {
         SaveReportError::Withdrawn => StatusCode::CONFLICT,
         SaveReportError::TooMany => StatusCode::INSUFFICIENT_STORAGE,
@@ -123,7 +129,7 @@ mod tests {
         let (_directory, page, router) = page().await;
         let answer = send(&router, put(PATH, &OWN, &cargo())).await;
         assert_eq!(answer.status(), StatusCode::OK);
-        page.news.notified().await;
+        page.upload_wakeup.notified().await;
         let stored = page.spool.next_report().await.unwrap().unwrap();
         assert_eq!(stored.sent.report.hatch.as_deref(), Some("2"));
         assert_eq!(stored.sent.report.port, None);

@@ -6,60 +6,42 @@
 //! needs a header that no form can send, and names that resolve elsewhere are
 //! refused.
 
-use crate::alert::AlertRecord;
+mod acknowledgements;
+mod exclusions;
+mod http_limits;
+mod reports;
+mod request_guard;
+mod state;
+
+pub(crate) use exclusions::ExclusionRequest;
+pub(crate) use request_guard::GUARD_HEADER;
+pub(crate) use state::PageState;
+
 use crate::config::PageConfig;
-use crate::http_limits::LimitedListener;
-use crate::reports;
-use crate::sampler::Exclusion;
-use crate::spool::Spool;
 use crate::status::Status;
+use acknowledgements::acknowledge;
 use anyhow::Context;
-use axum::extract::{DefaultBodyLimit, Request, State};
-use axum::http::header::{CONTENT_SECURITY_POLICY, HOST, ORIGIN};
-use axum::http::{HeaderMap, StatusCode};
-use axum::middleware::{self, Next};
-use axum::response::{Html, IntoResponse, Response};
+use axum::extract::{DefaultBodyLimit, State};
+use axum::http::header::CONTENT_SECURITY_POLICY;
+use axum::middleware;
+use axum::response::{Html, IntoResponse};
 use axum::routing::{get, post, put};
 use axum::{Json, Router};
-use serde::{Deserialize, Serialize};
-use std::net::{IpAddr, SocketAddr};
+use exclusions::set_exclusion;
+use http_limits::LimitedListener;
+use request_guard::reject_foreign_sites;
+use std::net::SocketAddr;
 use std::sync::Arc;
 use tokio::net::TcpListener;
-use tokio::sync::{Notify, watch};
 use tokio_util::sync::CancellationToken;
-use uuid::Uuid;
-
-/// What the page's handlers work with.
-#[derive(Clone, Debug)]
-pub(crate) struct Page {
-    pub(crate) spool: Spool,
-    pub(crate) status: watch::Receiver<Arc<Status>>,
-    pub(crate) exclusion: watch::Sender<Option<Exclusion>>,
-    /// The alert that an officer has seen.
-    pub(crate) acknowledged: watch::Sender<Option<Uuid>>,
-    /// Rings when there is something to send.
-    pub(crate) news: Arc<Notify>,
-}
 
 /// No request is longer: a report's note has at most 1000 characters.
-const MAX_BYTES: usize = 16 * 1024;
-
-/// The header that every change must carry: no page of another site can send it.
-pub(crate) const GUARD_HEADER: &str = "x-binnacle-request";
-
-/// What a hold button sends; `null` ends the hold.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct ExclusionRequest {
-    /// The hold that is to be.
-    #[serde(rename = "hold")]
-    pub(crate) exclusion: Option<Exclusion>,
-}
+const MAX_REQUEST_BYTES: usize = 16 * 1024;
 
 /// Serves the page until `shutdown`, where it is configured; notes where in the spool.
 pub(crate) async fn serve(
     config: Option<&PageConfig>,
-    page: Page,
+    page: PageState,
     shutdown: &CancellationToken,
 ) -> anyhow::Result<Option<SocketAddr>> {
     let Some(config) = config else {
@@ -83,24 +65,17 @@ pub(crate) async fn serve(
     Ok(Some(address))
 }
 
-/// Says which alert was seen.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Acknowledgement {
-    id: Uuid,
-}
-
 /// All of the page.
-pub(crate) fn router(page: Page) -> Router {
+pub(crate) fn router(page: PageState) -> Router {
     Router::new()
         .route("/", get(show))
         .route("/api/status", get(status))
         .route("/api/hold", post(set_exclusion))
         .route("/api/alert/acknowledge", post(acknowledge))
-        .route("/api/reports", get(reports::list))
-        .route("/api/reports/{id}", put(reports::put))
-        .layer(DefaultBodyLimit::max(MAX_BYTES))
-        .layer(middleware::from_fn(only_from_here))
+        .route("/api/reports", get(reports::list_reports))
+        .route("/api/reports/{id}", put(reports::put_report))
+        .layer(DefaultBodyLimit::max(MAX_REQUEST_BYTES))
+        .layer(middleware::from_fn(reject_foreign_sites))
         .with_state(page)
 }
 
@@ -113,128 +88,34 @@ async fn show() -> impl IntoResponse {
     )
 }
 
-async fn status(State(page): State<Page>) -> Json<Arc<Status>> {
+async fn status(State(page): State<PageState>) -> Json<Arc<Status>> {
     Json(page.status.borrow().clone())
-}
-
-async fn set_exclusion(
-    State(page): State<Page>,
-    headers: HeaderMap,
-    Json(request): Json<ExclusionRequest>,
-) -> Response {
-    if let Err(refusal) = guarded(&headers) {
-        return refusal.into_response();
-    }
-    if let Err(error) = page.spool.set_exclusion(request.exclusion).await {
-        tracing::error!(%error, "a hold cannot be stored");
-        return (
-            StatusCode::INTERNAL_SERVER_ERROR,
-            "the hold cannot be stored",
-        )
-            .into_response();
-    }
-    page.exclusion.send_replace(request.exclusion);
-    Json(request).into_response()
-}
-
-async fn acknowledge(
-    State(page): State<Page>,
-    headers: HeaderMap,
-    Json(seen): Json<Acknowledgement>,
-) -> Response {
-    if let Err(refusal) = guarded(&headers) {
-        return refusal.into_response();
-    }
-    match acknowledged(&page.spool, seen.id).await {
-        Ok(true) => {
-            page.acknowledged.send_replace(Some(seen.id));
-            Json(seen).into_response()
-        }
-        Ok(false) => (StatusCode::NOT_FOUND, "there is no such alert any more").into_response(),
-        Err(error) => {
-            tracing::error!(%error, "an acknowledgement cannot be stored");
-            let why = "the acknowledgement cannot be stored";
-            (StatusCode::INTERNAL_SERVER_ERROR, why).into_response()
-        }
-    }
-}
-
-/// Keeps that an alert was seen, if it is the last one.
-async fn acknowledged(spool: &Spool, id: Uuid) -> sqlx::Result<bool> {
-    let Some(record) = spool.alert().await?.filter(|known| known.alert.id == id) else {
-        return Ok(false);
-    };
-    let seen = AlertRecord {
-        acknowledged: true,
-        ..record
-    };
-    spool.save_alert(&seen).await?;
-    Ok(true)
-}
-
-/// Refuses a change that carries no guard header.
-pub(crate) fn guarded(headers: &HeaderMap) -> Result<(), (StatusCode, &'static str)> {
-    if headers.get(GUARD_HEADER).is_some_and(|value| value == "1") {
-        return Ok(());
-    }
-    let why = "the header X-Binnacle-Request: 1 is missing";
-    Err((StatusCode::FORBIDDEN, why))
-}
-
-/// Refuses requests that a browser was tricked into.
-async fn only_from_here(request: Request, next: Next) -> Response {
-    if let Err(why) = check_origin(request.headers()) {
-        return (StatusCode::FORBIDDEN, why).into_response();
-    }
-    next.run(request).await
-}
-
-fn check_origin(headers: &HeaderMap) -> Result<(), &'static str> {
-    let header = |name| headers.get(name).map(|value| value.to_str().unwrap_or("?"));
-    let host = header(HOST).unwrap_or_default();
-    if !is_local_name(host) {
-        return Err("open this page by the agent's address");
-    }
-    if header(ORIGIN).is_some_and(|origin| origin != format!("http://{host}")) {
-        return Err("not from another site");
-    }
-    Ok(())
-}
-
-/// An address, `localhost`, a name without dots, or one of the local network:
-/// a name on the internet that points here is somebody's trick.
-fn is_local_name(host: &str) -> bool {
-    let name = match host.strip_prefix('[') {
-        Some(rest) => {
-            return rest
-                .split(']')
-                .next()
-                .is_some_and(|a| a.parse::<IpAddr>().is_ok());
-        }
-        None => host.split(':').next().unwrap_or_default(),
-    };
-    name.parse::<IpAddr>().is_ok()
-        || (!name.is_empty() && !name.contains('.'))
-        || name.to_ascii_lowercase().ends_with(".local")
 }
 
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use crate::alert::AlertRecord;
+    use crate::sampler::Exclusion;
+    use crate::spool::Spool;
     use axum::body::Body;
+    use axum::extract::Request;
+    use axum::http::StatusCode;
     use binnacle_wire::alert::{ShipAlert, ShipAlertState};
     use tempfile::TempDir;
+    use tokio::sync::{Notify, watch};
     use tower::ServiceExt;
+    use uuid::Uuid;
 
-    pub(crate) async fn page() -> (TempDir, Page, Router) {
+    pub(crate) async fn page() -> (TempDir, PageState, Router) {
         let directory = TempDir::new().unwrap();
         let spool = Spool::open(directory.path()).await.unwrap();
-        let page = Page {
+        let page = PageState {
             spool,
             status: watch::channel(Arc::new(Status::default())).1,
             exclusion: watch::Sender::new(None),
             acknowledged: watch::Sender::new(None),
-            news: Arc::new(Notify::new()),
+            upload_wakeup: Arc::new(Notify::new()),
         };
         let router = router(page.clone());
         (directory, page, router)
@@ -311,7 +192,7 @@ pub(crate) mod tests {
     }
 
     #[tokio::test]
-    async fn an_alert_is_acknowledged_once_it_is_known_and_only_from_here() {
+    async fn an_alert_is_acknowledged_once_it_is_known_and_reject_foreign_sites() {
         let (_directory, page, router) = page().await;
         let at = binnacle_magnetics::time::Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
         let id = Uuid::from_u128(0xa1);

@@ -19,7 +19,7 @@ const IDLE_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// A listener with room for so many.
 #[derive(Debug)]
-pub(crate) struct LimitedListener {
+pub(super) struct LimitedListener {
     listener: TcpListener,
     permits: Arc<Semaphore>,
     idle_timeout: Duration,
@@ -27,7 +27,7 @@ pub(crate) struct LimitedListener {
 
 impl LimitedListener {
     /// Takes over a listener.
-    pub(crate) fn new(listener: TcpListener) -> LimitedListener {
+    pub(super) fn new(listener: TcpListener) -> LimitedListener {
         LimitedListener::with_limits(MAX_CONNECTIONS, IDLE_TIMEOUT, listener)
     }
 
@@ -68,7 +68,7 @@ impl axum::serve::Listener for LimitedListener {
 
 /// A connection that ends when nothing comes and nothing can be told for too long.
 #[derive(Debug)]
-pub(crate) struct LimitedConnection {
+pub(super) struct LimitedConnection {
     stream: TcpStream,
     idle_timeout: Duration,
     idle_timer: Pin<Box<Sleep>>,
