@@ -5,14 +5,13 @@
 
 use crate::atomic_file::write_atomically;
 use crate::config::{Config, ConfigError, RolesConfig, SilenceConfig};
-use crate::offline::offline_status;
 use crate::page::{ExclusionRequest, GUARD_HEADER};
 use crate::raw_log::{self, Span};
 use crate::replay;
 use crate::run;
 use crate::sampler::Exclusion;
 use crate::spool::{Identity, Spool};
-use crate::status::Status;
+use crate::status::{Status, offline_status};
 use crate::uplink::{RequestError, ServerClient};
 use anyhow::Context;
 use binnacle_magnetics::time::Timestamp;

@@ -26,7 +26,6 @@ mod card_invalidation;
 mod corrected_heading;
 mod output;
 
-mod offline;
 mod page;
 mod status;
 

@@ -1,8 +1,8 @@
 //! How everything is, without a running agent.
 
+use super::{ModelStatus, Status};
 use crate::alert::AlertRecord;
 use crate::spool::Spool;
-use crate::status::{ModelStatus, Status};
 use crate::uplink::{LinkState, LinkStatus};
 use crate::{card_invalidation, clock};
 
