@@ -14,13 +14,15 @@
 //! (u16), rate of turn in 0.1° a minute and roll in 0.01° (i16). The least number of a
 //! signed field, and the greatest of an unsigned one, stand for what was not there.
 
-use super::Second;
+use super::second::Second;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
 
 pub(super) const BLOCK_BYTES: u64 = 4_096;
-pub(super) const HEAD_BYTES: usize = 16;
+const HEAD_BYTES: usize = 16;
 /// Seconds of one block.
 pub(super) const RECORDS: usize = 168;
 const RECORD_BYTES: usize = 24;
@@ -54,7 +56,7 @@ pub(super) fn write(number: u64, seconds: &[Second]) -> Vec<u8> {
 }
 
 /// The number in a head, if it is whole.
-pub(super) fn number(head: &[u8; HEAD_BYTES]) -> Option<u64> {
+fn number(head: &[u8; HEAD_BYTES]) -> Option<u64> {
     let (stated, checksum) = head.split_last_chunk::<4>()?;
     let (magic, number) = stated.split_first_chunk::<4>()?;
     let whole = *magic == MAGIC && crc32fast::hash(stated) == u32::from_le_bytes(*checksum);
@@ -64,7 +66,7 @@ pub(super) fn number(head: &[u8; HEAD_BYTES]) -> Option<u64> {
 }
 
 /// Reads a block, if it is whole.
-pub(super) fn read(bytes: &[u8]) -> Option<Block> {
+fn read(bytes: &[u8]) -> Option<Block> {
     let (head, rest) = bytes.split_first_chunk::<HEAD_BYTES>()?;
     let number = number(head)?;
     let (content, checksum) = rest.split_last_chunk::<4>()?;
@@ -80,6 +82,28 @@ pub(super) fn read(bytes: &[u8]) -> Option<Block> {
         number,
         seconds: records.filter_map(read_second).collect(),
     })
+}
+
+/// The number of the block there, if its head is whole.
+pub(super) fn number_at(file: &mut File, slot: u64) -> io::Result<Option<u64>> {
+    let mut head = [0; HEAD_BYTES];
+    file.seek(SeekFrom::Start(slot * BLOCK_BYTES))?;
+    match file.read_exact(&mut head) {
+        Ok(()) => Ok(number(&head)),
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// Reads the block of a slot; `None` unless it is intact.
+pub(super) fn block_at(file: &mut File, slot: u64) -> io::Result<Option<Block>> {
+    let mut bytes = vec![0; BLOCK_BYTES as usize];
+    file.seek(SeekFrom::Start(slot * BLOCK_BYTES))?;
+    match file.read_exact(&mut bytes) {
+        Ok(()) => Ok(read(&bytes)),
+        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
+        Err(error) => Err(error),
+    }
 }
 
 fn write_second(bytes: &mut Vec<u8>, second: &Second) {

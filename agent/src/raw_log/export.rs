@@ -1,6 +1,7 @@
 //! The ring as a table, also while the agent writes it.
 
-use super::{BLOCK_BYTES, Second, block_at, number_at};
+use super::block::{BLOCK_BYTES, block_at, number_at};
+use super::second::Second;
 use anyhow::Context;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
 use binnacle_magnetics::position::Position;

@@ -12,52 +12,22 @@
 
 mod block;
 mod export;
+mod second;
 
 pub(crate) use export::{Span, export};
+pub(crate) use second::Second;
 
-use crate::instruments::{Latest, Readings};
-use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
-use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
-use block::{BLOCK_BYTES, Block, RECORDS};
+use block::{BLOCK_BYTES, RECORDS, number_at};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tokio::time::Instant;
 
 /// After the disk was full.
 const PAUSE_AFTER_FULL: Duration = Duration::from_hours(1);
-
-/// What the instruments said in one second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Second {
-    pub(crate) time: Timestamp,
-    pub(crate) position: Option<Position>,
-    pub(crate) compass: Option<CompassHeading>,
-    pub(crate) gyro: Option<TrueHeading>,
-    pub(crate) satellite: Option<TrueHeading>,
-    pub(crate) sog_kn: Option<f64>,
-    pub(crate) rate_of_turn_deg_min: Option<f64>,
-    pub(crate) roll_deg: Option<f64>,
-}
-
-impl Second {
-    /// What of the readings is not older than `stale`.
-    pub(crate) fn of(time: Timestamp, readings: &Readings, stale: Duration, now: Instant) -> Self {
-        Second {
-            time,
-            position: Latest::within(readings.position, stale, now),
-            compass: Latest::within(readings.compass, stale, now),
-            gyro: Latest::within(readings.gyro, stale, now),
-            satellite: Latest::within(readings.satellite, stale, now),
-            sog_kn: Latest::within(readings.sog_kn, stale, now),
-            rate_of_turn_deg_min: Latest::within(readings.rate_of_turn_deg_min, stale, now),
-            roll_deg: Latest::within(readings.roll_deg, stale, now),
-        }
-    }
-}
 
 /// How the ring is, for the page and `status`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -211,27 +181,6 @@ impl RawLog {
             limit_bytes: self.slots * BLOCK_BYTES,
             problem: self.problem.clone(),
         })
-    }
-}
-
-/// The number of the block there, if its head is whole.
-fn number_at(file: &mut File, slot: u64) -> io::Result<Option<u64>> {
-    let mut head = [0; block::HEAD_BYTES];
-    file.seek(SeekFrom::Start(slot * BLOCK_BYTES))?;
-    match file.read_exact(&mut head) {
-        Ok(()) => Ok(block::number(&head)),
-        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
-        Err(error) => Err(error),
-    }
-}
-
-fn block_at(file: &mut File, slot: u64) -> io::Result<Option<Block>> {
-    let mut bytes = vec![0; BLOCK_BYTES as usize];
-    file.seek(SeekFrom::Start(slot * BLOCK_BYTES))?;
-    match file.read_exact(&mut bytes) {
-        Ok(()) => Ok(block::read(&bytes)),
-        Err(error) if error.kind() == io::ErrorKind::UnexpectedEof => Ok(None),
-        Err(error) => Err(error),
     }
 }
 

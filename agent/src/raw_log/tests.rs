@@ -1,6 +1,8 @@
 //! The ring on a real file.
 
 use super::*;
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
 use tempfile::TempDir;
 
 const START_S: i64 = 1_788_220_800;

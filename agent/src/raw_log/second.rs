@@ -1,0 +1,37 @@
+//! Readings of one second.
+
+use crate::instruments::{Latest, Readings};
+use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
+use binnacle_magnetics::position::Position;
+use binnacle_magnetics::time::Timestamp;
+use std::time::Duration;
+use tokio::time::Instant;
+
+/// What the instruments said in one second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Second {
+    pub(crate) time: Timestamp,
+    pub(crate) position: Option<Position>,
+    pub(crate) compass: Option<CompassHeading>,
+    pub(crate) gyro: Option<TrueHeading>,
+    pub(crate) satellite: Option<TrueHeading>,
+    pub(crate) sog_kn: Option<f64>,
+    pub(crate) rate_of_turn_deg_min: Option<f64>,
+    pub(crate) roll_deg: Option<f64>,
+}
+
+impl Second {
+    /// What of the readings is not older than `stale`.
+    pub(crate) fn of(time: Timestamp, readings: &Readings, stale: Duration, now: Instant) -> Self {
+        Second {
+            time,
+            position: Latest::within(readings.position, stale, now),
+            compass: Latest::within(readings.compass, stale, now),
+            gyro: Latest::within(readings.gyro, stale, now),
+            satellite: Latest::within(readings.satellite, stale, now),
+            sog_kn: Latest::within(readings.sog_kn, stale, now),
+            rate_of_turn_deg_min: Latest::within(readings.rate_of_turn_deg_min, stale, now),
+            roll_deg: Latest::within(readings.roll_deg, stale, now),
+        }
+    }
+}
