@@ -3,7 +3,7 @@
 //!
 //! A library only so that tests can reach it; the program is `main.rs`.
 
-pub mod cli;
+pub mod commands;
 mod run;
 
 mod config;
