@@ -18,11 +18,13 @@ mod budget;
 mod client;
 mod reports;
 mod request;
+mod request_error;
 mod response;
 mod start;
 mod status;
 
-pub(crate) use client::{RequestError, ServerClient};
+pub(crate) use client::ServerClient;
+pub(crate) use request_error::RequestError;
 pub(crate) use start::{UplinkHandle, prepare};
 pub(crate) use status::{LinkState, LinkStatus, Publisher};
 

@@ -1,7 +1,7 @@
 //! Reports for the logbook on their way: each by itself, before the batches.
 
 use super::budget::Priority;
-use super::client::RequestError;
+use super::request_error::RequestError;
 use super::{LinkState, NextStep, Uplink};
 use crate::spool::{Identity, StoredReport};
 use tokio::time::Instant;

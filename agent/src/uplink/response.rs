@@ -4,7 +4,7 @@
 //! nothing; what the shore refuses is kept, with its reason, and keeps nothing else
 //! back.
 
-use super::client::RequestError;
+use super::request_error::RequestError;
 use super::{LinkState, LinkStatus, NextStep, Uplink};
 use crate::spool::{Identity, SealedBatch};
 use binnacle_wire::messages::{CardWithdrawn, Downlink};
