@@ -45,8 +45,12 @@ pub(crate) fn replay(
     roles: &RolesConfig,
     stale_s: f64,
 ) -> anyhow::Result<Replayed> {
-    let mut acquisition =
-        Acquisition::new(&roles.of_any_input(), stale_s, Settings::default(), None);
+    let mut acquisition = Acquisition::new(
+        &roles.without_input_names(),
+        stale_s,
+        Settings::default(),
+        None,
+    );
     let mut replayed = Replayed::default();
     let heard = Instant::now();
     for file in files {

@@ -25,7 +25,7 @@ pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
             .await
             .map_err(|_| error)?,
     };
-    let status = match ask_running(&spool).await {
+    let status = match fetch_running_status(&spool).await {
         Some(status) => status,
         None => offline_status(&spool).await?,
     };
@@ -39,8 +39,8 @@ pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
 }
 
 /// The status of the running agent; none when none answers.
-async fn ask_running(spool: &Spool) -> Option<Status> {
-    let url = format!("http://{}/api/status", page_of(spool).await?);
+async fn fetch_running_status(spool: &Spool) -> Option<Status> {
+    let url = format!("http://{}/api/status", find_page(spool).await?);
     let response = local_client().ok()?.get(url).send().await.ok()?;
     response.json().await.ok()
 }
@@ -52,7 +52,7 @@ pub(super) async fn set_exclusion(
     let spool = Spool::open(&config.data_dir).await?;
     // A running agent looks into the spool every second, but obeys its page at once.
     spool.set_exclusion(exclusion).await?;
-    if let Some(page) = page_of(&spool).await {
+    if let Some(page) = find_page(&spool).await {
         let response = local_client()?
             .post(format!("http://{page}/api/hold"))
             .header(GUARD_HEADER, "1")
@@ -71,8 +71,8 @@ pub(super) async fn set_exclusion(
     Ok(())
 }
 
-async fn page_of(spool: &Spool) -> Option<SocketAddr> {
-    let mut address = spool.page().await.ok()??;
+async fn find_page(spool: &Spool) -> Option<SocketAddr> {
+    let mut address = spool.page_address().await.ok()??;
     if address.ip().is_unspecified() {
         // Listening everywhere: ask here.
         address.set_ip(match address {

@@ -8,7 +8,7 @@ use tokio_tungstenite::tungstenite::http::Uri;
 
 /// One input.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(try_from = "OneOf")]
+#[serde(try_from = "InputTable")]
 pub(crate) enum InputConfig {
     /// Reads a serial port.
     Serial(SerialConfig),
@@ -47,7 +47,7 @@ impl InputConfig {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct OneOf {
+struct InputTable {
     serial: Option<SerialConfig>,
     tcp: Option<HostPort>,
     udp: Option<SocketAddr>,
@@ -56,17 +56,17 @@ struct OneOf {
     file: Option<PathBuf>,
 }
 
-impl TryFrom<OneOf> for InputConfig {
+impl TryFrom<InputTable> for InputConfig {
     type Error = String;
 
-    fn try_from(one_of: OneOf) -> Result<InputConfig, String> {
+    fn try_from(table: InputTable) -> Result<InputConfig, String> {
         let given: Vec<InputConfig> = [
-            one_of.serial.map(InputConfig::Serial),
-            one_of.tcp.map(InputConfig::Tcp),
-            one_of.udp.map(InputConfig::Udp),
-            one_of.multicast.map(InputConfig::Multicast),
-            one_of.signalk.map(InputConfig::SignalK),
-            one_of.file.map(InputConfig::File),
+            table.serial.map(InputConfig::Serial),
+            table.tcp.map(InputConfig::Tcp),
+            table.udp.map(InputConfig::Udp),
+            table.multicast.map(InputConfig::Multicast),
+            table.signalk.map(InputConfig::SignalK),
+            table.file.map(InputConfig::File),
         ]
         .into_iter()
         .flatten()

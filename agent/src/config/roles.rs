@@ -76,7 +76,7 @@ impl RolesConfig {
     }
 
     /// The same roles for sources whose input has no name.
-    pub(crate) fn of_any_input(&self) -> RolesConfig {
+    pub(crate) fn without_input_names(&self) -> RolesConfig {
         let mut roles = self.clone();
         for sources in [
             &mut roles.compass,

@@ -97,27 +97,29 @@ impl Roles {
     pub(crate) fn observe(&mut self, seen: &Observation) -> [Option<Signal>; 3] {
         let now = self.clock.now();
         match seen.reading {
-            Reading::Compass { raw, .. } => {
-                only(self.compass.hear(seen, now).then_some(Signal::Compass(raw)))
-            }
+            Reading::Compass { raw, .. } => single(
+                self.compass
+                    .note_reading(seen, now)
+                    .then_some(Signal::Compass(raw)),
+            ),
             Reading::Magnetic(heading) => {
-                let used = self.compass.hear(seen, now);
+                let used = self.compass.note_reading(seen, now);
                 let raw = CompassHeading::new(heading.degrees());
-                only(raw.filter(|_| used).map(Signal::Compass))
+                single(raw.filter(|_| used).map(Signal::Compass))
             }
             Reading::True(heading) => {
-                if self.gyro.hear(seen, now) {
-                    return only(Some(Signal::Gyro(heading)));
+                if self.gyro.note_reading(seen, now) {
+                    return single(Some(Signal::Gyro(heading)));
                 }
-                let used = self.satellite.hear(seen, now);
-                only(used.then_some(Signal::Satellite(heading)))
+                let used = self.satellite.note_reading(seen, now);
+                single(used.then_some(Signal::Satellite(heading)))
             }
             Reading::TrueNotValid => {
-                if self.gyro.lose(seen, now) {
-                    return only(Some(Signal::GyroInvalid));
+                if self.gyro.note_invalid(seen, now) {
+                    return single(Some(Signal::GyroInvalid));
                 }
-                let used = self.satellite.lose(seen, now);
-                only(used.then_some(Signal::SatelliteInvalid))
+                let used = self.satellite.note_invalid(seen, now);
+                single(used.then_some(Signal::SatelliteInvalid))
             }
             Reading::Fix {
                 position,
@@ -125,20 +127,24 @@ impl Roles {
                 sog_kn,
             } => self.fix(seen, position, time, sog_kn),
             Reading::Time(stamp) => {
-                let rank = self.position.beside(seen);
-                only(rank.and_then(|rank| self.set_clock(rank, stamp)))
+                let rank = self.position.device_rank(seen);
+                single(rank.and_then(|rank| self.set_clock(rank, stamp)))
             }
             Reading::Speed { sog_kn } => {
-                let rank = self.position.beside(seen);
+                let rank = self.position.device_rank(seen);
                 let used = rank.is_some_and(|rank| self.position.is_best(rank, now));
-                only(used.then_some(Signal::Speed(sog_kn)))
+                single(used.then_some(Signal::Speed(sog_kn)))
             }
             Reading::RateOfTurn { deg_min } => {
-                let used = self.rate_of_turn.hear(seen, now);
-                only(used.then_some(Signal::RateOfTurn(deg_min)))
+                let used = self.rate_of_turn.note_reading(seen, now);
+                single(used.then_some(Signal::RateOfTurn(deg_min)))
             }
-            Reading::Roll { deg } => only(self.roll.hear(seen, now).then_some(Signal::Roll(deg))),
-            Reading::Pitch { .. } => only(None),
+            Reading::Roll { deg } => single(
+                self.roll
+                    .note_reading(seen, now)
+                    .then_some(Signal::Roll(deg)),
+            ),
+            Reading::Pitch { .. } => single(None),
         }
     }
 
@@ -150,12 +156,12 @@ impl Roles {
         sog_kn: Option<f64>,
     ) -> [Option<Signal>; 3] {
         let Some(rank) = self.position.rank(seen) else {
-            return only(None);
+            return single(None);
         };
         // Time first: the fix belongs to the time it brings.
         let time = time.and_then(|stamp| self.set_clock(rank, stamp));
-        if !self.position.hear(seen, self.clock.now()) {
-            return only(time);
+        if !self.position.note_reading(seen, self.clock.now()) {
+            return single(time);
         }
         [
             time,
@@ -173,7 +179,7 @@ impl Roles {
     }
 }
 
-fn only(signal: Option<Signal>) -> [Option<Signal>; 3] {
+fn single(signal: Option<Signal>) -> [Option<Signal>; 3] {
     [signal, None, None]
 }
 
@@ -216,7 +222,7 @@ impl Role {
     }
 
     /// Notes that a source spoke; whether it is the one to use.
-    fn hear(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
+    fn note_reading(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
         let Some(rank) = self.rank(seen) else {
             return false;
         };
@@ -225,7 +231,7 @@ impl Role {
     }
 
     /// Notes that a source cannot be trusted; whether it was the one in use.
-    fn lose(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
+    fn note_invalid(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
         let Some(rank) = self.rank(seen) else {
             return false;
         };
@@ -248,20 +254,20 @@ impl Role {
     }
 
     fn rank(&self, seen: &Observation) -> Option<usize> {
-        self.sources.iter().position(|source| source.is(seen))
+        self.sources.iter().position(|source| source.matches(seen))
     }
 
     /// The rank of the source that this one stands beside: ZDA and VTG come
     /// from the receiver whose position is used.
-    fn beside(&self, seen: &Observation) -> Option<usize> {
+    fn device_rank(&self, seen: &Observation) -> Option<usize> {
         self.sources
             .iter()
-            .position(|source| source.is_same_device(seen))
+            .position(|source| source.matches_device(seen))
     }
 }
 
 impl Source {
-    fn is(&self, seen: &Observation) -> bool {
+    fn matches(&self, seen: &Observation) -> bool {
         if self
             .config
             .sentence
@@ -281,10 +287,10 @@ impl Source {
         if matches!(seen.reading, Reading::Magnetic(_)) && !self.config.raw {
             return false;
         }
-        self.is_same_device(seen)
+        self.matches_device(seen)
     }
 
-    fn is_same_device(&self, seen: &Observation) -> bool {
+    fn matches_device(&self, seen: &Observation) -> bool {
         self.config.matches_talker(seen.talker)
             && self
                 .input

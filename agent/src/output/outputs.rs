@@ -22,13 +22,13 @@ use tokio_serial::SerialPortBuilderExt;
 use tokio_util::sync::CancellationToken;
 
 /// So many outputs behind, a client is dropped.
-const CLIENT_LAG: usize = 16;
+const MAX_CLIENT_LAG: usize = 16;
 /// A client that has not taken a line after so many intervals is dropped.
-const PATIENCE_INTERVALS: f64 = 2.0;
+const WRITE_TIMEOUT_INTERVALS: f64 = 2.0;
 /// However short the interval, a lost segment may be sent again.
-const LEAST_PATIENCE_S: f64 = 1.0;
+const MIN_WRITE_TIMEOUT_S: f64 = 1.0;
 /// However long the interval, a heading this old is not for steering.
-const MOST_PATIENCE_S: f64 = 10.0;
+const MAX_WRITE_TIMEOUT_S: f64 = 10.0;
 /// Room in the kernel for lines that a client has not taken: a few of them.
 const CLIENT_BUFFER_BYTES: usize = 4096;
 /// A serial port that failed is opened again after this.
@@ -61,10 +61,10 @@ impl Outputs {
                 .await
                 .with_context(|| format!("output.tcp_server {address}: cannot listen"))?;
             outputs.tcp_address = Some(listener.local_addr()?);
-            let (clients, _) = broadcast::channel(CLIENT_LAG);
+            let (clients, _) = broadcast::channel(MAX_CLIENT_LAG);
             outputs.clients = Some(clients.clone());
-            let patience = patience(config.interval_s.0);
-            tokio::spawn(accept(listener, clients, patience, shutdown.clone()));
+            let write_timeout = write_timeout(config.interval_s.0);
+            tokio::spawn(accept(listener, clients, write_timeout, shutdown.clone()));
         }
         if let Some(target) = config.udp {
             outputs.udp = Some((udp_socket(target).await?, target));
@@ -111,15 +111,15 @@ async fn udp_socket(target: SocketAddr) -> anyhow::Result<UdpSocket> {
     Ok(socket)
 }
 
-fn patience(interval_s: f64) -> Duration {
-    let seconds = PATIENCE_INTERVALS * interval_s;
-    Duration::from_secs_f64(seconds.clamp(LEAST_PATIENCE_S, MOST_PATIENCE_S))
+fn write_timeout(interval_s: f64) -> Duration {
+    let seconds = WRITE_TIMEOUT_INTERVALS * interval_s;
+    Duration::from_secs_f64(seconds.clamp(MIN_WRITE_TIMEOUT_S, MAX_WRITE_TIMEOUT_S))
 }
 
 async fn accept(
     listener: TcpListener,
     clients: broadcast::Sender<Arc<[u8]>>,
-    patience: Duration,
+    write_timeout: Duration,
     shutdown: CancellationToken,
 ) {
     while let Some(accepted) = shutdown.run_until_cancelled(listener.accept()).await {
@@ -128,7 +128,7 @@ async fn accept(
                 let lines = clients.subscribe();
                 let shutdown = shutdown.clone();
                 tokio::spawn(async move {
-                    let serving = serve(stream, lines, patience);
+                    let serving = serve(stream, lines, write_timeout);
                     let served = shutdown.run_until_cancelled(serving).await;
                     let reason = served.unwrap_or("the agent stops");
                     tracing::info!(%address, reason, "a heading client is gone");
@@ -147,9 +147,9 @@ async fn accept(
 async fn serve(
     mut stream: TcpStream,
     mut lines: broadcast::Receiver<Arc<[u8]>>,
-    patience: Duration,
+    write_timeout: Duration,
 ) -> &'static str {
-    if let Err(error) = keep_little(&stream, patience) {
+    if let Err(error) = bound_send_buffer(&stream, write_timeout) {
         tracing::warn!(%error, "a client's buffer cannot be bounded");
         return "it might get old headings";
     }
@@ -162,7 +162,7 @@ async fn serve(
             }
             Err(broadcast::error::RecvError::Closed) => return "the agent stops",
         };
-        match timeout(patience, stream.write_all(&line)).await {
+        match timeout(write_timeout, stream.write_all(&line)).await {
             Ok(Ok(())) => {}
             Ok(Err(error)) if error.kind() == io::ErrorKind::TimedOut => {
                 return "it does not answer";
@@ -177,14 +177,14 @@ async fn serve(
 }
 
 /// Bounds how much the kernel keeps for a client, and for how long.
-fn keep_little(stream: &TcpStream, patience: Duration) -> io::Result<()> {
+fn bound_send_buffer(stream: &TcpStream, write_timeout: Duration) -> io::Result<()> {
     let socket = SockRef::from(stream);
     socket.set_send_buffer_size(CLIENT_BUFFER_BYTES)?;
     // Elsewhere, the small buffer alone is the bound.
     #[cfg(target_os = "linux")]
-    socket.set_tcp_user_timeout(Some(patience))?;
+    socket.set_tcp_user_timeout(Some(write_timeout))?;
     #[cfg(not(target_os = "linux"))]
-    let _ = patience;
+    let _ = write_timeout;
     Ok(())
 }
 
@@ -276,7 +276,7 @@ mod tests {
         let mut slow = TcpStream::connect(address).await.unwrap();
         connected(&outputs, 1).await;
         // Without a pause for the client's task, it falls behind at once.
-        for _ in 0..4 * CLIENT_LAG {
+        for _ in 0..4 * MAX_CLIENT_LAG {
             outputs.send(b"line\r\n".to_vec());
         }
         let mut rest = Vec::new();
@@ -303,7 +303,7 @@ mod tests {
     #[tokio::test]
     async fn what_waits_for_a_client_that_does_not_read_is_thrown_away() {
         let (mut client, stream) = small_client().await;
-        let (lines, waiting) = broadcast::channel(CLIENT_LAG);
+        let (lines, waiting) = broadcast::channel(MAX_CLIENT_LAG);
         let long: Arc<[u8]> = vec![b'x'; 64 * 1024].into();
         lines.send(long).unwrap();
         drop(lines);
@@ -319,14 +319,14 @@ mod tests {
     #[tokio::test]
     async fn the_kernel_keeps_little_and_not_for_long() {
         let (_client, stream) = small_client().await;
-        keep_little(&stream, patience(1.0)).unwrap();
+        bound_send_buffer(&stream, write_timeout(1.0)).unwrap();
         let socket = SockRef::from(&stream);
         // Linux says twice what was asked for.
         assert!(socket.send_buffer_size().unwrap() <= 2 * CLIENT_BUFFER_BYTES);
         let seconds = Duration::from_secs;
         assert_eq!(socket.tcp_user_timeout().unwrap(), Some(seconds(2)));
         assert_eq!(
-            (patience(0.05), patience(3600.0)),
+            (write_timeout(0.05), write_timeout(3600.0)),
             (seconds(1), seconds(10))
         );
     }

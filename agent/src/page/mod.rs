@@ -192,7 +192,7 @@ pub(crate) mod tests {
     }
 
     #[tokio::test]
-    async fn an_alert_is_acknowledged_once_it_is_known_and_reject_foreign_sites() {
+    async fn an_alert_is_acknowledged_once_it_is_known_and_only_from_here() {
         let (_directory, page, router) = page().await;
         let at = binnacle_magnetics::time::Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
         let id = Uuid::from_u128(0xa1);

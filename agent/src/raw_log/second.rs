@@ -22,7 +22,12 @@ pub(crate) struct Second {
 
 impl Second {
     /// What of the readings is not older than `stale`.
-    pub(crate) fn of(time: Timestamp, readings: &Readings, stale: Duration, now: Instant) -> Self {
+    pub(crate) fn from_readings(
+        time: Timestamp,
+        readings: &Readings,
+        stale: Duration,
+        now: Instant,
+    ) -> Self {
         Second {
             time,
             position: Latest::within(readings.position, stale, now),

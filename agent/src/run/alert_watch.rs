@@ -8,7 +8,7 @@ use rand::RngExt;
 impl Agent {
     /// Looks at what has settled since; the samples of an alert end with it.
     pub(super) fn update_alert(&mut self) {
-        let withdrawn = self.withdrawn();
+        let withdrawn = self.card_withdrawal();
         let model = self.uplink_handle.model.borrow();
         let card = ActiveCard {
             model: model.as_ref(),

@@ -16,7 +16,7 @@ const POSITION_MAX_AGE: Duration = Duration::from_mins(10);
 
 impl Agent {
     /// Why the model holds no more, by the shore's word or the officers'.
-    pub(super) fn withdrawn(&self) -> Option<CardWithdrawn> {
+    pub(super) fn card_withdrawal(&self) -> Option<CardWithdrawn> {
         let by_shore = self.uplink_handle.withdrawn.borrow().clone();
         by_shore.or_else(|| {
             let model = self.uplink_handle.model.borrow();
@@ -26,7 +26,7 @@ impl Agent {
     }
 
     pub(super) fn correct(&self) -> (CorrectedHeading, Vec<CardRow>) {
-        let withdrawn = self.withdrawn();
+        let withdrawn = self.card_withdrawal();
         let model = self.uplink_handle.model.borrow();
         let now = Instant::now();
         let readings = &self.acquisition.readings;
@@ -64,7 +64,7 @@ impl Agent {
     }
 
     pub(super) fn model_status(&self) -> Option<ModelStatus> {
-        let withdrawn = self.withdrawn();
+        let withdrawn = self.card_withdrawal();
         let model = self.uplink_handle.model.borrow();
         let model = model.as_ref()?;
         let now = self.acquisition.time().unwrap_or_else(clock::now);

@@ -36,7 +36,7 @@ use uuid::Uuid;
 pub(crate) const SAMPLES_PER_COMMIT: usize = 64;
 /// Deliveries of observations that may wait: what is here dies with the agent.
 const CHANNEL_CAPACITY: usize = 8;
-const SECOND: Duration = Duration::from_secs(1);
+const TICK: Duration = Duration::from_secs(1);
 
 /// Runs until `shutdown`; everything settled is in the spool then.
 pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::Result<()> {
@@ -95,7 +95,7 @@ struct Unstored {
 
 impl Agent {
     async fn run(mut self, shutdown: CancellationToken) {
-        let mut second = interval(SECOND);
+        let mut second = interval(TICK);
         let mut output = interval(self.interval);
         for ticks in [&mut second, &mut output] {
             ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
@@ -105,7 +105,7 @@ impl Agent {
             tokio::select! {
                 () = shutdown.cancelled() => break,
                 Some(observations) = self.observations.recv() => self.observe(&observations).await,
-                _ = second.tick() => self.every_second().await,
+                _ = second.tick() => self.run_every_second().await,
                 _ = output.tick() => self.send_heading(),
                 Ok(()) = self.uplink_handle.settings.changed() => {
                     let settings = self.uplink_handle.settings.borrow_and_update().clone();
@@ -154,7 +154,7 @@ impl Agent {
             if let Some(time) = self.acquisition.time() {
                 let (readings, stale) =
                     (&self.acquisition.readings, self.silence.stale_s.duration());
-                let second = || Second::of(time, readings, stale, heard);
+                let second = || Second::from_readings(time, readings, stale, heard);
                 self.raw_log.record(time, second, heard);
             }
         }
@@ -172,7 +172,7 @@ impl Agent {
         }
     }
 
-    async fn every_second(&mut self) {
+    async fn run_every_second(&mut self) {
         self.update_alert();
         self.collect();
         let seal = self.seal_due();
@@ -202,8 +202,8 @@ impl Agent {
 
     fn collect(&mut self) {
         let tally = self.acquisition.sampler.take_tally();
-        self.windows.plus(&tally);
-        self.unstored.tally.plus(&tally);
+        self.windows.add_all(&tally);
+        self.unstored.tally.add_all(&tally);
         let samples = self.acquisition.sampler.take_samples();
         self.unstored.samples.extend(samples);
         if self.unstored.tally_since.is_none() {

@@ -70,15 +70,15 @@ impl Tally {
     }
 
     /// What has been counted of one outcome.
-    pub(crate) fn of(&self, outcome: Outcome) -> u64 {
+    pub(crate) fn count(&self, outcome: Outcome) -> u64 {
         self.0[outcome as usize]
     }
 
     /// By name, without what did not happen.
     pub(crate) fn by_name(&self) -> BTreeMap<String, u64> {
         ALL.iter()
-            .filter(|(outcome, _)| self.of(*outcome) > 0)
-            .map(|(outcome, name)| ((*name).to_owned(), self.of(*outcome)))
+            .filter(|(outcome, _)| self.count(*outcome) > 0)
+            .map(|(outcome, name)| ((*name).to_owned(), self.count(*outcome)))
             .collect()
     }
 
@@ -88,7 +88,7 @@ impl Tally {
     }
 
     /// The sum of two tallies.
-    pub(crate) fn plus(&mut self, other: &Tally) {
+    pub(crate) fn add_all(&mut self, other: &Tally) {
         for (count, more) in self.0.iter_mut().zip(other.0) {
             *count = count.saturating_add(more);
         }

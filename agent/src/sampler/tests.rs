@@ -59,8 +59,8 @@ fn a_steady_hour_settles_first_and_is_then_sampled_every_ten_minutes() {
     let mut sampler = sampler();
     sail(&mut sampler, 0..3601, |_| 1.0);
     let (samples, tally) = finished(sampler);
-    assert_eq!(tally.of(Outcome::Settling), 19);
-    assert_eq!(tally.of(Outcome::Accepted), 341);
+    assert_eq!(tally.count(Outcome::Settling), 19);
+    assert_eq!(tally.count(Outcome::Accepted), 341);
     let windows: Vec<u16> = samples.iter().map(|s| s.windows).collect();
     assert_eq!(windows, [60, 60, 60, 60, 60, 41]);
     let first = &samples[0];
@@ -81,7 +81,7 @@ fn nothing_is_sampled_beside_a_magnetic_pole() {
     }
     let (samples, tally) = finished(sampler);
     assert_eq!(samples, []);
-    assert_eq!(tally.of(Outcome::HighLatitude), 119);
+    assert_eq!(tally.count(Outcome::HighLatitude), 119);
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn nothing_is_sampled_for_three_minutes_after_a_turn() {
         .unwrap();
     let first_window = resumed.time.plus_seconds(-5.0 * f64::from(resumed.windows));
     assert!(first_window >= at(1330), "{first_window}");
-    assert!(tally.of(Outcome::Settling) > 19 + 18);
+    assert!(tally.count(Outcome::Settling) > 19 + 18);
     assert!(samples.iter().all(|s| s.spread_deg.unwrap_or(0.0) < 0.01));
 }
 
@@ -119,10 +119,10 @@ fn a_fast_turn_counts_as_turning_by_the_instrument_or_by_the_heading() {
         }
         let (_, tally) = finished(sampler);
         assert!(
-            tally.of(Outcome::Turning) >= 1,
+            tally.count(Outcome::Turning) >= 1,
             "instrument: {with_instrument}"
         );
-        assert!(tally.of(Outcome::Settling) >= 19 + 18);
+        assert!(tally.count(Outcome::Settling) >= 19 + 18);
     }
 }
 
@@ -134,8 +134,8 @@ fn a_swing_beyond_two_degrees_either_way_is_refused() {
             90.0 + amplitude * (t as f64 / 3.0).sin()
         });
         let (_, tally) = finished(sampler);
-        assert_eq!(tally.of(Outcome::Swinging) > 0, refused, "{amplitude}");
-        assert_eq!(tally.of(Outcome::Accepted) > 0, !refused, "{amplitude}");
+        assert_eq!(tally.count(Outcome::Swinging) > 0, refused, "{amplitude}");
+        assert_eq!(tally.count(Outcome::Accepted) > 0, !refused, "{amplitude}");
     }
 }
 
@@ -155,7 +155,11 @@ fn each_thing_that_is_missing_is_named() {
             feed(&mut sampler, heard);
         }
         let (samples, tally) = finished(sampler);
-        assert_eq!((samples.len(), tally.of(outcome)), (0, 60), "{outcome:?}");
+        assert_eq!(
+            (samples.len(), tally.count(outcome)),
+            (0, 60),
+            "{outcome:?}"
+        );
     }
 }
 
@@ -174,8 +178,8 @@ fn slow_sparse_and_held_windows_are_named() {
             }
         }
     }
-    assert_eq!(finished(slow).1.of(Outcome::Slow), 60);
-    assert_eq!(finished(sparse).1.of(Outcome::Sparse), 60);
+    assert_eq!(finished(slow).1.count(Outcome::Slow), 60);
+    assert_eq!(finished(sparse).1.count(Outcome::Sparse), 60);
     for exclusion in [
         Exclusion::Berthed,
         Exclusion::MagneticCargo,
@@ -184,7 +188,7 @@ fn slow_sparse_and_held_windows_are_named() {
         let mut sampler = Sampler::new(Settings::default(), Some(exclusion));
         sail(&mut sampler, 0..601, |_| 90.0);
         let (samples, tally) = finished(sampler);
-        assert_eq!((samples.len(), tally.of(exclusion.outcome())), (0, 60));
+        assert_eq!((samples.len(), tally.count(exclusion.outcome())), (0, 60));
     }
 }
 
@@ -208,8 +212,8 @@ fn a_clock_that_jumps_voids_the_open_window_and_settles_anew() {
     sampler.apply(Signal::Jump(at(-9000)));
     sail(&mut sampler, -8999..-8400, |_| 90.0);
     let (samples, tally) = finished(sampler);
-    assert_eq!(tally.of(Outcome::Clock), 1);
-    assert!(tally.of(Outcome::Settling) >= 2 * 18);
+    assert_eq!(tally.count(Outcome::Clock), 1);
+    assert!(tally.count(Outcome::Settling) >= 2 * 18);
     assert_eq!(samples.len(), 2);
     assert!(samples.iter().all(|s| s.windows > 30 && s.windows < 60));
 }
@@ -220,7 +224,7 @@ fn windows_without_a_time_stamp_are_counted_and_end_the_stretch() {
     sail(&mut sampler, 0..600, |_| 90.0);
     sail(&mut sampler, 900..1500, |_| 90.0);
     let (samples, tally) = finished(sampler);
-    assert_eq!(tally.of(Outcome::NoTime), 30);
+    assert_eq!(tally.count(Outcome::NoTime), 30);
     assert_eq!(samples.len(), 2);
 }
 
@@ -233,7 +237,7 @@ fn settings_from_shore_take_effect_at_once() {
         ..Settings::default()
     });
     sail(&mut sampler, 1000..1200, |_| 90.0);
-    assert!(finished(sampler).1.of(Outcome::Slow) >= 19);
+    assert!(finished(sampler).1.count(Outcome::Slow) >= 19);
 }
 
 #[test]
@@ -270,7 +274,7 @@ proptest! {
         feed(&mut sampler, signals);
         let (samples, tally) = finished(sampler);
         let windows: u64 = samples.iter().map(|s| u64::from(s.windows)).sum();
-        prop_assert!(windows <= tally.of(Outcome::Accepted));
+        prop_assert!(windows <= tally.count(Outcome::Accepted));
         for sample in samples {
             prop_assert!(sample.windows >= 1);
             prop_assert!(sample.gyro.is_some() || sample.satellite.is_some());

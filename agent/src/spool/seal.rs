@@ -182,7 +182,10 @@ async fn seal_one(
     if rows.is_empty() && tally.is_empty() && alerts.is_empty() {
         return Ok(false);
     }
-    let mut samples: Vec<Sample> = rows.iter().filter_map(|(_, text)| readable(text)).collect();
+    let mut samples: Vec<Sample> = rows
+        .iter()
+        .filter_map(|(_, text)| read_sample(text))
+        .collect();
     samples.sort_by_key(|sample| sample.time);
     let thinned = get(tx, THINNED).await?;
     if thinned.is_some() {
@@ -216,15 +219,17 @@ async fn next_seq(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
     Ok(get::<u64>(tx, NEXT_SEQ).await?.unwrap_or(1).max(free))
 }
 
-fn left_out(error: impl std::fmt::Display) {
+fn log_dropped_sample(error: impl std::fmt::Display) {
     tracing::error!(%error, "a damaged sample was left out");
 }
 
-fn readable(text: &str) -> Option<Sample> {
-    let sample: Sample = serde_json::from_str(text).map_err(left_out).ok()?;
+fn read_sample(text: &str) -> Option<Sample> {
+    let sample: Sample = serde_json::from_str(text)
+        .map_err(log_dropped_sample)
+        .ok()?;
     // Damage on the disk may leave a number that reads but that no batch can
     // carry: it must not keep the others from being sealed.
-    codec::check(&sample, 0).map_err(left_out).ok()?;
+    codec::check(&sample, 0).map_err(log_dropped_sample).ok()?;
     Some(sample)
 }
 

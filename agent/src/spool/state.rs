@@ -101,7 +101,7 @@ impl Spool {
     }
 
     /// Where the running agent's page is, for the command line.
-    pub(crate) async fn page(&self) -> sqlx::Result<Option<SocketAddr>> {
+    pub(crate) async fn page_address(&self) -> sqlx::Result<Option<SocketAddr>> {
         Ok(self.get(PAGE).await?.flatten())
     }
 

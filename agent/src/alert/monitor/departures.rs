@@ -163,7 +163,7 @@ impl MedianDeparture {
     }
 
     /// The alert with these figures.
-    pub(super) fn updated(&self, alert: &ShipAlert) -> ShipAlert {
+    pub(super) fn apply_to(&self, alert: &ShipAlert) -> ShipAlert {
         ShipAlert {
             gyro_departure_deg: self.gyro_deg.map(round_to_tenth),
             satellite_departure_deg: self.satellite_deg.map(round_to_tenth),

@@ -23,7 +23,7 @@ use departures::{
     Departure, MedianDeparture, RecentDepartures, SECTOR_DEG, SECTORS, round_to_tenth,
 };
 use uuid::Uuid;
-use verdict::{clears_compass, has_lost_reference, reassessed_alert};
+use verdict::{clears_compass, has_lost_reference, reassess_alert};
 
 /// Where a model gives no band.
 const DEFAULT_BAND_DEG: f64 = 2.0;
@@ -272,7 +272,7 @@ impl AlertMonitor {
         }
         let record = self.record.as_mut()?;
         let before = record.alert.suspect();
-        let updated = reassessed_alert(record, median.updated(&record.alert))?;
+        let updated = reassess_alert(record, median.apply_to(&record.alert))?;
         record.clearance_revoked |= clears_compass(before);
         record.alert = updated;
         self.revise(ShipAlertState::Open, now)
@@ -284,7 +284,7 @@ impl AlertMonitor {
             return None;
         }
         record.followed_up = true;
-        let updated = median.updated(&record.alert);
+        let updated = median.apply_to(&record.alert);
         let is_of_same = !has_lost_reference(&record.alert, &updated)
             && updated.suspect() == record.alert.suspect();
         if median.exceeds_limit() && is_of_same {

@@ -23,7 +23,7 @@ pub(super) fn has_lost_reference(before: &ShipAlert, updated: &ShipAlert) -> boo
 /// silent takes nothing back of what it has proven, as long as the other says what it said. The
 /// compass is borne out at most once: what speaks against that takes it back for the rest of
 /// the alert, for a bad reference and a compass that moves to it look like a bad other one.
-pub(super) fn reassessed_alert(record: &AlertRecord, updated: ShipAlert) -> Option<ShipAlert> {
+pub(super) fn reassess_alert(record: &AlertRecord, updated: ShipAlert) -> Option<ShipAlert> {
     let before = &record.alert;
     let (was, is) = (before.suspect(), updated.suspect());
     if !clears_compass(was) {

@@ -22,7 +22,7 @@ use tokio::time::Instant;
 /// Two receivers, or two sentences, may differ by so much.
 const RECEIVER_TOLERANCE_S: f64 = 2.0;
 /// A step beyond this is not mere silence.
-const LONGEST_STEP_S: f64 = 600.0;
+const MAX_STEP_S: f64 = 600.0;
 /// A jump is borne out by a stamp that follows within this.
 const CONFIRM_S: f64 = 60.0;
 /// What another clock may be wrong by and still decide.
@@ -238,7 +238,7 @@ impl GnssClock {
             return self.initialise(stamp);
         };
         let step_s = stamp.seconds_since(now);
-        if (0.0..=LONGEST_STEP_S).contains(&step_s) {
+        if (0.0..=MAX_STEP_S).contains(&step_s) {
             self.candidate = None;
             if step_s == 0.0 {
                 return Step::Held;
@@ -297,7 +297,7 @@ impl GnssClock {
             .heard_at
             .saturating_duration_since(reference.valid_at);
         let passed_s = passed.as_secs_f64();
-        (step_s - passed_s).abs() <= LONGEST_STEP_S + QUARTZ_DRIFT * passed_s
+        (step_s - passed_s).abs() <= MAX_STEP_S + QUARTZ_DRIFT * passed_s
     }
 
     /// A stamp after a jump that nothing bore out.
@@ -306,13 +306,13 @@ impl GnssClock {
             return self.jump(stamp);
         };
         let advanced_s = stamp.seconds_since(unconfirmed.last);
-        if (0.0..=LONGEST_STEP_S).contains(&advanced_s) {
+        if (0.0..=MAX_STEP_S).contains(&advanced_s) {
             unconfirmed.lasted_s += advanced_s;
         }
         unconfirmed.last = stamp;
         self.unconfirmed = Some(unconfirmed);
         let expected = now.plus_seconds(unconfirmed.lasted_s);
-        if stamp.seconds_since(expected).abs() <= LONGEST_STEP_S {
+        if stamp.seconds_since(expected).abs() <= MAX_STEP_S {
             return self.jump(stamp);
         }
         let reference_time = reference.now();
