@@ -86,7 +86,7 @@ stale_s = 3
 
     pub(crate) async fn enrol(&self, server: &str) {
         let done = self
-            .call(&["enrol", "--server", server, "--code", super::shore::CODE])
+            .call(&["enrol", "--server", server, "--code", super::server::CODE])
             .await;
         assert!(done.status.success(), "{done:?}");
     }

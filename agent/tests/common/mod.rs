@@ -4,7 +4,7 @@
 
 pub(crate) mod agent;
 pub(crate) mod bridge;
-pub(crate) mod shore;
+pub(crate) mod server;
 
 use binnacle_magnetics::model::{Model, Parameters};
 use binnacle_magnetics::time::Timestamp;

@@ -19,7 +19,7 @@ pub(crate) const STREAM: Uuid = Uuid::from_u128(0x5712_ea00);
 pub(crate) const CODE: &str = "K7QF-2M9X";
 
 #[derive(Default)]
-pub(crate) struct Kept {
+pub(crate) struct Stored {
     pub(crate) batches: BTreeMap<u64, Vec<u8>>,
     pub(crate) forks: u64,
     /// Numbers in the order in which they came.
@@ -30,24 +30,24 @@ pub(crate) struct Kept {
 }
 
 #[derive(Clone)]
-pub(crate) struct Shore {
+pub(crate) struct TestServer {
     pub(crate) url: String,
-    pub(crate) kept: Arc<Mutex<Kept>>,
+    pub(crate) stored: Arc<Mutex<Stored>>,
     /// Rises with each batch that is kept.
-    pub(crate) news: watch::Sender<u64>,
+    pub(crate) stored_batches: watch::Sender<u64>,
     model: Option<ModelDownlink>,
     settings: Settings,
     /// Every so many requests, one fails.
     fail_every: Option<u64>,
 }
 
-impl Shore {
-    pub(crate) async fn start(model: Option<ModelDownlink>, fail_every: Option<u64>) -> Shore {
+impl TestServer {
+    pub(crate) async fn start(model: Option<ModelDownlink>, fail_every: Option<u64>) -> TestServer {
         let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.unwrap();
-        let shore = Shore {
+        let server = TestServer {
             url: format!("http://{}", listener.local_addr().unwrap()),
-            kept: Arc::default(),
-            news: watch::Sender::new(0),
+            stored: Arc::default(),
+            stored_batches: watch::Sender::new(0),
             model,
             settings: Settings {
                 version: 1,
@@ -64,27 +64,30 @@ impl Shore {
             )
             .route("/api/v1/streams/{stream}/batches/{seq}", put(put_batch))
             .route("/api/v1/streams/{stream}/downlink", get(downlink))
-            .with_state(shore.clone());
+            .with_state(server.clone());
         tokio::spawn(async move { axum::serve(listener, router).await });
-        shore
+        server
     }
 
     /// Waits until so many batches are here.
     pub(crate) async fn has(&self, batches: u64) {
-        let mut news = self.news.subscribe();
-        news.wait_for(|kept| *kept >= batches).await.unwrap();
+        let mut stored_batches = self.stored_batches.subscribe();
+        stored_batches
+            .wait_for(|stored| *stored >= batches)
+            .await
+            .unwrap();
     }
 
     pub(crate) fn decoded(&self) -> Vec<Batch> {
-        let kept = self.kept.lock().unwrap();
-        let batches = kept.batches.values();
+        let stored = self.stored.lock().unwrap();
+        let batches = stored.batches.values();
         batches
             .map(|bytes| binnacle_wire::decode(bytes).unwrap())
             .collect()
     }
 
-    fn answer(&self, kept: &Kept) -> Downlink {
-        let contiguous = (1..).take_while(|seq| kept.batches.contains_key(seq));
+    fn answer(&self, stored: &Stored) -> Downlink {
+        let contiguous = (1..).take_while(|seq| stored.batches.contains_key(seq));
         Downlink {
             contiguous_seq: contiguous.last().unwrap_or(0),
             model: self.model.clone(),
@@ -113,36 +116,38 @@ async fn enrol(Json(request): Json<EnrolRequest>) -> Response {
 }
 
 async fn put_batch(
-    State(shore): State<Shore>,
+    State(server): State<TestServer>,
     Path((stream, seq)): Path<(Uuid, u64)>,
     body: Bytes,
 ) -> Response {
     assert_eq!(stream, STREAM);
-    let mut kept = shore.kept.lock().unwrap();
-    if kept.down {
+    let mut stored = server.stored.lock().unwrap();
+    if stored.down {
         return (StatusCode::SERVICE_UNAVAILABLE, "down").into_response();
     }
-    kept.requests += 1;
-    let fails = shore
+    stored.requests += 1;
+    let fails = server
         .fail_every
-        .is_some_and(|every| kept.requests % every == 0);
-    if fails && kept.requests % 2 == 0 {
+        .is_some_and(|every| stored.requests % every == 0);
+    if fails && stored.requests % 2 == 0 {
         return (StatusCode::SERVICE_UNAVAILABLE, "busy").into_response();
     }
-    if !kept.batches.contains_key(&seq) {
-        kept.order.push(seq);
+    if !stored.batches.contains_key(&seq) {
+        stored.order.push(seq);
     }
-    let known = kept.batches.entry(seq).or_insert(body.to_vec()).clone();
+    let known = stored.batches.entry(seq).or_insert(body.to_vec()).clone();
     if known != body {
-        kept.forks += 1;
+        stored.forks += 1;
         return StatusCode::CONFLICT.into_response();
     }
-    shore.news.send_replace(kept.batches.len() as u64);
+    server
+        .stored_batches
+        .send_replace(stored.batches.len() as u64);
     if fails {
         // Kept, but the answer is lost on the way.
         return (StatusCode::BAD_GATEWAY, "lost").into_response();
     }
-    Json(shore.answer(&kept)).into_response()
+    Json(server.answer(&stored)).into_response()
 }
 
 async fn propose_token() -> Json<Value> {
@@ -154,10 +159,10 @@ async fn replace_token(Json(new): Json<Value>) -> StatusCode {
     StatusCode::NO_CONTENT
 }
 
-async fn downlink(State(shore): State<Shore>) -> Response {
-    let kept = shore.kept.lock().unwrap();
-    if kept.down {
+async fn downlink(State(server): State<TestServer>) -> Response {
+    let stored = server.stored.lock().unwrap();
+    if stored.down {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     }
-    Json(shore.answer(&kept)).into_response()
+    Json(server.answer(&stored)).into_response()
 }

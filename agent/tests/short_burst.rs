@@ -9,7 +9,7 @@ use binnacle_wire::burst::{Ack, Joiner, MESSAGE_OCTETS, StreamTag, write_ack};
 use common::agent::Agent;
 use common::bridge::Bridge;
 use common::fetch;
-use common::shore::{STREAM, Shore};
+use common::server::{STREAM, TestServer};
 use std::path::Path;
 use std::time::Duration;
 use tokio::time::timeout;
@@ -32,14 +32,14 @@ fn messages(folder: &Path) -> Vec<Vec<u8>> {
 
 #[tokio::test]
 async fn a_day_goes_ashore_in_three_messages_and_is_forgotten_when_it_is_answered() {
-    let shore = Shore::start(None, None).await;
+    let server = TestServer::start(None, None).await;
     let bridge = Bridge::new(25 * 3_600).await;
     let agent = Agent::new(bridge.address);
     agent.configure("[uplink]", "profile = \"short-burst\"");
     agent.configure("stale_s = 3", "[modem]\ndirectory = \"modem\"");
-    agent.enrol(&shore.url).await;
+    agent.enrol(&server.url).await;
     // At sea there is nothing but the modem.
-    shore.kept.lock().unwrap().down = true;
+    server.stored.lock().unwrap().down = true;
     bridge.sail();
     let running = agent.run().await;
     let modem = agent.config().with_file_name("modem");
