@@ -1,27 +1,27 @@
-//! An alert as it is kept aboard, and in words for the bridge.
+//! The alert as it is stored on board, and its text for the bridge.
 
 use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState, Suspect};
 use serde::{Deserialize, Serialize};
 
-/// The last alert: open, or how it ended.
+/// The last alert, open or closed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct AlertRecord {
-    /// Its last revision.
+    /// Latest revision.
     pub(crate) alert: ShipAlert,
-    /// Whether an officer said that it was seen.
+    /// Acknowledged by an officer.
     pub(crate) acknowledged: bool,
-    /// Whether the revision that follows some time after the first was made.
+    /// Set once the follow-up revision was made.
     #[serde(rename = "followed")]
     pub(crate) followed_up: bool,
-    /// A bit for each 10° of the reference's heading on which they were last seen apart; where that
-    /// was not kept, all.
+    /// One bit per 10° of reference heading on which compass and reference last disagreed; all bits
+    /// where this was not stored.
     #[serde(rename = "parted", default = "all_sectors")]
     pub(crate) departed_sectors: u64,
-    /// What they were allowed when they parted, degrees.
+    /// Limit when the alert was raised, degrees.
     #[serde(rename = "raised_by_deg", default)]
     pub(crate) raised_limit_deg: Option<f64>,
-    /// Whether two instruments bore the compass out, and do no more.
+    /// Set once the compass is suspected again after two instruments cleared it.
     #[serde(rename = "is_doubted", default)]
     pub(crate) clearance_revoked: bool,
 }
@@ -30,35 +30,35 @@ fn all_sectors() -> u64 {
     u64::MAX
 }
 
-/// An alert as the page and `status` show it.
+/// The alert as the page and `status` show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct AlertStatus {
     #[serde(flatten)]
     pub(crate) alert: ShipAlert,
     pub(crate) acknowledged: bool,
-    /// What is so.
+    /// Description of the disagreement.
     #[serde(rename = "says")]
     pub(crate) summary: String,
-    /// What to do; nothing once it is over.
+    /// Advice to the officer; empty once the alert is closed.
     pub(crate) advice: String,
-    /// Whether the corrected heading and the card are not to be used while it goes on.
+    /// Set while corrected heading and card must not be used.
     #[serde(rename = "is_of_the_compass")]
     pub(crate) suspects_compass: bool,
 }
 
 impl AlertRecord {
-    /// Whether it goes on.
+    /// Returns whether the alert is open.
     pub(crate) fn is_open(&self) -> bool {
         self.alert.state == ShipAlertState::Open
     }
 
-    /// Whether the corrected heading is not to be steered by while it goes on: unless
-    /// the compass and one reference speak against the other.
+    /// Returns whether the compass must not be steered by while the alert is open: always, unless
+    /// the compass and one reference contradict the other reference.
     pub(crate) fn suspects_compass(&self) -> bool {
         self.is_open() && matches!(self.alert.suspect(), Suspect::Compass | Suspect::Unknown)
     }
 
-    /// For the page and `status`.
+    /// Returns the alert for the page and `status`.
     pub(crate) fn status(&self) -> AlertStatus {
         AlertStatus {
             alert: self.alert,
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_sent_to_a_gyro_that_gave_nothing() {
+    fn nobody_is_sent_to_a_gyro_without_readings() {
         let alone = status(ShipAlertState::Open, None, Some(-7.2));
         assert!(
             alone

@@ -6,26 +6,27 @@ use binnacle_magnetics::angle::wrap_180;
 use binnacle_wire::alert::{ShipAlert, Suspect};
 use std::collections::VecDeque;
 
-/// Windows further apart than half an hour do not belong together.
+/// Largest gap between windows that are compared: half an hour.
 const MAX_GAP_WINDOWS: i64 = 1800 / WINDOW_S;
-/// Degrees of heading by the reference that one bit of [`AlertRecord::departed_sectors`] stands for. What a magnet
-/// does is nothing on two courses and at its most a quarter of a circle from them, so that
-/// agreement on one course says little of the next: a magnet that turns the compass by 14° does
-/// as good as nothing within 10° of either.
+/// Degrees of reference heading per bit of [`AlertRecord::departed_sectors`].
+///
+/// The deviation of a magnet vanishes on two courses and is largest a quarter circle from them, so
+/// agreement on one course says little about the next. A magnet that turns the compass by 14° does
+/// almost nothing within 10° of either null.
 pub(super) const SECTOR_DEG: f64 = 10.0;
 pub(super) const SECTORS: u32 = 36;
 
-/// How compass and references stood in one settled window.
+/// Departure of the corrected compass from its references in one settled window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Departure {
     pub(super) index: i64,
-    /// Corrected compass less gyro.
+    /// Corrected compass minus gyro.
     pub(super) gyro_deg: Option<f64>,
-    /// Corrected compass less satellite compass.
+    /// Corrected compass minus satellite compass.
     pub(super) satellite_deg: Option<f64>,
-    /// What the model may err on this heading.
+    /// 95 % band of the model on this heading.
     pub(super) band_deg: f64,
-    /// The same, with what a sound reference may.
+    /// Band of the model plus the usual error of a sound reference.
     pub(super) limit_deg: f64,
     pub(super) sector: u32,
 }
@@ -65,13 +66,14 @@ impl RecentDepartures {
         }
     }
 
-    /// The window that lies `windows - 1` before the latest one.
+    /// Returns the window that lies `windows - 1` before the latest one.
     pub(super) fn nth_latest(&self, windows: usize) -> Option<&Departure> {
         self.windows.iter().rev().nth(windows.saturating_sub(1))
     }
 
-    /// How they stand over the last so many windows; none when there are fewer. Half of the
-    /// windows speak for all, and for both references the same ones.
+    /// Returns the median departures of the latest windows, `None` when there are fewer. At least
+    /// half of the windows must have a reference, and both references are compared over the same
+    /// ones.
     pub(super) fn median_over(&self, windows: usize) -> Option<MedianDeparture> {
         let from = self.windows.len().checked_sub(windows)?;
         let last = self.windows.back()?;
@@ -103,8 +105,7 @@ impl RecentDepartures {
         })
     }
 
-    /// So many of the latest windows are apart: from where those beyond the limit
-    /// begin to prevail.
+    /// Counts the latest windows since the limit began to be exceeded more often than not.
     pub(super) fn count_departed_windows(&self, limit_deg: f64) -> usize {
         let (mut sum, mut most, mut windows) = (0, 0, 0);
         for (before, departure) in self.windows.iter().rev().enumerate() {
@@ -118,7 +119,7 @@ impl RecentDepartures {
         windows
     }
 
-    /// Whether so many of the latest windows are of one course, but for yaw.
+    /// Returns whether the latest windows are all on one course, apart from yaw.
     pub(super) fn is_on_course(&self, windows: usize, sector: u32) -> bool {
         let is_near = |departure: &Departure| {
             let turned = (departure.sector + SECTORS - sector) % SECTORS;
@@ -128,7 +129,7 @@ impl RecentDepartures {
     }
 }
 
-/// Medians over some windows.
+/// Median departures of several windows, with band, limit and sector of the latest one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MedianDeparture {
     pub(super) gyro_deg: Option<f64>,
@@ -139,7 +140,7 @@ pub(super) struct MedianDeparture {
 }
 
 impl MedianDeparture {
-    /// From the gyro, or where there is none from the satellite compass.
+    /// Departure from the gyro, or from the satellite compass where there is no gyro.
     fn main_deg(&self) -> Option<f64> {
         self.gyro_deg.or(self.satellite_deg)
     }
@@ -149,8 +150,8 @@ impl MedianDeparture {
             .is_some_and(|deg| deg.abs() > self.limit_deg)
     }
 
-    /// The departure whose end is that of an alert, and the other, if that is to have ended,
-    /// too: where an instrument was borne out, both.
+    /// Returns the departure that decides whether the alert is over, and the other one if it must
+    /// agree as well: both where an instrument was cleared.
     pub(super) fn assessed_deg(&self, record: &AlertRecord) -> (Option<f64>, Option<f64>) {
         let (gyro_deg, satellite_deg) = (self.gyro_deg, self.satellite_deg);
         match record.alert.suspect() {
@@ -162,7 +163,7 @@ impl MedianDeparture {
         }
     }
 
-    /// The alert with these figures.
+    /// Returns the alert with these figures.
     pub(super) fn apply_to(&self, alert: &ShipAlert) -> ShipAlert {
         ShipAlert {
             gyro_departure_deg: self.gyro_deg.map(round_to_tenth),
@@ -173,7 +174,7 @@ impl MedianDeparture {
     }
 }
 
-/// Degrees, rounded to a tenth.
+/// Rounds degrees to a tenth.
 pub(super) fn round_to_tenth(degrees: f64) -> f64 {
     (degrees * 10.0).round() / 10.0
 }

@@ -1,12 +1,12 @@
-//! Whether compass and gyro have parted. Pure: windows in, revisions out.
+//! Detection of a disagreement between compass and references. Pure: windows in, revisions out.
 //!
-//! The limit is the 95 % band of the model on this heading, and what a sound gyro
-//! may err, which grows as 1 / cos(latitude) like all that pulls a gyro to the
-//! meridian. A Schuler swing of 0.35° and a slow bias of 0.3°, with 0.3° of the
-//! compass's own swing and the variation's error, come to 0.55° (one standard
-//! deviation); a few hours of the year they reach four times that, and for tens of
-//! minutes after a manoeuvre a gyro may be off by one or two degrees. 2.5° at the
-//! equator lies above both.
+//! The limit is the model's 95 % band on this heading plus the usual error of a gyro. That error
+//! grows as 1 / cos(latitude), like everything that pulls a gyro to the meridian.
+//!
+//! A Schuler oscillation of 0.35°, a slow bias of 0.3°, and 0.3° for the compass's own swing and
+//! the variation's error add up to 0.55° (one standard deviation). During a few hours of the year
+//! they reach four times that. For tens of minutes after a manoeuvre a gyro may be off by one or
+//! two degrees. 2.5° at the equator lies above both.
 
 mod departures;
 mod verdict;
@@ -25,49 +25,47 @@ use departures::{
 use uuid::Uuid;
 use verdict::{clears_compass, has_lost_reference, reassess_alert};
 
-/// Where a model gives no band.
+/// Band assumed where the model has no covariance.
 const DEFAULT_BAND_DEG: f64 = 2.0;
-/// Nearer to a pole than this nobody steers by a gyro's usual error.
+/// Latitude above which the gyro error is no longer increased.
 const MAX_LAT_DEG: f64 = 75.0;
-/// They agree again when they are so much nearer than what parted them.
+/// Share of the limit below which compass and references agree again.
 const AGREEMENT_SHARE: f64 = 0.75;
-/// After half an hour of settled windows what came since the alert goes ashore too.
+/// Settled windows after which the follow-up revision is made: half an hour.
 const FOLLOW_WINDOWS: usize = 1800 / WINDOW_S as usize;
-/// After so many settled hours of agreement it is over, whatever the heading: a day.
+/// Settled windows of agreement that close an alert on any heading: a day.
 const AGREE_ON_ANY_HEADING_WINDOWS: usize = 24 * 3600 / WINDOW_S as usize;
-/// Agreement on three courses, each so many sectors from the next, speaks for all: neither a
-/// magnet, with its two nulls, nor soft iron, with its four, does little on all of them.
+/// Spacing, in sectors, of three courses whose agreement covers all others. Neither a magnet with
+/// its two nulls nor soft iron with its four has little effect on all of them.
 const COURSE_SPACING_SECTORS: std::ops::RangeInclusive<u32> = 4..=8;
-/// A ship's clock that is so far behind the model's data is wrong, and so is what
-/// variation is taken for it.
+/// Lag of the GNSS clock behind the model's data above which clock and variation count as wrong.
 const MAX_CLOCK_LAG_S: f64 = 86_400.0;
 
-/// The card in use.
+/// Card in use on board.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ActiveCard<'a> {
     pub(crate) model: Option<&'a ModelDownlink>,
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
 }
 
-/// The state between two windows.
+/// Detector state between two windows.
 #[derive(Debug)]
 pub(crate) struct AlertMonitor {
     config: AlertConfig,
-    /// The latest windows, oldest first: twice as many as raise an alert.
+    /// Latest windows, oldest first: twice as many as raise an alert.
     recent: RecentDepartures,
-    /// The model that they were judged by.
+    /// Model that the windows were compared with.
     model: Option<Uuid>,
     record: Option<AlertRecord>,
-    /// Settled windows since the alert was raised, or the agent was started.
+    /// Settled windows since the alert was raised, or since the agent was started.
     since_raised: usize,
-    /// Settled windows of agreement in a row, and a bit for each sector they were of.
+    /// Consecutive settled windows of agreement, and a bit for each sector they were in.
     agreed_windows: usize,
     agreed_sectors: u64,
 }
 
 impl AlertMonitor {
-    /// A lookout that goes on where the last one was relieved, with the model that
-    /// was in use then.
+    /// Creates a monitor that continues with a stored alert and the model in use then.
     pub(crate) fn new(
         config: AlertConfig,
         record: Option<AlertRecord>,
@@ -84,12 +82,12 @@ impl AlertMonitor {
         }
     }
 
-    /// The last alert, open or not.
+    /// Returns the last alert, open or closed.
     pub(crate) fn record(&self) -> Option<&AlertRecord> {
         self.record.as_ref()
     }
 
-    /// An officer has seen the alert.
+    /// Marks the alert as acknowledged by an officer.
     pub(crate) fn acknowledge(&mut self, id: Uuid) {
         let alert = self.record.as_mut().filter(|record| record.alert.id == id);
         if let Some(record) = alert {
@@ -97,8 +95,8 @@ impl AlertMonitor {
         }
     }
 
-    /// Follows the card: what another one was judged by is forgotten, and without
-    /// one an alert ends. Gives the revision that says so.
+    /// Updates the card. Another card discards all comparisons with the last one; without a card
+    /// the open alert ends. Returns that revision.
     pub(crate) fn update_card(
         &mut self,
         card: ActiveCard<'_>,
@@ -116,7 +114,7 @@ impl AlertMonitor {
         self.revise(ShipAlertState::NotJudged, now)
     }
 
-    /// Takes a settled window; gives the revision that it calls for.
+    /// Applies a settled window. Returns the revision that it causes.
     pub(crate) fn observe(
         &mut self,
         window: &Window,
@@ -159,13 +157,13 @@ impl AlertMonitor {
             time: Some(now),
             model: Some(model),
             withdrawn: None,
-            // The compass is judged on, whatever was said of it.
+            // The compass is checked even while the alert suspects it.
             compass_suspected: false,
             withheld: false,
         });
         let true_deg = corrected.true_deg?.degrees();
         let departure = |reference_deg: f64| wrap_180(true_deg - reference_deg);
-        // By the reference: that of a compass gone astray is another on the same course.
+        // Heading of the reference: a faulty compass reads another heading on the same course.
         let reference = window.gyro_deg.or(window.satellite_deg);
         let heading_deg = reference.unwrap_or(true_deg);
         let lat_deg = window.position.lat_deg().abs().min(MAX_LAT_DEG);
@@ -213,7 +211,7 @@ impl AlertMonitor {
         });
         self.since_raised = 0;
         self.reset_agreement();
-        // What agreed before the alert is no sign of its end.
+        // Agreement before the alert is no sign of its end.
         self.recent.clear();
         alert
     }
@@ -229,11 +227,12 @@ impl AlertMonitor {
         (self.agreed_windows, self.agreed_sectors) = (0, 0);
     }
 
-    /// Whether an open alert is over: they agree on every heading on which they were
-    /// apart, for the compass's deviation may be right on one and wrong on the next; or on
-    /// courses that speak for all; or long enough. A band that is wider than when they parted
-    /// makes none of what is as far apart as then, one that is far wider nothing at all, and
-    /// what was read before a turn is of another course.
+    /// Returns whether the open alert is over.
+    ///
+    /// It is over when compass and references agree on every heading on which they disagreed, on
+    /// three courses that cover all others, or for long enough. A band wider than at the start
+    /// cannot hide the disagreement, and a far wider one decides nothing. Readings from before a
+    /// turn belong to another course and are not used.
     fn check_agreement(&mut self, raise: usize) -> bool {
         let median = self.recent.median_over(2 * raise);
         let on_course = median.filter(|median| self.recent.is_on_course(2 * raise, median.sector));
@@ -263,8 +262,8 @@ impl AlertMonitor {
             || self.agreed_windows >= AGREE_ON_ANY_HEADING_WINDOWS
     }
 
-    /// Whose fault it is shows when a reference speaks again that was silent, and another
-    /// instrument may fail, too. Readings from before a turn have no part in it.
+    /// Reassesses the open alert: a reference that returns may show which instrument is at fault,
+    /// and another instrument may fail as well. Readings from before a turn are not used.
     fn reassess(&mut self, raise: usize, now: Timestamp) -> Option<ShipAlert> {
         let median = self.recent.median_over(2 * raise)?;
         if !self.recent.is_on_course(2 * raise, median.sector) {
@@ -293,7 +292,7 @@ impl AlertMonitor {
         self.revise(ShipAlertState::Open, now)
     }
 
-    /// The next revision of the open alert, if there is one.
+    /// Makes the next revision of the open alert, if there is one.
     fn revise(&mut self, state: ShipAlertState, now: Timestamp) -> Option<ShipAlert> {
         let record = self.record.as_mut().filter(|record| record.is_open())?;
         record.alert.revision = record.alert.revision.saturating_add(1);
@@ -303,8 +302,7 @@ impl AlertMonitor {
     }
 }
 
-/// Returns the windows that [`AlertConfig::settled_s`] stands for: a minute's at least, a
-/// day's at most.
+/// Returns the number of windows in [`AlertConfig::settled_s`]: at least a minute, at most a day.
 fn settled_windows(config: &AlertConfig) -> usize {
     let windows = config.settled_s.0 / WINDOW_S as f64;
     windows.round().clamp(6.0, 8640.0) as usize
@@ -316,7 +314,7 @@ impl<'a> ActiveCard<'a> {
     }
 }
 
-/// Whether three of the sectors speak for all.
+/// Returns whether three of the sectors are spaced so that they cover all courses.
 fn covers_all_courses(sectors: u64) -> bool {
     let is_in = |sector: u32| sectors & (1 << (sector % SECTORS)) != 0;
     let next = |one: u32| {

@@ -4,12 +4,12 @@ use crate::alert::record::AlertRecord;
 use binnacle_magnetics::angle::wrap_180;
 use binnacle_wire::alert::{ShipAlert, Suspect};
 
-/// Whether two instruments bear the compass out, so that it is steered by.
+/// Returns whether two instruments confirm the compass, so that it may be steered by.
 pub(super) fn clears_compass(suspect: Suspect) -> bool {
     matches!(suspect, Suspect::Gyro | Suspect::Satellite)
 }
 
-/// Whether a reference that has spoken is silent.
+/// Returns whether a reference that had readings has none any more.
 pub(super) fn has_lost_reference(before: &ShipAlert, updated: &ShipAlert) -> bool {
     let is_silent = |was: Option<f64>, is: Option<f64>| was.is_some() && is.is_none();
     is_silent(before.gyro_departure_deg, updated.gyro_departure_deg)
@@ -19,10 +19,12 @@ pub(super) fn has_lost_reference(before: &ShipAlert, updated: &ShipAlert) -> boo
         )
 }
 
-/// What an open alert is to say by new figures, if it is another verdict. A reference that falls
-/// silent takes nothing back of what it has proven, as long as the other says what it said. The
-/// compass is borne out at most once: what speaks against that takes it back for the rest of
-/// the alert, for a bad reference and a compass that moves to it look like a bad other one.
+/// Returns the alert with new figures if they change the verdict.
+///
+/// A reference that falls silent takes nothing back of what it proved, as long as the other one is
+/// unchanged. The compass is cleared at most once per alert. Later evidence against it holds until
+/// the alert ends, because a bad reference and a compass that moves towards it look like another
+/// bad reference.
 pub(super) fn reassess_alert(record: &AlertRecord, updated: ShipAlert) -> Option<ShipAlert> {
     let before = &record.alert;
     let (was, is) = (before.suspect(), updated.suspect());
@@ -49,7 +51,7 @@ pub(super) fn reassess_alert(record: &AlertRecord, updated: ShipAlert) -> Option
     if bears_out.is_none_or(|deg| deg.abs() <= updated.limit_deg) {
         return None;
     }
-    // By one reference alone nobody is borne out.
+    // One reference alone clears nobody.
     Some(ShipAlert {
         satellite_departure_deg: updated
             .satellite_departure_deg

@@ -1,4 +1,4 @@
-//! A ship whose compass goes wrong, and one that only seems to.
+//! Ships whose compass goes wrong, and ships whose compass only seems to.
 
 use super::*;
 use crate::config::GyroError;
@@ -38,7 +38,7 @@ fn model(version: u32) -> ModelDownlink {
     }
 }
 
-/// What compass and satellite compass read beside the truth, which the gyro gives.
+/// Errors of compass and satellite compass; the gyro is exact.
 #[derive(Clone, Copy, Default)]
 struct Errors {
     compass_deg: f64,
@@ -72,12 +72,12 @@ impl Ship {
         }
     }
 
-    /// Sails so many settled windows on a compass heading that the model holds for;
+    /// Sails the given number of settled windows on a compass heading for which the model is right;
     /// the error comes on top.
     fn sail(&mut self, windows: i64, heading_deg: f64, errors: Errors) {
         for _ in 0..windows {
             self.index += 1;
-            // As noisy as ten seconds of a compass in a seaway.
+            // Noise of a ten-second mean in a seaway.
             let noise_deg = [0.4, -0.5, 0.1, -0.3, 0.6, -0.2][self.index.rem_euclid(6) as usize];
             let position = Position::new(43.5, -3.0).unwrap();
             let reading = CompassHeading::new(heading_deg);
@@ -163,7 +163,7 @@ fn a_compass_struck_by_lightning_is_an_alert_after_minutes_and_dated_to_the_half
 fn a_gyros_usual_errors_and_single_outliers_are_no_alert() {
     let mut ship = ship();
     for round in 0..200 {
-        // A Schuler swing of two degrees either way, and one wild window a minute.
+        // A Schuler oscillation of two degrees, and one outlier a minute.
         let swing_deg = 2.0 * (f64::from(round) / 8.4).sin();
         let swung = Errors {
             compass_deg: swing_deg,
@@ -248,7 +248,7 @@ fn agreement_on_three_courses_across_each_other_speaks_for_all() {
     assert_eq!(ship.states()[2..], [(3, Agree)]);
 }
 
-/// Sails 400 windows on each of some headings with so much deviation as `error_deg` gives.
+/// Sails 400 windows on each heading with the deviation that `error_deg` gives.
 fn sail_each(ship: &mut Ship, headings_deg: &[f64], error_deg: impl Fn(f64) -> f64) {
     for &heading_deg in headings_deg {
         let errors = Errors {
@@ -259,7 +259,7 @@ fn sail_each(ship: &mut Ship, headings_deg: &[f64], error_deg: impl Fn(f64) -> f
     }
 }
 
-/// A magnet that turns the compass by 14° at its most, and by nothing on 150° and 330°.
+/// Deviation of a magnet: at most 14°, and none on 150° and 330°.
 fn magnet_deg(heading_deg: f64) -> f64 {
     14.0 * (heading_deg - 150.0).to_radians().sin()
 }

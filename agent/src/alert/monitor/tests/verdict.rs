@@ -1,4 +1,4 @@
-//! Which instrument two others speak against, and for how long.
+//! Verdicts: the suspected instrument, and for how long it is suspected.
 
 use super::*;
 use binnacle_wire::alert::Suspect;
@@ -10,7 +10,7 @@ fn beside(compass_deg: f64, satellite_deg: Option<f64>) -> Errors {
     }
 }
 
-/// An open alert of a gyro that is off by 9°, which the satellite compass does not bear out.
+/// An open alert of a gyro that is off by 9°, contradicted by the satellite compass.
 fn with_a_gyro_at_fault() -> Ship {
     let mut ship = ship();
     ship.sail(60, 90.0, beside(0.0, Some(0.2)));
@@ -23,7 +23,7 @@ fn verdict(ship: &Ship) -> Suspect {
     ship.revisions.last().unwrap().suspect()
 }
 
-/// Sails so many windows on one course with the gyro switched off.
+/// Sails the given number of windows on one course with the gyro switched off.
 fn sail_without_gyro(ship: &mut Ship, windows: i64, departure_deg: f64) {
     for _ in 0..windows {
         ship.index += 1;
@@ -75,7 +75,7 @@ fn a_compass_struck_while_the_satellite_compass_is_silent_is_borne_out_no_more()
     ship.sail(100, 90.0, beside(29.0, None));
     assert_eq!(verdict(&ship), Suspect::Unknown);
     assert!(ship.monitor.record().unwrap().suspects_compass());
-    // Nor again when it is back, though by then it may look so.
+    // Nor when it returns, though by then it may look so.
     ship.sail(100, 90.0, beside(9.0, Some(9.2)));
     assert!(ship.monitor.record().unwrap().suspects_compass());
 }
