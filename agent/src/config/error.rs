@@ -3,32 +3,32 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Why a configuration cannot be used: one line for the one who wrote it.
+/// Reason that a configuration cannot be used, in one line.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ConfigError {
-    /// There is no such file, or it cannot be read.
+    /// The file does not exist or cannot be read.
     #[error("{}: {source}", path.display())]
     Unreadable {
-        /// The configuration file.
+        /// Configuration file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
-    /// Something in it is wrong.
+    /// A value is invalid.
     #[error("{}:{line}: {field}{problem}", path.display())]
     Invalid {
-        /// The configuration file.
+        /// Configuration file.
         path: PathBuf,
-        /// Counts from 1.
+        /// Line, counted from 1.
         line: usize,
-        /// The key before the value, with a colon; empty when there is none.
+        /// Key before the value, with a colon; empty when there is none.
         field: String,
-        /// What is wrong.
+        /// Description of the mistake.
         problem: String,
     },
 }
 
-/// A problem and where in the text it is.
+/// Problem and its position in the text.
 pub(super) struct Problem {
     pub(super) span: Option<Range<usize>>,
     pub(super) problem: String,
@@ -48,7 +48,8 @@ impl Problem {
     }
 }
 
-/// `interval_s = ` gives `interval_s: `, `{ input = "a", talker = ` gives `talker: `.
+/// Returns the key before a value: `interval_s = ` gives `interval_s: `, `{ input = "a", talker = `
+/// gives `talker: `.
 fn key_before(text: &str) -> String {
     let Some((left, _)) = text.rsplit_once('=') else {
         return String::new();

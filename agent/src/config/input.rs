@@ -32,7 +32,7 @@ impl InputConfig {
         }
     }
 
-    /// The kind, as it is called in the file.
+    /// Returns the kind by its name in the file.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             InputConfig::Serial(_) => "serial",
@@ -87,13 +87,13 @@ impl TryFrom<InputTable> for InputConfig {
     }
 }
 
-/// A name or address, a colon and a port; resolved at each connection.
+/// Host name or address, colon and port; resolved at each connection.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub(crate) struct HostPort(String);
 
 impl HostPort {
-    /// As it was written.
+    /// Returns the text as written.
     pub(crate) fn as_str(&self) -> &str {
         &self.0
     }
@@ -122,7 +122,7 @@ impl TryFrom<String> for HostPort {
 pub(crate) struct Group {
     /// Address and port; IEC 61162-450 has 239.192.0.1 to 64, ports 60001 to 60009.
     pub(crate) address: SocketAddrV4,
-    /// The address of the interface; unspecified lets the system choose.
+    /// Address of the interface; unspecified lets the system choose.
     pub(crate) interface: Ipv4Addr,
 }
 
@@ -158,18 +158,18 @@ impl TryFrom<GroupText> for Group {
     }
 }
 
-/// The address of a Signal K stream, `ws://…`.
+/// Address of a Signal K stream, `ws://…`.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "String")]
 pub(crate) struct SignalKUrl(Uri);
 
 impl SignalKUrl {
-    /// The whole address.
+    /// Returns the whole address.
     pub(crate) fn uri(&self) -> &Uri {
         &self.0
     }
 
-    /// Host and port to connect to.
+    /// Returns host and port to connect to.
     pub(crate) fn host_port(&self) -> String {
         let host = self
             .0

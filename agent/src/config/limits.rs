@@ -9,7 +9,7 @@ use std::time::Duration;
 pub(crate) struct SpoolLimit(f64);
 
 impl SpoolLimit {
-    /// In bytes.
+    /// Returns the limit in bytes.
     pub(crate) fn bytes(self) -> u64 {
         (self.0 * 1e6) as u64
     }
@@ -38,7 +38,7 @@ impl TryFrom<f64> for SpoolLimit {
 pub(crate) struct RawLogLimit(f64);
 
 impl RawLogLimit {
-    /// In bytes.
+    /// Returns the limit in bytes.
     pub(crate) fn bytes(self) -> u64 {
         (self.0 * 1e6) as u64
     }
@@ -69,7 +69,7 @@ impl TryFrom<f64> for RawLogLimit {
 pub(crate) struct PositiveSeconds(pub(crate) f64);
 
 impl PositiveSeconds {
-    /// As the standard library has it.
+    /// Converts to a duration of the standard library.
     pub(crate) fn duration(self) -> Duration {
         Duration::from_secs_f64(self.0)
     }

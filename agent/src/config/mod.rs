@@ -1,8 +1,7 @@
-//! `agent.toml`: what is connected, what each source is for, and where results go.
+//! `agent.toml`: inputs, roles of the sources, and destinations.
 //!
-//! Anything unknown, missing or impossible is refused with the file, the line
-//! and the field; a configuration that loads is one that can run. Paths in the
-//! file are relative to the file.
+//! Anything unknown, missing or impossible is refused with file, line and field, so a configuration
+//! that loads can run. Paths in the file are relative to the file.
 
 mod alert;
 mod error;
@@ -33,38 +32,38 @@ use std::fs;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
-/// All of `agent.toml`.
+/// Contents of `agent.toml`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Config {
-    /// Where the spool is kept.
+    /// Directory of the spool.
     pub(crate) data_dir: PathBuf,
-    /// How much of the disk the spool may take.
+    /// Disk limit of the spool.
     #[serde(default)]
     pub(crate) spool_mb: SpoolLimit,
-    /// How much of the disk what was heard in each second may take; 0 keeps nothing.
+    /// Disk limit of the raw log; 0 keeps nothing.
     #[serde(default, rename = "ring_mb")]
     pub(crate) raw_log_mb: RawLogLimit,
-    /// What is listened to, by the name that roles refer to.
+    /// Inputs, by the names that roles refer to.
     #[serde(default)]
     pub(crate) inputs: BTreeMap<String, InputConfig>,
-    /// Which source is which instrument.
+    /// Sources of each instrument.
     #[serde(default = "RolesConfig::usual")]
     pub(crate) roles: RolesConfig,
-    /// Where the corrected heading goes.
+    /// Destinations of the corrected heading.
     #[serde(default)]
     pub(crate) output: OutputConfig,
     /// The local page; none when absent.
     pub(crate) page: Option<PageConfig>,
-    /// How the shore is spoken to.
+    /// Connection to the server.
     #[serde(default)]
     pub(crate) uplink: UplinkConfig,
-    /// What carries short-burst messages.
+    /// Modem for short-burst messages.
     pub(crate) modem: Option<ModemConfig>,
-    /// When the agent raises its own alert.
+    /// Thresholds of the agent's own alert.
     #[serde(default)]
     pub(crate) alert: AlertConfig,
-    /// When a source counts as silent.
+    /// Time without readings after which a source counts as silent.
     #[serde(default)]
     pub(crate) silence: SilenceConfig,
 }
@@ -77,11 +76,11 @@ pub(crate) struct PageConfig {
     pub(crate) listen: SocketAddr,
 }
 
-/// When a source counts as silent.
+/// Time without readings after which a source counts as silent.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct SilenceConfig {
-    /// Seconds of ship time.
+    /// Seconds of GNSS time.
     pub(crate) stale_s: PositiveSeconds,
 }
 

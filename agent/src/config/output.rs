@@ -4,19 +4,19 @@ use super::limits::PositiveSeconds;
 use serde::Deserialize;
 use std::net::SocketAddr;
 
-/// Where the corrected heading goes.
+/// Destinations of the corrected heading.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct OutputConfig {
-    /// Listens here and sends to everyone who connects.
+    /// Address of a TCP server that sends to every client.
     pub(crate) tcp_server: Option<SocketAddr>,
-    /// Sends datagrams here; a broadcast address will do.
+    /// Destination of datagrams; may be a broadcast address.
     pub(crate) udp: Option<SocketAddr>,
-    /// Writes to this port.
+    /// Serial port to write to.
     pub(crate) serial: Option<SerialConfig>,
     /// Seconds between two outputs.
     pub(crate) interval_s: PositiveSeconds,
-    /// Whether to send ALR sentences of the agent's own alert too.
+    /// Sends ALR sentences of the agent's own alert as well.
     pub(crate) alarm_sentence: bool,
 }
 
@@ -32,13 +32,13 @@ impl Default for OutputConfig {
     }
 }
 
-/// A serial port to write to.
+/// Serial port to write to.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SerialConfig {
-    /// As `/dev/ttyUSB0`.
+    /// Device, as `/dev/ttyUSB0`.
     pub(crate) path: String,
-    /// Bits a second; IEC 61162-1 has 4800, 61162-2 38400.
+    /// Bits per second; IEC 61162-1 has 4800, 61162-2 38400.
     #[serde(default = "standard_baud")]
     pub(crate) baud: u32,
 }

@@ -6,19 +6,19 @@ use std::fmt;
 use std::time::Duration;
 
 const DAY_S: f64 = 86_400.0;
-/// What waits is thinned when it would take the budget of so many days.
+/// Days of budget above which the backlog is thinned.
 const BACKLOG_DAYS: f64 = 7.0;
-/// A connection is kept open for batches that come as often as this.
+/// Longest upload interval for which a connection is kept open.
 const KEEP_OPEN_INTERVAL_S: u32 = 3_600;
-/// The largest batch with its evidence takes a minute at 2,400 bits a second; many of its
-/// packets may have to be sent again.
+/// Timeout of an exchange. The largest batch with its evidence takes a minute at 2,400 bits a
+/// second, and many of its packets may have to be sent again.
 pub(super) const EXCHANGE_TIMEOUT: Duration = Duration::from_mins(10);
-/// How long a connection may be idle that is closed when all is said.
+/// Idle timeout of a connection that is closed after each exchange.
 const IDLE_TIMEOUT: Duration = Duration::from_secs(5);
-/// A batch is thinned until it fits into so many messages.
+/// Short messages of a batch; a larger batch is thinned.
 const MESSAGES_A_BATCH: usize = 3;
 
-/// What the link costs, in a word.
+/// Cost class of the link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Profile {
@@ -50,18 +50,18 @@ impl fmt::Display for Profile {
     }
 }
 
-/// What a profile comes to.
+/// Upload interval and daily byte budget of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct UploadPlan {
     pub(crate) profile: Profile,
-    /// Seals when the first sample is so old, unless the shore has a wish of its own.
+    /// Age of the oldest sample at which a batch is sealed, unless the server sets another.
     pub(crate) seal_s: u32,
-    /// So many octets a day, all counted, both ways.
+    /// Byte budget per day: all traffic, both ways.
     pub(crate) daily_bytes: Option<f64>,
 }
 
 impl Profile {
-    /// The plan, with a budget of the operator's own if there is one.
+    /// Returns the upload plan, with the operator's own budget if there is one.
     pub(crate) fn plan(self, daily_bytes: Option<f64>) -> UploadPlan {
         let (seal_s, budget) = match self {
             Profile::Standard => (6 * 3_600, None),
@@ -80,28 +80,30 @@ impl Profile {
 }
 
 impl UploadPlan {
-    /// Asks for news when nothing was sent for so long: half as long again as between
-    /// two batches, so that a ship under way never opens a connection for it.
+    /// Returns the interval of polls when nothing was sent: 1.5 upload intervals, so that a vessel
+    /// under way never opens a connection for a poll.
     pub(crate) fn poll(&self) -> Duration {
         Duration::from_secs(u64::from(self.seal_s) * 3 / 2)
     }
 
-    /// A batch is thinned when it is larger.
+    /// Returns the size above which a batch is thinned.
     pub(crate) fn max_batch_bytes(&self) -> Option<usize> {
         (self.profile == Profile::ShortBurst).then(max_burst_batch_bytes)
     }
 
-    /// Whether the connection stays open between two batches. An hourly batch costs some
-    /// 400 octets on an open connection and 2,000 on a new one. More seldom it is closed
-    /// at once: behind a satellite or a firewall it would be gone without a word, and to
-    /// keep it alive would cost more than to open another, which resumes the TLS session.
+    /// Returns whether the connection stays open between two batches.
+    ///
+    /// An hourly batch costs some 400 bytes on an open connection and 2,000 on a new one. At longer
+    /// intervals the connection is closed at once. Behind a satellite or a firewall it would be
+    /// dropped silently, and keep-alives would cost more than another connection that resumes the
+    /// TLS session.
     pub(crate) fn keeps_connection(&self) -> bool {
         self.seal_s <= KEEP_OPEN_INTERVAL_S
     }
 
-    /// How connections are used.
+    /// Returns the connection policy of the profile.
     pub(crate) fn connection_policy(&self) -> ConnectionPolicy {
-        // A stretch may take its time to end, and a ship may turn.
+        // A sample may take a while to finish, and the vessel may turn.
         let kept = 2 * Duration::from_secs(u64::from(KEEP_OPEN_INTERVAL_S));
         ConnectionPolicy {
             idle_timeout: if self.keeps_connection() {
@@ -114,24 +116,24 @@ impl UploadPlan {
         }
     }
 
-    /// What may wait before it is thinned, in octets as they are paid for.
+    /// Returns the largest backlog that is not thinned, in billed bytes.
     pub(crate) fn max_backlog_bytes(&self) -> Option<u64> {
         self.daily_bytes.map(|day| (day * BACKLOG_DAYS) as u64)
     }
 }
 
-/// How connections are used.
+/// Use of connections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ConnectionPolicy {
-    /// A connection serves again when it was idle for less than this.
+    /// Idle time after which a connection is not used again.
     pub(crate) idle_timeout: Duration,
-    /// Whether a TLS session is offered again: for a day, no ticket holds longer.
+    /// Resumption of TLS sessions: no ticket is valid for longer than a day.
     pub(crate) resumes_tls: bool,
-    /// An exchange that takes longer is given up, however busy whoever answers looks.
+    /// Timeout of a whole exchange, however busy the other side looks.
     pub(crate) exchange_timeout: Duration,
 }
 
-/// The size of the largest batch that fits into its short messages.
+/// Returns the size of the largest batch that fits into its short messages.
 pub(crate) fn max_burst_batch_bytes() -> usize {
     capacity(MESSAGES_A_BATCH)
 }

@@ -1,4 +1,4 @@
-//! How the shore is spoken to, and over what.
+//! `[uplink]` and `[modem]`: the connection to the server.
 
 use super::error::Problem;
 use super::limits::PositiveSeconds;
@@ -8,24 +8,23 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use toml::Spanned;
 
-/// How the shore is spoken to.
+/// Connection to the server.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct UplinkConfig {
-    /// A PEM file: the only authority whose certificates are believed.
+    /// PEM file with the only trusted certificate authority.
     pub(crate) pinned_ca: Option<PathBuf>,
-    /// What the link costs: how often the shore is spoken to, and for how much.
+    /// Cost class of the link: upload interval and daily byte budget.
     pub(crate) profile: Spanned<Profile>,
-    /// A budget in place of the profile's.
+    /// Daily budget that replaces the profile's.
     pub(crate) day_kb: Option<DailyBudget>,
-    /// Asks for news when nothing was sent for so many seconds, in place of the
-    /// profile's time.
+    /// Interval of polls when nothing was sent, in place of the profile's.
     pub(crate) poll_s: Option<PositiveSeconds>,
-    /// An exchange with the shore that takes longer is given up.
+    /// Timeout of an exchange with the server.
     pub(crate) exchange_s: PositiveSeconds,
-    /// The first pause after a failure, at most.
+    /// Upper bound of the first pause after a failure.
     pub(crate) retry_min_s: Spanned<PositiveSeconds>,
-    /// The longest pause after failures.
+    /// Longest pause after failures.
     pub(crate) retry_max_s: Spanned<PositiveSeconds>,
 }
 
@@ -44,14 +43,14 @@ impl Default for UplinkConfig {
 }
 
 impl UplinkConfig {
-    /// What the profile and the budget come to.
+    /// Returns the upload plan of profile and budget.
     pub(crate) fn plan(&self) -> UploadPlan {
         self.profile
             .get_ref()
             .plan(self.day_kb.map(DailyBudget::bytes))
     }
 
-    /// How connections are used.
+    /// Returns the connection policy.
     pub(crate) fn connection_policy(&self) -> ConnectionPolicy {
         ConnectionPolicy {
             exchange_timeout: self.exchange_s.duration(),
@@ -59,7 +58,7 @@ impl UplinkConfig {
         }
     }
 
-    /// Whether the settings go together.
+    /// Fails when settings contradict each other.
     pub(super) fn check(&self, modem: Option<&ModemConfig>) -> Result<(), Problem> {
         let is_burst = *self.profile.get_ref() == Profile::ShortBurst;
         match modem {
@@ -79,7 +78,7 @@ impl UplinkConfig {
         }
         let (min, max) = (&self.retry_min_s, &self.retry_max_s);
         if min.get_ref() > max.get_ref() {
-            // What was left out has no place in the file.
+            // A default has no position in the file.
             let (wrong, other) = if min.span().is_empty() {
                 (max, format!("less than retry_min_s, {}", min.get_ref().0))
             } else {
@@ -93,23 +92,23 @@ impl UplinkConfig {
         Ok(())
     }
 
-    /// Asks for news when nothing was sent for so long.
+    /// Returns the interval of polls when nothing was sent.
     pub(crate) fn poll(&self) -> Duration {
         self.poll_s
             .map_or_else(|| self.plan().poll(), PositiveSeconds::duration)
     }
 }
 
-/// What carries short-burst messages.
+/// Modem for short-burst messages.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModemConfig {
-    /// Messages are written to `out` and read from `in` in this folder.
+    /// Folder with `out` for messages to send and `in` for received ones.
     directory: Spanned<PathBuf>,
 }
 
 impl ModemConfig {
-    /// The folder.
+    /// Returns the folder.
     pub(crate) fn directory(&self) -> &Path {
         self.directory.get_ref()
     }
@@ -126,7 +125,7 @@ impl ModemConfig {
 pub(crate) struct DailyBudget(f64);
 
 impl DailyBudget {
-    /// In octets.
+    /// Returns the budget in bytes.
     pub(crate) fn bytes(self) -> f64 {
         self.0 * 1e3
     }
