@@ -1,5 +1,4 @@
-//! What every kind of input needs: where observations go, how it is doing, and
-//! how long to wait before the next try.
+//! Parts that all kinds of inputs share: delivery of observations, counts, connections and pauses.
 
 use super::stats::InputStats;
 use crate::instruments::Observation;
@@ -10,26 +9,26 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc;
 use tokio::sync::mpsc::error::TrySendError;
 
-/// How long a connection may take to open.
+/// Timeout of a connection attempt.
 pub(super) const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// The system would let tens of megabytes gather, days of a voyage that is
-/// played fast: all lost if the agent is killed. This is a minute of a busy bridge.
+/// Receive buffer of a connection: a minute of a busy bridge. The system's default would hold tens
+/// of megabytes, days of a voyage that is replayed fast, all lost if the agent is killed.
 const RECEIVE_BUFFER_BYTES: usize = 128 * 1024;
 
 const MIN_PAUSE: Duration = Duration::from_millis(100);
 const MAX_PAUSE: Duration = Duration::from_secs(10);
 
-/// How a session ended without an error.
+/// Reason for the end of a session without an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// There is no more: the file was read to its end.
+    /// The file was read to its end.
     Finished,
-    /// The other side hung up.
+    /// The other side closed the connection.
     Closed,
 }
 
-/// One input's way into the agent.
+/// Connection of one input to the agent.
 #[derive(Debug)]
 pub(super) struct Link {
     pub(super) name: Arc<str>,
@@ -57,12 +56,12 @@ impl Link {
         }
     }
 
-    /// Whether nobody takes observations any more.
+    /// Returns whether the receiver of the observations is gone.
     pub(super) fn is_receiver_closed(&self) -> bool {
         self.tx.is_closed()
     }
 
-    /// Hands observations on, waiting while there is no room.
+    /// Delivers observations, waiting while the channel is full.
     pub(super) async fn deliver(&self, observations: Vec<Observation>) -> io::Result<()> {
         if observations.is_empty() {
             return Ok(());
@@ -76,7 +75,7 @@ impl Link {
         Ok(())
     }
 
-    /// Hands observations on, or drops and counts them where there is no room.
+    /// Delivers observations, or drops and counts them when the channel is full.
     pub(super) fn offer(&self, observations: Vec<Observation>) -> io::Result<()> {
         if observations.is_empty() {
             return Ok(());
@@ -98,8 +97,8 @@ fn receiver_closed() -> io::Error {
     )
 }
 
-/// Connects, with a limit, and lets the system notice a peer that has gone
-/// without a word: its power may fail at sea.
+/// Connects, with a timeout, and with keep-alives for peers that vanish silently: their power may
+/// fail at sea.
 pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
     let stream = tokio::time::timeout(CONNECT_TIMEOUT, TcpStream::connect(host_port))
         .await

@@ -1,12 +1,10 @@
-//! What the agent listens to. Each input is one task that delivers observations
-//! into one bounded channel.
+//! Inputs. Each input is one task that delivers observations into one bounded channel.
 //!
-//! What always holds:
-//! - An input never gives up: what cannot be opened, or breaks off, is tried
-//!   again with growing pauses. Only a file comes to an end.
-//! - Nothing is buffered without bound. Where the sender can wait (TCP, serial,
-//!   Signal K, files) it waits while the channel is full; datagrams cannot, and
-//!   those that find no room are counted.
+//! Invariants:
+//! - An input never gives up: what cannot be opened, or breaks off, is retried with growing pauses.
+//!   Only a file has an end.
+//! - Buffers are bounded. Where the sender can wait (TCP, serial, Signal K, files) it waits while
+//!   the channel is full. Datagrams cannot wait; those that do not fit are counted.
 //! - Every line that is not used is counted by reason.
 
 mod decode;
@@ -37,8 +35,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-/// Starts reading an input until `shutdown`, the end of a file, or until nobody
-/// takes the observations any more.
+/// Reads an input until `shutdown`, until the end of a file, or until the receiver is gone.
 pub(crate) fn spawn(
     name: Arc<str>,
     config: InputConfig,

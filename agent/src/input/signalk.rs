@@ -11,7 +11,7 @@ use tokio_tungstenite::client_async_with_config;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 
-/// Deltas are some hundred bytes; a server that sends more is not one.
+/// Size limit of a message: deltas are some hundred bytes.
 const MAX_MESSAGE_BYTES: usize = 1024 * 1024;
 
 pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
@@ -43,7 +43,7 @@ pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
     Ok(End::Closed)
 }
 
-/// Asks for the paths that are of use, as soon as they change.
+/// Returns the request for the paths in use, sent as soon as they change.
 fn subscription() -> String {
     let paths: Vec<_> = PATHS
         .iter()

@@ -1,12 +1,11 @@
-//! Signal K deltas: what each path says, in the agent's units and signs.
+//! Signal K deltas: values of each path in the agent's units and signs.
 //!
-//! Signal K 1.7, "Keys reference (vessel)": SI units, radians, east and
-//! starboard and bow-up positive; `navigation.headingCompass` is the raw
-//! reading, `headingMagnetic` has deviation applied. Readings are given the
-//! talker `SK` and the sentence that says the same.
+//! Signal K 1.7, "Keys reference (vessel)": SI units, radians, east and starboard and bow-up
+//! positive; `navigation.headingCompass` is the raw reading, `headingMagnetic` has deviation
+//! applied. Readings get the talker `SK` and the sentence with the same meaning.
 //!
-//! Values that a server computes are left out: a true heading made of a
-//! magnetic one is no reference for the compass. So are other vessels.
+//! Values that a server computes are ignored: a true heading made of a magnetic one is no reference
+//! for the compass. Other vessels are ignored too.
 
 use super::stats::InputStats;
 use crate::instruments::{Observation, Reading};
@@ -21,7 +20,7 @@ use std::borrow::Cow;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// What is asked of the server.
+/// Paths to subscribe to.
 pub(super) const PATHS: [&str; 10] = [
     "navigation.headingCompass",
     "navigation.headingMagnetic",
@@ -37,27 +36,27 @@ pub(super) const PATHS: [&str; 10] = [
 
 const TALKER: [u8; 2] = *b"SK";
 const KNOTS_A_METRE_PER_SECOND: f64 = 3600.0 / 1852.0;
-/// No ship is faster.
+/// Highest plausible speed.
 const MAX_SPEED_M_S: f64 = 100.0;
-/// No ship turns faster.
+/// Highest plausible rate of turn.
 const MAX_TURN_RAD_S: f64 = PI;
-/// Servers round: four decimals of a full circle may exceed it.
+/// Rounding tolerance: four decimals of a full circle may exceed it.
 const ROUNDING_RAD: f64 = 1e-4;
-/// Where the values of the server's own computations come from.
+/// Source of values that the server computes itself.
 const DERIVED: &str = "derived-data";
 
-/// Reads the messages of one connection.
+/// Reader of one connection's messages.
 #[derive(Debug)]
 pub(super) struct DeltaReader {
     input: Arc<str>,
-    /// `vessels.urn:…`, once the server has said who it is.
+    /// `vessels.urn:…`, once the server has identified itself.
     own_ship: Option<String>,
-    /// As the server said last; never applied.
+    /// Last value of the server; never applied.
     deviation: Option<Deviation>,
     variation: Option<Variation>,
 }
 
-/// A delta, or the greeting of the server: all that is of use in either.
+/// A delta, or the server's greeting, reduced to the fields in use.
 #[derive(Deserialize)]
 struct Message<'a> {
     #[serde(borrow, rename = "self")]
@@ -72,7 +71,7 @@ struct Message<'a> {
 struct Update<'a> {
     #[serde(borrow, rename = "$source")]
     source: Option<Cow<'a, str>>,
-    /// Absent where an update tells of metadata.
+    /// Absent in updates of metadata.
     #[serde(borrow, default)]
     values: Vec<PathValue<'a>>,
 }
@@ -96,7 +95,7 @@ struct LatLon {
     longitude: f64,
 }
 
-/// A value that is not what its path must hold.
+/// A value that its path must not have.
 struct InvalidValue;
 
 impl DeltaReader {
@@ -109,7 +108,7 @@ impl DeltaReader {
         }
     }
 
-    /// The observations of one message; what is not used is counted.
+    /// Returns the observations of one message; unused parts are counted.
     pub(super) fn read(&mut self, text: &str, stats: &InputStats) -> Vec<Observation> {
         let mut out = Vec::new();
         let Ok(message) = serde_json::from_str::<Message<'_>>(text) else {
@@ -128,7 +127,7 @@ impl DeltaReader {
                 stats.reject("computed by the server");
                 continue;
             }
-            // A compass reading goes with the deviation beside it.
+            // A compass reading is combined with the deviation beside it.
             let (differences, others): (Vec<_>, Vec<_>) = update
                 .values
                 .iter()
@@ -193,7 +192,7 @@ impl DeltaReader {
     }
 }
 
-/// The paths whose values stand alone.
+/// Reads a path whose value stands alone.
 fn read_standalone(
     path: &str,
     value: &Value,
@@ -272,12 +271,12 @@ fn number(value: &Value) -> Result<f64, InvalidValue> {
         .ok_or(InvalidValue)
 }
 
-/// Radians from 0 to a full circle as degrees; `None` for null.
+/// Converts radians from 0 to a full circle to degrees; `None` for null.
 fn direction_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
     bounded_deg(value, 0.0 - ROUNDING_RAD..=TAU + ROUNDING_RAD)
 }
 
-/// Radians from −π to π as degrees; `None` for null.
+/// Converts radians from −π to π to degrees; `None` for null.
 fn difference_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
     bounded_deg(value, -PI - ROUNDING_RAD..=PI + ROUNDING_RAD)
 }

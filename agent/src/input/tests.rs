@@ -18,7 +18,7 @@ use tokio_util::sync::CancellationToken;
 
 const HEADING: &[u8] = b"$GPHDT,274.07,T*03\r\n";
 const SPOILT: &[u8] = b"$GPHDT,274.08,T*03\r\n";
-/// Only a failing test waits so long.
+/// Timeout; only a failing test reaches it.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 struct Input {
@@ -150,7 +150,7 @@ async fn noise_and_an_endless_line_are_counted_and_what_follows_is_read() {
     input.stop().await;
 }
 
-/// A port that was free a moment ago.
+/// Returns a port that was free a moment ago.
 async fn free_port() -> u16 {
     let socket = UdpSocket::bind("0.0.0.0:0").await.unwrap();
     socket.local_addr().unwrap().port()

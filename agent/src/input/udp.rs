@@ -1,7 +1,7 @@
-//! Sentences in datagrams: plain ones to a port of ours, or those of an
-//! IEC 61162-450 network to its multicast groups.
+//! Sentences in datagrams: plain ones to a local port, or those of an IEC 61162-450 network to its
+//! multicast groups.
 //!
-//! Senders of datagrams do not wait: what finds no room is dropped and counted.
+//! Senders of datagrams do not wait: what does not fit is dropped and counted.
 
 use super::decode::{Decoder, Source};
 use super::link::{End, Link};
@@ -12,9 +12,9 @@ use std::net::SocketAddr;
 use tokio::net::UdpSocket;
 
 const MAX_DATAGRAM_BYTES: usize = 65_536;
-/// Datagrams that are already there are handed on together, up to so many.
+/// Datagrams that are delivered together when they are already waiting.
 const MAX_DATAGRAMS_AT_ONCE: usize = 64;
-/// Room in the kernel for a burst while the agent is busy.
+/// Receive buffer for bursts while the agent is busy.
 const RECEIVE_BUFFER_BYTES: usize = 1024 * 1024;
 
 pub(super) async fn unicast(address: SocketAddr, link: &Link) -> io::Result<End> {
