@@ -1,32 +1,32 @@
-//! What the ship's clock and the computer's said when it was last noted: after a restart a
-//! receiver's first time stamp is held against it.
+//! Readings of the GNSS clock and the computer's clock, saved before a restart. A receiver's first
+//! time stamp is checked against them.
 //!
-//! What always holds: a stamp is in doubt only where there is a reason. A computer whose
-//! clock was the ship's, and has not gone back since, knows the date. One that has lost
-//! its time with its power knows that it is later than it was. Where the two differed, as
-//! with instruments that are simulated, nothing is known.
+//! Invariant: a stamp is uncertain only for a reason. A computer whose clock agreed with GNSS, and
+//! has not gone back since, knows the date. A computer that lost its time with its power knows that
+//! it is later than the checkpoint. Where the two clocks differed, as with simulated instruments,
+//! nothing is known.
 
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// Two clocks that are the same.
+/// Difference up to which the two clocks agree.
 const AGREEMENT_S: f64 = 3_600.0;
-/// A date this near is right, whatever the hour.
+/// Difference up to which a date is right, whatever the hour.
 const DAY_S: f64 = 86_400.0;
-/// No ship is laid up for longer, with her computer off.
+/// Longest lay-up of a vessel with its computer off.
 const YEAR_S: f64 = 366.0 * DAY_S;
 
 /// Both clocks at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ClockCheckpoint {
-    /// The ship's.
+    /// GNSS time.
     pub(crate) ship: Timestamp,
-    /// The computer's.
+    /// Computer's time.
     pub(crate) computer: Timestamp,
 }
 
 impl ClockCheckpoint {
-    /// The time that it must be about, if a first stamp cannot be right.
+    /// Returns the approximate true time if a first stamp cannot be right.
     pub(crate) fn contradict(self, stamp: Timestamp, computer: Timestamp) -> Option<Timestamp> {
         if computer.seconds_since(self.ship) < -AGREEMENT_S {
             let later_s = stamp.seconds_since(self.ship);
@@ -48,7 +48,7 @@ mod tests {
         start.plus_seconds(days * DAY_S)
     }
 
-    /// Noted at 0 by both.
+    /// A checkpoint at 0.
     const fn noted(ship: Timestamp, computer: Timestamp) -> ClockCheckpoint {
         ClockCheckpoint { ship, computer }
     }
@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn a_computer_that_lost_its_time_knows_that_it_is_later_than_it_was() {
-        // It was right before, or has never been.
+        // The computer was right before, or never was.
         for computer in [at(0.0), at(-9_000.0)] {
             let both = noted(at(0.0), computer);
             let now = at(-9_000.0);

@@ -1,8 +1,8 @@
-//! What an instrument said, whatever carried it: the agent's inputs make these,
-//! the roles and the sampler read them.
+//! Observations: readings of instruments, whatever input carried them. Inputs make them; roles and
+//! sampler use them.
 //!
-//! A value that the instrument left empty is absent here, never zero. The
-//! compass heading is always the raw reading, before any deviation.
+//! A value that the instrument left empty is absent, never zero. The compass heading is always the
+//! raw reading, before any deviation.
 
 use binnacle_magnetics::angle::{
     CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation,
@@ -18,7 +18,7 @@ pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
 /// Talker and sentence of a time that the recording gave, not an instrument.
 pub(crate) const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
 
-/// Whether an observation is the time that a recording gives its lines.
+/// Returns whether an observation is the time that a recording gives its lines.
 pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
     (seen.talker, seen.sentence) == RECORDED_TIME
 }
@@ -26,20 +26,20 @@ pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
 /// One reading from one source.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Observation {
-    /// Which input carried it, by its configured name.
+    /// Configured name of the input.
     pub(crate) input: Arc<str>,
     /// Talker (`HC`, `HE`, `GP` …); `SK` for Signal K.
     pub(crate) talker: [u8; 2],
-    /// Sentence (`HDG`, `THS` …) that Signal K values are given by meaning too.
+    /// Sentence (`HDG`, `THS` …), given to Signal K values by their meaning.
     pub(crate) sentence: [u8; 3],
-    /// What it says.
+    /// Content of the sentence.
     pub(crate) reading: Reading,
 }
 
-/// What a source can say that the agent uses.
+/// Readings that the agent uses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Reading {
-    /// HDG: the sensor's own reading, and what it knows of deviation and variation.
+    /// HDG: the sensor's own reading, with its deviation and variation.
     Compass {
         /// Before deviation.
         raw: CompassHeading,
@@ -48,15 +48,15 @@ pub(crate) enum Reading {
         /// As the instrument gives it; never applied.
         variation: Option<Variation>,
     },
-    /// HDM: deviation applied or not, only the ship's configuration knows.
+    /// HDM: only the configuration knows whether deviation was applied.
     Magnetic(MagneticHeading),
     /// HDT, or THS in mode A.
     True(TrueHeading),
-    /// A true heading the instrument itself says not to trust (THS mode other than A).
+    /// A true heading that the instrument itself marks as not valid (THS mode other than A).
     TrueNotValid,
     /// A valid fix; `time` when the sentence carries UTC date and time.
     Fix {
-        /// Where.
+        /// Position.
         position: Position,
         /// UTC date and time of the fix.
         time: Option<Timestamp>,

@@ -6,7 +6,7 @@ use binnacle_magnetics::position::Position;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// A reading and when the computer heard it.
+/// A reading and its receive time by the computer's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Latest<T> {
     value: T,
@@ -14,17 +14,17 @@ pub(crate) struct Latest<T> {
 }
 
 impl<T: Copy> Latest<T> {
-    /// The reading, unless it is older than `age` by the computer's clock.
+    /// Returns the reading, unless it is older than `age` by the computer's clock.
     ///
-    /// Not by the ship's: that one stands still when the receiver fails, and a
-    /// heading must not look alive because of it.
+    /// GNSS time does not serve here: it stands still when the receiver fails, and a heading must
+    /// not look alive because of it.
     pub(crate) fn within(this: Option<Latest<T>>, age: Duration, now: Instant) -> Option<T> {
         let latest = this?;
         (now.saturating_duration_since(latest.heard) <= age).then_some(latest.value)
     }
 }
 
-/// What the instruments said last.
+/// Latest readings of the instruments.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Readings {
     pub(crate) compass: Option<Latest<CompassHeading>>,

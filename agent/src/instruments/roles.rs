@@ -1,8 +1,8 @@
-//! From sources to instruments: which of several gyros is *the* gyro now.
+//! Roles: selection of one source per instrument, such as *the* gyro among several.
 //!
-//! Sources of a role are ranked. One is used while no better one has been heard
-//! for the time of silence; the better one is used again as soon as it speaks.
-//! An instrument that says itself that it is not to be trusted counts as silent.
+//! The sources of a role are ranked. A source is used while no better one has been heard within the
+//! silence limit; the better one is used again with its next reading. An instrument that reports
+//! itself invalid counts as silent.
 
 use super::gnss_clock::{GnssClock, Step};
 use super::observation::{AGENT_TALKER, Observation, Reading};
@@ -12,34 +12,34 @@ use binnacle_magnetics::position::Position;
 use binnacle_magnetics::time::Timestamp;
 use std::sync::Arc;
 
-/// What an instrument says, whichever source it came from.
+/// Signal of an instrument, whichever source it came from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Signal {
-    /// The ship's time went on.
+    /// Time advanced.
     Time(Timestamp),
-    /// The ship's time jumped.
+    /// Time jumped.
     Jump(Timestamp),
-    /// The raw compass.
+    /// Raw compass.
     Compass(CompassHeading),
-    /// The gyro.
+    /// Gyro.
     Gyro(TrueHeading),
-    /// The gyro says it is not valid.
+    /// Gyro reports itself invalid.
     GyroInvalid,
-    /// The satellite compass.
+    /// Satellite compass.
     Satellite(TrueHeading),
-    /// The satellite compass says it is not valid.
+    /// Satellite compass reports itself invalid.
     SatelliteInvalid,
-    /// A fix.
+    /// Fix.
     Position(Position),
     /// Speed over ground, knots.
     Speed(f64),
-    /// Degrees a minute, starboard positive.
+    /// Degrees per minute, starboard positive.
     RateOfTurn(f64),
     /// Degrees, starboard down positive.
     Roll(f64),
 }
 
-/// The ship's instruments and her clock.
+/// The vessel's instruments and its clock.
 #[derive(Debug)]
 pub(crate) struct Roles {
     compass: Role,
@@ -52,7 +52,7 @@ pub(crate) struct Roles {
 }
 
 impl Roles {
-    /// Instruments as configured; sources fall silent after `stale_s` of ship time.
+    /// Creates the configured roles; sources fall silent after `stale_s` of GNSS time.
     pub(crate) fn new(config: &RolesConfig, stale_s: f64) -> Roles {
         let role = |sources: &[SourceConfig]| Role::new(sources, stale_s);
         Roles {
@@ -67,33 +67,33 @@ impl Roles {
         }
     }
 
-    /// The ship's time, once it is known.
+    /// Returns GNSS time, once it is known.
     pub(crate) fn now(&self) -> Option<Timestamp> {
         self.clock.now()
     }
 
-    /// The ship's own time, if it is to be relied on.
+    /// Returns GNSS time unless it is uncertain.
     pub(crate) fn reliable_time(&self) -> Option<Timestamp> {
         self.clock.now().filter(|_| !self.clock.is_uncertain())
     }
 
-    /// The ship's clock, to be told of other clocks.
+    /// Returns the clock, to set its references.
     pub(crate) fn clock(&mut self) -> &mut GnssClock {
         &mut self.clock
     }
 
-    /// What is wrong with the receiver's time.
+    /// Describes the fault of the receiver's time.
     pub(crate) fn clock_problem(&self) -> Option<String> {
         self.clock.problem()
     }
 
-    /// The time that a recording gives a line: used when no receiver gives any.
+    /// Applies the time that a recording gives a line: used when no receiver gives any.
     pub(crate) fn observe_recorded_time(&mut self, stamp: Timestamp) -> Option<Signal> {
         self.set_clock(self.position.sources.len(), stamp)
     }
 
-    /// What an observation means for the instruments: nothing when its source
-    /// has no role, or when a better source is alive.
+    /// Returns the signals of an observation: none when its source has no role, or when a better
+    /// source is alive.
     pub(crate) fn observe(&mut self, seen: &Observation) -> [Option<Signal>; 3] {
         let now = self.clock.now();
         match seen.reading {
@@ -158,7 +158,7 @@ impl Roles {
         let Some(rank) = self.position.rank(seen) else {
             return single(None);
         };
-        // Time first: the fix belongs to the time it brings.
+        // Time first: the fix belongs to the time it carries.
         let time = time.and_then(|stamp| self.set_clock(rank, stamp));
         if !self.position.note_reading(seen, self.clock.now()) {
             return single(time);
@@ -183,7 +183,7 @@ fn single(signal: Option<Signal>) -> [Option<Signal>; 3] {
     [signal, None, None]
 }
 
-/// One instrument's sources, best first.
+/// Sources of one instrument, best first.
 #[derive(Debug)]
 struct Role {
     sources: Vec<Source>,
@@ -200,7 +200,7 @@ struct Source {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Heard {
     Never,
-    /// Before the ship's time was known.
+    /// Before GNSS time was known.
     Timeless,
     At(Timestamp),
 }
@@ -221,7 +221,7 @@ impl Role {
         }
     }
 
-    /// Notes that a source spoke; whether it is the one to use.
+    /// Records a reading of a source. Returns whether the source is in use.
     fn note_reading(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
         let Some(rank) = self.rank(seen) else {
             return false;
@@ -230,7 +230,7 @@ impl Role {
         self.is_best(rank, now)
     }
 
-    /// Notes that a source cannot be trusted; whether it was the one in use.
+    /// Records that a source is invalid. Returns whether it was in use.
     fn note_invalid(&mut self, seen: &Observation, now: Option<Timestamp>) -> bool {
         let Some(rank) = self.rank(seen) else {
             return false;
@@ -257,8 +257,8 @@ impl Role {
         self.sources.iter().position(|source| source.matches(seen))
     }
 
-    /// The rank of the source that this one stands beside: ZDA and VTG come
-    /// from the receiver whose position is used.
+    /// Returns the rank of the source on the same device: ZDA and VTG come from the receiver whose
+    /// position is used.
     fn device_rank(&self, seen: &Observation) -> Option<usize> {
         self.sources
             .iter()
@@ -275,15 +275,15 @@ impl Source {
         {
             return false;
         }
-        // With the talker left out, the agent's own output is not meant: on a
-        // shared line a compass that has died would live on as its echo.
+        // Without a configured talker, the agent's own output is excluded: on a shared line a dead
+        // compass would live on as its echo.
         if self.config.talker.is_none()
             && seen.talker == AGENT_TALKER
             && matches!(&seen.sentence, b"HDG" | b"THS")
         {
             return false;
         }
-        // A magnetic heading is a raw one only where the ship says so.
+        // A magnetic heading is a raw one only where the configuration says so.
         if matches!(seen.reading, Reading::Magnetic(_)) && !self.config.raw {
             return false;
         }
@@ -367,7 +367,7 @@ position = [{ input = "a", talker = "GP", sentence = "RMC" }]
     }
 
     #[test]
-    fn a_satellite_compass_that_says_it_is_not_valid_is_told_apart_from_a_gyro() {
+    fn an_invalid_satellite_compass_is_distinguished_from_a_gyro() {
         let mut roles = roles(TWO_GYROS);
         let valid = seen("a", "GPTHS", heading(10.0));
         assert_eq!(

@@ -1,51 +1,51 @@
-//! The ship's clock: what her GNSS receivers say, as far as it can be believed.
+//! The vessel's clock: time of its GNSS receivers, as far as it is plausible.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - It never runs backwards without saying so, and one wrong time stamp does not move
-//!   it: a jump counts when a second stamp bears it out.
-//! - Aboard, a jump of more than ten minutes that the computer's clock does not bear out
-//!   is in doubt: time stands still, so that nothing is sampled, until the receiver is
-//!   back where it would have been, the shore's or the computer's time decides, or the
-//!   new time has lasted for a day with nothing that speaks against it.
-//! - Aboard, the first stamp after a restart is in doubt too where what was noted before
-//!   speaks against it ([`super::clock_checkpoint`]).
-//! - Aboard, a date that is right but for some times 1,024 weeks, after which GPS counts
-//!   them from 0 again (IS-GPS-200, 20.3.3.3.1.1), is put right.
-//! - Recorded and accelerated data work: without [`GnssClock::set_reference`] no other clock
-//!   is asked, and a jump is a jump.
+//! - Time never runs backwards unannounced, and one wrong stamp does not move it: a jump counts
+//!   when a second stamp confirms it.
+//! - On board, a jump of more than ten minutes that the computer's clock does not confirm is
+//!   uncertain. Time stands still, so nothing is sampled. It goes on when the receiver returns to
+//!   its old time, when the server's or the computer's time decides, or when the new time has
+//!   lasted for a day without contradiction.
+//! - On board, the first stamp after a restart is uncertain too where the checkpoint contradicts it
+//!   ([`super::clock_checkpoint`]).
+//! - On board, a date that lags by a multiple of 1,024 weeks, after which GPS week numbers start
+//!   from 0 again (IS-GPS-200, 20.3.3.3.1.1), is corrected.
+//! - Recorded and accelerated data work: without [`GnssClock::set_reference`] no other clock is
+//!   consulted, and every jump is accepted.
 
 use super::clock_checkpoint::ClockCheckpoint;
 use binnacle_magnetics::time::Timestamp;
 use tokio::time::Instant;
 
-/// Two receivers, or two sentences, may differ by so much.
+/// Largest difference between two receivers, or two sentences.
 const RECEIVER_TOLERANCE_S: f64 = 2.0;
-/// A step beyond this is not mere silence.
+/// Largest step that counts as mere silence.
 const MAX_STEP_S: f64 = 600.0;
-/// A jump is borne out by a stamp that follows within this.
+/// Time within which a second stamp confirms a jump.
 const CONFIRM_S: f64 = 60.0;
-/// What another clock may be wrong by and still decide.
+/// Error of another clock up to which it may decide.
 const ARBITRATION_TOLERANCE_S: f64 = 3_600.0;
-/// A new time is believed when it has lasted so long and nothing speaks against it.
+/// Duration after which an uncontradicted new time is accepted.
 const ACCEPT_AFTER_S: f64 = 86_400.0;
-/// The computer's quartz may err by so much of the time that passed.
+/// Error of the computer's quartz, as a share of the elapsed time.
 const QUARTZ_DRIFT: f64 = 0.01;
-/// 1980-01-06, when GPS time begins, and 2100-01-01.
+/// 1980-01-06, the start of GPS time, to 2100-01-01.
 const PLAUSIBLE_MICROS: std::ops::Range<i64> = 315_964_800_000_000..4_102_444_800_000_000;
 const ROLL_OVER_S: f64 = 1_024.0 * 7.0 * 86_400.0;
-/// So far from what is known of the time a date that was put right may be: the computer's
-/// battery may be empty for as long.
+/// Largest difference between the known time and a corrected date: the computer's battery may be
+/// empty for as long.
 const YEAR_S: f64 = 366.0 * 86_400.0;
 
-/// What a time stamp did to the clock.
+/// Effect of a time stamp on the clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
-    /// Nothing.
+    /// No effect.
     Held,
-    /// Time went on.
+    /// Time advanced.
     Advanced(Timestamp),
-    /// Time is another altogether: what was open is void.
+    /// Time jumped: everything open is void.
     Jumped(Timestamp),
 }
 
@@ -56,48 +56,48 @@ pub(crate) struct GnssClock {
     candidate: Option<Timestamp>,
     stale_s: f64,
     active: usize,
-    /// For each rank: what it first said since the active source was heard.
+    /// First stamp of each rank since the active source was heard.
     waiting: Vec<Option<Timestamp>>,
     reference: Option<ReferenceClock>,
-    /// What was noted before the restart, until there is a first stamp.
+    /// Checkpoint from before the restart, until there is a first stamp.
     checkpoint: Option<ClockCheckpoint>,
     unconfirmed: Option<UnconfirmedJump>,
     rolled_over: bool,
 }
 
-/// What the computer knows of time.
+/// Time outside the receivers, as the computer knows it.
 #[derive(Clone, Copy, Debug)]
 struct ReferenceClock {
-    /// The shore's time, or its own, when it was set.
+    /// Time of the server or the computer when it was set.
     time: Timestamp,
     set_at: Instant,
-    /// When the stamp at hand was heard.
+    /// Receive time of the current stamp.
     heard_at: Instant,
-    /// When the clock was last right.
+    /// Time when the clock was last confirmed.
     valid_at: Instant,
 }
 
 impl ReferenceClock {
-    /// As far as it knows.
+    /// Returns the reference time now.
     fn now(&self) -> Timestamp {
         let passed = self.heard_at.saturating_duration_since(self.set_at);
         self.time.plus_seconds(passed.as_secs_f64())
     }
 }
 
-/// A jump that nothing bears out.
+/// A jump that nothing confirms.
 #[derive(Clone, Copy, Debug)]
 struct UnconfirmedJump {
-    /// Whether it was so from the start.
+    /// Set if the first stamp was uncertain already.
     is_first: bool,
     jump_s: f64,
     last: Timestamp,
-    /// By the receiver.
+    /// Duration by the receiver's own time.
     lasted_s: f64,
 }
 
 impl GnssClock {
-    /// A clock that has not been set, with sources of rank 0 to `ranks - 1`.
+    /// Creates a clock that has not been set, with sources of rank 0 to `ranks - 1`.
     pub(crate) fn new(ranks: usize, stale_s: f64) -> GnssClock {
         GnssClock {
             now: None,
@@ -112,12 +112,12 @@ impl GnssClock {
         }
     }
 
-    /// The ship's time, once it is known.
+    /// Returns GNSS time, once it is known.
     pub(crate) fn now(&self) -> Option<Timestamp> {
         self.now
     }
 
-    /// From now on jumps are held against the computer's clock.
+    /// Sets the computer's time as the reference for jumps.
     pub(crate) fn set_reference(&mut self, time: Timestamp, now: Instant) {
         self.reference = Some(ReferenceClock {
             time,
@@ -127,31 +127,31 @@ impl GnssClock {
         });
     }
 
-    /// The first stamp is held against what was noted before the restart.
+    /// Sets the checkpoint that the first stamp is checked against.
     pub(crate) fn restore_checkpoint(&mut self, checkpoint: ClockCheckpoint) {
         self.checkpoint = Some(checkpoint);
     }
 
-    /// Whether its time is not to be relied on.
+    /// Returns whether its time is uncertain.
     pub(crate) fn is_uncertain(&self) -> bool {
         self.unconfirmed.is_some()
     }
 
-    /// The shore says what time it is, which the computer may not know.
+    /// Corrects the reference by the server's time, which the computer may not know.
     pub(crate) fn correct_reference(&mut self, time: Timestamp, now: Instant) {
         if let Some(reference) = &mut self.reference {
             (reference.time, reference.set_at) = (time, now);
         }
     }
 
-    /// What comes next was heard now.
+    /// Sets the receive time of the stamps that follow.
     pub(crate) fn set_receive_time(&mut self, heard_at: Instant) {
         if let Some(reference) = &mut self.reference {
             reference.heard_at = heard_at;
         }
     }
 
-    /// What is wrong with the receiver's time, in words.
+    /// Describes the fault of the receiver's time.
     pub(crate) fn problem(&self) -> Option<String> {
         if let Some(unconfirmed) = self.unconfirmed {
             let offset = if unconfirmed.jump_s.abs() < 2.0 * ACCEPT_AFTER_S {
@@ -175,7 +175,7 @@ impl GnssClock {
         })
     }
 
-    /// Takes a time stamp from the source of a rank, 0 being the best.
+    /// Applies a time stamp from the source of a rank, 0 being the best.
     pub(crate) fn observe(&mut self, rank: usize, stamp: Timestamp) -> Step {
         if !PLAUSIBLE_MICROS.contains(&stamp.micros()) || rank >= self.waiting.len() {
             return Step::Held;
@@ -204,7 +204,7 @@ impl GnssClock {
         };
         let reference_time = reference.now();
         if stamp.seconds_since(reference_time).abs() <= YEAR_S {
-            // The ship's clock is wrong, if any: a receiver may have counted a cycle too many.
+            // The vessel's clock is wrong, if any: a receiver may have counted a cycle too many.
             return stamp;
         }
         let noted = self
@@ -219,8 +219,8 @@ impl GnssClock {
         stamp.plus_seconds(cycles * ROLL_OVER_S)
     }
 
-    /// The active source and better ones may; a worse one when the active one
-    /// has been silent for long, by the worse one's own time.
+    /// Returns whether a source may set the clock: the active one and better ones may, a worse one
+    /// when the active one has been silent for long by the worse one's own time.
     fn accept_source(&mut self, rank: usize, stamp: Timestamp) -> bool {
         if rank > self.active && self.now.is_some() {
             let since = *self.waiting[rank].get_or_insert(stamp);
@@ -288,7 +288,7 @@ impl GnssClock {
         Step::Held
     }
 
-    /// Whether so much time may have passed since the clock was right.
+    /// Returns whether that much time may have passed since the clock was last confirmed.
     fn is_plausible_step(&self, step_s: f64) -> bool {
         let Some(reference) = self.reference else {
             return true;
@@ -300,7 +300,7 @@ impl GnssClock {
         (step_s - passed_s).abs() <= MAX_STEP_S + QUARTZ_DRIFT * passed_s
     }
 
-    /// A stamp after a jump that nothing bore out.
+    /// Applies a stamp after an unconfirmed jump.
     fn resolve_jump(&mut self, mut unconfirmed: UnconfirmedJump, stamp: Timestamp) -> Step {
         let (Some(now), Some(reference)) = (self.now, self.reference) else {
             return self.jump(stamp);

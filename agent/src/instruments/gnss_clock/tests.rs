@@ -28,7 +28,7 @@ fn a_jump_that_is_borne_out_is_a_jump() {
     }
 }
 
-/// A clock aboard: the computer's says the same as the receiver's at 0.
+/// A clock on board; the computer is off by `computer`, and the receiver says 0.
 fn on_board_clock(computer: i64) -> (GnssClock, Instant) {
     let mut clock = GnssClock::new(1, 15.0);
     let start = Instant::now();
@@ -37,7 +37,7 @@ fn on_board_clock(computer: i64) -> (GnssClock, Instant) {
     (clock, start)
 }
 
-/// Hears a stamp a second for a while, `off_s` from the time; what that did.
+/// Observes a stamp a second, `off_s` from the true time; returns the steps.
 fn hear(clock: &mut GnssClock, start: Instant, seconds: Range<i64>, off_s: i64) -> Vec<Step> {
     let steps = seconds.map(|second| {
         clock.set_receive_time(start + Duration::from_secs(second.unsigned_abs()));
@@ -120,7 +120,7 @@ fn a_receiver_that_rolled_over_before_is_put_right_and_an_old_log_stays_old() {
     assert_eq!(clock.observe(0, old), Step::Advanced(old));
 }
 
-/// A clock aboard after a restart, with a computer that knows the time.
+/// A clock on board after a restart, with a computer that knows the time.
 fn restarted() -> (GnssClock, Instant) {
     let mut clock = GnssClock::new(1, 15.0);
     let start = Instant::now();
@@ -151,7 +151,7 @@ fn a_first_stamp_that_cannot_be_right_is_not_believed() {
 }
 
 #[test]
-fn a_first_stamp_in_doubt_is_believed_when_the_shore_bears_it_out() {
+fn a_first_stamp_in_doubt_is_believed_when_the_server_bears_it_out() {
     const WEEK_S: i64 = 7 * 86_400;
     let (mut clock, start) = restarted();
     hear(&mut clock, start, 0..60, WEEK_S);
