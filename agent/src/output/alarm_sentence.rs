@@ -1,8 +1,8 @@
 //! The agent's alert for an alarm panel: `ALR` of IEC 61162-1, talker II.
 //!
-//! `$IIALR,time of change,alarm number,condition,acknowledged,text*hh`: condition A
-//! while the alert is open and V else; acknowledged A or V. It is said at once when
-//! something changed, and again every half minute.
+//! `$IIALR,time of change,alarm number,condition,acknowledged,text*hh`: condition A while the alert
+//! is open and V otherwise; acknowledged A or V. It is sent at once after a change, and every half
+//! minute.
 
 use super::framing::frame_sentence;
 use crate::alert::AlertRecord;
@@ -12,17 +12,17 @@ use std::time::Duration;
 use tokio::time::Instant;
 
 const REPEAT_INTERVAL: Duration = Duration::from_secs(30);
-/// This agent has one alarm.
+/// Number of the agent's only alarm.
 const ALARM_NUMBER: &str = "001";
 
-/// What was last said, and when.
+/// Last sentence and its time.
 #[derive(Debug, Default)]
 pub(crate) struct AlarmSentence {
     last_sent: Option<(String, Instant)>,
 }
 
 impl AlarmSentence {
-    /// The sentence with its line end, when it is due.
+    /// Returns the sentence with its line end, when it is due.
     pub(crate) fn due(&mut self, record: Option<&AlertRecord>, now: Instant) -> Option<Vec<u8>> {
         let body = body(record);
         let is_due = self.last_sent.as_ref().is_none_or(|(last_sent, at)| {

@@ -1,12 +1,11 @@
 //! The corrected heading as sentences for autopilots and repeaters.
 //!
-//! `HDG` carries the raw reading with deviation and variation filled in, `THS`
-//! the true heading in mode E, and `$PBINQ` how good they are:
-//! `$PBINQ,status,model version,age in days,standard error in degrees*hh`.
+//! `HDG` carries the raw reading with deviation and variation filled in, `THS` the true heading in
+//! mode E, and `$PBINQ` their quality: `$PBINQ,status,model version,age in days,standard error in
+//! degrees*hh`.
 //!
-//! The talker is `II`, not `HC`: an agent that hears its own output must not
-//! take it for the compass. What is not known is an empty field, and THS then
-//! has mode V.
+//! The talker is `II`, not `HC`: an agent that receives its own output must not take it for the
+//! compass. An unknown value is an empty field, and THS then has mode V.
 
 use super::framing::frame_sentence;
 use crate::corrected_heading::CorrectedHeading;
@@ -15,16 +14,16 @@ use binnacle_magnetics::angle::{CompassHeading, Deviation, TrueHeading, Variatio
 use binnacle_nmea::sentence::{Hdg, Ths, ThsMode};
 use binnacle_nmea::{Data, Sentence, write};
 
-/// The model that a heading was corrected with.
+/// Quality of the model behind a heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Quality {
-    /// The model's version.
+    /// Version of the model.
     pub(crate) version: u32,
-    /// Since its last sample.
+    /// Days since its last sample.
     pub(crate) age_days: f64,
 }
 
-/// HDG, THS and PBINQ, each with its line end.
+/// Returns HDG, THS and PBINQ, each with its line end.
 pub(crate) fn heading_sentences(corrected: &CorrectedHeading, quality: Option<Quality>) -> Vec<u8> {
     let mut out = Vec::with_capacity(128);
     let hdg = Hdg {
@@ -34,7 +33,7 @@ pub(crate) fn heading_sentences(corrected: &CorrectedHeading, quality: Option<Qu
             .map(tenth),
         deviation_deg_east: corrected
             .deviation_deg
-            // Whoever hears it adds it.
+            // A receiver would add it.
             .filter(|_| corrected.magnetic_deg.is_some())
             .map(Deviation::degrees_east)
             .map(tenth),
@@ -86,7 +85,7 @@ fn write_quality(corrected: &CorrectedHeading, quality: Option<Quality>, out: &m
     )));
 }
 
-/// Sensors give tenths of a degree; more would only look better.
+/// Rounds to a tenth: sensors give no more, and further digits would only look better.
 fn tenth(degrees: f64) -> f64 {
     (degrees * 10.0).round() / 10.0
 }

@@ -1,11 +1,11 @@
-//! Where the corrected heading goes: a TCP server, UDP datagrams, a serial port.
+//! Sinks of the corrected heading: a TCP server, UDP datagrams, a serial port.
 //!
-//! No listener can hold the agent up: a TCP client that does not read is
-//! dropped, a serial port that is busy or gone misses a line. Nor does a client
-//! that falls silent and comes back get old headings from here as if they were
-//! new: little waits in the kernel, not for long, and what waits for a client
-//! that is dropped is thrown away. What its own computer has already received
-//! is out of our hands.
+//! No receiver can block the agent. A TCP client that does not read is dropped, and a serial port
+//! that is busy or gone misses a line.
+//!
+//! A client that falls silent and comes back gets no old headings from the agent. The kernel
+//! buffers little, and not for long, and the buffer of a dropped client is discarded. Data that its
+//! own computer has already received cannot be recalled.
 
 use crate::config::{OutputConfig, SerialConfig};
 use anyhow::Context;
@@ -21,17 +21,17 @@ use tokio::time::{sleep, timeout};
 use tokio_serial::SerialPortBuilderExt;
 use tokio_util::sync::CancellationToken;
 
-/// So many outputs behind, a client is dropped.
+/// Outputs that a client may lag behind before it is dropped.
 const MAX_CLIENT_LAG: usize = 16;
-/// A client that has not taken a line after so many intervals is dropped.
+/// Intervals within which a client must take a line.
 const WRITE_TIMEOUT_INTERVALS: f64 = 2.0;
-/// However short the interval, a lost segment may be sent again.
+/// Lower bound of the write timeout: a lost segment may be sent again.
 const MIN_WRITE_TIMEOUT_S: f64 = 1.0;
-/// However long the interval, a heading this old is not for steering.
+/// Upper bound of the write timeout: an older heading is not for steering.
 const MAX_WRITE_TIMEOUT_S: f64 = 10.0;
-/// Room in the kernel for lines that a client has not taken: a few of them.
+/// Send buffer of a client in the kernel: a few lines.
 const CLIENT_BUFFER_BYTES: usize = 4096;
-/// A serial port that failed is opened again after this.
+/// Pause before a failed serial port is opened again.
 const SERIAL_RETRY: Duration = Duration::from_secs(5);
 
 /// Open outputs.
@@ -40,12 +40,12 @@ pub(crate) struct Outputs {
     clients: Option<broadcast::Sender<Arc<[u8]>>>,
     udp: Option<(UdpSocket, SocketAddr)>,
     serial: Option<mpsc::Sender<Arc<[u8]>>>,
-    /// Where the TCP server listens.
+    /// Address of the TCP server.
     pub(crate) tcp_address: Option<SocketAddr>,
 }
 
 impl Outputs {
-    /// Opens what is configured; runs until `shutdown`.
+    /// Opens the configured outputs, which run until `shutdown`.
     pub(crate) async fn open(
         config: &OutputConfig,
         shutdown: &CancellationToken,
@@ -77,7 +77,7 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// Sends to everyone who listens, waiting for nobody.
+    /// Sends to all receivers without waiting.
     pub(crate) fn send(&self, sentences: Vec<u8>) {
         let sentences: Arc<[u8]> = sentences.into();
         if let Some((socket, target)) = &self.udp
@@ -90,7 +90,7 @@ impl Outputs {
             serial.try_send(sentences.clone()).ok();
         }
         if let Some(clients) = &self.clients {
-            // An error only says that nobody is connected.
+            // An error only means that no client is connected.
             clients.send(sentences).ok();
         }
     }
@@ -143,7 +143,7 @@ async fn accept(
     }
 }
 
-/// Writes to one client until it fails; says why.
+/// Writes to one client until it fails. Returns the reason.
 async fn serve(
     mut stream: TcpStream,
     mut lines: broadcast::Receiver<Arc<[u8]>>,
@@ -176,11 +176,11 @@ async fn serve(
     }
 }
 
-/// Bounds how much the kernel keeps for a client, and for how long.
+/// Limits size and age of the data that the kernel buffers for a client.
 fn bound_send_buffer(stream: &TcpStream, write_timeout: Duration) -> io::Result<()> {
     let socket = SockRef::from(stream);
     socket.set_send_buffer_size(CLIENT_BUFFER_BYTES)?;
-    // Elsewhere, the small buffer alone is the bound.
+    // On other systems the small buffer is the only limit.
     #[cfg(target_os = "linux")]
     socket.set_tcp_user_timeout(Some(write_timeout))?;
     #[cfg(not(target_os = "linux"))]
@@ -188,7 +188,7 @@ fn bound_send_buffer(stream: &TcpStream, write_timeout: Duration) -> io::Result<
     Ok(())
 }
 
-/// Makes closing reset the connection, or the kernel would go on delivering.
+/// Makes closing reset the connection; otherwise the kernel would go on delivering.
 fn discard_unsent(stream: &TcpStream) {
     if let Err(error) = SockRef::from(stream).set_linger(Some(Duration::ZERO)) {
         tracing::debug!(%error, "a client's buffer is left to the kernel");
@@ -247,7 +247,7 @@ mod tests {
         (outputs, address, shutdown)
     }
 
-    /// Sends until so many clients are there to hear it.
+    /// Waits until the given number of clients is connected.
     async fn connected(outputs: &Outputs, clients: usize) {
         while outputs.clients.as_ref().unwrap().receiver_count() < clients {
             tokio::task::yield_now().await;
@@ -288,7 +288,7 @@ mod tests {
         assert_eq!(quick.next_line().await.unwrap().unwrap(), "after");
     }
 
-    /// A client with little room of its own, and its end here.
+    /// A client with a small receive buffer, and the server's end of it.
     async fn small_client() -> (TcpStream, TcpStream) {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let socket = tokio::net::TcpSocket::new_v4().unwrap();
@@ -321,7 +321,7 @@ mod tests {
         let (_client, stream) = small_client().await;
         bound_send_buffer(&stream, write_timeout(1.0)).unwrap();
         let socket = SockRef::from(&stream);
-        // Linux says twice what was asked for.
+        // Linux reports twice the requested size.
         assert!(socket.send_buffer_size().unwrap() <= 2 * CLIENT_BUFFER_BYTES);
         let seconds = Duration::from_secs;
         assert_eq!(socket.tcp_user_timeout().unwrap(), Some(seconds(2)));
