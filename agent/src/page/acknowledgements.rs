@@ -11,7 +11,7 @@ use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 use uuid::Uuid;
 
-/// Says which alert was seen.
+/// Alert to acknowledge.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Acknowledgement {
@@ -41,7 +41,7 @@ pub(super) async fn acknowledge(
     }
 }
 
-/// Keeps that an alert was seen, if it is the last one.
+/// Stores the acknowledgement of an alert, if it is the last one. Returns whether it is.
 async fn save_acknowledgement(spool: &Spool, id: Uuid) -> sqlx::Result<bool> {
     let Some(record) = spool.alert().await?.filter(|known| known.alert.id == id) else {
         return Ok(false);

@@ -9,11 +9,11 @@ use axum::http::{HeaderMap, StatusCode};
 use axum::response::{IntoResponse, Response};
 use serde::{Deserialize, Serialize};
 
-/// What a hold button sends; `null` ends the hold.
+/// Request of a hold button; `null` ends the hold.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ExclusionRequest {
-    /// The hold that is to be.
+    /// New exclusion.
     #[serde(rename = "hold")]
     pub(crate) exclusion: Option<Exclusion>,
 }

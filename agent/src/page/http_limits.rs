@@ -1,5 +1,5 @@
-//! Connections to the page: so many at once, and none that says nothing for long. What
-//! the uplink and the instruments need of the computer is not the page's to use up.
+//! Limits on connections to the page: their number, and how long each may be idle. The page must
+//! not use up what the uplink and the instruments need.
 
 use std::io;
 use std::net::SocketAddr;
@@ -12,12 +12,12 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
-/// More than a bridge has screens.
+/// Limit on open connections: more than a bridge has screens.
 const MAX_CONNECTIONS: usize = 64;
-/// The page asks once a second.
+/// Limit on idle time: the page sends a request every second.
 const IDLE_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// A listener with room for so many.
+/// Listener with a limited number of connections.
 #[derive(Debug)]
 pub(super) struct LimitedListener {
     listener: TcpListener,
@@ -26,7 +26,7 @@ pub(super) struct LimitedListener {
 }
 
 impl LimitedListener {
-    /// Takes over a listener.
+    /// Wraps a listener with the default limits.
     pub(super) fn new(listener: TcpListener) -> LimitedListener {
         LimitedListener::with_limits(MAX_CONNECTIONS, IDLE_TIMEOUT, listener)
     }
@@ -66,7 +66,7 @@ impl axum::serve::Listener for LimitedListener {
     }
 }
 
-/// A connection that ends when nothing comes and nothing can be told for too long.
+/// Connection that ends after too long without reading or writing.
 #[derive(Debug)]
 pub(super) struct LimitedConnection {
     stream: TcpStream,
@@ -76,7 +76,7 @@ pub(super) struct LimitedConnection {
 }
 
 impl LimitedConnection {
-    /// Begins to wait anew when there was something, and gives up when there is nothing.
+    /// Restarts the idle timer after activity, and fails when the timer has run out.
     fn check_idle<T>(
         &mut self,
         cx: &mut Context<'_>,
@@ -131,7 +131,7 @@ mod tests {
     use tokio::io::{AsyncReadExt, AsyncWriteExt};
 
     #[tokio::test]
-    async fn those_who_say_nothing_make_room_for_those_who_do() {
+    async fn idle_connections_make_room_for_active_ones() {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();
         let listener_with_limits =
@@ -150,7 +150,7 @@ mod tests {
         let mut answer = String::new();
         connection.read_to_string(&mut answer).await.unwrap();
         assert!(answer.ends_with("here"), "{answer}");
-        // The first was shown out.
+        // The first connection was closed.
         let mut rest = Vec::new();
         let read = idle_timer[0].read_to_end(&mut rest).await;
         assert!(!rest.starts_with(b"HTTP/1.1 200"), "{read:?}");

@@ -1,10 +1,8 @@
-//! The local page: one HTML file, the status as JSON, the hold buttons, and the
-//! logbook's form (see [`crate::reports`]).
+//! The local page: one HTML file, the status as JSON, the hold buttons, and the logbook's form.
 //!
-//! For the ship's own network, without a login. A foreign web site that an
-//! officer has open must not be able to press a button: what changes something
-//! needs a header that no form can send, and names that resolve elsewhere are
-//! refused.
+//! For the vessel's own network, without a login. A foreign web site that an officer has open must
+//! not be able to press a button. Every change therefore needs a header that no form can send, and
+//! requests under names that resolve elsewhere are refused.
 
 mod acknowledgements;
 mod exclusions;
@@ -35,10 +33,10 @@ use std::sync::Arc;
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
-/// No request is longer: a report's note has at most 1000 characters.
+/// Size limit of a request: a report's note has at most 1000 characters.
 const MAX_REQUEST_BYTES: usize = 16 * 1024;
 
-/// Serves the page until `shutdown`, where it is configured; notes where in the spool.
+/// Serves the page until `shutdown`, if it is configured, and stores its address in the spool.
 pub(crate) async fn serve(
     config: Option<&PageConfig>,
     page: PageState,
@@ -65,7 +63,7 @@ pub(crate) async fn serve(
     Ok(Some(address))
 }
 
-/// All of the page.
+/// Returns the routes of the page.
 pub(crate) fn router(page: PageState) -> Router {
     Router::new()
         .route("/", get(show))

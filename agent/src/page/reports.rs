@@ -1,7 +1,7 @@
-//! The logbook on the local page: what officers report, and whether it is ashore.
+//! The logbook on the local page: officers' reports and their delivery.
 //!
-//! What always holds: what the page was told is kept is in the spool. The page makes
-//! a report's id, so that one sent twice by an impatient finger is one report.
+//! Invariant: a report that the page confirmed is in the spool. The page creates the report's id,
+//! so that a report sent twice by accident is one report.
 
 use super::request_guard::require_guard_header;
 use super::state::PageState;
@@ -14,7 +14,7 @@ use binnacle_wire::logbook::{Report, ReportError, reporter};
 use serde::Deserialize;
 use uuid::Uuid;
 
-/// What the form sends.
+/// Report as the form sends it.
 #[derive(Debug, Deserialize)]
 pub(crate) struct ReportForm {
     #[serde(default)]
@@ -25,10 +25,10 @@ pub(crate) struct ReportForm {
     report: Report,
 }
 
-/// What is answered instead of a report: a status, and what is wrong in words.
+/// Error response: a status, and the mistake in words.
 pub(crate) type Refusal = (StatusCode, String);
 
-/// The latest reports.
+/// Lists the latest reports.
 pub(super) async fn list_reports(
     State(page): State<PageState>,
 ) -> Result<Json<Vec<StoredReport>>, Refusal> {
@@ -38,7 +38,7 @@ pub(super) async fn list_reports(
         .map_err(|error| refuse_unsaved(&SaveReportError::Spool(error)))
 }
 
-/// Takes a report, or a change of one.
+/// Stores a report, or a change of one.
 pub(super) async fn put_report(
     State(page): State<PageState>,
     Path(id): Path<Uuid>,
@@ -46,7 +46,7 @@ pub(super) async fn put_report(
     Json(written): Json<ReportForm>,
 ) -> Result<Json<StoredReport>, Refusal> {
     require_guard_header(&headers).map_err(|(status, why)| (status, why.to_owned()))?;
-    // Either clock may stand far back; neither is ahead without reason.
+    // Either clock may lag far behind; neither is ahead without reason.
     let ship_time = page.status.borrow().ship_time;
     let now = ship_time.map_or_else(clock::now, |time| time.max(clock::now()));
     let reporter = reporter(&written.reporter).map_err(|error| refuse_invalid(&error))?;

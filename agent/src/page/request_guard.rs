@@ -7,10 +7,10 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use std::net::IpAddr;
 
-/// The header that every change must carry: no page of another site can send it.
+/// Header that every change must carry; no page of another site can send it.
 pub(crate) const GUARD_HEADER: &str = "x-binnacle-request";
 
-/// Refuses a change that carries no guard header.
+/// Fails when a change has no guard header.
 pub(crate) fn require_guard_header(headers: &HeaderMap) -> Result<(), (StatusCode, &'static str)> {
     if headers.get(GUARD_HEADER).is_some_and(|value| value == "1") {
         return Ok(());
@@ -19,7 +19,7 @@ pub(crate) fn require_guard_header(headers: &HeaderMap) -> Result<(), (StatusCod
     Err((StatusCode::FORBIDDEN, why))
 }
 
-/// Refuses requests that a browser was tricked into.
+/// Refuses requests that another site made the browser send.
 pub(super) async fn reject_foreign_sites(request: Request, next: Next) -> Response {
     if let Err(why) = check_origin(request.headers()) {
         return (StatusCode::FORBIDDEN, why).into_response();
@@ -39,8 +39,8 @@ fn check_origin(headers: &HeaderMap) -> Result<(), &'static str> {
     Ok(())
 }
 
-/// An address, `localhost`, a name without dots, or one of the local network:
-/// a name on the internet that points here is somebody's trick.
+/// Returns whether a host name is local: an address, `localhost`, a name without dots, or one in
+/// `.local`. A name on the internet that resolves to this address is an attack.
 fn is_local_name(host: &str) -> bool {
     let name = match host.strip_prefix('[') {
         Some(rest) => {
