@@ -1,18 +1,18 @@
-//! Blocks of the ring: 4 096 octets, all numbers little-endian.
+//! Blocks of the raw log: 4 096 bytes, all numbers little-endian.
 //!
-//! | at | octets | what |
+//! | at | bytes | content |
 //! |---|---|---|
 //! | 0 | 4 | `BNR1` |
 //! | 4 | 8 | number, rising |
 //! | 12 | 4 | CRC-32 of the above |
 //! | 16 | 168 × 24 | seconds, see below |
-//! | 4048 | 2 | how many of them count |
+//! | 4048 | 2 | number of seconds in use |
 //! | 4092 | 4 | CRC-32 of 16 to 4092 |
 //!
-//! A second is its time since 1970 (u32), latitude and longitude in 10⁻⁷ degree (i32),
-//! compass, gyro and satellite compass in 0.01° (u16), speed over ground in 0.01 knot
-//! (u16), rate of turn in 0.1° a minute and roll in 0.01° (i16). The least number of a
-//! signed field, and the greatest of an unsigned one, stand for what was not there.
+//! A second is its time since 1970 (u32), latitude and longitude in 10⁻⁷ degree (i32), compass,
+//! gyro and satellite compass in 0.01° (u16), speed over ground in 0.01 knot (u16), rate of turn in
+//! 0.1° per minute and roll in 0.01° (i16). The least number of a signed field, and the greatest of
+//! an unsigned one, mean that the value is absent.
 
 use super::second::Second;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
@@ -23,21 +23,21 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 pub(super) const BLOCK_BYTES: u64 = 4_096;
 const HEAD_BYTES: usize = 16;
-/// Seconds of one block.
+/// Seconds per block.
 pub(super) const RECORDS: usize = 168;
 const RECORD_BYTES: usize = 24;
 const COUNT_AT: usize = HEAD_BYTES + RECORDS * RECORD_BYTES;
 const CHECKSUM_AT: usize = BLOCK_BYTES as usize - 4;
 const MAGIC: [u8; 4] = *b"BNR1";
 
-/// What a whole block holds.
+/// Contents of an intact block.
 #[derive(Debug, PartialEq)]
 pub(super) struct Block {
     pub(super) number: u64,
     pub(super) seconds: Vec<Second>,
 }
 
-/// Writes a block of at most [`RECORDS`] seconds.
+/// Encodes a block of at most [`RECORDS`] seconds.
 pub(super) fn write(number: u64, seconds: &[Second]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(BLOCK_BYTES as usize);
     bytes.extend(MAGIC);
@@ -55,17 +55,17 @@ pub(super) fn write(number: u64, seconds: &[Second]) -> Vec<u8> {
     bytes
 }
 
-/// The number in a head, if it is whole.
+/// Decodes the number in a block's head; `None` unless the head is intact.
 fn number(head: &[u8; HEAD_BYTES]) -> Option<u64> {
     let (stated, checksum) = head.split_last_chunk::<4>()?;
     let (magic, number) = stated.split_first_chunk::<4>()?;
     let whole = *magic == MAGIC && crc32fast::hash(stated) == u32::from_le_bytes(*checksum);
     let number = u64::from_le_bytes(number.try_into().ok()?);
-    // A number that leaves none for the next block is none that was ever written.
+    // The highest number leaves none for the next block, so it was never written.
     (whole && number < u64::MAX).then_some(number)
 }
 
-/// Reads a block, if it is whole.
+/// Decodes a block; `None` unless it is intact.
 fn read(bytes: &[u8]) -> Option<Block> {
     let (head, rest) = bytes.split_first_chunk::<HEAD_BYTES>()?;
     let number = number(head)?;
@@ -84,7 +84,7 @@ fn read(bytes: &[u8]) -> Option<Block> {
     })
 }
 
-/// The number of the block there, if its head is whole.
+/// Reads the number of the block in a slot; `None` unless its head is intact.
 pub(super) fn number_at(file: &mut File, slot: u64) -> io::Result<Option<u64>> {
     let mut head = [0; HEAD_BYTES];
     file.seek(SeekFrom::Start(slot * BLOCK_BYTES))?;
@@ -128,14 +128,14 @@ fn write_second(bytes: &mut Vec<u8>, second: &Second) {
     bytes.extend(small(second.roll_deg, 100.0).to_le_bytes());
 }
 
-/// In steps, or `none`.
+/// Rounds to steps; `none` stands for an absent value.
 fn signed(value: Option<f64>, steps: f64, none: i64, most: i64) -> i64 {
     value.map_or(none, |value| {
         ((value * steps).round() as i64).clamp(none + 1, most)
     })
 }
 
-/// A second that no ship can have is passed over.
+/// Decodes a second; `None` for values that no vessel can have.
 fn read_second(bytes: &[u8]) -> Option<Second> {
     let mut rest = bytes;
     let seconds = u32::from_le_bytes(take(&mut rest)?);

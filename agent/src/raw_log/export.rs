@@ -1,4 +1,4 @@
-//! The ring as a table, also while the agent writes it.
+//! Export of the raw log as a table, also while the agent writes it.
 
 use super::block::{BLOCK_BYTES, block_at, number_at};
 use super::second::Second;
@@ -10,12 +10,12 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
-/// Which seconds are wanted.
+/// Time range of an export.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Span {
-    /// From this one on.
+    /// First time, inclusive.
     pub(crate) from: Option<Timestamp>,
-    /// Before this one.
+    /// Last time, exclusive.
     pub(crate) until: Option<Timestamp>,
 }
 
@@ -37,10 +37,11 @@ const COLUMNS: [&str; 9] = [
     "roll_deg",
 ];
 
-/// Writes the seconds of a ring as CSV, in the order in which they were taken; how many.
+/// Writes the seconds of a raw log as CSV, in the order in which they were recorded. Returns their
+/// number.
 ///
 /// # Errors
-/// When there is no ring, or the table cannot be written.
+/// When there is no raw log, or the table cannot be written.
 pub(crate) fn export(raw_log: &Path, span: Span, out: &mut dyn Write) -> anyhow::Result<u64> {
     let name = raw_log.display().to_string();
     let mut file = File::open(raw_log).with_context(|| format!("{name}: there is no ring"))?;
@@ -57,7 +58,7 @@ pub(crate) fn export(raw_log: &Path, span: Span, out: &mut dyn Write) -> anyhow:
     let mut written = 0;
     for (number, slot) in order {
         let block = block_at(&mut file, slot).context(name.clone())?;
-        // Written over meanwhile, or never finished.
+        // Overwritten meanwhile, or never finished.
         let Some(block) = block.filter(|block| block.number == number) else {
             continue;
         };

@@ -1,14 +1,14 @@
-//! What the instruments said in each second, in a file of its own with a size limit:
-//! for download in port, never sent.
+//! Readings of each second, in a file of its own with a size limit: for download in port, never
+//! sent.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - The file never grows beyond its limit; what is oldest is written over.
-//! - Blocks are whole or not read: each has checksums, and losing power costs the block
-//!   that was being written and the seconds that were not in one yet.
-//! - The spool comes first: when the disk is full for either, the ring lets go of all it
-//!   has, and begins again an hour later at the earliest.
-//! - No trouble with the ring stops the agent or keeps a sample from the spool.
+//! - The file never grows beyond its limit; the oldest blocks are overwritten.
+//! - Only intact blocks are read: each has checksums. A power failure costs the block being written
+//!   and the seconds that were not in one yet.
+//! - The spool comes first: when the disk is full for either, the raw log deletes everything and
+//!   begins again an hour later at the earliest.
+//! - No fault of the raw log stops the agent or keeps a sample from the spool.
 
 mod block;
 mod export;
@@ -26,45 +26,46 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// After the disk was full.
+/// Pause after the disk was full.
 const PAUSE_AFTER_FULL: Duration = Duration::from_hours(1);
 
-/// How the ring is, for the page and `status`.
+/// Size of the raw log, for the page and `status`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct RawLogStatus {
     #[serde(rename = "octets")]
     pub(crate) bytes: u64,
     #[serde(rename = "limit_octets")]
     pub(crate) limit_bytes: u64,
-    /// Why nothing is kept for now.
+    /// Reason why nothing is recorded for now.
     pub(crate) problem: Option<String>,
 }
 
-/// The ring of a running agent.
+/// Raw log of a running agent.
 #[derive(Debug)]
 pub(crate) struct RawLog {
     path: PathBuf,
-    /// Blocks that the file may have; none: there is no ring.
+    /// Blocks that the file may have; 0 disables the raw log.
     slots: u64,
     file: Option<File>,
     problem: Option<String>,
-    /// Not tried again before this.
+    /// End of a pause.
     paused_until: Option<Instant>,
-    /// Where the next block goes, and its number.
+    /// Slot and number of the next block.
     slot: u64,
     number: u64,
     seconds: Vec<Second>,
-    /// The last second that was taken, since 1970.
+    /// Last recorded second, since 1970.
     last_s: Option<i64>,
 }
 
-/// The ring's file in a data directory.
+/// Returns the path of the raw log in a data directory.
 pub(crate) fn path(data_dir: &Path) -> PathBuf {
     data_dir.join("ring.bin")
 }
 
 impl RawLog {
-    /// Goes on where the file ends. One that cannot be used is a ring that keeps nothing.
+    /// Opens the raw log and continues after its last block. A log that cannot be used records
+    /// nothing.
     pub(crate) fn open(data_dir: &Path, limit_bytes: u64) -> RawLog {
         let mut raw_log = RawLog {
             path: path(data_dir),
@@ -78,7 +79,7 @@ impl RawLog {
             last_s: None,
         };
         if raw_log.slots == 0 {
-            // What an earlier configuration kept is the owner's; it is not removed.
+            // A log of an earlier configuration is the owner's; it is not removed.
             return raw_log;
         }
         if let Err(error) = raw_log.seek_end() {
@@ -104,7 +105,7 @@ impl RawLog {
         Ok(())
     }
 
-    /// Takes a second, unless it is the one before again; a whole block is written.
+    /// Records a second, unless it is recorded already, and writes the block once it is full.
     pub(crate) fn record(
         &mut self,
         time: Timestamp,
@@ -121,7 +122,7 @@ impl RawLog {
         }
     }
 
-    /// Writes what is there as a block, as at the end.
+    /// Writes the recorded seconds as a block, as at the end.
     pub(crate) fn flush(&mut self, now: Instant) {
         if self.paused_until.is_some_and(|until| now < until) {
             self.seconds.clear();
@@ -155,7 +156,7 @@ impl RawLog {
         Ok(())
     }
 
-    /// Lets go of everything, for the spool's sake.
+    /// Deletes everything in favour of the spool.
     pub(crate) fn release_disk(&mut self, problem: &str, now: Instant) {
         if self.slots == 0 {
             return;
@@ -173,7 +174,7 @@ impl RawLog {
         self.seconds.clear();
     }
 
-    /// How it is; none when there is to be no ring.
+    /// Returns the status, `None` when the raw log is disabled.
     pub(crate) fn status(&self) -> Option<RawLogStatus> {
         let length = |file: &File| file.metadata().map_or(0, |found| found.len());
         (self.slots > 0).then(|| RawLogStatus {

@@ -7,7 +7,7 @@ use binnacle_magnetics::time::Timestamp;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// What the instruments said in one second.
+/// Readings of one second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Second {
     pub(crate) time: Timestamp,
@@ -21,7 +21,7 @@ pub(crate) struct Second {
 }
 
 impl Second {
-    /// What of the readings is not older than `stale`.
+    /// Takes the readings that are not older than `stale`.
     pub(crate) fn from_readings(
         time: Timestamp,
         readings: &Readings,

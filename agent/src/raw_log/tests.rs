@@ -1,4 +1,4 @@
-//! The ring on a real file.
+//! The raw log on a real file.
 
 use super::*;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
