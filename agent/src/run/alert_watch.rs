@@ -6,7 +6,7 @@ use binnacle_wire::alert::ShipAlert;
 use rand::RngExt;
 
 impl Agent {
-    /// Looks at what has settled since; the samples of an alert end with it.
+    /// Passes newly settled windows to the alert monitor; a revision ends the current sample.
     pub(super) fn update_alert(&mut self) {
         let withdrawn = self.card_withdrawal();
         let model = self.uplink_handle.model.borrow();
@@ -32,7 +32,7 @@ impl Agent {
         self.unstored.alerts.extend(revisions);
     }
 
-    /// Keeps what only those aboard need to know of the alert.
+    /// Stores the parts of the alert that only matter on board.
     pub(super) async fn save_alert(&mut self) {
         let Some(record) = self.alert_monitor.record().copied() else {
             return;

@@ -11,11 +11,12 @@ use binnacle_wire::messages::CardWithdrawn;
 use std::time::Duration;
 use tokio::time::Instant;
 
-/// Variation at twenty knots changes by less than a tenth of a degree meanwhile.
+/// Age up to which a position serves: variation at twenty knots changes by less than a tenth of a
+/// degree meanwhile.
 const POSITION_MAX_AGE: Duration = Duration::from_mins(10);
 
 impl Agent {
-    /// Why the model holds no more, by the shore's word or the officers'.
+    /// Returns the withdrawal of the card, by the server or by officers' reports.
     pub(super) fn card_withdrawal(&self) -> Option<CardWithdrawn> {
         let by_shore = self.uplink_handle.withdrawn.borrow().clone();
         by_shore.or_else(|| {

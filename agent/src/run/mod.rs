@@ -1,9 +1,9 @@
-//! The running agent: inputs into the ship, samples into the spool, the
-//! corrected heading out, once around per observation, second and interval.
+//! The running agent: inputs to samples, samples to the spool, and the corrected heading out, per
+//! observation, second and output interval.
 //!
-//! One task owns the ship; nothing is locked. When the disk is slow, this task
-//! waits, its channel fills, and the inputs wait in turn: a recording that is
-//! played fast is throttled and never lost.
+//! One task owns the state; nothing is locked. When the disk is slow, this task waits, its channel
+//! fills, and the inputs wait in turn. A recording that is replayed fast is throttled and never
+//! lost.
 
 mod alert_watch;
 mod heading;
@@ -32,9 +32,9 @@ use tokio::time::{Instant, MissedTickBehavior, interval};
 use tokio_util::sync::CancellationToken;
 use uuid::Uuid;
 
-/// Samples are written to the spool when there are so many, or after a second.
+/// Samples that are written to the spool together; fewer are written after a second.
 pub(crate) const SAMPLES_PER_COMMIT: usize = 64;
-/// Deliveries of observations that may wait: what is here dies with the agent.
+/// Deliveries of observations that may wait; they are lost when the agent dies.
 const CHANNEL_CAPACITY: usize = 8;
 const TICK: Duration = Duration::from_secs(1);
 
@@ -50,7 +50,7 @@ pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::
 
 struct Agent {
     acquisition: Acquisition,
-    /// The shore's time when it was last heard of.
+    /// Server's time of the last contact.
     last_contact: Option<Timestamp>,
     silence: SilenceConfig,
     spool: Spool,
@@ -58,7 +58,7 @@ struct Agent {
     raw_log: RawLog,
     plan: UploadPlan,
     uplink_handle: UplinkHandle,
-    /// What officers reported.
+    /// Reports of the officers.
     reports: Vec<StoredReport>,
     observations: mpsc::Receiver<Vec<Observation>>,
     inputs: Vec<(String, Arc<InputStats>)>,
@@ -66,9 +66,9 @@ struct Agent {
     interval: Duration,
     exclusion: watch::Sender<Option<Exclusion>>,
     alert_monitor: AlertMonitor,
-    /// What the spool has of the lookout's alert.
+    /// Alert as the spool has it.
     stored_alert: Option<AlertRecord>,
-    /// Whether the last heading sent was known too badly to be given out.
+    /// Set if the last heading sent was withheld because its band was too wide.
     withheld: bool,
     acknowledged: watch::Receiver<Option<Uuid>>,
     alarm: Option<AlarmSentence>,
@@ -78,18 +78,18 @@ struct Agent {
     windows: Tally,
 }
 
-/// What the sampler has finished and the spool does not have yet.
+/// Results of the sampler that the spool does not have yet.
 #[derive(Debug, Default)]
 struct Unstored {
     samples: Vec<Sample>,
     tally: Tally,
     /// Revisions of alerts.
     alerts: Vec<ShipAlert>,
-    /// Why the spool does not take them.
+    /// Reason why the spool does not store them.
     problem: Option<String>,
-    /// What the spool has that is not sealed.
+    /// Unsealed contents of the spool.
     pending: Pending,
-    /// The ship's time when the tally was last sealed.
+    /// GNSS time when the tally was last sealed.
     tally_since: Option<Timestamp>,
 }
 
@@ -133,7 +133,7 @@ impl Agent {
         self.stop().await;
     }
 
-    /// Keeps what has settled, and lets the uplink finish its sentence.
+    /// Stores what has settled, and lets the uplink finish its exchange.
     async fn stop(mut self) {
         self.observations.close();
         self.acquisition.sampler.finish();
@@ -186,7 +186,7 @@ impl Agent {
             .send_replace(self.acquisition.time());
         match self.spool.exclusion().await {
             Ok(exclusion) => {
-                // The command line sets it there when it finds no page.
+                // The command line stores it there when it finds no page.
                 self.exclusion
                     .send_if_modified(|known| std::mem::replace(known, exclusion) != exclusion);
             }

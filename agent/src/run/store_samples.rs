@@ -1,5 +1,4 @@
-//! What has settled goes into the spool, in batches when it is time, and the spool is kept
-//! in order.
+//! Storage of settled samples in the spool, sealed when due, and upkeep of the spool.
 
 use super::Agent;
 use crate::clock;
@@ -11,13 +10,13 @@ use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::Settings;
 use tokio::time::Instant;
 
-/// Windows that were only refused are reported this often, by ship time.
+/// Interval of batches without samples, by GNSS time.
 const TALLY_INTERVAL_S: f64 = 86_400.0;
-/// If the disk takes nothing, so many samples are kept in memory.
+/// Limit on samples in memory while the disk accepts nothing.
 const MAX_UNSTORED: usize = 20_000;
 
 impl Agent {
-    /// By the ship's time; after a jump of her clock, whichever way.
+    /// Returns whether a batch is due by GNSS time, in either direction after a jump.
     pub(super) fn seal_due(&self) -> Seal {
         let Some(now) = self.acquisition.time() else {
             return Seal::Full;
@@ -33,7 +32,7 @@ impl Agent {
         if due { Seal::All } else { Seal::Full }
     }
 
-    /// As the profile has it, unless the shore wants other than the usual.
+    /// Returns the profile's upload interval, unless the server sets another than the default.
     fn seal_s(&self) -> u32 {
         let asked = self.uplink_handle.settings.borrow().seal_s;
         if asked == Settings::default().seal_s {
@@ -97,7 +96,7 @@ impl Agent {
         }
     }
 
-    /// For the first time stamp after a restart.
+    /// Saves both clocks for the first time stamp after a restart.
     pub(super) async fn save_clock_checkpoint(&self) {
         let Some(ship) = self.acquisition.reliable_time() else {
             return;
@@ -112,7 +111,7 @@ impl Agent {
         }
     }
 
-    /// Few batches, within the disk and within what the link may cost.
+    /// Merges and thins batches to the limits of disk, messages and budget.
     async fn limit_spool(&self) {
         let merged = if self.batches_wait() {
             self.spool.merge_last_two().await
@@ -137,7 +136,7 @@ impl Agent {
         }
     }
 
-    /// Whether what is sealed now is not sent at once, and not in messages either.
+    /// Returns whether batches wait before they are sent, other than for messages.
     fn batches_wait(&self) -> bool {
         let is_up = self.uplink_handle.link.borrow().state == LinkState::Up;
         self.plan.max_batch_bytes().is_none() && (!is_up || self.plan.daily_bytes.is_some())
