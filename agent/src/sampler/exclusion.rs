@@ -1,23 +1,24 @@
-//! The crew's word that the compass tells nothing of the ship herself for now.
+//! Exclusions: the crew reports that the compass is disturbed from outside the vessel's own
+//! magnetism.
 
 use super::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Why nothing is sampled until the crew says otherwise.
+/// Reason for an exclusion, which lasts until the crew ends it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Exclusion {
     /// Alongside: the quay's steel disturbs the field.
     Berthed,
-    /// Cargo or gear aboard that is magnetic.
+    /// Magnetic cargo or gear on board.
     MagneticCargo,
-    /// Degaussing coils are on, or the ship is being treated.
+    /// Degaussing coils are on, or the vessel is under treatment.
     Degaussing,
 }
 
 impl Exclusion {
-    /// How its windows are counted.
+    /// Returns the outcome of excluded windows.
     pub(crate) fn outcome(self) -> Outcome {
         match self {
             Exclusion::Berthed => Outcome::ExcludedBerthed,

@@ -1,17 +1,17 @@
-//! Settled ten-second windows from instruments' signals, and samples from them.
+//! Settled ten-second windows from the instruments' signals, and samples from them.
 //!
-//! Pure: time comes with the signals. What always holds:
+//! Pure: time comes with the signals. Invariants:
 //!
-//! - Windows lie on the UTC grid of ten seconds. Each is counted once: accepted,
-//!   or refused by the first reason that applies.
-//! - Only accepted windows are in samples, and each in one sample at most.
+//! - Windows lie on the UTC grid of ten seconds. Each is counted once: accepted, or rejected by the
+//!   first reason that applies.
+//! - Samples contain accepted windows only, each of them at most once.
 //! - The compass heading is the raw reading; no deviation is applied to it.
-//! - No signal, in whatever order or with whatever time, makes it panic.
+//! - No signal causes a panic, in any order and with any time.
 //!
-//! After a turn, eddy currents in the hull and the liquid in the bowl disturb
-//! the compass for two to three minutes (the Gaussian error): windows are
-//! refused until [`Settings::settle_s`] has passed. The limit on swinging is
-//! that of Basterretxea-Iribar, Sotés & Uriarte 2016, J. Navigation.
+//! After a turn, eddy currents in the hull and the liquid in the bowl disturb the compass for two
+//! to three minutes (the Gaussian error). Windows are rejected until [`Settings::settle_s`] has
+//! passed. The limit on swinging is that of Basterretxea-Iribar, Sotés & Uriarte 2016, J.
+//! Navigation.
 
 mod exclusion;
 mod outcome;
@@ -32,25 +32,25 @@ use binnacle_wire::messages::Settings;
 use sample_builder::SampleBuilder;
 use track::{HeadingSpan, HeadingTrack};
 
-/// Fewer readings than this in ten seconds make no mean.
+/// Least number of readings for a ten-second mean.
 const MIN_READINGS: u32 = 4;
-/// A change of heading beyond this is a turn.
+/// Change of heading above which the vessel is turning.
 const TURN_DEG: f64 = 10.0;
-/// Without a heading for more than so many windows, there may have been a turn.
+/// Windows without a heading above which there may have been a turn.
 const MAX_BLIND_WINDOWS: i64 = 3;
-/// Positions and speeds serve for so many windows.
+/// Windows for which a position or speed is valid.
 const FIX_VALID_WINDOWS: i64 = 2;
 const WINDOW_MICROS: i64 = WINDOW_S * 1_000_000;
-/// What a ship and her instruments can say; anything else is not taken.
+/// Plausible range; other values are ignored.
 const SPEED_KN: std::ops::RangeInclusive<f64> = 0.0..=100.0;
 const RATE_OF_TURN_DEG_MIN: std::ops::RangeInclusive<f64> = -720.0..=720.0;
 
-/// The state between two signals.
+/// State between two signals.
 #[derive(Debug)]
 pub(crate) struct Sampler {
     settings: Settings,
     exclusion: Option<Exclusion>,
-    /// The open window, in tens of seconds since 1970.
+    /// Open window, in tens of seconds since 1970.
     window: Option<i64>,
     compass: HeadingTrack,
     gyro: HeadingTrack,
@@ -65,19 +65,19 @@ pub(crate) struct Sampler {
     tally: Tally,
 }
 
-/// Where the ship last steadied, and when the compass has come to rest.
+/// Last steady heading, and the time when the compass has come to rest.
 #[derive(Debug, Default)]
 struct TurnTracker {
-    /// The heading that a turn is measured from, unwound.
+    /// Heading that a turn is measured from, unwound.
     anchor: Option<f64>,
-    /// The first window that may be settled.
+    /// First window that may be settled.
     settled_from: Option<i64>,
-    /// The last window that had a heading.
+    /// Last window that had a heading.
     seen: Option<i64>,
 }
 
 impl Sampler {
-    /// A sampler that has heard nothing yet.
+    /// Creates a sampler without any signal.
     pub(crate) fn new(settings: Settings, exclusion: Option<Exclusion>) -> Sampler {
         Sampler {
             settings,
@@ -97,17 +97,17 @@ impl Sampler {
         }
     }
 
-    /// Puts new limits in effect from the open window on.
+    /// Applies new limits from the open window on.
     pub(crate) fn set_settings(&mut self, settings: Settings) {
         self.settings = settings;
     }
 
-    /// Begins or ends a hold, from the open window on.
+    /// Begins or ends an exclusion, from the open window on.
     pub(crate) fn set_exclusion(&mut self, exclusion: Option<Exclusion>) {
         self.exclusion = exclusion;
     }
 
-    /// Takes what an instrument said.
+    /// Applies a signal of an instrument.
     pub(crate) fn apply(&mut self, signal: Signal) {
         match signal {
             Signal::Time(now) => self.advance(window_of(now)),
@@ -128,33 +128,32 @@ impl Sampler {
         }
     }
 
-    /// The samples that are finished; leaves none behind.
+    /// Takes the finished samples.
     pub(crate) fn take_samples(&mut self) -> Vec<Sample> {
         std::mem::take(&mut self.samples)
     }
 
-    /// Whether there are finished samples.
+    /// Returns whether there are finished samples.
     pub(crate) fn has_samples(&self) -> bool {
         !self.samples.is_empty()
     }
 
-    /// The windows that were accepted since this was last asked, oldest first.
+    /// Takes the windows accepted since the last call, oldest first.
     pub(crate) fn take_settled(&mut self) -> Vec<Window> {
         std::mem::take(&mut self.settled)
     }
 
-    /// Makes a sample of what has settled so far, and goes on with another.
+    /// Makes a sample of the windows settled so far, and begins another.
     pub(crate) fn cut_sample(&mut self) {
         self.samples.extend(self.builder.finish());
     }
 
-    /// Windows by outcome since this was last asked.
+    /// Takes the windows by outcome since the last call.
     pub(crate) fn take_tally(&mut self) -> Tally {
         self.tally.take()
     }
 
-    /// Ends the stretch that is open, as when the agent stops: what has settled
-    /// so far becomes a sample. The open window is dropped.
+    /// Finishes the open sample, as when the agent stops. The open window is dropped.
     pub(crate) fn finish(&mut self) {
         self.samples.extend(self.builder.finish());
         self.reset(None);
@@ -189,7 +188,7 @@ impl Sampler {
         self.reset(Some(now));
     }
 
-    /// Forgets everything that was open and begins at a window.
+    /// Discards everything open and begins at a window.
     fn reset(&mut self, window: Option<i64>) {
         self.window = window;
         self.compass.forget();
@@ -221,7 +220,7 @@ impl Sampler {
         self.rate_of_turn = (0.0, 0);
     }
 
-    /// The window's means, or the first reason to refuse it.
+    /// Returns the means of the window, or the first reason to reject it.
     fn evaluate(&mut self, index: i64) -> Result<Window, Outcome> {
         let rate = self.rate_of_turn_deg_min();
         let turning = rate.is_some_and(|r| r.abs() > self.settings.max_rate_of_turn_deg_min);
@@ -268,7 +267,7 @@ impl Sampler {
         })
     }
 
-    /// Notes turns and blind stretches; whether the compass has come to rest.
+    /// Records turns and gaps. Returns whether the compass has come to rest.
     fn track_turns(&mut self, index: i64, turning: bool) -> bool {
         let Some(span) = self.heading_track().span() else {
             return false;
@@ -295,7 +294,7 @@ impl Sampler {
         index >= settled_from
     }
 
-    /// The best heading to tell turns and swings by.
+    /// Returns the best heading for detecting turns and swings.
     fn heading_track(&self) -> &HeadingTrack {
         [&self.gyro, &self.satellite]
             .into_iter()
@@ -303,7 +302,7 @@ impl Sampler {
             .unwrap_or(&self.compass)
     }
 
-    /// The mean of the instrument's, else by how much the heading moved.
+    /// Returns the mean of the rate-of-turn indicator, or the change of the heading.
     fn rate_of_turn_deg_min(&self) -> Option<f64> {
         let (sum, readings) = self.rate_of_turn;
         if readings > 0 {

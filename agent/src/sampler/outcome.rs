@@ -1,21 +1,21 @@
-//! What became of a ten-second window, and how often.
+//! Outcomes of ten-second windows, and their counts.
 
 use std::collections::BTreeMap;
 
-/// Accepted, or the first reason that it was not.
+/// Acceptance, or the first reason for rejection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// Went into a sample.
+    /// Part of a sample.
     Accepted,
-    /// The crew said that the ship lies alongside.
+    /// Excluded by the crew: alongside.
     ExcludedBerthed,
-    /// The crew said that magnetic cargo is aboard.
+    /// Excluded by the crew: magnetic cargo on board.
     ExcludedMagneticCargo,
-    /// The crew said that degaussing is under way.
+    /// Excluded by the crew: degaussing.
     ExcludedDegaussing,
-    /// The ship's clock jumped while it was open.
+    /// The GNSS clock jumped while the window was open.
     Clock,
-    /// No time stamp fell into it.
+    /// No time stamp in the window.
     NoTime,
     /// No compass heading.
     NoCompass,
@@ -29,13 +29,13 @@ pub(crate) enum Outcome {
     Sparse,
     /// Too slow over ground.
     Slow,
-    /// The rate of turn was above the limit.
+    /// Rate of turn above the limit.
     Turning,
-    /// Too soon after a turn, or after the agent began to listen.
+    /// Too soon after a turn, or after the start of the agent.
     Settling,
-    /// The heading swung too far.
+    /// Heading swung too far.
     Swinging,
-    /// The horizontal field is too weak for a compass.
+    /// Horizontal field too weak for a compass.
     HighLatitude,
 }
 
@@ -69,12 +69,12 @@ impl Tally {
         *count = count.saturating_add(windows);
     }
 
-    /// What has been counted of one outcome.
+    /// Returns the count of one outcome.
     pub(crate) fn count(&self, outcome: Outcome) -> u64 {
         self.0[outcome as usize]
     }
 
-    /// By name, without what did not happen.
+    /// Returns the non-zero counts by name.
     pub(crate) fn by_name(&self) -> BTreeMap<String, u64> {
         ALL.iter()
             .filter(|(outcome, _)| self.count(*outcome) > 0)
@@ -82,12 +82,12 @@ impl Tally {
             .collect()
     }
 
-    /// What has been counted, starting again from nothing.
+    /// Takes the counts and resets them.
     pub(crate) fn take(&mut self) -> Tally {
         std::mem::take(self)
     }
 
-    /// The sum of two tallies.
+    /// Adds the counts of another tally.
     pub(crate) fn add_all(&mut self, other: &Tally) {
         for (count, more) in self.0.iter_mut().zip(other.0) {
             *count = count.saturating_add(more);

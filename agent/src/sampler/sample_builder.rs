@@ -1,25 +1,25 @@
-//! A stretch of settled windows on one heading, and the sample it becomes.
+//! Builder of a sample from consecutive settled windows on one heading.
 //!
-//! Compass less reference is averaged, not compass and reference apart: a
-//! reference that drops out for part of the stretch then takes nothing from the
-//! mean of the others, and north is no edge.
+//! The difference of compass and reference is averaged, not each of them separately. A reference
+//! that drops out for some windows then does not shift the mean of the others, and north needs no
+//! special case.
 
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading, wrap_180};
 use binnacle_magnetics::position::Position;
 use binnacle_magnetics::sample::Sample;
 use binnacle_magnetics::time::Timestamp;
 
-/// Seconds in a window.
+/// Seconds per window.
 pub(crate) const WINDOW_S: i64 = 10;
-/// A stretch is on one heading while it stays this near to where it began.
+/// Largest difference from the first window's heading.
 const MAX_HEADING_CHANGE_DEG: f64 = 5.0;
-/// Refused windows in between that end a stretch: more than a minute.
+/// Rejected windows in between that end a sample: more than a minute.
 const MAX_GAP_WINDOWS: i64 = 6;
-/// Windows further from the median than so many standard deviations are outliers.
+/// Standard deviations from the median above which a window is an outlier.
 const OUTLIER_SIGMAS: f64 = 3.0;
-/// A normal distribution's standard deviation over its median absolute deviation.
+/// Ratio of a normal distribution's standard deviation to its median absolute deviation.
 const SIGMA_PER_MAD: f64 = 1.4826;
-/// Nothing nearer to the median than this is an outlier.
+/// Distance from the median up to which no window is an outlier.
 const MIN_OUTLIER_DEG: f64 = 0.2;
 
 /// One settled window.
@@ -35,15 +35,15 @@ pub(crate) struct Window {
     pub(crate) rate_of_turn_deg_min: Option<f64>,
 }
 
-/// Settled windows in order of time, all on one heading.
+/// Settled windows of a sample in order of time, all on one heading.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SampleBuilder {
     windows: Vec<Window>,
 }
 
 impl SampleBuilder {
-    /// Adds a window; when it does not belong, what was there becomes a sample
-    /// and the window begins anew.
+    /// Adds a window. A window that does not belong to the open sample finishes it and begins the
+    /// next.
     pub(super) fn add(&mut self, window: Window, sample_s: u32) -> Option<Sample> {
         let finished = if self.accepts(&window, sample_s) {
             None
@@ -54,7 +54,7 @@ impl SampleBuilder {
         finished
     }
 
-    /// Ends the stretch if no window after `index` can belong to it.
+    /// Finishes the sample if no window after `index` can belong to it.
     pub(super) fn expire(&mut self, index: i64) -> Option<Sample> {
         let last = self.windows.last()?;
         if index - last.index <= MAX_GAP_WINDOWS {
@@ -63,7 +63,7 @@ impl SampleBuilder {
         self.finish()
     }
 
-    /// Ends the stretch.
+    /// Finishes the sample.
     pub(super) fn finish(&mut self) -> Option<Sample> {
         let sample = build_sample(&self.windows);
         self.windows.clear();
@@ -105,7 +105,7 @@ fn build_sample(windows: &[Window]) -> Option<Sample> {
     })
 }
 
-/// Compass less a reference, where at least half of the windows have it.
+/// Returns the mean of compass minus a reference, if at least half of the windows have it.
 fn mean_difference(windows: &[Window], of: fn(&Window) -> Option<f64>) -> Option<f64> {
     let differences = differences(windows, of);
     if differences.is_empty() || differences.len() * 2 < windows.len() {
@@ -127,7 +127,7 @@ fn differences(windows: &[Window], of: fn(&Window) -> Option<f64>) -> Vec<f64> {
     windows.iter().filter_map(difference).collect()
 }
 
-/// The reference that more windows have; the gyro when both have as many.
+/// Returns the reference that more windows have; the gyro when both have as many.
 fn main_reference(windows: &[Window]) -> fn(&Window) -> Option<f64> {
     let gyros = windows.iter().filter(|w| w.gyro_deg.is_some()).count();
     let satellites = windows.iter().filter(|w| w.satellite_deg.is_some()).count();
@@ -138,7 +138,7 @@ fn main_reference(windows: &[Window]) -> fn(&Window) -> Option<f64> {
     }
 }
 
-/// Leaves out windows whose compass less reference lies far from the median.
+/// Removes windows whose compass minus reference lies far from the median.
 fn without_outliers(windows: &[Window]) -> Vec<Window> {
     let of = main_reference(windows);
     let differences = differences(windows, of);
@@ -157,7 +157,7 @@ fn without_outliers(windows: &[Window]) -> Vec<Window> {
     windows.iter().filter(near).copied().collect()
 }
 
-/// Standard deviation of compass less reference; none for a single window.
+/// Returns the standard deviation of compass minus reference; `None` for a single window.
 fn spread(windows: &[Window]) -> Option<f64> {
     let differences = differences(windows, main_reference(windows));
     if differences.len() < 2 {
@@ -184,7 +184,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0).then(|| sum / f64::from(count))
 }
 
-/// The middle of some values; zero when there are none.
+/// Returns the median; zero for no values.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut sorted: Vec<f64> = values.collect();
     sorted.sort_by(f64::total_cmp);

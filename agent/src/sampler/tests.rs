@@ -1,4 +1,4 @@
-//! The sampler on small made-up voyages.
+//! The sampler on small simulated voyages.
 
 use super::*;
 use binnacle_magnetics::angle::{CompassHeading, TrueHeading};
@@ -22,7 +22,7 @@ fn gyro(degrees: f64) -> Signal {
     Signal::Gyro(TrueHeading::new(degrees).unwrap())
 }
 
-/// One second of a ship that steers by gyro and whose compass reads 3° less.
+/// One second of a vessel that steers by gyro and whose compass reads 3° less.
 fn second(time_s: i64, heading_deg: f64) -> Vec<Signal> {
     vec![
         Signal::Time(at(time_s)),
@@ -229,7 +229,7 @@ fn windows_without_a_time_stamp_are_counted_and_end_the_stretch() {
 }
 
 #[test]
-fn settings_from_shore_take_effect_at_once() {
+fn settings_from_server_take_effect_at_once() {
     let mut sampler = sampler();
     sail(&mut sampler, 0..1000, |_| 90.0);
     sampler.set_settings(Settings {

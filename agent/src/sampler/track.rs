@@ -1,24 +1,24 @@
-//! One instrument's heading through the windows, unwound so that north is no edge.
+//! Heading of one instrument over the windows, unwound across north.
 
 use binnacle_magnetics::angle::wrap_180;
 
-/// A heading as it was in one window.
+/// Heading in one window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HeadingSpan {
     /// Mean of the readings, unwound.
     pub(super) mean: f64,
-    /// Least, unwound.
+    /// Lowest reading, unwound.
     low: f64,
-    /// Most, unwound.
+    /// Highest reading, unwound.
     high: f64,
-    /// How many readings.
+    /// Number of readings.
     pub(super) readings: u32,
 }
 
-/// The readings of one instrument: the open window and the two before it.
+/// Readings of one instrument: the open window and the two before it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct HeadingTrack {
-    /// The latest reading, in degrees that go on past a full circle.
+    /// Latest reading, in degrees that continue past a full circle.
     unwound: Option<f64>,
     sum: f64,
     low: f64,
@@ -29,7 +29,7 @@ pub(super) struct HeadingTrack {
 }
 
 impl HeadingTrack {
-    /// Takes a heading in degrees.
+    /// Adds a heading in degrees.
     pub(super) fn add(&mut self, degrees: f64) {
         let unwound = match self.unwound {
             Some(last) => last + wrap_180(degrees - last),
@@ -45,12 +45,12 @@ impl HeadingTrack {
         self.readings += 1;
     }
 
-    /// The instrument said that it is not to be trusted: nothing in this window is.
+    /// Marks the window as invalid: the instrument reported itself as not to be trusted.
     pub(super) fn invalidate(&mut self) {
         self.invalid = true;
     }
 
-    /// The heading in the open window, if there was any.
+    /// Returns the heading in the open window, if it has readings.
     pub(super) fn span(&self) -> Option<HeadingSpan> {
         if self.readings == 0 || self.invalid {
             return None;
@@ -63,8 +63,8 @@ impl HeadingTrack {
         })
     }
 
-    /// How far the heading went from end to end in this window and the two
-    /// before it: thirty seconds.
+    /// Returns the peak-to-peak range of the heading over this window and the two before it: thirty
+    /// seconds.
     pub(super) fn swing_deg(&self) -> f64 {
         let spans = self.earlier.iter().copied().chain([self.span()]).flatten();
         let (low, high) = spans.fold((f64::MAX, f64::MIN), |(low, high), span| {
@@ -73,7 +73,7 @@ impl HeadingTrack {
         (high - low).max(0.0)
     }
 
-    /// How far the mean moved since the window before, if both had readings.
+    /// Returns the change of the mean since the previous window, if both had readings.
     pub(super) fn moved_deg(&self) -> Option<f64> {
         Some(self.span()?.mean - self.earlier[0]?.mean)
     }
@@ -85,7 +85,7 @@ impl HeadingTrack {
         self.invalid = false;
     }
 
-    /// Forgets the windows before, which no longer adjoin this one.
+    /// Discards the previous windows, which no longer adjoin this one.
     pub(super) fn forget(&mut self) {
         *self = HeadingTrack::default();
     }
