@@ -1,12 +1,12 @@
-//! A modem that is two folders: messages out as files, answers in as files. For tests,
-//! and for whatever program of the ship's speaks to the real one.
+//! A modem made of two folders: sent messages as files, received messages as files. For tests, and
+//! for the program on board that drives the real modem.
 
 use super::Modem;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Longer files are no messages.
+/// Size limit of a received message.
 const MAX_MESSAGE_BYTES: u64 = 1_960;
 const EXTENSION: &str = "sbd";
 
@@ -18,7 +18,7 @@ pub(crate) struct FileModem {
 }
 
 impl FileModem {
-    /// Makes the folders if need be.
+    /// Opens the modem, creating its folders if necessary.
     pub(crate) fn open(directory: &Path) -> io::Result<FileModem> {
         let modem = FileModem {
             outbox: directory.join("out"),
@@ -29,8 +29,8 @@ impl FileModem {
         Ok(modem)
     }
 
-    /// Whole before it has its name, and on the disk before it counts as sent. Numbers
-    /// rise, also when those before have been taken away.
+    /// Writes a message. The file is complete before it gets its name, and on the disk before it
+    /// counts as sent. Numbers always rise, even when earlier files were removed.
     fn write(&self, message: &[u8]) -> io::Result<()> {
         let counter = self.outbox.join("next");
         let stated = fs::read_to_string(&counter).ok();
@@ -49,8 +49,7 @@ impl FileModem {
         File::open(&self.outbox)?.sync_all()
     }
 
-    /// Never through a link that somebody laid in the agent's way: what has a name is
-    /// replaced, not written to.
+    /// Replaces a file without following links: another user may have placed one there.
     fn replace_file(&self, path: &Path, content: &[u8]) -> io::Result<()> {
         let partial = self.outbox.join("partial");
         if fs::symlink_metadata(&partial).is_ok() {

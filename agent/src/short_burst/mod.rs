@@ -1,15 +1,14 @@
-//! Batches over a modem that carries messages of a few hundred octets, for ships
-//! without any other link at sea.
+//! Batches over a modem that carries messages of a few hundred bytes, for vessels without any other
+//! link at sea.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A batch that went out as messages stays in the spool until the shore has
-//!   acknowledged it, over the modem or over an ordinary link: a message that is lost
-//!   costs nothing but time.
-//! - Its octets are those that an ordinary link sends, so that the shore may get it
-//!   both ways, in any order, and has it once.
-//! - How many of its messages are out is kept after each: a restart repeats one at most.
-//! - An answer deletes only what is out.
+//! - A batch that was sent as messages stays in the spool until the server has acknowledged it,
+//!   over the modem or over an ordinary link. A lost message costs only time.
+//! - Its bytes are those that an ordinary link sends. The server may receive it both ways, in any
+//!   order, and stores it once.
+//! - The number of sent messages is stored after each of them: a restart repeats at most one.
+//! - An acknowledgement deletes only what was sent.
 
 mod file;
 
@@ -21,15 +20,15 @@ use std::io;
 use std::time::Duration;
 use tokio_util::sync::CancellationToken;
 
-/// How often the spool and the modem are looked at.
+/// Interval at which spool and modem are polled.
 const POLL_INTERVAL: Duration = Duration::from_secs(5);
-/// After a modem that did not take a message.
+/// Pause after the modem failed to take a message.
 const RETRY_PAUSE: Duration = Duration::from_mins(2);
-/// What takes messages to the shore and back.
+/// Carrier of messages to the server and back.
 pub(crate) trait Modem: Send {
-    /// Hands one message over; it is on its way when this succeeds.
+    /// Sends one message, which is on its way when this succeeds.
     fn send(&mut self, message: &[u8]) -> impl Future<Output = io::Result<()>> + Send;
-    /// The next message from the shore, if there is one. It does not come again.
+    /// Receives the next message of the server, if there is one; each is received once.
     fn receive(&mut self) -> impl Future<Output = io::Result<Option<Vec<u8>>>> + Send;
 }
 
@@ -44,7 +43,7 @@ pub(crate) async fn run(spool: Spool, mut modem: impl Modem, shutdown: Cancellat
     }
 }
 
-/// Everything that there is to do; how long to wait then.
+/// Sends and receives everything there is. Returns the pause before the next step.
 async fn step(spool: &Spool, modem: &mut impl Modem) -> Duration {
     match exchange(spool, modem).await {
         Ok(()) => POLL_INTERVAL,

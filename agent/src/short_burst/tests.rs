@@ -1,4 +1,4 @@
-//! The modem's turn, with folders for a modem and a shore that joins what is in them.
+//! Exchanges with folders for a modem and a server that joins the messages in them.
 
 use super::*;
 use crate::config::max_burst_batch_bytes;
@@ -32,7 +32,7 @@ async fn evidence(spool: &Spool, samples: &[Sample]) {
     sealed.await.unwrap();
 }
 
-/// What is in the folder, in order.
+/// Messages in the folder, in order.
 fn outbox(directory: &Path) -> Vec<Vec<u8>> {
     let folder = directory.join("modem").join("out");
     let files = std::fs::read_dir(folder).unwrap();
@@ -65,7 +65,7 @@ fn ack(stream: u128, contiguous_seq: u64) -> Vec<u8> {
 }
 
 #[tokio::test]
-async fn each_batch_goes_out_once_and_stays_until_the_shore_has_it() {
+async fn each_batch_goes_out_once_and_stays_until_the_server_has_it() {
     let (directory, spool, mut modem) = rig().await;
     seal(&spool, 0..90).await;
     seal(&spool, 100..101).await;
@@ -110,7 +110,7 @@ async fn an_alert_goes_before_the_backlog() {
     assert_eq!(seqs(&outbox(directory.path())), [3, 1, 2]);
 }
 
-/// Takes so many messages and then none.
+/// A modem that fails after the given number of messages.
 struct Failing {
     modem: FileModem,
     takes: usize,
