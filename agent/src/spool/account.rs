@@ -8,16 +8,16 @@ use serde::{Deserialize, Serialize};
 /// Measured as IP bytes both ways.
 pub(crate) const REQUEST_BYTES: u64 = 389;
 
-/// What is left of a budget, as it is kept over a restart.
+/// Balance of the budget.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BudgetAccount {
     pub(crate) profile: Profile,
-    /// Octets a day; none: as many as it takes.
+    /// Bytes per day; `None` for no limit.
     #[serde(rename = "day_octets")]
     pub(crate) daily_bytes: Option<f64>,
-    /// Less than none when overdrawn.
+    /// Balance; negative when overdrawn.
     #[serde(rename = "left_octets")]
     pub(crate) remaining_bytes: f64,
-    /// The ship's time of all this.
+    /// GNSS time of the last update.
     pub(crate) ship_time: Option<Timestamp>,
 }

@@ -1,25 +1,25 @@
-//! Batches that the shore acknowledged, kept in case that it loses them: a shore that is
-//! restored from a backup has less than it had.
+//! Acknowledged batches, retained in case the server loses them: a server restored from a backup
+//! has fewer than before.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - They go first when room is short, and after a month by the shore's clock.
-//! - How far the shore says that it has come is the only sign that it lost some: then
-//!   all that it does not say it has are sent again, byte for byte. What it has after
-//!   all is not stored twice.
+//! - They are deleted first when the disk limit is reached, and after a month by the server's
+//!   clock.
+//! - A lower contiguous number from the server is the only sign of a loss. Then all batches above
+//!   it are sent again, byte for byte. Those that the server still has are not stored twice.
 
 use super::database::{Spool, get};
 use super::keys::CONTIGUOUS_SEQ;
 use binnacle_wire::messages::Downlink;
 use sqlx::SqliteConnection;
 
-/// Who loses a shore restores it from a backup that is younger.
+/// Retention of acknowledged batches: a lost server is restored from a backup younger than this.
 const RETENTION_MICROS: i64 = 30 * 86_400 * 1_000_000;
-/// So many are thrown away at once.
+/// Batches deleted in one transaction.
 const DELETE_AT_ONCE: i64 = 64;
 
 impl Spool {
-    /// The shore lost the stream: everything that is here is to be sent.
+    /// Queues all retained batches again, after the server lost the stream.
     pub(crate) async fn requeue_all(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         requeue(&mut tx, 0, 0).await?;
@@ -27,9 +27,9 @@ impl Spool {
     }
 }
 
-/// Takes what the answer to a batch says of how far the shore has come: dates what is
-/// acknowledged, throws away what is older than a month, and lets what the shore lost
-/// wait again. `before` is what it said last.
+/// Reconciles the spool with the contiguous number in a response to a batch. Dates new
+/// acknowledgements, deletes those older than a month, and queues again what the server lost.
+/// `before` is the previous number.
 pub(super) async fn reconcile(
     tx: &mut SqliteConnection,
     response_seq: u64,
@@ -45,8 +45,8 @@ pub(super) async fn reconcile(
     .execute(&mut *tx)
     .await?;
     let contiguous = downlink.contiguous_seq;
-    // One that stands still although the next is acknowledged is a shore's error, not a
-    // loss: sending it all again and again would not help.
+    // A number that stands still although the next batch is acknowledged is an error of the server,
+    // not a loss. Sending everything again and again would not help.
     let has_regressed = contiguous < before
         || (contiguous > before && is_acknowledged(tx, contiguous.saturating_add(1)).await?);
     if has_regressed {
@@ -69,7 +69,7 @@ pub(super) async fn reconcile(
     Ok(())
 }
 
-/// Throws away some of the oldest; how many.
+/// Deletes some of the oldest acknowledged batches. Returns their number.
 pub(super) async fn delete_oldest(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
     let contiguous: u64 = get(tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
     let deleted = sqlx::query(
@@ -93,8 +93,8 @@ async fn is_acknowledged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bo
     Ok(found.is_some())
 }
 
-/// What is acknowledged beyond a number, but for one batch; how many. What went out as
-/// short messages does so again.
+/// Queues acknowledged batches above a number again, except one. Returns their number. Batches sent
+/// as short messages are sent so again.
 async fn requeue(tx: &mut SqliteConnection, beyond: u64, but: u64) -> sqlx::Result<u64> {
     let waiting = sqlx::query(
         "UPDATE batches SET standing = 'waiting', acknowledged_micros = NULL,
@@ -108,7 +108,7 @@ async fn requeue(tx: &mut SqliteConnection, beyond: u64, but: u64) -> sqlx::Resu
     Ok(waiting.rows_affected())
 }
 
-/// A shore may claim any number.
+/// Converts a number for SQL: a server may claim any.
 fn as_stored(seq: u64) -> i64 {
     i64::try_from(seq).unwrap_or(i64::MAX)
 }
@@ -120,7 +120,8 @@ mod tests {
     use crate::spool::Seal;
     use binnacle_magnetics::sample::Sample;
 
-    /// Sends what waits to a shore that then says that it has come so far; what it was.
+    /// Sends all waiting batches to a server that then claims the contiguous number. Returns the
+    /// sent numbers.
     async fn send(spool: &Spool, contiguous: u64) -> Vec<u64> {
         let mut sent = Vec::new();
         while let Some(batch) = spool.next_batch().await.unwrap() {
@@ -136,7 +137,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_shore_that_fell_behind_gets_again_what_it_lacks_and_no_more() {
+    async fn a_server_that_fell_behind_gets_again_what_it_lacks_and_no_more() {
         let (_directory, spool) = enrolled().await;
         seal(&spool, 0..1).await;
         seal(&spool, 1..2).await;
@@ -162,7 +163,7 @@ mod tests {
     }
 
     #[tokio::test]
-    async fn a_shore_that_never_counts_on_is_not_sent_the_same_for_ever() {
+    async fn a_server_that_never_counts_on_is_not_sent_the_same_for_ever() {
         let (_directory, spool) = enrolled().await;
         for minute in 0..4 {
             seal(&spool, minute..minute + 1).await;

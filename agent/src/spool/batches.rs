@@ -1,4 +1,4 @@
-//! Sealed batches: which is next, what became of it, and a new stream.
+//! Sealed batches: their order, their state, and the change to another stream.
 
 use super::acknowledged;
 use super::database::{Spool, get, put};
@@ -11,25 +11,25 @@ use binnacle_wire::messages::Downlink;
 use sqlx::SqliteConnection;
 use std::collections::BTreeMap;
 
-/// So many acknowledged batches are remembered.
+/// Acknowledged batches whose number, size and checksum are recorded.
 const MAX_ACKNOWLEDGED: i64 = 20_000;
 
-/// A batch as it is sent.
+/// A batch ready to send.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct SealedBatch {
-    /// Its number within the stream.
+    /// Number within the stream.
     pub(crate) seq: u64,
-    /// The frame.
+    /// Encoded frame.
     pub(crate) bytes: Vec<u8>,
-    /// Whether it goes before everything else.
+    /// Set for a batch that is sent before everything else.
     pub(crate) urgent: bool,
-    /// How many it holds.
+    /// Number of its samples.
     pub(crate) samples: u64,
 }
 
 impl Spool {
-    /// The batch that is to be sent next: evidence of alerts, the newest first, then
-    /// what has samples, then the rest, the oldest first.
+    /// Returns the next batch to send: evidence of alerts, newest first, then batches with samples,
+    /// then the rest, oldest first.
     pub(crate) async fn next_batch(&self) -> sqlx::Result<Option<SealedBatch>> {
         let row: Option<(i64, Vec<u8>, bool, i64)> = sqlx::query_as(
             "SELECT seq, bytes, urgent, samples FROM batches WHERE standing = 'waiting'
@@ -46,7 +46,7 @@ impl Spool {
         }))
     }
 
-    /// How many others wait.
+    /// Counts the other waiting batches.
     pub(crate) async fn count_other_waiting(&self, seq: u64) -> sqlx::Result<u64> {
         let others: i64 = sqlx::query_scalar(
             "SELECT COUNT(*) FROM batches WHERE standing = 'waiting' AND seq <> $1",
@@ -57,8 +57,8 @@ impl Spool {
         Ok(others.unsigned_abs())
     }
 
-    /// Notes that these very bytes are about to be sent: they are not changed any more.
-    /// `false` when the batch is another by now.
+    /// Marks these very bytes as sent, after which they are never changed. Returns `false` when the
+    /// batch has been changed meanwhile.
     pub(crate) async fn mark_tried(&self, batch: &SealedBatch) -> sqlx::Result<bool> {
         let mut tx = self.write().await?;
         let noted = sqlx::query("UPDATE batches SET tried = TRUE WHERE seq = $1 AND bytes = $2")
@@ -70,8 +70,8 @@ impl Spool {
         Ok(noted.rows_affected() > 0)
     }
 
-    /// The shore has this batch: notes it, and what follows from how far the shore says
-    /// that it has come ([`super::acknowledged`]).
+    /// Acknowledges a batch, and reconciles the spool with the server's contiguous number
+    /// ([`super::acknowledged`]).
     pub(crate) async fn acknowledge(
         &self,
         stream: StreamId,
@@ -107,8 +107,8 @@ impl Spool {
         tx.commit().await
     }
 
-    /// The shore refused this batch: keeps it, and goes on without it. One that the disk has
-    /// damaged is put aside, and an empty one takes its number: the shore need not wait for it.
+    /// Parks a batch that the server refused. A batch damaged by the disk is quarantined, and an
+    /// empty one takes its number, so that the server need not wait for it.
     pub(crate) async fn park(&self, seq: u64, problem: &str) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         if replace_damaged(&mut tx, seq).await? {
@@ -122,14 +122,14 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Gives all parked batches another chance, as at a start.
+    /// Queues all parked batches again, as at a start.
     pub(crate) async fn unpark(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         unpark(&mut tx).await?;
         tx.commit().await
     }
 
-    /// Gives the first parked batch another chance: if it is taken, the others have it too.
+    /// Queues the first parked batch again: if it is accepted, the others follow.
     pub(crate) async fn unpark_first(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         sqlx::query(
@@ -141,8 +141,8 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Goes on in a new stream of the same identity: batches that were not
-    /// acknowledged are numbered anew in it.
+    /// Continues in a new stream of the same identity: batches that were not acknowledged are
+    /// renumbered in it.
     pub(crate) async fn move_to_stream(&self, stream: StreamId) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         renumber(&mut tx, stream).await?;
@@ -152,8 +152,8 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Whether the shore lacks batches that are no longer here, as when it was
-    /// restored from an old copy: its contiguous number can then never rise.
+    /// Returns whether the server lacks batches that are no longer here, as after a restore from an
+    /// old backup. Its contiguous number can then never rise.
     pub(crate) async fn has_unfillable_gap(&self, contiguous_seq: u64) -> sqlx::Result<bool> {
         let mut connection = self.pool.acquire().await?;
         let wanted = contiguous_seq.saturating_add(1);
@@ -173,7 +173,8 @@ async fn unpark(tx: &mut SqliteConnection) -> sqlx::Result<()> {
     Ok(())
 }
 
-/// Whether this batch was damaged, and is put aside.
+/// Quarantines the batch if it is damaged, and puts an empty one in its place. Returns whether it
+/// was.
 async fn replace_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
     let bytes: Option<Vec<u8>> = sqlx::query_scalar("SELECT bytes FROM batches WHERE seq = $1")
         .bind(seq.cast_signed())
@@ -237,16 +238,17 @@ pub(super) async fn record_acknowledged(
     Ok(())
 }
 
-/// Of what the frame holds. With its own checksum at its end every frame has the same.
+/// Returns the checksum of the frame's content. Including its own checksum, every frame would have
+/// the same.
 fn checksum(frame: &[u8]) -> u32 {
     let content = frame.len().saturating_sub(4);
     crc32fast::hash(&frame[..content])
 }
 
-/// Numbers the batches that were not acknowledged from 1 in another stream.
+/// Renumbers the batches that were not acknowledged from 1 in another stream.
 ///
-/// What was acknowledged is durable on shore in the old stream, and dropped
-/// here. Bytes that no longer read are put aside, never fatal.
+/// Acknowledged batches are durable on the server in the old stream, and are deleted here.
+/// Unreadable bytes are quarantined and never fatal.
 pub(super) async fn renumber(tx: &mut SqliteConnection, stream: StreamId) -> sqlx::Result<()> {
     let rows: Vec<(Vec<u8>, bool)> = sqlx::query_as(
         "SELECT bytes, urgent FROM batches WHERE standing <> 'acknowledged' ORDER BY seq",

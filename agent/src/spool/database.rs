@@ -1,4 +1,4 @@
-//! The SQLite file of the spool.
+//! SQLite file of the spool.
 
 use anyhow::Context;
 use serde::Serialize;
@@ -8,23 +8,23 @@ use sqlx::{Sqlite, SqliteConnection, SqlitePool, Transaction};
 use std::path::Path;
 use std::time::Duration;
 
-/// The agent's memory. Cheap to clone; all clones share one connection.
+/// Persistent store of the agent. Cheap to clone; all clones share one connection.
 #[derive(Clone, Debug)]
 pub(crate) struct Spool {
     pub(super) pool: SqlitePool,
 }
 
-/// So long the journal gets, pages of 4 KiB, before it is written into the file: by SQLite's
-/// own rule it would take 4 MB of a disk on which the ring has just made way by one.
+/// Journal pages of 4 KiB before a checkpoint. SQLite's default would take 4 MB of a disk that the
+/// raw log may just have freed.
 const JOURNAL_PAGES: &str = "100";
 
-/// Columns of `batches` that earlier agents did not have.
+/// Columns of `batches` that older agents did not have.
 const LATER_COLUMNS: [(&str, &str); 5] = [
     (
         "urgent",
         "ALTER TABLE batches ADD COLUMN urgent BOOLEAN NOT NULL DEFAULT FALSE",
     ),
-    // What an earlier agent left may have been sent.
+    // Batches of an older agent may have been sent.
     (
         "tried",
         "ALTER TABLE batches ADD COLUMN tried BOOLEAN NOT NULL DEFAULT TRUE",
@@ -44,8 +44,8 @@ const LATER_COLUMNS: [(&str, &str); 5] = [
 ];
 
 impl Spool {
-    /// Opens the spool in a directory, which is made if need be; both are the
-    /// owner's only.
+    /// Opens the spool in a directory, which is created if necessary; both are private to the
+    /// owner.
     pub(crate) async fn open(directory: &Path) -> anyhow::Result<Spool> {
         let path = directory.join("spool.db");
         create_private(directory, &path)
@@ -62,8 +62,7 @@ impl Spool {
         Ok(spool)
     }
 
-    /// Opens a spool that cannot be written to, as on a disk that has failed: what is in
-    /// it can still be told.
+    /// Opens a spool that cannot be written to, as on a failed disk, for its status.
     pub(crate) async fn open_to_read(directory: &Path) -> sqlx::Result<Spool> {
         let options = SqliteConnectOptions::new()
             .filename(directory.join("spool.db"))
@@ -72,7 +71,7 @@ impl Spool {
         Ok(Spool { pool })
     }
 
-    /// A spool that an older agent made lacks what came later.
+    /// Adds the columns that a spool of an older agent lacks.
     async fn add_missing_columns(&self) -> sqlx::Result<()> {
         for (column, statement) in LATER_COLUMNS {
             let known: Option<i64> =
@@ -87,17 +86,17 @@ impl Spool {
         Ok(())
     }
 
-    /// Finishes what is under way and closes the file.
+    /// Finishes pending work and closes the file.
     pub(crate) async fn close(&self) {
         self.pool.close().await;
     }
 
     pub(super) async fn write(&self) -> sqlx::Result<Transaction<'static, Sqlite>> {
-        // At once, so that two processes wait for each other instead of failing.
+        // Immediate, so that two processes wait for each other instead of failing.
         const BEGIN: &str = "BEGIN IMMEDIATE";
         match self.pool.begin_with(BEGIN).await {
-            // A transaction that SQLite itself has rolled back, as on a full disk, is open
-            // for good to this version of sqlx: only another connection begins another.
+            // A transaction that SQLite itself has rolled back, as on a full disk, stays open for
+            // this version of sqlx: only another connection can begin another.
             Err(sqlx::Error::InvalidSavePointStatement) => {}
             begun => return begun,
         }
@@ -121,8 +120,8 @@ pub(super) async fn connect(path: &Path) -> sqlx::Result<SqlitePool> {
     one_connection().connect_with(options).await
 }
 
-/// Reaping idle connections may spin for ever in this version of sqlx (its issue 3645),
-/// and one connection to a file of our own needs none.
+/// Returns the options of a single connection. Reaping idle connections may spin for ever in this
+/// version of sqlx (its issue 3645), and one connection to a private file needs none.
 fn one_connection() -> SqlitePoolOptions {
     SqlitePoolOptions::new()
         .max_connections(1)
@@ -130,8 +129,8 @@ fn one_connection() -> SqlitePoolOptions {
         .max_lifetime(None)
 }
 
-/// A value by name. One that does not read is reported and counts as absent:
-/// a damaged value must not stop the agent.
+/// Reads a value by name. An unreadable value is logged and counts as absent, because damage must
+/// not stop the agent.
 pub(super) async fn get<T: DeserializeOwned>(
     connection: &mut SqliteConnection,
     name: &str,
@@ -199,8 +198,8 @@ pub(super) fn create_private(directory: &Path, file: &Path) -> std::io::Result<(
         .create(true)
         .mode(0o600)
         .open(file)?;
-    // SQLite gives new journals the mode of the database. A copy that was put back may
-    // have any mode, and so may what was made under a strange mask.
+    // SQLite gives new journals the mode of the database. A restored copy may have any mode, and so
+    // may files made under an unusual umask.
     for suffix in ["", "-wal", "-shm"] {
         let mut path = file.as_os_str().to_owned();
         path.push(suffix);
@@ -209,7 +208,7 @@ pub(super) fn create_private(directory: &Path, file: &Path) -> std::io::Result<(
     Ok(())
 }
 
-/// What is another's cannot be put right, and stops nothing.
+/// Sets the mode of a file; a file of another owner is only logged.
 #[cfg(unix)]
 fn set_mode(path: &Path, mode: u32) {
     use std::os::unix::fs::PermissionsExt;

@@ -1,4 +1,4 @@
-//! Enrolment of the agent, and the change to another stream.
+//! Enrolment of the agent for a compass.
 
 use super::database::{Spool, get, put};
 use super::identity::Identity;
@@ -6,9 +6,8 @@ use super::keys::{ALERT, IDENTITY, MODEL, SETTINGS, WITHDRAWN};
 use super::{batches, reports};
 
 impl Spool {
-    /// Becomes another stream, as after enrolment: batches that were not
-    /// acknowledged are numbered anew in it. The model and settings of another
-    /// compass are forgotten: nobody must steer by them.
+    /// Enrols the agent in another stream: batches that were not acknowledged are renumbered in it.
+    /// Model and settings of another compass are deleted, because nobody must steer by them.
     pub(crate) async fn enrol(&self, identity: &Identity) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         let before = get::<Identity>(&mut tx, IDENTITY).await?;

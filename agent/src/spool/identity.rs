@@ -6,27 +6,27 @@ use binnacle_wire::batch::StreamId;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Who the agent is to the shore.
+/// Identity of the agent towards the server.
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Identity {
-    /// Where the shore is, as `https://host`.
+    /// URL of the server, as `https://host`.
     pub(crate) server: String,
     /// Bearer token; never logged.
     pub(crate) token: String,
-    /// What the shore may know instead: a new one of which it is not known whether it is
-    /// in place, or the one before.
+    /// Token that the server may know instead: a new one that may not be active yet, or the
+    /// previous one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) other_token: Option<String>,
-    /// The stream that batches are numbered in.
+    /// Stream that batches are numbered in.
     pub(crate) stream: StreamId,
-    /// For the local page.
+    /// Name of the vessel, for the local page.
     pub(crate) vessel_name: String,
-    /// For the local page.
+    /// Name of the compass, for the local page.
     pub(crate) compass_name: String,
 }
 
 impl Identity {
-    /// Whether both identities are of the same compass of the same vessel.
+    /// Returns whether both identities are of the same compass of the same vessel.
     pub(super) fn is_same_compass(&self, other: &Identity) -> bool {
         (&self.vessel_name, &self.compass_name) == (&other.vessel_name, &other.compass_name)
     }
@@ -39,12 +39,12 @@ impl fmt::Debug for Identity {
 }
 
 impl Spool {
-    /// Who the agent is, once it is enrolled.
+    /// Returns the identity, once the agent is enrolled.
     pub(crate) async fn identity(&self) -> sqlx::Result<Option<Identity>> {
         self.get(IDENTITY).await
     }
 
-    /// Keeps another token beside the one in use.
+    /// Saves another token beside the active one.
     pub(crate) async fn save_other_token(&self, token: &str) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         if let Some(mut identity) = get::<Identity>(&mut tx, IDENTITY).await? {
@@ -54,7 +54,8 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Uses the other token, if the one in use is still this; whether there was one.
+    /// Activates the other token if `in_use` is still the active one. Returns whether there is
+    /// another token.
     pub(crate) async fn swap_tokens(&self, in_use: &str) -> sqlx::Result<bool> {
         let mut tx = self.write().await?;
         let Some(mut identity) = get::<Identity>(&mut tx, IDENTITY).await? else {

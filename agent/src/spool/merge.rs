@@ -1,24 +1,24 @@
-//! Batches that wait behind one that cannot be sent become fewer: each costs a request,
-//! and a round trip, of its own.
+//! Merging of batches that wait behind one that cannot be sent: each costs a request and a round
+//! trip of its own.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - Only the two that were sealed last are ever joined, and neither if it was tried: no
-//!   number changes that anybody may know of.
-//! - Evidence of alerts, and what was thinned, stays as it is.
-//! - What is joined goes into one packet, head and all, and through a proxy that cuts
-//!   after a kilobyte.
+//! - Only the two batches sealed last are merged, and neither if it was tried: no number changes
+//!   that anybody may know.
+//! - Evidence of alerts and thinned batches are never merged.
+//! - A merged batch with its request head fits into one packet, and through a proxy that cuts after
+//!   a kilobyte.
 
 use super::database::{Spool, put};
 use super::keys::NEXT_SEQ;
 use super::seal::SAMPLES_PER_BATCH;
 use super::thinning::add;
 
-/// A request's head takes some 300 octets.
+/// Size limit of a merged batch; a request's head takes some 300 bytes more.
 const MAX_BYTES: usize = 700;
 
 impl Spool {
-    /// Joins the batch that was sealed last to the one before, where that may be done.
+    /// Merges the batch that was sealed last into the one before, where possible.
     pub(crate) async fn merge_last_two(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         let last_two: Vec<(i64, Vec<u8>)> = sqlx::query_as(
@@ -50,8 +50,8 @@ impl Spool {
     }
 }
 
-/// One batch of two, and its samples; none when it would be too large, or one of them
-/// does not read: what is damaged is dealt with where it is sent.
+/// Merges two batches; returns the bytes and the number of samples. `None` when the result would be
+/// too large, or when one is unreadable: damage is handled when it is sent.
 fn merge(before: &[u8], last: &[u8]) -> Option<(Vec<u8>, i64)> {
     let mut batch = binnacle_wire::decode(before).ok()?;
     let last = binnacle_wire::decode(last).ok()?;
@@ -79,7 +79,7 @@ mod tests {
     use crate::spool::{Seal, Spool};
     use binnacle_wire::batch::Batch;
 
-    /// A quarter of a day, as it is sealed where nothing is sent.
+    /// Seals a quarter of a day, as without a link.
     async fn quarter(spool: &Spool, number: i64) {
         let samples: Vec<_> = (0..36).map(|i| sample(number * 360 + i * 10)).collect();
         let stored = spool.store(&samples, &accepted(2_160), Seal::All).await;

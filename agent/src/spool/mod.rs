@@ -1,22 +1,21 @@
-//! What must outlive the agent: one SQLite file in the data directory.
+//! Persistent state of the agent: one SQLite file in the data directory.
 //!
-//! What always holds, also when the process is killed or the power fails at any
-//! point (WAL, every commit synced):
+//! Invariants, also when the process is killed or the power fails at any point (WAL, every commit
+//! synced):
 //!
 //! - A sample is in exactly one place: pending, or in one sealed batch.
-//! - A sealed batch is never changed once it was tried; before that it may be thinned
-//!   for want of room, and says so, or take in the one that was sealed after it. Batches of a stream are numbered from 1 without
-//!   gaps, and sent again byte for byte until they are acknowledged.
-//! - A batch is deleted only when the shore acknowledged that very batch and
-//!   everything before it, and a month later or when room is short; a record of its
-//!   number, size and checksum remains. Until then it is sent again if the shore lost it.
-//! - An alert and the batch that carries it ashore are here from the same moment on.
-//! - An officer's report is here until the shore has it.
-//! - Position and data are one thing: there is no ledger beside the rows that
-//!   could disagree with them.
-//! - What is not in here yet: samples of the last second or of the last
-//!   [`crate::run::SAMPLES_PER_COMMIT`], whichever is less, and the stretch of at most
-//!   ten minutes that the sampler is still in.
+//! - A sealed batch is never changed once it was tried. Before that it may be thinned to the
+//!   limits, and says so, or be merged with the one sealed after it.
+//! - Batches of a stream are numbered from 1 without gaps, and sent again byte for byte until they
+//!   are acknowledged.
+//! - A batch is deleted only when the server acknowledged that very batch and all before it, and
+//!   then after a month or when the disk limit is reached. Its number, size and checksum stay on
+//!   record. Until then it is sent again if the server lost it.
+//! - An alert is stored together with the batch that carries it to the server.
+//! - An officer's report is here until the server has it.
+//! - The rows are the only record of progress: no separate ledger could disagree with them.
+//! - Not stored yet: samples of the last second or of the last [`crate::run::SAMPLES_PER_COMMIT`],
+//!   whichever is less, and the open sample of at most ten minutes.
 
 mod database;
 mod keys;

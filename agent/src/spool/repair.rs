@@ -1,5 +1,5 @@
-//! A damaged spool is put aside, and what can still be read is carried over: a
-//! ship must not have to wait in port for somebody to delete a file.
+//! Repair of a damaged spool: it is quarantined, and its readable rows are carried over. A vessel
+//! must not have to wait in port for somebody to delete a file.
 
 use super::database::{Spool, connect, create_private};
 use super::reports;
@@ -9,7 +9,7 @@ use sqlx::{FromRow, Row, SqlitePool};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// Kept open while an agent runs: two agents on one spool would fork its stream.
+/// Lock held while an agent runs: two agents on one spool would fork its stream.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: File,
@@ -20,7 +20,7 @@ const CORRUPT: i32 = 11;
 const NOT_A_DATABASE: i32 = 26;
 
 impl Spool {
-    /// Opens the spool for the agent itself: alone, and repaired if need be.
+    /// Opens the spool for the agent itself: exclusively, and repaired if necessary.
     pub(crate) async fn open_for_agent(directory: &Path) -> anyhow::Result<(Spool, Lock)> {
         create_private(directory, &directory.join("spool.db"))
             .with_context(|| format!("{}: cannot create the spool", directory.display()))?;
@@ -74,7 +74,7 @@ async fn open_checked(directory: &Path) -> anyhow::Result<Spool> {
 
 fn is_damage(error: &sqlx::Error) -> bool {
     match error {
-        // What `quick_check` said, or text that is none.
+        // An answer of `quick_check`, or invalid text.
         sqlx::Error::Decode(_) | sqlx::Error::ColumnDecode { .. } => true,
         sqlx::Error::Database(error) => {
             let code = error.code().and_then(|code| code.parse::<i32>().ok());
@@ -84,7 +84,7 @@ fn is_damage(error: &sqlx::Error) -> bool {
     }
 }
 
-/// Renames the database and its journal; the new name.
+/// Renames the database and its journal. Returns the new path.
 fn quarantine(directory: &Path) -> anyhow::Result<PathBuf> {
     let free = |number: &u32| !directory.join(format!("damaged-{number}.db")).exists();
     let number = (1..1000_u32).find(free).unwrap_or_default();
@@ -102,8 +102,8 @@ fn quarantine(directory: &Path) -> anyhow::Result<PathBuf> {
     Ok(aside)
 }
 
-/// Copies what reads, row by row. What is lost is lost: the shore notices
-/// numbers that are used again, and gives the agent a new stream.
+/// Copies the readable rows one by one. The server notices numbers that are used again, and gives
+/// the agent a new stream.
 async fn carry_over(aside: &Path, spool: &Spool) {
     let damaged = match connect(aside).await {
         Ok(damaged) => damaged,
@@ -187,7 +187,7 @@ async fn carry_reports_over(damaged: &SqlitePool, spool: &Spool) -> usize {
     carried
 }
 
-/// The rows of a query up to the first that cannot be read.
+/// Returns the rows of a query up to the first unreadable one.
 async fn rows(damaged: &SqlitePool, query: &'static str) -> Vec<sqlx::sqlite::SqliteRow> {
     use futures_util::StreamExt;
     let mut stream = sqlx::query(query).fetch(damaged);
@@ -205,7 +205,7 @@ mod tests {
     use crate::spool::Seal;
     use tempfile::TempDir;
 
-    /// A spool with something of everything; closed, so that it is one file.
+    /// Creates a spool with rows in every table; closed, so that it is one file.
     async fn closed_spool(directory: &Path) -> Vec<u8> {
         let spool = Spool::open(directory).await.unwrap();
         spool.enrol(&identity(7)).await.unwrap();

@@ -1,8 +1,7 @@
-//! What officers reported for the logbook, until it is ashore and for a while after.
+//! Officers' reports for the logbook, until they are delivered and for a while after.
 //!
-//! What always holds: a report keeps the id it was given on board; a change raises
-//! its revision and makes it wait again; an answer counts only for the revision
-//! that was sent.
+//! Invariants: a report keeps the id it was given on board. A change raises its revision and makes
+//! it wait again. A response counts only for the revision that was sent.
 
 use super::database::Spool;
 use binnacle_magnetics::time::Timestamp;
@@ -12,54 +11,54 @@ use serde::{Deserialize, Serialize};
 use sqlx::SqliteConnection;
 use uuid::Uuid;
 
-/// So many reports are shown; older ones that are ashore are forgotten.
+/// Number of listed reports; older delivered ones are deleted.
 const MAX_LISTED: i64 = 100;
-/// More reports than anybody writes on a voyage: whoever sends more means harm.
+/// Limit on waiting reports: more than anybody writes on a voyage, so more means abuse.
 const MAX_WAITING: i64 = 1000;
-/// What became of a report that the shore withdrew.
+/// Problem of a report that was withdrawn on the server.
 const WITHDRAWN_BY_SERVER: &str = "withdrawn ashore";
 
-/// A report and how far it has come.
+/// A report and its delivery.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StoredReport {
     pub(crate) id: Uuid,
     #[serde(flatten)]
     pub(crate) sent: LogbookReport,
-    /// When it was last changed.
+    /// Time of the last change.
     pub(crate) written_at: Timestamp,
     #[serde(rename = "standing")]
     pub(crate) state: ReportState,
-    /// Why it was refused, or what became of it ashore.
+    /// Reason for a refusal, or its withdrawal on the server.
     pub(crate) problem: Option<String>,
 }
 
 impl StoredReport {
-    /// Whether it counts no more, on board or ashore.
+    /// Returns whether the report is withdrawn, on board or on the server.
     pub(crate) fn is_withdrawn(&self) -> bool {
         self.sent.withdrawn || self.problem.as_deref() == Some(WITHDRAWN_BY_SERVER)
     }
 }
 
-/// How far a report has come.
+/// Delivery of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(rename_all = "snake_case")]
 pub(crate) enum ReportState {
-    /// To be sent.
+    /// Waiting to be sent.
     Waiting,
     /// In the logbook.
     Ashore,
-    /// The shore does not take it: the officer must change it.
+    /// Refused by the server: the officer must change it.
     Refused,
 }
 
-/// Why a report was not kept.
+/// Reason that a report was not stored.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SaveReportError {
-    /// It was taken back before.
+    /// The report is withdrawn.
     #[error("this report was taken back; write another")]
     Withdrawn,
-    /// There are too many.
+    /// Too many reports are waiting.
     #[error("{MAX_WAITING} reports wait for the link already")]
     TooMany,
     /// The spool failed.
@@ -70,7 +69,7 @@ pub(crate) enum SaveReportError {
 pub(super) type Row = (String, String, i64, ReportState, Option<String>);
 
 impl Spool {
-    /// Keeps a report, or a change of one; the same again changes nothing.
+    /// Stores a report, or a change of one; an identical report changes nothing.
     pub(crate) async fn save_report(
         &self,
         id: Uuid,
@@ -114,7 +113,7 @@ impl Spool {
         Ok(stored)
     }
 
-    /// The latest reports, the latest first.
+    /// Returns the latest reports, newest first.
     pub(crate) async fn reports(&self) -> sqlx::Result<Vec<StoredReport>> {
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT id, report, written_micros, standing, problem FROM reports
@@ -126,7 +125,7 @@ impl Spool {
         Ok(rows.into_iter().filter_map(read).collect())
     }
 
-    /// The first report that waits to be sent.
+    /// Returns the first report that waits to be sent.
     pub(crate) async fn next_report(&self) -> sqlx::Result<Option<StoredReport>> {
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT id, report, written_micros, standing, problem FROM reports
@@ -137,7 +136,7 @@ impl Spool {
         Ok(rows.into_iter().find_map(read))
     }
 
-    /// The shore has answered to a revision of a report.
+    /// Marks a revision of a report as delivered.
     pub(crate) async fn mark_report_delivered(
         &self,
         sent: &StoredReport,
@@ -149,7 +148,7 @@ impl Spool {
             .await
     }
 
-    /// The shore will never take this revision of a report.
+    /// Marks a revision of a report as refused for good.
     pub(crate) async fn mark_report_refused(
         &self,
         sent: &StoredReport,
@@ -166,7 +165,7 @@ impl Spool {
         problem: Option<&str>,
     ) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        // Changed meanwhile: then the answer is for what it was.
+        // A report changed meanwhile is not the one that was sent.
         if find(&mut tx, sent.id).await?.as_ref() == Some(sent) {
             let stored = StoredReport {
                 state,
@@ -186,7 +185,7 @@ impl Spool {
     }
 }
 
-/// Stores a report in its place.
+/// Inserts or replaces a report.
 pub(super) async fn put(tx: &mut SqliteConnection, stored: &StoredReport) -> sqlx::Result<()> {
     let report = serde_json::to_string(&stored.sent).map_err(|e| sqlx::Error::Encode(e.into()))?;
     sqlx::query(
@@ -206,7 +205,7 @@ pub(super) async fn put(tx: &mut SqliteConnection, stored: &StoredReport) -> sql
     Ok(())
 }
 
-/// What waits was reported of another ship: it must not go into this one's logbook.
+/// Refuses the waiting reports of another vessel: they must not go into this one's logbook.
 pub(super) async fn refuse_waiting(tx: &mut SqliteConnection, ship: &str) -> sqlx::Result<()> {
     sqlx::query("UPDATE reports SET standing = 'refused', problem = $1 WHERE standing = 'waiting'")
         .bind(format!("reported on board {ship}"))
@@ -231,7 +230,7 @@ async fn count_waiting(tx: &mut SqliteConnection) -> sqlx::Result<i64> {
         .await
 }
 
-/// A row that does not read is reported and passed over: it must not stop the rest.
+/// Reads a row. An unreadable one is logged and skipped, because it must not block the rest.
 pub(super) fn read((id, report, written_micros, state, problem): Row) -> Option<StoredReport> {
     let read = || -> anyhow::Result<StoredReport> {
         Ok(StoredReport {
@@ -349,8 +348,8 @@ mod tests {
         };
         spool.enrol(&other).await.unwrap();
         assert_eq!(spool.next_report().await.unwrap(), None);
-        let told = spool.reports().await.unwrap()[0].problem.clone();
-        assert_eq!(told.as_deref(), Some("reported on board Txori"));
+        let problem = spool.reports().await.unwrap()[0].problem.clone();
+        assert_eq!(problem.as_deref(), Some("reported on board Txori"));
     }
 
     #[tokio::test]

@@ -1,17 +1,17 @@
-//! Which batches went out as short messages.
+//! Delivery of batches as short messages.
 
 use super::batches::{SealedBatch, record_acknowledged};
 use super::database::{Spool, get, put};
 use super::identity::Identity;
 use super::keys::{CONTIGUOUS_SEQ, IDENTITY};
 
-/// In place of the number of messages that are out.
+/// Marks in place of the number of sent messages.
 const COMPLETE: i64 = -1;
 const EXCLUDED: i64 = -2;
 
 impl Spool {
-    /// The batch of which messages are to go out next, and how many of them did already.
-    /// Alerts first, the newest of them, then the oldest.
+    /// Returns the next batch for short messages, and the number of its messages already sent.
+    /// Alerts come first, newest first, then the oldest batch.
     pub(crate) async fn next_burst_batch(&self) -> sqlx::Result<Option<(SealedBatch, usize)>> {
         let row: Option<(i64, Vec<u8>, bool, i64, i64)> = sqlx::query_as(
             "SELECT seq, bytes, urgent, samples, burst FROM batches
@@ -32,7 +32,7 @@ impl Spool {
         }))
     }
 
-    /// So many messages of a batch are out, which may be all there are.
+    /// Records the number of sent messages of a batch, which may be all of them.
     pub(crate) async fn record_burst_progress(
         &self,
         batch: &SealedBatch,
@@ -45,7 +45,7 @@ impl Spool {
             .await
     }
 
-    /// No messages can carry this batch.
+    /// Excludes a batch that no messages can carry.
     pub(crate) async fn exclude_from_bursts(&self, batch: &SealedBatch) -> sqlx::Result<()> {
         self.set_burst(batch, EXCLUDED).await
     }
@@ -61,8 +61,7 @@ impl Spool {
         tx.commit().await
     }
 
-    /// The shore has every batch up to this one: what of them is out is acknowledged; how
-    /// many.
+    /// Acknowledges the batches up to a number whose messages are all sent. Returns their number.
     pub(crate) async fn acknowledge_bursts(
         &self,
         identity: &Identity,

@@ -14,58 +14,58 @@ use sqlx::SqliteConnection;
 use std::net::SocketAddr;
 
 impl Spool {
-    /// The last model from shore.
+    /// Returns the last model from the server.
     pub(crate) async fn model(&self) -> sqlx::Result<Option<ModelDownlink>> {
         self.get(MODEL).await
     }
 
-    /// Why that model holds no more.
+    /// Returns the withdrawal of that model.
     pub(crate) async fn card_withdrawn(&self) -> sqlx::Result<Option<CardWithdrawn>> {
         self.get(WITHDRAWN).await
     }
 
-    /// The last settings from shore, or the built-in ones.
+    /// Returns the last settings from the server, or the defaults.
     pub(crate) async fn settings(&self) -> sqlx::Result<Settings> {
         Ok(self.get(SETTINGS).await?.unwrap_or_default())
     }
 
-    /// Keeps what the shore sent.
+    /// Saves a response of the server.
     pub(crate) async fn save_downlink(&self, downlink: &Downlink) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         save_downlink(&mut tx, downlink).await?;
         tx.commit().await
     }
 
-    /// The last alert of the agent's own.
+    /// Returns the agent's own last alert.
     pub(crate) async fn alert(&self) -> sqlx::Result<Option<AlertRecord>> {
         self.get(ALERT).await
     }
 
-    /// Keeps what is known of the alert aboard alone.
+    /// Saves the parts of the alert that only matter on board.
     pub(crate) async fn save_alert(&self, record: &AlertRecord) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, ALERT, record).await?;
         tx.commit().await
     }
 
-    /// What is left of the budget of the link.
+    /// Returns the balance of the budget.
     pub(crate) async fn account(&self) -> sqlx::Result<Option<BudgetAccount>> {
         self.get(ACCOUNT).await
     }
 
-    /// Keeps what is left of the budget.
+    /// Saves the balance of the budget.
     pub(crate) async fn save_account(&self, account: &BudgetAccount) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, ACCOUNT, account).await?;
         tx.commit().await
     }
 
-    /// What both clocks said when it was last noted.
+    /// Returns the last saved readings of both clocks.
     pub(crate) async fn clock_checkpoint(&self) -> sqlx::Result<Option<ClockCheckpoint>> {
         self.get(CLOCK_CHECKPOINT).await
     }
 
-    /// Notes what both clocks say.
+    /// Saves the readings of both clocks.
     pub(crate) async fn save_clock_checkpoint(
         &self,
         clock_checkpoint: &ClockCheckpoint,
@@ -75,13 +75,13 @@ impl Spool {
         tx.commit().await
     }
 
-    /// When the shore last answered, by its clock.
+    /// Returns the time of the server's last response, by its clock.
     pub(crate) async fn last_contact(&self) -> sqlx::Result<Option<Timestamp>> {
         self.get(LAST_CONTACT).await
     }
 
-    /// The crew's hold. One that cannot be read is still a hold: a sample less
-    /// is better than one of the quay.
+    /// Returns the crew's exclusion. An unreadable one still excludes: better one sample less than
+    /// one disturbed by the quay.
     pub(crate) async fn exclusion(&self) -> sqlx::Result<Option<Exclusion>> {
         let mut connection = self.pool.acquire().await?;
         let Some(text) = text(&mut connection, EXCLUSION).await? else {
@@ -93,19 +93,19 @@ impl Spool {
         }))
     }
 
-    /// Keeps the crew's hold.
+    /// Saves the crew's exclusion.
     pub(crate) async fn set_exclusion(&self, exclusion: Option<Exclusion>) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, EXCLUSION, &exclusion).await?;
         tx.commit().await
     }
 
-    /// Where the running agent's page is, for the command line.
+    /// Returns the address of the running agent's page, for the command line.
     pub(crate) async fn page_address(&self) -> sqlx::Result<Option<SocketAddr>> {
         Ok(self.get(PAGE).await?.flatten())
     }
 
-    /// Notes where the page is, or that there is none.
+    /// Saves the address of the page, or that there is none.
     pub(crate) async fn set_page_address(&self, address: Option<SocketAddr>) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         put(&mut tx, PAGE, &address).await?;
@@ -113,7 +113,8 @@ impl Spool {
     }
 }
 
-/// All but how far the shore has come, which only the answer to a batch is sure to know.
+/// Saves a response except the contiguous number, which only the response to a batch is sure to
+/// know.
 pub(super) async fn save_downlink(
     connection: &mut SqliteConnection,
     downlink: &Downlink,

@@ -5,33 +5,33 @@ use super::keys::CONTIGUOUS_SEQ;
 use super::thinning::used_bytes;
 use serde::{Deserialize, Serialize};
 
-/// How far the shore has come with what is here.
+/// Progress of the spool's batches.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct SpoolStatus {
     /// Samples that are in no batch yet.
     pub(crate) pending_samples: u64,
     /// Sealed batches that were not acknowledged.
     pub(crate) waiting_batches: u64,
-    /// Batches that the shore refused; kept, and offered again.
+    /// Batches that the server refused; kept, and sent again later.
     pub(crate) parked_batches: u64,
-    /// Why the last of those was refused.
+    /// Reason of the last refusal.
     pub(crate) parked_because: Option<String>,
-    /// Batches that the shore acknowledged, as far as they are remembered.
+    /// Acknowledged batches, as far as they are on record.
     pub(crate) acknowledged_batches: u64,
-    /// The samples in those.
+    /// Samples in those.
     pub(crate) acknowledged_samples: u64,
-    /// Every batch up to this one is durable on shore.
+    /// Number up to which all batches are durable on the server.
     pub(crate) contiguous_seq: u64,
-    /// What all of that takes on the disk.
+    /// Disk space in use.
     #[serde(default)]
     pub(crate) used_bytes: u64,
-    /// Batches that were thinned for want of room and wait.
+    /// Waiting batches that were thinned.
     #[serde(default)]
     pub(crate) thinned_batches: u64,
 }
 
 impl Spool {
-    /// How far the shore has come.
+    /// Returns the progress of the batches.
     pub(crate) async fn status(&self) -> sqlx::Result<SpoolStatus> {
         let pending_samples = self.pending().await?.samples;
         let mut connection = self.pool.acquire().await?;

@@ -56,8 +56,8 @@ pub(crate) fn accepted(windows: u64) -> BTreeMap<String, u64> {
     BTreeMap::from([("accepted".to_owned(), windows)])
 }
 
-/// A sample every ten seconds with noise in every column: the densest that any
-/// settings allow, and what compresses least.
+/// Returns a ten-second sample with noise in every column: the densest that any settings allow, and
+/// the least compressible.
 pub(crate) fn restless(window: i64) -> Sample {
     // Multiplicative hashing: noise that is the same in every run.
     let noise = |column: i64| {
@@ -80,7 +80,7 @@ pub(crate) fn restless(window: i64) -> Sample {
 }
 
 impl Spool {
-    /// Lets a bit of a batch fall over.
+    /// Damages a byte of a batch.
     pub(crate) async fn damage(&self, seq: i64) {
         sqlx::query(
             "UPDATE batches SET bytes = CAST(substr(bytes, 1, length(bytes) - 1) || x'00' AS BLOB)
@@ -196,7 +196,7 @@ async fn a_batch_goes_only_when_it_and_all_before_it_are_acknowledged() {
 }
 
 #[tokio::test]
-async fn a_shore_that_claims_too_much_deletes_nothing_unsent() {
+async fn a_server_that_claims_too_much_deletes_nothing_unsent() {
     let (_directory, spool) = enrolled().await;
     seal(&spool, 0..1).await;
     seal(&spool, 1..2).await;
@@ -269,7 +269,7 @@ async fn a_hold_that_cannot_be_read_is_still_a_hold() {
     assert_eq!(spool.exclusion().await.unwrap(), None);
 }
 
-/// The last free octets of a disk are for samples.
+/// The last free bytes of a disk are for samples.
 #[tokio::test]
 async fn the_journal_stays_small_however_often_something_is_stored() {
     let (directory, spool) = enrolled().await;
@@ -280,7 +280,7 @@ async fn the_journal_stays_small_however_often_something_is_stored() {
             .unwrap();
     }
     let journal = std::fs::metadata(directory.path().join("spool.db-wal")).unwrap();
-    assert!(journal.len() < 600_000, "{} octets", journal.len());
+    assert!(journal.len() < 600_000, "{} bytes", journal.len());
 }
 
 #[tokio::test]
@@ -297,11 +297,11 @@ async fn everything_is_there_after_opening_again() {
         min_sog_kn: 6.0,
         ..Settings::default()
     };
-    let news = Downlink {
+    let downlink_with_settings = Downlink {
         settings: Some(settings.clone()),
         ..downlink(0)
     };
-    spool.save_downlink(&news).await.unwrap();
+    spool.save_downlink(&downlink_with_settings).await.unwrap();
     drop(spool);
     let spool = Spool::open(directory.path()).await.unwrap();
     assert_eq!(spool.identity().await.unwrap(), Some(identity(7)));
@@ -314,23 +314,23 @@ async fn everything_is_there_after_opening_again() {
 }
 
 #[tokio::test]
-async fn a_withdrawn_card_stays_so_until_the_shore_says_otherwise() {
+async fn a_withdrawn_card_stays_so_until_the_server_says_otherwise() {
     let (directory, spool) = enrolled().await;
     let withdrawn = CardWithdrawn {
         since: sample(1).time,
         reason: "adjustment".to_owned(),
     };
-    let told = Downlink {
+    let withdrawal = Downlink {
         card_withdrawn: Some(withdrawn.clone()),
         ..downlink(0)
     };
-    spool.save_downlink(&told).await.unwrap();
+    spool.save_downlink(&withdrawal).await.unwrap();
     drop(spool);
     let spool = Spool::open(directory.path()).await.unwrap();
     assert_eq!(spool.card_withdrawn().await.unwrap(), Some(withdrawn));
     spool.save_downlink(&downlink(0)).await.unwrap();
     assert_eq!(spool.card_withdrawn().await.unwrap(), None);
-    spool.save_downlink(&told).await.unwrap();
+    spool.save_downlink(&withdrawal).await.unwrap();
     let other = Identity {
         vessel_name: "Arrano".to_owned(),
         ..identity(9)
@@ -398,11 +398,11 @@ async fn settings_outlive_a_new_token_but_not_another_compass() {
         version: 3,
         ..Settings::default()
     };
-    let told = Downlink {
+    let sent = Downlink {
         settings: Some(settings.clone()),
         ..downlink(0)
     };
-    spool.save_downlink(&told).await.unwrap();
+    spool.save_downlink(&sent).await.unwrap();
     spool.enrol(&identity(8)).await.unwrap();
     assert_eq!(spool.settings().await.unwrap(), settings);
     let other = Identity {

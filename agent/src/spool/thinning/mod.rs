@@ -1,12 +1,12 @@
-//! Keeps the spool within its limit, and what waits within what the link may cost: what
-//! has waited longest is thinned, again and again if need be, and never dropped whole.
+//! Thinning of the spool to its disk limit, and of the backlog to the budget. The oldest batches
+//! are thinned first, repeatedly if necessary, and never dropped as a whole.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - Bytes that were tried are never touched: the shore may have them.
-//! - Evidence of alerts is never touched.
-//! - Samples are left out by heading, time and length alone, in each batch by itself,
-//!   and the batch says how many. What each window of the tally became can be told.
+//! - Tried bytes are never changed: the server may have them.
+//! - Evidence of alerts is never changed.
+//! - Samples are dropped by heading, time and length alone, in each batch by itself, and the batch
+//!   says how many. Every window of the tally remains accounted for.
 
 mod selection;
 
@@ -21,21 +21,21 @@ use binnacle_wire::batch::Thinned;
 use selection::{MAX_LEVEL, select_rows, thin, thinned_sample};
 use sqlx::SqliteConnection;
 
-/// Thinning begins when so much of the limit is used, and goes on until it is less.
+/// Share of the disk limit above which batches are thinned.
 const FULL_SHARE: f64 = 0.9;
-/// So many batches are thinned in one transaction.
+/// Batches thinned in one transaction.
 const THIN_AT_ONCE: i64 = 64;
-/// Without an identity nothing is sealed: more samples than these are thinned as they are.
+/// Limit on pending samples: without an identity nothing is sealed, so they are thinned unsealed.
 pub(crate) const MAX_PENDING: u64 = 20_000;
-/// Batches that cannot be read are for a person to look at; more than these are not.
+/// Limit on unreadable batches kept for inspection.
 const MAX_QUARANTINED: i64 = 100;
 
-/// SQLite's primary result codes for a file that cannot be read or written, as on a disk
-/// without room for the journal's index, and for a full disk.
+/// SQLite's primary result codes for a file that cannot be read or written, as on a disk without
+/// space for the journal's index, and for a full disk.
 const IO_ERROR: i32 = 10;
 const DISK_FULL: i32 = 13;
 
-/// Whether a disk with more room would have helped, as far as can be told.
+/// Returns whether more disk space would probably have helped.
 pub(crate) fn is_disk_full(error: &sqlx::Error) -> bool {
     let sqlx::Error::Database(error) = error else {
         return false;
@@ -45,7 +45,7 @@ pub(crate) fn is_disk_full(error: &sqlx::Error) -> bool {
 }
 
 impl Spool {
-    /// Thins until what is in use is within the limit, or nothing is left to thin.
+    /// Thins until the used space is within the limit, or nothing is left to thin.
     pub(crate) async fn shrink_to_limit(&self, limit_bytes: u64) -> sqlx::Result<()> {
         let full = (limit_bytes as f64 * FULL_SHARE) as u64;
         loop {
@@ -57,7 +57,7 @@ impl Spool {
                 .bind(MAX_QUARANTINED)
                 .execute(&mut *tx)
                 .await?;
-            // What the shore has goes before what it has not.
+            // Delete what the server has before anything else.
             if acknowledged::delete_oldest(&mut tx).await? > 0 {
                 tx.commit().await?;
                 continue;
@@ -73,8 +73,8 @@ impl Spool {
 }
 
 impl Spool {
-    /// Thins until what waits costs no more than so many octets to send, or nothing is
-    /// left to thin.
+    /// Thins until the backlog costs no more than `limit_bytes` to send, or nothing is left to
+    /// thin.
     pub(crate) async fn thin_backlog(&self, limit_bytes: u64) -> sqlx::Result<()> {
         loop {
             let mut tx = self.write().await?;
@@ -86,7 +86,7 @@ impl Spool {
         }
     }
 
-    /// Thins every batch until it has no more than so many octets, as far as it may be.
+    /// Thins every batch larger than `max_bytes`, as far as possible.
     pub(crate) async fn thin_batches_to(&self, max_bytes: usize) -> sqlx::Result<()> {
         loop {
             let mut tx = self.write().await?;
@@ -118,8 +118,8 @@ pub(super) async fn used_bytes(connection: &mut SqliteConnection) -> sqlx::Resul
     Ok(((pages - free) * size).unsigned_abs())
 }
 
-/// Thins the oldest of those batches, larger than this, that were thinned least; says how
-/// many.
+/// Thins the oldest of the least thinned batches that are larger than `min_bytes`. Returns their
+/// number.
 async fn thin_batches(tx: &mut SqliteConnection, min_bytes: usize) -> sqlx::Result<usize> {
     let rows: Vec<(i64, Vec<u8>, i64)> = sqlx::query_as(
         "SELECT seq, bytes, thinned FROM batches
@@ -141,8 +141,8 @@ async fn thin_batches(tx: &mut SqliteConnection, min_bytes: usize) -> sqlx::Resu
                 (bytes.clone(), 0)
             }
         };
-        // Written anew rather than in place: shorter rows in place leave every page half
-        // empty, and none of them free.
+        // Replaced rather than updated: shorter rows in place leave every page half empty, and none
+        // of them free.
         sqlx::query(
             "INSERT OR REPLACE INTO batches
                     (seq, bytes, samples, standing, problem, urgent, tried, thinned)
@@ -160,7 +160,7 @@ async fn thin_batches(tx: &mut SqliteConnection, min_bytes: usize) -> sqlx::Resu
     Ok(rows.len())
 }
 
-/// A batch with fewer samples, and how many they are.
+/// Returns a batch with fewer samples, and their number.
 fn thin_batch(bytes: &[u8], level: i64) -> Result<(Vec<u8>, i64), String> {
     let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
     let before = std::mem::take(&mut batch.samples);
@@ -174,7 +174,7 @@ fn thin_batch(bytes: &[u8], level: i64) -> Result<(Vec<u8>, i64), String> {
     Ok((bytes, count(&batch.samples)))
 }
 
-/// Thins samples that are not sealed, where there are very many; says how many.
+/// Thins pending samples when there are too many. Returns the number of dropped ones.
 async fn thin_pending(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
     let rows: Vec<(i64, String)> = sqlx::query_as(
         "SELECT id, sample FROM pending_samples
@@ -196,7 +196,7 @@ async fn thin_pending(tx: &mut SqliteConnection) -> sqlx::Result<usize> {
             .filter(|(_, keep)| !**keep)
             .map(|(row, _)| row)
             .collect();
-        // Little at a time would come back with every sample.
+        // Small steps would come back with every sample.
         if dropped.len() * 4 < samples.len() && level < MAX_LEVEL {
             continue;
         }

@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 
 const BIN_DEG: f64 = 10.0;
 
-/// Of each 10° of heading, so many samples in so many seconds. Six an hour cost the
-/// estimate nothing, two an hour some 5 % of its error (the study behind
-/// docs/science.md); the last one leaves a ship offline for years with a sample for
-/// each heading and day.
+/// Sample quota per 10° sector and time window, per thinning level: seconds of the window, samples.
+///
+/// Six an hour cost the estimate nothing, two an hour some 5 % of its error (the study behind
+/// docs/science.md). The last level leaves a vessel that is offline for years with a sample per
+/// sector and day.
 const LEVELS: [(i64, usize); 5] = [
     (3_600, 6),
     (3_600, 2),
@@ -18,10 +19,10 @@ const LEVELS: [(i64, usize); 5] = [
     (6 * 3_600, 1),
     (24 * 3_600, 1),
 ];
-/// A batch of this level cannot be thinned further; 0 is one that was not thinned.
+/// Highest thinning level; 0 is a batch that was not thinned.
 pub(super) const MAX_LEVEL: i64 = 5;
 
-/// The samples to keep, and what is left out.
+/// Splits samples into those to keep and the count of those to drop.
 pub(super) fn thin(samples: Vec<Sample>, level: i64) -> (Vec<Sample>, Thinned) {
     let keep = select_rows(samples.iter(), level);
     let dropped = samples.iter().zip(&keep).filter(|(_, keep)| !**keep);
@@ -32,7 +33,7 @@ pub(super) fn thin(samples: Vec<Sample>, level: i64) -> (Vec<Sample>, Thinned) {
     (kept.map(|(sample, _)| sample).collect(), dropped)
 }
 
-/// Of each heading and time those of the most windows, the earliest of equals.
+/// Selects the samples with the most windows per sector and time window, the earliest of equals.
 pub(super) fn select_rows<'a>(samples: impl Iterator<Item = &'a Sample>, level: i64) -> Vec<bool> {
     let index = usize::try_from(level - 1).unwrap_or_default();
     let (seconds, most) = LEVELS[index.min(LEVELS.len() - 1)];

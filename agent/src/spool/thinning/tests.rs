@@ -7,7 +7,7 @@ use binnacle_wire::batch::Batch;
 use std::collections::BTreeSet;
 use tempfile::TempDir;
 
-/// A spool of many days at ten-second samples, as nobody sends them.
+/// Creates a spool of many days at ten-second samples, more than anybody sends.
 async fn stuffed(batches: i64) -> (TempDir, Spool) {
     let directory = TempDir::new().unwrap();
     let spool = Spool::open(directory.path()).await.unwrap();
@@ -70,7 +70,7 @@ async fn a_full_spool_thins_and_says_so_and_every_window_is_accounted_for() {
 }
 
 #[tokio::test]
-async fn a_full_disk_is_told_from_other_trouble() {
+async fn a_full_disk_is_distinguished_from_other_errors() {
     let (_directory, spool) = stuffed(1).await;
     sqlx::query("PRAGMA max_page_count = 1")
         .execute(&spool.pool)
@@ -184,10 +184,7 @@ async fn half_a_year_fits_even_with_a_sample_of_every_window() {
     let used = spool.status().await.unwrap().used_bytes - empty;
     let a_window = used as f64 / windows.len() as f64;
     let half_a_year = a_window * 180.0 * WINDOWS_A_DAY as f64;
-    assert!(
-        half_a_year < 64e6 * FULL_SHARE,
-        "{a_window} octets a window"
-    );
+    assert!(half_a_year < 64e6 * FULL_SHARE, "{a_window} bytes a window");
     assert!(a_window > 3.0, "{a_window}: the noise is none");
 }
 
