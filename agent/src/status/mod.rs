@@ -1,4 +1,4 @@
-//! How everything is, in one value: for the local page and for `status`.
+//! Status of the agent in one value: for the local page and for `status`.
 
 mod offline;
 mod text;
@@ -18,25 +18,25 @@ use binnacle_wire::messages::CardWithdrawn;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Everything the page shows.
+/// Status of the agent, as the page shows it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Status {
-    /// The agent's version.
+    /// Version of the agent.
     pub(crate) agent_version: String,
-    /// Whether an agent is running: the rest is live then, else from the spool.
+    /// Set while an agent is running: the rest is live then, otherwise from the spool.
     pub(crate) running: bool,
     pub(crate) vessel_name: Option<String>,
     pub(crate) compass_name: Option<String>,
-    /// The ship's own time.
+    /// GNSS time.
     pub(crate) ship_time: Option<Timestamp>,
-    /// What is wrong with the receiver's time.
+    /// Fault of the receiver's time.
     #[serde(default)]
     pub(crate) clock_problem: Option<String>,
-    /// Why samples cannot be stored.
+    /// Reason why samples cannot be stored.
     #[serde(default)]
     pub(crate) storage_problem: Option<String>,
     pub(crate) heading: CorrectedHeading,
-    /// The agent's last alert of its own: open, or how it ended.
+    /// Last alert of the agent itself, open or closed.
     #[serde(default)]
     pub(crate) alert: Option<AlertStatus>,
     pub(crate) gyro_deg: Option<TrueHeading>,
@@ -45,7 +45,7 @@ pub(crate) struct Status {
     pub(crate) rate_of_turn_deg_min: Option<f64>,
     pub(crate) roll_deg: Option<f64>,
     pub(crate) model: Option<ModelStatus>,
-    /// Deviation on every 15° at the ship's place.
+    /// Deviation on every 15° at the vessel's position.
     pub(crate) card: Vec<CardRow>,
     #[serde(rename = "hold")]
     pub(crate) exclusion: Option<Exclusion>,
@@ -54,48 +54,48 @@ pub(crate) struct Status {
     pub(crate) inputs: Vec<InputReport>,
     pub(crate) link: LinkStatus,
     pub(crate) spool: SpoolStatus,
-    /// What the link may cost, and what is left of it.
+    /// Byte budget of the link, and its balance.
     #[serde(default)]
     pub(crate) budget: Option<BudgetAccount>,
-    /// What was said in each second, kept on board.
+    /// Raw log.
     #[serde(default, rename = "ring")]
     pub(crate) raw_log: Option<RawLogStatus>,
 }
 
-/// The model in use.
+/// Model in use.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ModelStatus {
     pub(crate) version: u32,
-    /// The time of its last sample.
+    /// Time of its last sample.
     pub(crate) data_until: Timestamp,
-    /// Since then, by the ship's time.
+    /// Age of its last sample, by GNSS time.
     pub(crate) age_days: Option<f64>,
-    /// Why it holds no more; nothing is corrected by it then.
+    /// Reason why it is no longer valid; nothing is corrected by it then.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) withdrawn: Option<CardWithdrawn>,
-    /// Why no card from before its epoch holds.
+    /// Reason why no card from before its epoch is valid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) replaces: Option<CardWithdrawn>,
 }
 
-/// How an input is doing; counts are since the agent started.
+/// State of an input; counts are since the agent started.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct InputReport {
     pub(crate) name: String,
     pub(crate) connected: bool,
-    /// Why it is not connected.
+    /// Reason why it is not connected.
     pub(crate) problem: Option<String>,
     pub(crate) last_heard_s_ago: Option<f64>,
-    /// Sentences and values that were understood, by kind.
+    /// Parsed sentences and values, by kind.
     pub(crate) sentences: BTreeMap<String, u64>,
-    /// Lines that were not used, by reason.
+    /// Unused lines, by reason.
     pub(crate) rejected: BTreeMap<String, u64>,
-    /// Observations for which there was no room.
+    /// Observations dropped because the channel was full.
     pub(crate) dropped: u64,
 }
 
 impl InputReport {
-    /// An input's counts under its name.
+    /// Converts an input's counts.
     pub(crate) fn new(name: &str, status: InputStatus) -> InputReport {
         let owned = |counts: BTreeMap<&'static str, u64>| {
             let owned = counts.into_iter();

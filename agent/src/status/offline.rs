@@ -1,4 +1,4 @@
-//! How everything is, without a running agent.
+//! Status without a running agent.
 
 use super::{ModelStatus, Status};
 use crate::alert::AlertRecord;
@@ -6,7 +6,7 @@ use crate::spool::Spool;
 use crate::uplink::{LinkState, LinkStatus};
 use crate::{card_invalidation, clock};
 
-/// What the spool alone can tell.
+/// Returns the status that the spool alone contains.
 pub(crate) async fn offline_status(spool: &Spool) -> sqlx::Result<Status> {
     let identity = spool.identity().await?;
     let last_contact = spool.last_contact().await?;

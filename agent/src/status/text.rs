@@ -6,7 +6,7 @@ use binnacle_wire::messages::CardWithdrawn;
 use std::fmt::Write;
 
 impl Status {
-    /// As text for a terminal.
+    /// Formats the status for a terminal.
     pub(crate) fn text(&self) -> String {
         let mut out = String::new();
         self.write_text(&mut out)
