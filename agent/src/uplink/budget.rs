@@ -1,16 +1,16 @@
-//! How often the shore is spoken to, and how much of that a day may cost.
+//! Daily byte budget.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - When to speak is decided where batches are sealed: at once for an alert, else by
-//!   the age of the oldest sample or by their number. What is sealed goes as soon as
-//!   the budget allows.
-//! - A budget is earned by the ship's clock or the computer's, whichever is ahead, and
-//!   never beyond [`MAX_SAVED_DAYS`]: a clock that jumps earns no more than that, one that
-//!   stands still keeps nothing back, and accelerated data are not held up.
-//! - Evidence of an alert may overdraw by [`OVERDRAFT_DAYS`] of the budget; reports and
-//!   samples may not, and what has no samples leaves [`RESERVE_DAYS`] to those. What
-//!   cannot be afforded waits, and is never dropped.
+//! - The time of an upload is decided where batches are sealed: at once for an alert, otherwise by
+//!   the age of the oldest sample or by their number. A sealed batch is sent as soon as the budget
+//!   allows.
+//! - The budget accrues by the GNSS clock or the computer's, whichever is ahead, up to
+//!   [`MAX_SAVED_DAYS`]. A clock that jumps gains no more than that, one that stands still blocks
+//!   nothing, and accelerated data are not delayed.
+//! - Evidence of an alert may overdraw the budget by [`OVERDRAFT_DAYS`]. Reports and samples may
+//!   not, and requests without samples leave [`RESERVE_DAYS`] to those. What cannot be afforded
+//!   waits, and is never dropped.
 
 use crate::config::UploadPlan;
 use crate::spool::{BudgetAccount, REQUEST_BYTES};
@@ -22,41 +22,40 @@ const DAY_S: f64 = 86_400.0;
 const MAX_SAVED_DAYS: f64 = 3.0;
 const OVERDRAFT_DAYS: f64 = 2.0;
 const RESERVE_DAYS: f64 = 0.25;
-/// TCP and TLS 1.3 until the first request, with a certificate of one's own authority;
-/// and a request with its answer on an open connection, both without their bodies.
-/// Measured as IP octets both ways.
+/// TCP and TLS 1.3 handshakes with a certificate of a private authority. Measured as IP bytes both
+/// ways.
 const CONNECTION_BYTES: f64 = 1_700.0;
-/// Where nobody answers: three times a first segment.
+/// Cost of an attempt without a connection: three first segments.
 const UNANSWERED_BYTES: f64 = 180.0;
-/// Headers and acknowledgements of the segments that a body takes.
+/// Overhead of headers and acknowledgements of a body's segments.
 const SEGMENT_SHARE: f64 = 1.07;
 
-/// How urgent something is.
+/// Priority of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Priority {
     /// Evidence of an alert.
     Alert,
-    /// What an officer reports.
+    /// Officer's report.
     Report,
     /// Samples.
     Samples,
-    /// Counts without samples, and asking for news.
+    /// Counts without samples, and polls.
     Other,
 }
 
-/// A plan at work.
+/// Budget of a running agent.
 #[derive(Debug)]
 pub(crate) struct Budget {
     account: BudgetAccount,
-    /// When the account was right.
+    /// Time of the last accrual.
     updated_at: Instant,
-    /// A connection serves so long after the last request.
+    /// Time after the last request for which a connection stays open.
     connection_lifetime: Duration,
-    /// When something was last sent.
+    /// Time of the last request.
     last_sent: Option<Instant>,
 }
 
-/// The time by both clocks.
+/// Time by both clocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ClockReading {
     pub(crate) monotonic: Instant,
@@ -64,7 +63,7 @@ pub(crate) struct ClockReading {
 }
 
 impl Budget {
-    /// With what was left when the agent stopped, or a day's worth.
+    /// Creates a budget with the balance of the last run, or with one day's.
     pub(crate) fn new(
         plan: &UploadPlan,
         before: Option<BudgetAccount>,
@@ -87,20 +86,20 @@ impl Budget {
         }
     }
 
-    /// What is left, to be kept over a restart.
+    /// Returns the balance, to be kept over a restart.
     pub(crate) fn account(&self) -> BudgetAccount {
         self.account
     }
 
-    /// What is left where it is less than a day's, in hundredths of that; less than none when
-    /// overdrawn.
+    /// Returns the balance as a percentage of a day's budget where it is less than that; negative
+    /// when overdrawn.
     pub(crate) fn remaining_percent(&self) -> Option<i32> {
         let day = self.account.daily_bytes.filter(|day| *day > 0.0)?;
         let left = (100.0 * self.account.remaining_bytes / day).round() as i32;
         (left < 100).then_some(left)
     }
 
-    /// How long to wait before a body of `bytes` may go; nothing when it may go now.
+    /// Returns the delay before a body of `bytes` may be sent; `None` for none.
     pub(crate) fn delay_for(
         &mut self,
         priority: Priority,
@@ -114,19 +113,19 @@ impl Budget {
             Priority::Report | Priority::Samples => 0.0,
             Priority::Other => RESERVE_DAYS * day,
         };
-        // What costs more than is ever saved goes when there is no more to save.
+        // A cost above the largest balance is allowed at the largest balance.
         let affordable = |cost: f64| (cost + least).min(MAX_SAVED_DAYS * day);
         let missing = |cost: f64| affordable(cost) - self.account.remaining_bytes;
         if missing(self.cost(bytes, now.monotonic)) <= 0.0 {
             return None;
         }
-        // By then a connection that is open now is not any more.
+        // A connection that is open now will be closed by then.
         let cost = CONNECTION_BYTES + Budget::request_cost(bytes);
         let seconds = (missing(cost) / day * DAY_S).ceil();
         Some(Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX))
     }
 
-    /// Pays for a request before it is made; the sum, in case that nobody answers.
+    /// Charges a request before it is made. Returns the cost, for a refund.
     pub(crate) fn charge(&mut self, bytes: usize, now: ClockReading) -> f64 {
         self.accrue(now);
         let cost = self.cost(bytes, now.monotonic);
@@ -135,13 +134,13 @@ impl Budget {
         cost
     }
 
-    /// There was no connection: what was paid for it comes back.
+    /// Refunds a request that found no connection.
     pub(crate) fn refund(&mut self, cost: f64) {
         self.account.remaining_bytes += cost - UNANSWERED_BYTES.min(cost);
         self.last_sent = None;
     }
 
-    /// Pays for an answer's body.
+    /// Charges the body of a response.
     pub(crate) fn charge_response(&mut self, bytes: u64) {
         self.account.remaining_bytes -= bytes as f64 * SEGMENT_SHARE;
     }
@@ -244,13 +243,13 @@ mod tests {
     fn a_backlog_is_sent_as_the_budget_allows_and_alerts_before_that() {
         let start = start();
         let mut budget = budget(Profile::Metered, start);
-        let mut last_sent = 0;
+        let mut sent = 0;
         while budget.delay_for(Priority::Samples, 500, start).is_none() {
             budget.charge(500, start);
-            last_sent += 1;
+            sent += 1;
         }
-        // 8000 octets less a connection, at some 924 a batch.
-        assert_eq!(last_sent, 6);
+        // 8000 bytes less a connection, at some 924 a batch.
+        assert_eq!(sent, 6);
         assert!(budget.delay_for(Priority::Report, 500, start).is_some());
         let mut alerts = 0;
         while budget.delay_for(Priority::Alert, 500, start).is_none() {
@@ -317,7 +316,7 @@ mod tests {
         now.ship = None;
         assert_eq!(budget.delay_for(Priority::Samples, 0, now), None);
         assert!((budget.account().remaining_bytes - before).abs() < 1e-6);
-        // The receiver is silent: the computer's clock will do.
+        // The receiver is silent: the computer's clock serves.
         let later = after(now, HOUR * 3);
         assert_eq!(budget.delay_for(Priority::Samples, 0, later), None);
         assert!((budget.account().remaining_bytes - before - 1_000.0).abs() < 1e-6);

@@ -1,9 +1,8 @@
-//! Requests to the shore and what their answers mean.
+//! HTTP client of the server.
 //!
-//! Nothing counts as an answer but what the shore writes, JSON or the compact form with
-//! its checksum, and nothing as its refusal but a problem of its own kinds: what a
-//! harbour's network or a proxy says, with whatever status and in whatever form, is a
-//! failure of the link.
+//! Only the server's own JSON, or its compact form with a checksum, counts as a response, and only
+//! a problem of its own types as a refusal. Anything else, from a harbour's network or a proxy, is
+//! a failure of the link, whatever its status and form.
 
 use super::request::BatchContext;
 use super::request_error::{
@@ -32,46 +31,47 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 use uuid::Uuid;
 
-/// A TLS handshake over a satellite takes five seconds and may lose packets.
+/// Timeout of a connection: a TLS handshake over a satellite takes five seconds and may lose
+/// packets.
 const CONNECT_TIMEOUT: Duration = Duration::from_secs(30);
-/// Between two bytes. A whole exchange has [`ConnectionPolicy::exchange_timeout`].
+/// Timeout between two bytes. A whole exchange has [`ConnectionPolicy::exchange_timeout`].
 const READ_TIMEOUT: Duration = Duration::from_secs(90);
-/// TLS sessions to resume; there is one shore.
+/// TLS sessions to resume; there is one server.
 const MAX_TLS_SESSIONS: usize = 4;
-/// However long somebody on the way asks the agent to stay away.
+/// Upper bound of a requested pause, whoever on the way asks for it.
 const MAX_RETRY_AFTER: Duration = Duration::from_hours(6);
-/// No answer is longer.
+/// Size limit of a response.
 const MAX_RESPONSE_BYTES: usize = 1 << 20;
 
-/// The shore, as far as HTTP goes.
+/// HTTP client of the server.
 #[derive(Clone, Debug)]
 pub(crate) struct ServerClient {
     http: reqwest::Client,
-    /// Remembers the session, whatever becomes of the connections.
+    /// Holds the TLS session across connections.
     tls: rustls::ClientConfig,
     idle_timeout: Duration,
     exchange_timeout: Duration,
-    /// Of answers, since it was last asked.
+    /// Bytes of responses since the last call of `take_received_bytes`.
     received_bytes: Arc<AtomicU64>,
 }
 
-/// What the agent already has of what the shore decides.
+/// Versions of model and settings that the agent already has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct KnownVersions {
-    /// The model's id.
+    /// Id of the model.
     pub(crate) model: Option<Uuid>,
-    /// The settings' version.
+    /// Version of the settings.
     pub(crate) settings: u32,
 }
 
 impl ServerClient {
-    /// A client that believes the usual authorities, or only the pinned one.
+    /// Creates a client that trusts the system's authorities, or only the pinned one.
     pub(crate) fn new(
         pinned_ca: Option<&Path>,
         policy: &ConnectionPolicy,
     ) -> anyhow::Result<ServerClient> {
         let mut tls = match pinned_ca {
-            // Who pins an authority has a shore of today: older versions need not be offered.
+            // A pinned authority implies a current server: older versions need not be offered.
             Some(path) => rustls::ClientConfig::builder_with_protocol_versions(&[&TLS13])
                 .with_root_certificates(load_root_store(path)?)
                 .with_no_client_auth(),
@@ -83,7 +83,7 @@ impl ServerClient {
         tls.resumption = if policy.resumes_tls {
             Resumption::in_memory_sessions(MAX_TLS_SESSIONS)
         } else {
-            // A server that is not ours may refuse who offers nothing that it speaks.
+            // A foreign server may refuse a client that offers no protocol it speaks.
             tls.alpn_protocols = vec![ONCE.to_vec(), b"http/1.1".to_vec()];
             Resumption::disabled()
         };
@@ -96,8 +96,8 @@ impl ServerClient {
         })
     }
 
-    /// Closes the connection, if there is one: the next request opens another and resumes
-    /// its TLS session.
+    /// Closes the connection, if there is one. The next request opens another and resumes its TLS
+    /// session.
     pub(crate) fn close_connection(&mut self) {
         match client(&self.tls, self.idle_timeout, self.exchange_timeout) {
             Ok(http) => self.http = http,
@@ -105,7 +105,7 @@ impl ServerClient {
         }
     }
 
-    /// The octets of answers since the last call.
+    /// Returns the bytes of responses since the last call.
     pub(crate) fn take_received_bytes(&self) -> u64 {
         self.received_bytes.swap(0, Ordering::Relaxed)
     }
@@ -124,7 +124,7 @@ impl ServerClient {
         self.send(self.http.post(url).json(&request)).await
     }
 
-    /// A token that may take the place of the agent's.
+    /// Requests a token that may replace the agent's.
     pub(crate) async fn propose_token(
         &self,
         identity: &Identity,
@@ -134,7 +134,7 @@ impl ServerClient {
             .await
     }
 
-    /// Puts it in place; without an answer it may or may not be.
+    /// Activates the new token; without a response it may or may not be active.
     pub(crate) async fn replace_token(
         &self,
         identity: &Identity,
@@ -156,7 +156,7 @@ impl ServerClient {
         Ok(opened.stream)
     }
 
-    /// Sends one batch; success only when the shore says that it is durable.
+    /// Sends one batch. Succeeds only when the server says that it is durable.
     pub(crate) async fn put_batch(
         &self,
         identity: &Identity,
@@ -171,7 +171,7 @@ impl ServerClient {
             .http
             .put(url)
             .bearer_auth(&identity.token)
-            // No content type: they are octets (RFC 9110, 8.3).
+            // No content type: the body is bytes (RFC 9110, 8.3).
             .body(batch.bytes.clone());
         self.send_for_downlink(request).await
     }
@@ -187,7 +187,7 @@ impl ServerClient {
         self.send(request.json(&report.sent)).await
     }
 
-    /// Asks for news.
+    /// Polls for a new model and settings.
     pub(crate) async fn downlink(
         &self,
         identity: &Identity,
@@ -209,7 +209,8 @@ impl ServerClient {
         .await
     }
 
-    /// The compact form, or JSON of a shore that does not know it.
+    /// Sends a request whose response is a downlink: compact, or JSON of a server without that
+    /// form.
     async fn send_for_downlink(&self, request: RequestBuilder) -> Result<Downlink, RequestError> {
         send(&self.received_bytes, request, |body| {
             if downlink::is_compact(body) {
@@ -222,7 +223,7 @@ impl ServerClient {
     }
 }
 
-/// No protocol of HTTP is offered: then a server speaks HTTP/1.1, which is what is wanted.
+/// Builds the HTTP client. Offers no protocol by ALPN, so that a server speaks HTTP/1.1.
 fn client(
     tls: &rustls::ClientConfig,
     idle_timeout: Duration,
@@ -303,8 +304,7 @@ fn retry_after(response: &Response) -> Option<Duration> {
     parse_retry_after(response.headers().get(RETRY_AFTER)?.to_str().ok()?)
 }
 
-/// Whole seconds, within reason; the other form, a date, would need the shore's
-/// clock.
+/// Parses whole seconds, up to a limit; the other form, a date, would need the server's clock.
 fn parse_retry_after(text: &str) -> Option<Duration> {
     let requested = text.trim().parse().ok().map(Duration::from_secs)?;
     Some(requested.min(MAX_RETRY_AFTER))

@@ -1,17 +1,17 @@
-//! Sealed batches to the shore, models and settings back: one after another,
-//! again and again, never giving up.
+//! Uplink: sealed batches to the server, models and settings back, one after another, with retries
+//! that never end.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A batch counts as sent when the shore's answer has been read and kept, not
-//!   before. Until then it is sent again, byte for byte.
-//! - No failure loses data or stops the agent; each is on the page in words.
-//! - Evidence of an alert goes before everything else, and cuts a pause short.
-//! - Nothing is sent that the day's budget does not allow ([`budget`]); it is paid for,
-//!   and that is kept, before it is sent.
-//! - A report for the logbook goes before the other batches: it is short, and changes
-//!   how they are read. One that the shore does not take keeps nothing else back.
-//! - A model or settings that arrive are kept first and then in effect at once.
+//! - A batch counts as sent only when the server's response has been read and stored. Until then it
+//!   is sent again, byte for byte.
+//! - No failure loses data or stops the agent; each is shown on the page in words.
+//! - Evidence of an alert goes before everything else, and ends a pause.
+//! - Nothing is sent that the daily budget does not allow ([`budget`]). A request is charged, and
+//!   the charge stored, before it is sent.
+//! - A report for the logbook goes before the other batches: it is short, and changes how they are
+//!   interpreted. A refused report blocks nothing.
+//! - A new model or new settings are stored first and then take effect at once.
 
 mod backoff;
 mod budget;
@@ -42,46 +42,46 @@ use tokio::sync::{Notify, watch};
 use tokio::time::{Instant, timeout};
 use tokio_util::sync::CancellationToken;
 
-/// How often a pause or idleness is interrupted to see whether the agent was enrolled anew.
+/// Interval at which a pause or idleness checks whether the agent was enrolled anew.
 const ENROLMENT_POLL_INTERVAL: Duration = Duration::from_secs(5);
-/// What the shore refused is offered again so often: it may be another version by then.
+/// Interval at which a refused batch is sent again: the server may have another version by then.
 const RETRY_PARKED_INTERVAL: Duration = Duration::from_hours(24);
 
-/// Everything the uplink works with.
+/// State of the uplink.
 #[derive(Debug)]
 pub(crate) struct Uplink {
     pub(crate) spool: Spool,
     pub(crate) client: ServerClient,
     pub(crate) backoff: Backoff,
-    /// Asks for news when nothing was sent for so long.
+    /// Interval of polls when nothing was sent.
     pub(crate) poll: Duration,
     pub(crate) budget: Budget,
     pub(crate) ship_time: watch::Receiver<Option<Timestamp>>,
     pub(crate) publisher: Publisher,
-    /// Whether the connection stays open when all is said.
+    /// Set if the connection stays open after an exchange.
     pub(crate) keeps_connection: bool,
-    /// Whether something was sent since all was said.
+    /// Set once something was sent since the last exchange ended.
     pub(crate) exchange_open: bool,
-    /// The token that the model and settings in effect came with.
+    /// Token of the current model and settings.
     pub(crate) token: Option<String>,
-    /// The token that the shore did not know when it last answered.
+    /// Last token that the server did not know.
     pub(crate) refused_token: Option<String>,
-    /// A shore that knows no reports is not asked again before this.
+    /// End of the pause for a server that knows no reports.
     pub(crate) reports_paused_until: Option<Instant>,
-    /// Rings when a batch has been sealed or a report was written.
+    /// Notified when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
-    /// Rings when evidence of an alert has been sealed.
+    /// Notified when evidence of an alert has been sealed.
     pub(crate) urgent: Arc<Notify>,
     pub(crate) rng: StdRng,
 }
 
-/// What to do next.
+/// Next step of the uplink.
 enum NextStep {
-    /// Look for work at once.
+    /// Continue at once.
     Continue,
-    /// Wait for a sealed batch, or for so long.
+    /// Wait for a sealed batch, at most for this duration.
     Idle(Duration),
-    /// Wait for so long, work or no work.
+    /// Wait for this duration, whatever is sealed.
     Pause(Duration),
 }
 
@@ -114,7 +114,7 @@ impl Uplink {
         }
     }
 
-    /// One request at most; `last_response` is when the shore last answered.
+    /// Sends at most one request; `last_response` is the time of the server's last response.
     async fn step(&mut self, last_response: &mut Option<Instant>) -> NextStep {
         match self.try_step(last_response).await {
             Ok(next) => next,
@@ -190,14 +190,14 @@ impl Uplink {
         }
     }
 
-    /// Whether another stream has taken the place of this one meanwhile: an answer for
-    /// it changes nothing any more. Another token changes nothing about what was said.
+    /// Returns whether the agent has changed to another stream meanwhile, so that a response for
+    /// this one is void. Another token does not matter.
     async fn has_changed_stream(&self, identity: &Identity) -> sqlx::Result<bool> {
         let now = self.spool.identity().await?;
         Ok(now.is_none_or(|now| now.stream != identity.stream))
     }
 
-    /// All is said for now.
+    /// Ends an exchange: nothing is left to send for now.
     fn end_exchange(&mut self) {
         if self.exchange_open && !self.keeps_connection {
             self.client.close_connection();
@@ -212,8 +212,8 @@ impl Uplink {
         }
     }
 
-    /// Pays for a request, and keeps that: an agent that dies of it again and again
-    /// does not spend more.
+    /// Charges a request and stores the balance: an agent that dies of it again and again spends no
+    /// more.
     async fn charge(&mut self, bytes: usize) -> sqlx::Result<f64> {
         self.exchange_open = true;
         let cost = self.budget.charge(bytes, self.now());
@@ -221,7 +221,7 @@ impl Uplink {
         Ok(cost)
     }
 
-    /// Pays for the answer, or takes back what no connection cost.
+    /// Charges the response, or refunds a request without a connection.
     async fn settle_cost(&mut self, cost: f64, error: Option<&RequestError>) -> sqlx::Result<()> {
         if let Some(RequestError::NoConnection(_)) = error {
             self.budget.refund(cost);
@@ -231,7 +231,7 @@ impl Uplink {
         self.spool.save_account(&self.budget.account()).await
     }
 
-    /// What the spool has is in effect: nothing of another compass, if it is one.
+    /// Publishes model and settings of the spool: none of another compass.
     async fn load_enrolment(&mut self, identity: &Identity) -> sqlx::Result<()> {
         self.publisher.model.send_replace(self.spool.model().await?);
         self.publisher
@@ -259,7 +259,7 @@ impl Uplink {
         match next {
             NextStep::Continue => {}
             NextStep::Idle(longest) => {
-                // A batch that was sealed meanwhile has left its ring behind.
+                // A batch sealed meanwhile has left its notification.
                 let longest = longest.min(ENROLMENT_POLL_INTERVAL);
                 timeout(longest, self.sealed.notified()).await.ok();
             }
@@ -274,7 +274,7 @@ impl Uplink {
         }
     }
 
-    /// Waits, but not longer than until the agent is enrolled anew.
+    /// Waits for the pause, or until the agent is enrolled anew.
     async fn pause(&self, pause: Duration) {
         let until = Instant::now() + pause;
         let before = self.spool.identity().await.ok().flatten();

@@ -1,4 +1,4 @@
-//! Reports for the logbook on their way: each by itself, before the batches.
+//! Delivery of reports for the logbook: each by itself, before the batches.
 
 use super::budget::Priority;
 use super::request_error::RequestError;
@@ -47,7 +47,7 @@ impl Uplink {
                 self.spool.mark_report_refused(report, &problem).await?;
                 Ok(NextStep::Continue)
             }
-            // A token that is not known any more shows itself in what is sent next.
+            // An unknown token will also fail the next request.
             Err(RequestError::Unauthorized(problem) | RequestError::NotFound(problem)) => {
                 tracing::warn!(problem, "the shore does not take reports for now");
                 self.reports_paused_until = Some(Instant::now() + self.poll);

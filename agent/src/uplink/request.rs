@@ -1,26 +1,25 @@
-//! What a batch says of the ship beside its samples, in the words of its request.
+//! Query parameters of a batch's request.
 
 use crate::spool::SealedBatch;
 
-/// How long the shore may wait with its answer for what the samples show, in the words of
-/// the request.
+/// Seconds that the server may wait with its response for the analysis of the samples.
 const WAIT_FOR_ANALYSIS: &str = "&wait=20";
 
-/// How it is on board, for whoever looks after the ship.
+/// State of the agent that a batch reports beside its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BatchContext {
-    /// How many batches wait besides this one.
+    /// Number of other waiting batches.
     pub(crate) waiting_batches: u64,
-    /// What is left of the budget where that is less than a day's, in hundredths of it.
+    /// Balance of the budget where it is less than a day's, as a percentage of it.
     pub(crate) budget_percent: Option<i32>,
 }
 
 impl BatchContext {
-    /// With a batch; of an ordinary one nothing but that none follows it.
+    /// Returns the query parameters of a batch: for an ordinary one only that no other follows it.
     pub(super) fn query(self, batch: &SealedBatch) -> String {
         let budget = self.budget_percent.map(|left| format!("&budget={left}"));
         let waiting_batches = if batch.samples > 0 && self.waiting_batches == 0 {
-            // What it shows comes with this answer, and not half a day later with the next.
+            // The result of the analysis comes with this response, and not half a day later.
             WAIT_FOR_ANALYSIS.to_owned()
         } else {
             format!("&waits={}", self.waiting_batches)

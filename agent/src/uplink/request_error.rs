@@ -1,4 +1,4 @@
-//! Causes of a request's failure.
+//! Reasons for a failed request.
 
 use reqwest::StatusCode;
 use rustls::CertificateError;
@@ -6,27 +6,27 @@ use serde::Deserialize;
 use std::fmt;
 use std::time::Duration;
 
-/// Why a request did not succeed.
+/// Reason for a failed request.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum RequestError {
-    /// No answer, or none from the shore: try again.
+    /// No response, or none from the server: try again.
     Link(String),
-    /// Not even a connection: try again.
+    /// No connection: try again.
     NoConnection(String),
-    /// The shore cannot take it now.
+    /// The server cannot process it now.
     Busy {
-        /// What it said.
+        /// Text of the server.
         problem: String,
-        /// When it wants to be asked again.
+        /// Pause that the server asks for.
         retry_after: Option<Duration>,
     },
-    /// This number was used for other bytes: the stream has forked.
+    /// The number was used for other bytes: the stream has forked.
     Forked,
-    /// The token is not known (any more).
+    /// The token is unknown.
     Unauthorized(String),
-    /// There is no such thing: of a stream, that the shore lost it.
+    /// The resource does not exist; for a stream, the server lost it.
     NotFound(String),
-    /// The shore will never take these bytes.
+    /// The server refuses these bytes for good.
     Refused(String),
 }
 
@@ -44,10 +44,10 @@ impl fmt::Display for RequestError {
     }
 }
 
-/// What the types of the shore's problems have in common, and others' have not.
+/// Common part of the server's problem types, which others lack.
 pub(super) const PROBLEM_TYPE_PATH: &str = "/problems/";
 
-/// RFC 9457, as far as it is read.
+/// Problem document of RFC 9457, reduced to the fields in use.
 #[derive(Deserialize)]
 pub(super) struct Problem {
     #[serde(rename = "type")]
@@ -94,10 +94,9 @@ pub(super) fn foreign_response(status: StatusCode) -> RequestError {
     ))
 }
 
-/// What went wrong while hands were shaken: then there was somebody, and it cost
-/// something.
+/// Returns the TLS error in a chain of causes: then there was a connection, and it cost something.
 fn find_tls_error<'a>(error: &'a (dyn std::error::Error + 'static)) -> Option<&'a rustls::Error> {
-    // What an input or output error wraps is not among its causes.
+    // The inner error of an input or output error is not among its causes.
     let wrapped = error.downcast_ref::<std::io::Error>();
     let wrapped = wrapped.and_then(std::io::Error::get_ref);
     error
@@ -106,7 +105,7 @@ fn find_tls_error<'a>(error: &'a (dyn std::error::Error + 'static)) -> Option<&'
         .or_else(|| error.source().and_then(find_tls_error))
 }
 
-/// What is wrong with the certificate of whoever answered, in an officer's words.
+/// Describes a certificate error for an officer.
 fn describe_certificate_error(error: &rustls::Error) -> Option<&'static str> {
     let rustls::Error::InvalidCertificate(error) = error else {
         return None;
@@ -130,7 +129,8 @@ fn describe_certificate_error(error: &rustls::Error) -> Option<&'static str> {
     })
 }
 
-/// The innermost cause says most: "connection refused", "certificate expired".
+/// Converts a transport error. The innermost cause says most: "connection refused", "certificate
+/// expired".
 pub(super) fn link_error(error: &reqwest::Error) -> RequestError {
     let mut cause: &dyn std::error::Error = error;
     while let Some(inner) = cause.source() {

@@ -1,8 +1,7 @@
-//! What follows from an answer, or from there being none.
+//! Handling of responses and of failed requests.
 //!
-//! What always holds: an answer for a stream that the agent has left since changes
-//! nothing; what the shore refuses is kept, with its reason, and keeps nothing else
-//! back.
+//! Invariants: a response for a stream that the agent has left changes nothing. A refused batch is
+//! kept with the reason, and blocks nothing else.
 
 use super::request_error::RequestError;
 use super::{LinkState, LinkStatus, NextStep, Uplink};
@@ -37,7 +36,7 @@ impl Uplink {
         self.backoff.reset();
         let contiguous = downlink.contiguous_seq;
         self.publish_downlink(downlink);
-        // Only the answer to a batch is sure to come from where batches are kept.
+        // Only the response to a batch is sure to come from where batches are stored.
         if batch.is_some() && self.spool.has_unfillable_gap(contiguous).await? {
             tracing::warn!(
                 contiguous,
@@ -114,8 +113,8 @@ impl Uplink {
         Ok(NextStep::Pause(pause))
     }
 
-    /// Goes on with the agent's other token, if there is one; whether it was not refused
-    /// since the shore last knew either.
+    /// Switches to the agent's other token, if there is one. Returns whether the server has not
+    /// refused it since it last knew either.
     async fn has_untried_token(&mut self, identity: &Identity) -> sqlx::Result<bool> {
         let before = self.refused_token.replace(identity.token.clone());
         let is_second = before.is_some_and(|before| before != identity.token);
@@ -140,8 +139,8 @@ impl Uplink {
         }
     }
 
-    /// Makes the best of a model that this version cannot read: the one on board goes
-    /// on, unless that other one is of a ship altered since.
+    /// Drops a model that this version cannot read. The current one stays valid, unless the
+    /// unreadable one belongs to a vessel altered since.
     fn drop_unreadable_model(&self, mut downlink: Downlink) -> Downlink {
         let Some(unread) = downlink.unread.take() else {
             return downlink;
@@ -168,7 +167,7 @@ impl Uplink {
             }
             self.publisher.model.send_replace(Some(model));
         }
-        // Only now: the model before must not hold again for a moment.
+        // After the model: the previous one must not be valid again for a moment.
         let withdrawn = downlink.card_withdrawn;
         if let Some(withdrawn) = withdrawn
             .as_ref()

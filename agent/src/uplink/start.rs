@@ -1,4 +1,4 @@
-//! An uplink made ready, and what it and the rest of the agent tell each other.
+//! Start of the uplink, and its handle for the rest of the agent.
 
 use super::{Backoff, Budget, LinkStatus, Publisher, ServerClient, Uplink};
 use crate::config::UplinkConfig;
@@ -11,26 +11,26 @@ use std::sync::Arc;
 use tokio::sync::{Notify, watch};
 use tokio::time::Instant;
 
-/// The agent's side of it.
+/// Handle of the uplink for the rest of the agent.
 #[derive(Debug)]
 pub(crate) struct UplinkHandle {
-    /// The model to steer by.
+    /// Current model.
     pub(crate) model: watch::Receiver<Option<ModelDownlink>>,
-    /// Why that model holds no more.
+    /// Withdrawal of that model.
     pub(crate) withdrawn: watch::Receiver<Option<CardWithdrawn>>,
-    /// How to sample and send.
+    /// Settings of sampling and upload.
     pub(crate) settings: watch::Receiver<Settings>,
-    /// How the link is.
+    /// State of the link.
     pub(crate) link: watch::Receiver<LinkStatus>,
-    /// The ship's time, which earns the budget.
+    /// GNSS time, by which the budget accrues.
     pub(crate) ship_time: watch::Sender<Option<Timestamp>>,
-    /// To be rung when a batch has been sealed or a report was written.
+    /// To be notified when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
-    /// To be rung when evidence of an alert has been sealed.
+    /// To be notified when evidence of an alert has been sealed.
     pub(crate) urgent: Arc<Notify>,
 }
 
-/// Goes on where the spool says that it was.
+/// Creates an uplink that continues with the state of the spool.
 pub(crate) async fn prepare(
     config: &UplinkConfig,
     spool: &Spool,

@@ -3,7 +3,7 @@
 use super::*;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
-/// Seals a sample with an alert, as when compass and gyro have parted.
+/// Seals a sample with an alert that compass and gyro disagree.
 pub(super) async fn seal_evidence(spool: &Spool, number: i64) {
     let at = time().plus_seconds(number as f64 * 600.0);
     let alert = ShipAlert {
@@ -23,7 +23,7 @@ pub(super) async fn seal_evidence(spool: &Spool, number: i64) {
     assert_eq!(sealed.unwrap().1, 1);
 }
 
-/// A shore that asks to be left alone for an hour, and an agent that obeys.
+/// A server that asks for a pause of an hour, and an agent that obeys.
 async fn waiting_rig(batches: i64) -> Rig {
     let busy = (
         StatusCode::TOO_MANY_REQUESTS,

@@ -1,4 +1,4 @@
-//! Batches, whatever the shore and the link do.
+//! Batches, whatever server and link do.
 
 use super::*;
 
@@ -40,7 +40,7 @@ async fn no_failure_of_the_link_loses_a_batch() {
 }
 
 #[tokio::test]
-async fn no_json_of_a_proxy_passes_for_the_shores_word() {
+async fn no_json_of_a_proxy_passes_for_the_servers_word() {
     let says = |status: u16, body: Value| {
         let status = StatusCode::from_u16(status).unwrap();
         (status, Json(body)).into_response()
@@ -66,14 +66,14 @@ async fn no_json_of_a_proxy_passes_for_the_shores_word() {
     };
     rig.link.wait_for(says).await.unwrap();
     rig.all_sent().await;
-    // It was neither put aside nor sent with all the others, nor in another stream.
+    // It was neither parked nor sent with all the others, nor in another stream.
     assert_eq!(rig.seqs(STREAM), [1, 2, 3, 4]);
     let fake = rig.fake.lock().unwrap();
     assert_eq!((fake.requests, fake.streams), (3 + 7 + 1, 0));
 }
 
 #[tokio::test]
-async fn the_shore_is_given_the_time_it_asks_for() {
+async fn the_server_is_given_the_time_it_asks_for() {
     let busy = (
         StatusCode::TOO_MANY_REQUESTS,
         [("retry-after", "1")],
@@ -108,7 +108,7 @@ async fn a_forked_stream_is_left_for_a_new_one() {
 }
 
 #[tokio::test]
-async fn a_shore_that_lost_its_batches_gets_them_again() {
+async fn a_server_that_lost_its_batches_gets_them_again() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
     rig.fake.lock().unwrap().batches.clear();
@@ -120,7 +120,7 @@ async fn a_shore_that_lost_its_batches_gets_them_again() {
 }
 
 #[tokio::test]
-async fn a_shore_that_lost_what_is_not_kept_gets_a_new_stream() {
+async fn a_server_that_lost_what_is_not_kept_gets_a_new_stream() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
     rig.spool.shrink_to_limit(1).await.unwrap();
@@ -135,7 +135,7 @@ async fn a_shore_that_lost_what_is_not_kept_gets_a_new_stream() {
 }
 
 #[tokio::test]
-async fn a_shore_that_lost_the_stream_gets_all_of_it_in_a_new_one() {
+async fn a_server_that_lost_the_stream_gets_all_of_it_in_a_new_one() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
     let lost = problem(StatusCode::NOT_FOUND, "not-found");
@@ -165,7 +165,7 @@ async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
 }
 
 #[tokio::test]
-async fn what_was_refused_goes_when_the_shore_takes_the_first_of_it() {
+async fn what_was_refused_goes_when_the_server_takes_the_first_of_it() {
     let refusal = || problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable");
     let fake = Fake {
         answers: [refusal(), refusal(), refusal()].into(),
@@ -215,8 +215,8 @@ async fn a_token_that_is_not_known_keeps_the_data_and_says_so() {
         ..Fake::default()
     };
     let mut rig = rig(1, fake).await;
-    let refused_token = rig.link.wait_for(|link| link.state == LinkState::Refused);
-    let problem = refused_token.await.unwrap().problem.clone().unwrap();
+    let refused = rig.link.wait_for(|link| link.state == LinkState::Refused);
+    let problem = refused.await.unwrap().problem.clone().unwrap();
     assert!(problem.contains("enrol it again"), "{problem}");
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);

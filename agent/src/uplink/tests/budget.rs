@@ -1,4 +1,4 @@
-//! What a day's budget allows, and what of that outlives the agent.
+//! The daily budget, and its balance over a restart.
 
 use super::alerts::seal_evidence;
 use super::*;
@@ -33,7 +33,7 @@ async fn what_cannot_be_afforded_waits_until_the_ships_clock_has_earned_it() {
 }
 
 #[tokio::test]
-async fn what_waits_is_told_and_the_budget_where_it_is_short() {
+async fn waiting_batches_are_reported_and_the_budget_where_it_is_short() {
     let said = |rig: &Rig| -> Vec<[Option<String>; 3]> {
         let of = |query: &HashMap<String, String>| {
             ["waits", "wait", "budget"].map(|name| query.get(name).cloned())
@@ -58,7 +58,7 @@ async fn what_waits_is_told_and_the_budget_where_it_is_short() {
     let [[waiting_batches, wait, budget]]: &[[Option<String>; 3]; 1] =
         &said(&rig).try_into().unwrap();
     assert_eq!((waiting_batches, wait), (&None, &word("20")));
-    // Less than a day's, and a connection with its request is paid for.
+    // Less than a day's, and a connection with its request is charged.
     let budget: i32 = budget.as_ref().expect("it is short").parse().unwrap();
     assert!((40..50).contains(&budget), "{budget} %");
 }

@@ -1,4 +1,4 @@
-//! What a connection is used for, over real TLS.
+//! Use of connections, over real TLS.
 
 use super::*;
 use axum::serve::Listener;
@@ -12,7 +12,7 @@ use tokio_rustls::server::TlsStream;
 
 type HandshakeKinds = Arc<Mutex<Vec<Option<HandshakeKind>>>>;
 
-/// Notes how hands were shaken.
+/// Records the kind of each handshake.
 struct Tls {
     listener: TcpListener,
     acceptor: TlsAcceptor,
@@ -39,9 +39,9 @@ impl Listener for Tls {
     }
 }
 
-/// A shore with a certificate of its own: where it is, the certificate, and how hands
-/// were shaken.
-async fn client() -> (Identity, String, HandshakeKinds) {
+/// Starts a server with a certificate of its own. Returns its address, the certificate, and the
+/// kinds of handshakes.
+async fn tls_server() -> (Identity, String, HandshakeKinds) {
     rustls::crypto::ring::default_provider()
         .install_default()
         .ok();
@@ -70,7 +70,7 @@ fn at_port(port: u16) -> Identity {
     identity(format!("https://localhost:{port}"))
 }
 
-/// An agent that believes this certificate only.
+/// Creates a client that trusts this certificate only.
 fn trusting_client(pem: &str, profile: Profile) -> ServerClient {
     let directory = TempDir::new().unwrap();
     let pinned = directory.path().join("ca.pem");
@@ -78,9 +78,9 @@ fn trusting_client(pem: &str, profile: Profile) -> ServerClient {
     ServerClient::new(Some(&pinned), &profile.plan(None).connection_policy()).unwrap()
 }
 
-/// How hands were shaken when the shore was asked for news so many times in a row.
+/// Returns the kinds of handshakes of several polls in a row.
 async fn handshakes(times: usize, profile: Profile, closes: bool) -> Vec<Option<HandshakeKind>> {
-    let (identity, pem, kinds) = client().await;
+    let (identity, pem, kinds) = tls_server().await;
     let mut client = trusting_client(&pem, profile);
     for _ in 0..times {
         client
@@ -101,35 +101,35 @@ async fn what_follows_at_once_goes_over_the_same_connection() {
 }
 
 #[tokio::test]
-async fn after_a_connection_that_was_hung_up_its_session_is_resumed() {
+async fn a_session_is_resumed_after_its_connection_was_closed() {
     let kinds = handshakes(2, Profile::Standard, true).await;
     let wanted = [Some(HandshakeKind::Full), Some(HandshakeKind::Resumed)];
     assert_eq!(kinds, wanted);
 }
 
 #[tokio::test]
-async fn who_calls_once_a_day_has_no_session_to_resume() {
+async fn a_client_that_connects_once_a_day_resumes_no_session() {
     let kinds = handshakes(2, Profile::Metered, true).await;
     assert_eq!(kinds, [Some(HandshakeKind::Full); 2]);
 }
 
 #[tokio::test]
-async fn hands_that_were_not_shaken_are_paid_for_and_nobody_at_all_is_not() {
-    let (identity_there, pem, _) = client().await;
+async fn a_failed_handshake_is_charged_and_a_missing_server_is_not() {
+    let (identity_there, pem, _) = tls_server().await;
     let other = generate_simple_self_signed(vec!["localhost".to_owned()]).unwrap();
     let distrusting = trusting_client(&other.cert.pem(), Profile::Standard);
-    let refused_token = distrusting
+    let refused = distrusting
         .downlink(&identity_there, KnownVersions::default())
         .await;
-    let Err(RequestError::Link(said)) = refused_token else {
-        panic!("{refused_token:?}");
+    let Err(RequestError::Link(said)) = refused else {
+        panic!("{refused:?}");
     };
     assert!(said.contains("not believed here"), "{said}");
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let trusting_client = trusting_client(&pem, Profile::Standard);
-    let nobody = trusting_client
+    let client = trusting_client(&pem, Profile::Standard);
+    let nobody = client
         .downlink(&at_port(port), KnownVersions::default())
         .await;
     assert!(

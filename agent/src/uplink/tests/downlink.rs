@@ -1,4 +1,4 @@
-//! What the shore decides: cards, models, settings.
+//! Decisions of the server: cards, models, settings.
 
 use super::*;
 
@@ -39,7 +39,7 @@ async fn settings_are_in_effect_and_kept_and_then_asked_for_by_version() {
 }
 
 #[tokio::test]
-async fn an_agent_enrolled_for_another_compass_drops_what_the_first_was_told() {
+async fn an_agent_enrolled_for_another_compass_drops_the_decisions_for_the_first() {
     let settings = other_settings();
     let mut rig = rig(1, Fake::with_settings(&settings)).await;
     rig.all_sent().await;

@@ -1,4 +1,4 @@
-//! The uplink against a made-up shore on a real socket.
+//! The uplink against a fake server on a real socket.
 
 mod alerts;
 mod batches;
@@ -29,7 +29,7 @@ use std::sync::Mutex;
 use tempfile::TempDir;
 use uuid::Uuid;
 
-/// What the shore was sent, and what it is to answer before it behaves well.
+/// Requests that the server received, and its responses before it behaves well.
 #[derive(Default)]
 struct Fake {
     batches: BTreeMap<(Uuid, u64), Vec<u8>>,
@@ -38,18 +38,18 @@ struct Fake {
     answers: VecDeque<Response>,
     settings: Option<Settings>,
     withdrawn: Option<CardWithdrawn>,
-    /// A model as no agent knows it.
+    /// A model that no agent can read.
     unreadable: Option<Value>,
     requests: u32,
     polls: u32,
     reports: Vec<(Uuid, LogbookReport)>,
     report_answers: VecDeque<Response>,
-    /// The batches that were kept, in order; 0 for a report.
+    /// Numbers of the stored batches, in order; 0 for a report.
     order: Vec<u64>,
 }
 
 impl Fake {
-    /// A shore that has settings of its own.
+    /// A server with settings of its own.
     fn with_settings(settings: &Settings) -> Fake {
         Fake {
             settings: Some(settings.clone()),
@@ -119,7 +119,7 @@ async fn get_downlink(
     answer_in_form(&fake, stream, &query)
 }
 
-/// In the form that was asked for; what no agent knows is JSON, as an old shore's is.
+/// Responds in the requested form; an unreadable model is JSON, as of an old server.
 fn answer_in_form(fake: &Fake, stream: Uuid, query: &HashMap<String, String>) -> Response {
     let sent = downlink(fake, stream);
     if fake.unreadable.is_some() || query["form"] != "1" {
@@ -175,12 +175,12 @@ impl Drop for Rig {
 
 const STREAM: Uuid = Uuid::from_u128(7);
 
-/// An enrolled agent's spool with `batches` sealed, and a shore to send to.
+/// An enrolled agent's spool with `batches` sealed, and a server to send to.
 async fn rig(batches: i64, fake: Fake) -> Rig {
     rig_with(batches, fake, &Profile::Standard.plan(None), None).await
 }
 
-/// The same with a budget, of which so much is left.
+/// Like [`rig`], with a budget and its balance.
 async fn rig_with(
     batches: i64,
     fake: Fake,

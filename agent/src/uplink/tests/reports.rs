@@ -17,7 +17,7 @@ impl Rig {
         self.sealed.notify_one();
     }
 
-    /// Waits until no report waits.
+    /// Waits until no report is waiting.
     async fn reports_settled(&self) {
         let settled = async {
             while self.spool.next_report().await.unwrap().is_some() {
@@ -54,9 +54,9 @@ async fn a_report_is_sent_until_it_is_answered() {
 
 #[tokio::test]
 async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes() {
-    let refused_token = problem(StatusCode::UNPROCESSABLE_ENTITY, "invalid");
+    let refused = problem(StatusCode::UNPROCESSABLE_ENTITY, "invalid");
     let fake = Fake {
-        report_answers: VecDeque::from([refused_token]),
+        report_answers: VecDeque::from([refused]),
         ..Fake::default()
     };
     let rig = rig(0, fake).await;
@@ -64,14 +64,14 @@ async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes(
     rig.reports_settled().await;
     rig.report(2).await;
     rig.reports_settled().await;
-    let (ashore, refused_token) = (ReportState::Ashore, ReportState::Refused);
-    assert_eq!(rig.states().await, [ashore, refused_token]);
+    let (ashore, refused) = (ReportState::Ashore, ReportState::Refused);
+    assert_eq!(rig.states().await, [ashore, refused]);
     let reports = rig.spool.reports().await.unwrap();
     assert_eq!(reports[1].problem.as_deref(), Some("422 invalid: why"));
 }
 
 #[tokio::test]
-async fn a_shore_that_knows_no_reports_gets_its_batches_all_the_same() {
+async fn a_server_that_knows_no_reports_gets_its_batches_all_the_same() {
     let unknown = problem(StatusCode::NOT_FOUND, "not-found");
     let fake = Fake {
         report_answers: VecDeque::from([unknown]),

@@ -1,4 +1,4 @@
-//! Which of two tokens the shore knows.
+//! Two tokens, one of which the server knows.
 
 use super::*;
 
@@ -40,7 +40,7 @@ async fn an_agent_of_whose_tokens_none_is_known_says_that_it_must_be_enrolled_ag
         problem.is_some_and(|problem| problem.contains("enrol it again"))
     };
     rig.link.wait_for(says).await.unwrap();
-    // It goes on asking with either, and knows when it is known.
+    // It goes on trying either, and recovers when one is known.
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);
     assert_eq!(rig.fake.lock().unwrap().requests, 3 + 1);
