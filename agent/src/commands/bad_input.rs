@@ -1,8 +1,8 @@
-//! Errors of the one who typed the command.
+//! Errors in the user's input.
 
 use crate::config::ConfigError;
 
-/// What the one who typed it got wrong.
+/// A mistake in the user's input: exit code 2.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub(super) struct BadInput(pub(super) String);

@@ -1,4 +1,4 @@
-//! The configuration, checked as far as the commands need it.
+//! Configuration of the commands.
 
 use super::bad_input::BadInput;
 use crate::config::Config;
@@ -7,7 +7,7 @@ use std::path::Path;
 
 pub(super) fn load(path: &Path) -> Result<Config, BadInput> {
     let config = Config::load(path)?;
-    // A certificate that cannot be used is found now, not at the first upload.
+    // Find an unusable certificate now, not at the first upload.
     ServerClient::new(
         config.uplink.pinned_ca.as_deref(),
         &config.uplink.connection_policy(),

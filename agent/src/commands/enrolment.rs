@@ -39,8 +39,8 @@ pub(super) async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::
     Ok(())
 }
 
-/// The new token is kept before the shore is asked to know it, so that an answer that is
-/// lost locks nobody out: the agent then tries both.
+/// Replaces the agent's token. The new token is stored before the server activates it, so that a
+/// lost response locks nobody out: the agent then tries both.
 pub(super) async fn rotate_token(config: &Config) -> anyhow::Result<()> {
     let client = ServerClient::new(
         config.uplink.pinned_ca.as_deref(),

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::net::SocketAddr;
 use std::time::Duration;
 
-/// The running agent answers at once or not at all.
+/// Timeout of requests to the running agent.
 const LOCAL_TIMEOUT: Duration = Duration::from_secs(5);
 
 pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
@@ -20,7 +20,7 @@ pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
     }
     let spool = match Spool::open(&config.data_dir).await {
         Ok(spool) => spool,
-        // Of a disk that has failed there is the more to be told.
+        // A failed disk is all the more reason to show the status.
         Err(error) => Spool::open_to_read(&config.data_dir)
             .await
             .map_err(|_| error)?,
@@ -38,7 +38,7 @@ pub(super) async fn status(config: &Config, json: bool) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The status of the running agent; none when none answers.
+/// Fetches the status of the running agent, `None` when there is no response.
 async fn fetch_running_status(spool: &Spool) -> Option<Status> {
     let url = format!("http://{}/api/status", find_page(spool).await?);
     let response = local_client().ok()?.get(url).send().await.ok()?;
@@ -50,7 +50,7 @@ pub(super) async fn set_exclusion(
     exclusion: Option<Exclusion>,
 ) -> anyhow::Result<()> {
     let spool = Spool::open(&config.data_dir).await?;
-    // A running agent looks into the spool every second, but obeys its page at once.
+    // A running agent reads the spool every second, but its page takes effect at once.
     spool.set_exclusion(exclusion).await?;
     if let Some(page) = find_page(&spool).await {
         let response = local_client()?
@@ -74,7 +74,7 @@ pub(super) async fn set_exclusion(
 async fn find_page(spool: &Spool) -> Option<SocketAddr> {
     let mut address = spool.page_address().await.ok()??;
     if address.ip().is_unspecified() {
-        // Listening everywhere: ask here.
+        // Listening on all addresses: connect to this computer.
         address.set_ip(match address {
             SocketAddr::V4(_) => std::net::Ipv4Addr::LOCALHOST.into(),
             SocketAddr::V6(_) => std::net::Ipv6Addr::LOCALHOST.into(),

@@ -1,7 +1,6 @@
-//! The commands: `run`, `status`, `enrol`, `rotate-token`, `hold`, `export`, `replay`.
+//! Commands: `run`, `status`, `enrol`, `rotate-token`, `hold`, `export`, `replay`.
 //!
-//! Exit code 2 and one line for what the one who typed it got wrong, 1 for
-//! everything else that fails.
+//! Exit code 2 and one line for a mistake in the user's input, 1 for every other failure.
 
 mod bad_input;
 mod configuration;
@@ -26,8 +25,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use tokio_util::sync::CancellationToken;
 
-/// Binnacle's agent on board: settled compass headings to the shore, the
-/// corrected heading back to the bridge.
+/// Binnacle's shipboard agent: sends settled compass headings to the server and puts the corrected
+/// heading out to the bridge.
 #[derive(Debug, Parser)]
 #[command(name = "binnacle-agent", version)]
 struct Cli {
@@ -37,78 +36,79 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Listens to the instruments, sends samples ashore, puts the corrected heading out.
+    /// Reads the instruments, sends samples to the server, puts the corrected heading out.
     ///
-    /// How often it sends, and for how many octets a day, is the `profile` of `[uplink]`
-    /// in the configuration: standard, broadband, vsat, metered, very-metered
-    /// or short-burst.
+    /// The `profile` of `[uplink]` in the configuration sets the upload interval and the daily byte
+    /// budget: standard, broadband, vsat, metered, very-metered or short-burst.
     Run {
-        /// The configuration file.
+        /// Configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
     },
-    /// Says how the agent is doing.
+    /// Shows the status of the agent.
     Status {
-        /// The configuration file.
+        /// Configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
-        /// As JSON.
+        /// Prints JSON.
         #[arg(long)]
         json: bool,
     },
-    /// Exchanges the code from the dashboard for a token, which is kept in the data directory.
+    /// Exchanges the one-time code from the dashboard for a token, which is stored in the data
+    /// directory.
     Enrol {
-        /// Where the shore is, as `https://binnacle.example`.
+        /// URL of the server, as `https://binnacle.example`.
         #[arg(long)]
         server: String,
-        /// The one-time code.
+        /// One-time code.
         #[arg(long)]
         code: String,
-        /// The configuration file.
+        /// Configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
     },
-    /// Has the shore put a new token in place of the agent's, also while it runs.
+    /// Replaces the agent's token by a new one, also while the agent runs.
     RotateToken {
-        /// The configuration file.
+        /// Configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
     },
-    /// Stops sampling while the compass is disturbed from outside, or resumes it.
+    /// Stops sampling while something outside the vessel's own magnetism disturbs the compass, or
+    /// resumes it.
     Hold {
-        /// The configuration file.
+        /// Configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
-        /// Why, or `off`.
+        /// Reason, or `off`.
         hold: HoldArgument,
     },
-    /// Writes what the instruments said in each second, as far back as the ring goes, as
-    /// CSV: for download in port, also while the agent runs.
+    /// Writes the readings of each second in the raw log as CSV: for download in port, also while
+    /// the agent runs.
     Export {
-        /// The configuration file.
+        /// Configuration file.
         #[arg(long, default_value = "agent.toml")]
         config: PathBuf,
-        /// From this time on, as `2026-11-21T06:00:00Z`.
+        /// First time to export, as `2026-11-21T06:00:00Z`.
         #[arg(long)]
         from: Option<String>,
-        /// Before this time.
+        /// Time before which the export ends.
         #[arg(long)]
         until: Option<String>,
-        /// Where the table goes, instead of standard output.
+        /// File for the table, instead of standard output.
         #[arg(long)]
         csv: Option<PathBuf>,
     },
-    /// Puts recorded sentences through the same sampler: samples as CSV, a tally
-    /// as JSON on standard error.
+    /// Replays recorded sentences through the same sampler: samples as CSV, a tally as JSON on
+    /// standard error.
     Replay {
-        /// Recordings in the order of their times: plain sentences, lines of an
-        /// RFC 3339 time and a sentence, or TAG blocks with times.
+        /// Recordings in order of time: plain sentences, lines of an RFC 3339 time and a sentence,
+        /// or TAG blocks with times.
         #[arg(required = true)]
         files: Vec<PathBuf>,
-        /// Roles and silence are taken from here; talkers' usual roles without it.
+        /// Configuration with `[roles]` and `[silence]`; conventional talkers without it.
         #[arg(long)]
         config: Option<PathBuf>,
-        /// Where the samples go, instead of standard output.
+        /// File for the samples, instead of standard output.
         #[arg(long)]
         csv: Option<PathBuf>,
     },
@@ -118,7 +118,7 @@ enum Command {
 enum HoldArgument {
     /// Alongside.
     Berthed,
-    /// Magnetic cargo or gear aboard.
+    /// Magnetic cargo or gear on board.
     MagneticCargo,
     /// Degaussing coils on, or treatment under way.
     Degaussing,
@@ -137,14 +137,14 @@ impl HoldArgument {
     }
 }
 
-/// Runs the command line; the exit code of the process.
+/// Runs the command line and returns the exit code of the process.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     start_logging();
     match execute(cli.command) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // A closed standard error leaves nobody to tell.
+            // Nothing can be reported when standard error is closed.
             writeln!(std::io::stderr(), "binnacle-agent: {error:#}").ok();
             ExitCode::from(if error.is::<BadInput>() { 2 } else { 1 })
         }
@@ -201,7 +201,7 @@ fn execute(command: Command) -> anyhow::Result<()> {
             }
         }
     });
-    // Whoever looks a name up without a network may do so for half a minute more.
+    // A name lookup without a network may run for half a minute more.
     runtime.shutdown_background();
     done
 }

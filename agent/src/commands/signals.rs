@@ -1,4 +1,4 @@
-//! Signals that stop the agent.
+//! Shutdown on signals.
 
 #[cfg(unix)]
 use anyhow::Context;
