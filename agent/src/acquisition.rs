@@ -1,4 +1,5 @@
-//! The ship as her instruments tell it: roles and sampler, and the latest readings.
+//! Data acquisition: from observations through roles and sampler to samples, with the latest
+//! readings.
 
 use crate::config::RolesConfig;
 use crate::instruments::{
@@ -10,18 +11,18 @@ use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::Settings;
 use tokio::time::Instant;
 
-/// Roles, sampler and readings.
+/// Roles, sampler and latest readings of one vessel.
 #[derive(Debug)]
 pub(crate) struct Acquisition {
     roles: Roles,
-    /// Makes samples of what the instruments say.
+    /// Sampler fed with the signals of the instruments.
     pub(crate) sampler: Sampler,
-    /// What the instruments said last.
+    /// Latest readings of the instruments.
     pub(crate) readings: Readings,
 }
 
 impl Acquisition {
-    /// A ship that has said nothing yet.
+    /// Creates an acquisition without any observation.
     pub(crate) fn new(
         roles: &RolesConfig,
         stale_s: f64,
@@ -35,38 +36,38 @@ impl Acquisition {
         }
     }
 
-    /// The ship's own time, once it is known.
+    /// Returns the vessel's GNSS time, once it is known.
     pub(crate) fn time(&self) -> Option<Timestamp> {
         self.roles.now()
     }
 
-    /// What is wrong with the ship's time.
+    /// Describes the fault of the vessel's clock, if there is one.
     pub(crate) fn clock_problem(&self) -> Option<String> {
         self.roles.clock_problem()
     }
 
-    /// From now on jumps of the receivers' time are held against the computer's: not for
-    /// recordings.
+    /// Sets the computer's time as the reference that jumps of receivers are checked against. Not
+    /// for recordings.
     pub(crate) fn set_reference_time(&mut self, time: Timestamp, now: Instant) {
         self.roles.clock().set_reference(time, now);
     }
 
-    /// What was noted before the restart.
+    /// Restores the clock readings saved before the restart.
     pub(crate) fn restore_clock_checkpoint(&mut self, before: ClockCheckpoint) {
         self.roles.clock().restore_checkpoint(before);
     }
 
-    /// The ship's own time, if it is to be relied on.
+    /// Returns the vessel's GNSS time unless it is uncertain.
     pub(crate) fn reliable_time(&self) -> Option<Timestamp> {
         self.roles.reliable_time()
     }
 
-    /// The shore's time is better than the computer's.
+    /// Corrects the reference by the server's time, which is better than the computer's.
     pub(crate) fn correct_reference_time(&mut self, time: Timestamp, now: Instant) {
         self.roles.clock().correct_reference(time, now);
     }
 
-    /// Takes what a source said, heard at `heard`.
+    /// Applies an observation received at `heard`.
     pub(crate) fn observe(&mut self, seen: &Observation, heard: Instant) {
         self.roles.clock().set_receive_time(heard);
         if let Reading::Time(at) = seen.reading
@@ -81,7 +82,7 @@ impl Acquisition {
         }
     }
 
-    /// Takes the time that a recording gives a line.
+    /// Applies the time stamp that a recording gives a line.
     fn observe_recorded_time(&mut self, stamp: Timestamp) {
         if let Some(signal) = self.roles.observe_recorded_time(stamp) {
             self.sampler.apply(signal);
@@ -108,7 +109,7 @@ mod tests {
             acquisition.observe(&seen, Instant::now());
             acquisition.time()
         };
-        // A recorder in the zone of her port, and a receiver.
+        // A recorder in the time zone of the port, and a receiver.
         let (log, zda) = ((*b"--", *b"LOG"), (*b"GP", *b"ZDA"));
         say(zda.0, zda.1, "2026-01-02T12:00:00Z");
         say(log.0, log.1, "2026-01-02T13:00:01Z");

@@ -1,15 +1,14 @@
-//! Files that are written whole or not at all.
+//! Atomic replacement of files.
 
 use anyhow::Context;
 use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes beside the file and then puts it in place, so that a part of a table never
-/// looks like the whole one.
+/// Writes beside the file and then renames, so that a partial table never looks complete.
 ///
 /// # Errors
-/// What `content` says, or that the file cannot be written.
+/// When `content` fails, or when the file cannot be written.
 pub(crate) fn write_atomically<T>(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> anyhow::Result<T>,
@@ -36,7 +35,8 @@ pub(crate) fn write_atomically<T>(
     Ok(result)
 }
 
-/// What /dev/stdout stands for may be a file, but not one to be renamed to.
+/// Returns whether the path is a device. /dev/stdout may stand for a file, but not for one that can
+/// be renamed to.
 fn is_device(path: &Path) -> bool {
     path.starts_with("/dev")
         || path.starts_with("/proc")

@@ -1,8 +1,8 @@
-//! Work on the ship or her compass that officers reported: it ends the card on board at
-//! once, with or without a link.
+//! Reported work on the vessel or its compass ends the card on board at once, with or without a
+//! link.
 //!
-//! What always holds: the card is not used from the time the work began until the shore
-//! has a model of the ship since, or has refused or outlived the report.
+//! Invariant: the card is not used from the time the work began until the server has a later model,
+//! or has refused or superseded the report.
 
 use crate::spool::{ReportState, StoredReport};
 use binnacle_magnetics::time::Timestamp;
@@ -10,13 +10,13 @@ use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use serde_json::Value;
 
 const DAY_S: f64 = 86_400.0;
-/// Work that began so long before a model's last sample is of the model's own past.
+/// Age of work, before the model's last sample, above which the model contains it.
 const KNOWN_TO_MODEL_S: f64 = 30.0 * DAY_S;
-/// An epoch that began so little before the work was written to have is the work's: the
-/// shore dates by the samples.
+/// Tolerance between the start of an epoch and that of the work: the server dates epochs by the
+/// samples.
 const DATING_TOLERANCE_S: f64 = DAY_S;
 
-/// What of the reported work ends a card, the latest of it.
+/// Returns the withdrawal by the latest work that ends the card.
 pub(crate) fn find_invalidation(
     model: &ModelDownlink,
     reports: &[StoredReport],
@@ -45,7 +45,7 @@ fn invalidates(model: &ModelDownlink, stored: &StoredReport, now: Timestamp) -> 
     let replaces = model.replaces.as_ref();
     let is_replaced =
         replaces.is_some_and(|old| old.since.seconds_since(from) >= -DATING_TOLERANCE_S);
-    // Reports go before samples: who has these has read that.
+    // Reports are sent before samples: a server that has these samples has read the report.
     let is_analysed = stored.state != ReportState::Waiting && model.data_until > stored.written_at;
     is_effective && !is_known && !is_replaced && !is_analysed
 }
@@ -160,9 +160,9 @@ mod tests {
         assert_eq!(ended(&model(BEFORE, None), years, NOW), None);
     }
 
-    /// The shore has read it and fitted later samples: its word holds.
+    /// The server has read the report and fitted later samples, so its model counts.
     #[test]
-    fn what_the_shore_fits_after_it_read_the_report_holds() {
+    fn what_the_server_fits_after_it_read_the_report_holds() {
         let later = model("2026-11-20T18:00:00Z", None);
         let mut ashore = report(LogbookKind::Welding, WORK);
         assert!(ended(&later, ashore.clone(), "2026-11-20T19:00:00Z").is_some());

@@ -1,7 +1,7 @@
-//! The corrected heading: the raw compass with the model's deviation and the
-//! field's variation, and what is known of its error.
+//! Corrected heading: the raw compass with the model's deviation and the field's variation, and its
+//! uncertainty.
 //!
-//! Nothing is made up: what cannot be told is absent, with the reason in words.
+//! Nothing is invented: a value that cannot be computed is absent, with the reason in words.
 
 use crate::weak_field::MIN_H_NT;
 use binnacle_magnetics::angle::{
@@ -14,47 +14,47 @@ use binnacle_magnetics::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink};
 use serde::{Deserialize, Serialize};
 
-/// What the ship says that the correction needs.
+/// Inputs of the correction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CorrectionInputs<'a> {
-    /// The raw compass, unless it has fallen silent.
+    /// Raw compass heading, unless the compass is silent.
     pub(crate) compass: Option<CompassHeading>,
-    /// Where the ship is, unless that is old.
+    /// Position of the vessel, unless it is old.
     pub(crate) position: Option<Position>,
-    /// The ship's time.
+    /// GNSS time.
     pub(crate) time: Option<Timestamp>,
-    /// The last model from shore.
+    /// Last model from the server.
     pub(crate) model: Option<&'a ModelDownlink>,
-    /// Why that model holds no more; the shore has no other one yet.
+    /// Reason why that model is no longer valid, while the server has no other one.
     pub(crate) withdrawn: Option<&'a CardWithdrawn>,
-    /// The ship's own alert, once there was one.
+    /// Set while the agent's open alert suspects the compass.
     pub(crate) compass_suspected: bool,
-    /// Whether the heading before this one was known too badly to be given out.
+    /// Set if the previous heading was withheld because its band was too wide.
     pub(crate) withheld: bool,
 }
 
-/// One heading in three ways, as far as they can be told.
+/// Compass, magnetic and true heading, as far as they are known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CorrectedHeading {
-    /// The raw reading.
+    /// Raw reading.
     pub(crate) compass_deg: Option<CompassHeading>,
-    /// The model's deviation on this heading, here and now.
+    /// Deviation of the model on this heading, here and now.
     pub(crate) deviation_deg: Option<Deviation>,
-    /// The deviation's standard error.
+    /// Standard error of the deviation.
     pub(crate) standard_error_deg: Option<f64>,
-    /// 95 % of the errors are expected within this, either way.
+    /// Half-width of the 95 % confidence band.
     pub(crate) band95_deg: Option<f64>,
-    /// The field's, not the receiver's.
+    /// Variation of the field, not of the receiver.
     pub(crate) variation_deg: Option<Variation>,
-    /// Compass with deviation.
+    /// Compass heading plus deviation.
     pub(crate) magnetic_deg: Option<MagneticHeading>,
-    /// Magnetic with variation.
+    /// Magnetic heading plus variation.
     pub(crate) true_deg: Option<TrueHeading>,
-    /// Why something is missing.
+    /// Reason for a missing value.
     pub(crate) problem: Option<String>,
 }
 
-/// A row of the deviation card.
+/// Row of the deviation card.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[allow(
     clippy::struct_field_names,
@@ -66,13 +66,14 @@ pub(crate) struct CardRow {
     pub(crate) band95_deg: Option<f64>,
 }
 
-/// A heading that may be off by more than this, one time in twenty, is none to steer by:
-/// nobody sees the band on an autopilot.
+/// Confidence band above which the heading is withheld: an autopilot does not show the band.
 const MAX_BAND_DEG: f64 = 10.0;
-/// One that was withheld is given out again at this: it does not come and go as she yaws.
+/// Confidence band at which a withheld heading is released, so that it does not flicker as the
+/// vessel yaws.
 const RELEASE_BAND_DEG: f64 = 9.0;
 
-/// Corrects the compass as far as the ingredients go, and as far as it can be steered by.
+/// Corrects the compass as far as the inputs allow, and withholds a heading that is too uncertain
+/// to steer by.
 pub(crate) fn correct(inputs: CorrectionInputs<'_>) -> CorrectedHeading {
     let mut corrected = predict(inputs);
     let max_band_deg = if inputs.withheld {
@@ -91,13 +92,13 @@ pub(crate) fn correct(inputs: CorrectionInputs<'_>) -> CorrectedHeading {
 }
 
 impl CorrectedHeading {
-    /// Whether it is known, but too badly to be steered by.
+    /// Returns whether the heading is known, but too uncertain to steer by.
     pub(crate) fn is_withheld(&self) -> bool {
         self.band95_deg.is_some() && self.true_deg.is_none()
     }
 }
 
-/// Corrects the compass as far as the ingredients go, however little is known.
+/// Corrects the compass as far as the inputs allow, however wide the band is.
 pub(crate) fn predict(inputs: CorrectionInputs<'_>) -> CorrectedHeading {
     let mut corrected = CorrectedHeading {
         compass_deg: inputs.compass,
@@ -120,7 +121,7 @@ fn apply_model(
     }
     let compass = inputs.compass.ok_or("the compass is silent")?;
     let model = inputs.model.ok_or("there is no model yet")?;
-    // Better no heading than one by magnetism that the ship no longer has.
+    // No heading is better than one from magnetism that the vessel no longer has.
     if let Some(withdrawn) = inputs.withdrawn {
         return Err(withdrawn.in_words());
     }
@@ -140,7 +141,7 @@ fn apply_model(
     Ok(())
 }
 
-/// The card at the ship's place: every 15°, or nothing.
+/// Returns the deviation card at the vessel's position: every 15°, or no rows.
 pub(crate) fn card(inputs: CorrectionInputs<'_>) -> Vec<CardRow> {
     let (Ok((earth, _)), Some(model)) = (field_at(inputs), inputs.model) else {
         return Vec::new();
@@ -249,7 +250,7 @@ pub(crate) mod tests {
             (corrected.true_deg.is_some(), corrected.problem)
         };
         assert_eq!(known(5.0, false), (true, None));
-        // Once withheld it must be known somewhat better.
+        // Once withheld, the band must be somewhat narrower.
         assert!(!known(5.0, true).0);
         assert_eq!(known(4.5, true), (true, None));
         let (is_given, problem) = known(5.2, false);

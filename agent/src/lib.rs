@@ -1,5 +1,5 @@
-//! The shipboard agent: instruments → settled windows → samples → spool → shore,
-//! and from the shore's model a corrected heading back to the bridge.
+//! The shipboard agent: instruments → settled windows → samples → spool → server, and from the
+//! server's model a corrected heading back to the bridge.
 //!
 //! A library only so that tests can reach it; the program is `main.rs`.
 

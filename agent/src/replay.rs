@@ -1,6 +1,6 @@
-//! Recorded sentences through the same roles and sampler as live ones.
+//! Replay of recorded sentences through the same roles and sampler as live ones.
 //!
-//! Nothing is written before everything was read: a table that is there is whole.
+//! Nothing is written before everything was read, so an existing table is complete.
 
 use crate::acquisition::Acquisition;
 use crate::config::RolesConfig;
@@ -15,10 +15,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use tokio::time::Instant;
 
-/// What recordings came to.
+/// Result of replayed recordings.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Replayed {
-    /// In the order in which they were finished.
+    /// Samples in the order in which they were finished.
     pub(crate) samples: Vec<Sample>,
     /// Ten-second windows by outcome.
     pub(crate) windows: Tally,
@@ -35,8 +35,8 @@ struct Report {
     rejected: BTreeMap<&'static str, u64>,
 }
 
-/// Reads recordings one after another, as one voyage. Inputs have no names in a
-/// recording: sources are told apart by talker and sentence.
+/// Reads recordings one after another, as one voyage. Inputs have no names in a recording: sources
+/// are distinguished by talker and sentence.
 ///
 /// # Errors
 /// When a file cannot be read, or has no sentence in it.
@@ -59,7 +59,7 @@ pub(crate) fn replay(
                 acquisition.observe(observation, heard);
             }
             replayed.samples.extend(acquisition.sampler.take_samples());
-            // Nobody stands lookout over a recording.
+            // Recordings raise no alerts.
             drop(acquisition.sampler.take_settled());
         });
         let read = read.with_context(|| file.display().to_string())?;
@@ -78,7 +78,7 @@ pub(crate) fn replay(
 }
 
 impl Replayed {
-    /// The tally as one line of JSON.
+    /// Returns the tally as one line of JSON.
     pub(crate) fn report(&self) -> String {
         let report = Report {
             samples: self.samples.len(),
@@ -89,7 +89,7 @@ impl Replayed {
         serde_json::to_string(&report).expect("counts and names are always JSON")
     }
 
-    /// The samples as the table that `fit` reads.
+    /// Returns the samples as the table that `fit` reads.
     pub(crate) fn csv(&self) -> anyhow::Result<Vec<u8>> {
         let mut table = csv::Writer::from_writer(Vec::new());
         table.write_record([
@@ -127,7 +127,7 @@ fn record(sample: &Sample) -> [String; 10] {
     ]
 }
 
-/// An empty field is unknown, never zero.
+/// Formats a number; an empty field is unknown, never zero.
 fn number(value: Option<f64>, decimals: usize) -> String {
     value
         .map(|value| format!("{value:.decimals$}"))

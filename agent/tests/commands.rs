@@ -200,7 +200,7 @@ async fn a_hold_reaches_the_running_agent_and_outlasts_it() {
 }
 
 #[tokio::test]
-async fn what_has_settled_is_kept_when_the_agent_is_told_to_stop() {
+async fn what_has_settled_is_kept_when_the_agent_is_stopped() {
     let bridge = Bridge::new(600).await;
     bridge.sail();
     let agent = Agent::new(bridge.address);
@@ -259,7 +259,7 @@ async fn what_was_said_in_each_second_can_be_exported_and_bad_questions_are_refu
 }
 
 #[tokio::test]
-async fn a_token_is_replaced_on_board_when_the_shore_has_replaced_it() {
+async fn a_token_is_replaced_on_board_when_the_server_has_replaced_it() {
     let server = TestServer::start(None, None).await;
     let agent = Agent::new(nowhere());
     let early = agent.call(&["rotate-token"]).await;

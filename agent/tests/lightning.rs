@@ -1,5 +1,5 @@
-//! Lightning strikes the compass of a ship under way: the real agent, on board and
-//! towards the shore.
+//! Lightning strikes the compass of a vessel under way: the real agent, on board and towards the
+//! server.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may panic too")]
 
@@ -21,7 +21,7 @@ const HOUR_S: i64 = 3600;
 /// Twenty minutes after a turn, when the compass has long come to rest.
 const STRUCK_S: i64 = 5 * HOUR_S + 1200;
 
-/// What the page has, once it is as wanted.
+/// Waits for a status.
 async fn status_when(running: &Running, wanted: impl Fn(&Value) -> bool) -> Value {
     let seen = timeout(PATIENCE, async {
         loop {

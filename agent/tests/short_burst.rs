@@ -16,7 +16,7 @@ use tokio::time::timeout;
 
 const PATIENCE: Duration = Duration::from_mins(3);
 
-/// What is in a folder, in order.
+/// Messages in a folder, in order.
 fn messages(folder: &Path) -> Vec<Vec<u8>> {
     let Ok(files) = std::fs::read_dir(folder) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The whole agent between a ship and a shore, over real sockets.
+//! The whole agent between a vessel and a server, over real sockets.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may panic too")]
 
@@ -23,7 +23,7 @@ use tokio::time::timeout;
 const PATIENCE: Duration = Duration::from_mins(2);
 
 #[tokio::test]
-async fn a_voyage_reaches_the_shore_and_comes_back_as_a_heading() {
+async fn a_voyage_reaches_the_server_and_comes_back_as_a_heading() {
     let seconds = 12 * 3600;
     let bridge = Bridge::new(seconds).await;
     let server = TestServer::start(Some(common::model()), None).await;
@@ -31,7 +31,7 @@ async fn a_voyage_reaches_the_shore_and_comes_back_as_a_heading() {
     agent.enrol(&server.url).await;
     let running = agent.run().await;
     loop {
-        // Not before the shore's settings are in effect.
+        // Not before the server's settings are in effect.
         let status = common::fetch(running.page, "/api/status").await;
         let status: Value = serde_json::from_str(&status).unwrap();
         if status["link"]["state"] == "up" {

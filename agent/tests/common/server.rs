@@ -1,4 +1,4 @@
-//! A shore that keeps batches as the real one does, and can be told to fail.
+//! A fake server that stores batches as the real one does, and that can be made to fail.
 
 use axum::body::Bytes;
 use axum::extract::{Path, State};
@@ -22,9 +22,9 @@ pub(crate) const CODE: &str = "K7QF-2M9X";
 pub(crate) struct Stored {
     pub(crate) batches: BTreeMap<u64, Vec<u8>>,
     pub(crate) forks: u64,
-    /// Numbers in the order in which they came.
+    /// Numbers in the order in which the batches came.
     pub(crate) order: Vec<u64>,
-    /// While this is set, nothing is answered but 503.
+    /// While this is set, every response is 503.
     pub(crate) down: bool,
     requests: u64,
 }
@@ -33,11 +33,11 @@ pub(crate) struct Stored {
 pub(crate) struct TestServer {
     pub(crate) url: String,
     pub(crate) stored: Arc<Mutex<Stored>>,
-    /// Rises with each batch that is kept.
+    /// Number of stored batches.
     pub(crate) stored_batches: watch::Sender<u64>,
     model: Option<ModelDownlink>,
     settings: Settings,
-    /// Every so many requests, one fails.
+    /// Interval of failing requests.
     fail_every: Option<u64>,
 }
 
@@ -69,7 +69,7 @@ impl TestServer {
         server
     }
 
-    /// Waits until so many batches are here.
+    /// Waits for the given number of batches.
     pub(crate) async fn has(&self, batches: u64) {
         let mut stored_batches = self.stored_batches.subscribe();
         stored_batches
@@ -144,7 +144,7 @@ async fn put_batch(
         .stored_batches
         .send_replace(stored.batches.len() as u64);
     if fails {
-        // Kept, but the answer is lost on the way.
+        // Stored, but the response is lost on the way.
         return (StatusCode::BAD_GATEWAY, "lost").into_response();
     }
     Json(server.answer(&stored)).into_response()
