@@ -85,7 +85,7 @@ pub(crate) fn correct(inputs: CorrectionInputs<'_>) -> CorrectedHeading {
     if let Some(band_deg) = corrected.band95_deg.filter(is_wide) {
         (corrected.magnetic_deg, corrected.true_deg) = (None, None);
         corrected.problem = Some(format!(
-            "the deviation here is known to ±{band_deg:.0}° only"
+            "the deviation here is known only to ±{band_deg:.0}°"
         ));
     }
     corrected
@@ -126,7 +126,7 @@ fn apply_model(
         return Err(withdrawn.in_words());
     }
     if inputs.compass_suspected {
-        return Err("the alert says not to steer by it".to_owned());
+        return Err("the open alert suspects the compass: do not steer by it".to_owned());
     }
     let predicted = model
         .model
@@ -162,8 +162,8 @@ pub(crate) fn card(inputs: CorrectionInputs<'_>) -> Vec<CardRow> {
 }
 
 fn field_at(inputs: CorrectionInputs<'_>) -> Result<(EarthField, Variation), String> {
-    let position = inputs.position.ok_or("the position is not known")?;
-    let time = inputs.time.ok_or("the time is not known")?;
+    let position = inputs.position.ok_or("the position is unknown")?;
+    let time = inputs.time.ok_or("the time is unknown")?;
     let field = field(FieldModel::Igrf14, position, 0.0, time).map_err(|e| e.to_string())?;
     Ok((field.for_ship(), field.declination()))
 }
@@ -257,7 +257,7 @@ pub(crate) mod tests {
         assert!(!is_given);
         assert_eq!(
             problem.as_deref(),
-            Some("the deviation here is known to ±10° only")
+            Some("the deviation here is known only to ±10°")
         );
     }
 
@@ -326,7 +326,7 @@ pub(crate) mod tests {
             assert!(suspected.compass_deg.is_some());
             assert_eq!((suspected.deviation_deg, suspected.true_deg), (None, None));
             let problem = suspected.problem.unwrap();
-            assert!(problem.contains("not to steer by it"), "{problem}");
+            assert!(problem.contains("do not steer by it"), "{problem}");
         }
         let of_the_gyro = of(open, Some(9.0), Some(0.2));
         let over = of(ShipAlertState::Agree, Some(9.0), Some(9.2));

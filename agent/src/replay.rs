@@ -65,7 +65,7 @@ pub(crate) fn replay(
         let read = read.with_context(|| file.display().to_string())?;
         anyhow::ensure!(
             read.total_read() > 0,
-            "{}: none of its {} lines is a sentence with a right checksum",
+            "{}: none of its {} lines is a sentence with a valid checksum",
             file.display(),
             read.total_rejected()
         );

@@ -79,14 +79,14 @@ fn summary(alert: &ShipAlert) -> String {
     );
     match alert.state {
         ShipAlertState::Open => format!(
-            "compass and {reference} parted at {since} UTC, by {:.1}°; {:.1}° is the most that \
-             their usual errors explain",
+            "compass and {reference} parted at {since} UTC, by {:.1}°; their usual errors explain \
+             at most {:.1}°",
             alert.departure_deg().abs(),
             alert.limit_deg
         ),
         ShipAlertState::Agree => format!("compass and {reference} agree again since {at} UTC"),
         ShipAlertState::NotJudged => {
-            format!("the alert of {since} UTC ended at {at} UTC: that card is not in use any more")
+            format!("the alert of {since} UTC ended at {at} UTC: that card is no longer in use")
         }
     }
 }
@@ -97,11 +97,11 @@ fn advice(alert: &ShipAlert) -> &'static str {
     }
     match alert.suspect() {
         Suspect::Compass => {
-            "Steer by gyro; the satellite compass bears it out. Do not use the corrected compass \
+            "Steer by gyro; the satellite compass confirms it. Do not use the corrected compass \
              or the card. Take an azimuth, and report lightning, a shock or magnetic cargo."
         }
         Suspect::Gyro => {
-            "The satellite compass bears out the compass: do not trust the gyro. Check the gyro \
+            "The satellite compass confirms the compass: do not trust the gyro. Check the gyro \
              and its speed and latitude settings, take an azimuth, and steer by what it confirms."
         }
         Suspect::Unknown if alert.gyro_departure_deg.is_none() => {
@@ -110,7 +110,7 @@ fn advice(alert: &ShipAlert) -> &'static str {
              a shock or magnetic cargo."
         }
         Suspect::Satellite => {
-            "The gyro bears out the compass: do not trust the satellite compass. Check it and \
+            "The gyro confirms the compass: do not trust the satellite compass. Check it and \
              its antennas."
         }
         Suspect::Unknown => {

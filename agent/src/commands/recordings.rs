@@ -19,7 +19,7 @@ pub(super) fn parse_time(flag: &str, text: Option<&str>) -> Result<Option<Timest
 pub(super) fn export(config: &Config, span: Span, csv: Option<&Path>) -> anyhow::Result<()> {
     let raw_log = raw_log::path(&config.data_dir);
     if !raw_log.exists() {
-        return Err(BadInput(format!("{}: there is no ring yet", raw_log.display())).into());
+        return Err(BadInput(format!("{}: there is no raw log yet", raw_log.display())).into());
     }
     let rows = match csv {
         Some(path) => write_atomically(path, |out| raw_log::export(&raw_log, span, out))?,

@@ -166,7 +166,7 @@ fn compass_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
         .any(|s| s.sentence == Some(*b"HDM") && !s.raw)
     {
         return Err(serde::de::Error::custom(
-            "HDM may have deviation applied already: set raw = true if it has not",
+            "HDM may already have deviation applied: set raw = true if it has not",
         ));
     }
     Ok(sources)
@@ -201,7 +201,7 @@ fn sources_of<'de, D: Deserializer<'de>>(
         if !allowed.contains(&&sentence) {
             let sentence = String::from_utf8_lossy(&sentence).into_owned();
             return Err(serde::de::Error::custom(format!(
-                "{sentence} cannot serve here: {names} can"
+                "{sentence} cannot serve here: use {names}"
             )));
         }
     }

@@ -71,7 +71,7 @@ impl UplinkConfig {
             Some(modem) if !is_burst => {
                 return Err(Problem {
                     span: Some(modem.directory.span()),
-                    problem: "a modem serves the profile short-burst only".to_owned(),
+                    problem: "a modem needs the profile short-burst".to_owned(),
                 });
             }
             _ => {}
@@ -203,7 +203,7 @@ mod tests {
         let alone = format!("{WHOLE}\n[modem]\ndirectory = \"sat\"");
         assert_eq!(
             message(&alone),
-            "agent.toml:26: directory: a modem serves the profile short-burst only"
+            "agent.toml:26: directory: a modem needs the profile short-burst"
         );
     }
 }

@@ -93,7 +93,7 @@ impl Link {
 fn receiver_closed() -> io::Error {
     io::Error::new(
         io::ErrorKind::BrokenPipe,
-        "nobody takes the observations any more",
+        "the receiver of observations is closed",
     )
 }
 
@@ -102,7 +102,9 @@ fn receiver_closed() -> io::Error {
 pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
     let stream = tokio::time::timeout(CONNECT_TIMEOUT, TcpStream::connect(host_port))
         .await
-        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "no answer to the connection"))??;
+        .map_err(|_| {
+            io::Error::new(io::ErrorKind::TimedOut, "the connection attempt timed out")
+        })??;
     let keepalive = socket2::TcpKeepalive::new()
         .with_time(Duration::from_secs(30))
         .with_interval(Duration::from_secs(10));

@@ -22,7 +22,7 @@ pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
     let handshake = client_async_with_config(url.uri(), stream, Some(limits));
     let (mut socket, _) = tokio::time::timeout(CONNECT_TIMEOUT, handshake)
         .await
-        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "no answer to the handshake"))?
+        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "the handshake timed out"))?
         .map_err(io::Error::other)?;
     socket
         .send(Message::text(subscription()))

@@ -32,7 +32,7 @@ pub(super) async fn acknowledge(
             page.acknowledged.send_replace(Some(seen.id));
             Json(seen).into_response()
         }
-        Ok(false) => (StatusCode::NOT_FOUND, "there is no such alert any more").into_response(),
+        Ok(false) => (StatusCode::NOT_FOUND, "this alert no longer exists").into_response(),
         Err(error) => {
             tracing::error!(%error, "an acknowledgement cannot be stored");
             let why = "the acknowledgement cannot be stored";

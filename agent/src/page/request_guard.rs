@@ -31,10 +31,10 @@ fn check_origin(headers: &HeaderMap) -> Result<(), &'static str> {
     let header = |name| headers.get(name).map(|value| value.to_str().unwrap_or("?"));
     let host = header(HOST).unwrap_or_default();
     if !is_local_name(host) {
-        return Err("open this page by the agent's address");
+        return Err("open this page under the agent's address");
     }
     if header(ORIGIN).is_some_and(|origin| origin != format!("http://{host}")) {
-        return Err("not from another site");
+        return Err("requests from other sites are refused");
     }
     Ok(())
 }

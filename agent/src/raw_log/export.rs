@@ -44,7 +44,7 @@ const COLUMNS: [&str; 9] = [
 /// When there is no raw log, or the table cannot be written.
 pub(crate) fn export(raw_log: &Path, span: Span, out: &mut dyn Write) -> anyhow::Result<u64> {
     let name = raw_log.display().to_string();
-    let mut file = File::open(raw_log).with_context(|| format!("{name}: there is no ring"))?;
+    let mut file = File::open(raw_log).with_context(|| format!("{name}: there is no raw log"))?;
     let slots = file.metadata().context(name.clone())?.len() / BLOCK_BYTES;
     let mut order = Vec::new();
     for slot in 0..slots {

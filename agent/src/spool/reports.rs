@@ -56,10 +56,10 @@ pub(crate) enum ReportState {
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum SaveReportError {
     /// The report is withdrawn.
-    #[error("this report was taken back; write another")]
+    #[error("this report was withdrawn; write a new one")]
     Withdrawn,
     /// Too many reports are waiting.
-    #[error("{MAX_WAITING} reports wait for the link already")]
+    #[error("{MAX_WAITING} reports are already waiting for the link")]
     TooMany,
     /// The spool failed.
     #[error("the report cannot be stored")]

@@ -114,14 +114,14 @@ impl Status {
             write!(out, ": {problem}")?;
         }
         if let Some(contact) = self.link.last_contact {
-            write!(out, ", last answer {contact}")?;
+            write!(out, ", last response {contact}")?;
         }
         writeln!(out)?;
         if let Some(budget) = &self.budget {
             write!(out, "profile    {}", budget.profile)?;
             if let Some(day) = budget.daily_bytes {
                 let left = budget.remaining_bytes;
-                write!(out, ", {left:.0} octets left at {day:.0} a day")?;
+                write!(out, ", {left:.0} bytes left at {day:.0} a day")?;
             }
             writeln!(out)?;
         }
@@ -134,7 +134,7 @@ impl Status {
         if spool.thinned_batches > 0 {
             writeln!(
                 out,
-                "           {} batches were thinned for want of room or budget",
+                "           {} batches were thinned for disk space or budget",
                 spool.thinned_batches
             )?;
         }
@@ -142,7 +142,7 @@ impl Status {
             let (size, limit) = (raw_log.bytes as f64 / 1e6, raw_log.limit_bytes as f64 / 1e6);
             write!(out, "ring       {size:.1} of {limit:.1} MB")?;
             if let Some(problem) = &raw_log.problem {
-                write!(out, ", nothing is kept for now: {problem}")?;
+                write!(out, ", nothing is recorded for now: {problem}")?;
             }
             writeln!(out)?;
         }
@@ -150,7 +150,7 @@ impl Status {
             let because = spool.parked_because.as_deref().unwrap_or("no reason given");
             writeln!(
                 out,
-                "REFUSED    {} batches were refused by the shore: {because}",
+                "REFUSED    {} batches were refused by the server: {because}",
                 spool.parked_batches
             )?;
         }
@@ -221,8 +221,8 @@ mod tests {
             "STORAGE    samples cannot be stored\n",
             "not corrected: there is no model yet",
             "link       not enrolled\n",
-            "profile    metered, -120 octets left at 8000 a day\n",
-            "2 batches were refused by the shore: 422 undecodable",
+            "profile    metered, -120 bytes left at 8000 a day\n",
+            "2 batches were refused by the server: 422 undecodable",
         ] {
             assert!(text.contains(wanted), "{wanted:?} is not in\n{text}");
         }

@@ -291,7 +291,7 @@ async fn send<T>(
     let Some(problem) = problem.filter(|problem| problem.kind.contains(PROBLEM_TYPE_PATH)) else {
         if status.is_server_error() || status == StatusCode::TOO_MANY_REQUESTS {
             return Err(RequestError::Busy {
-                problem: format!("the shore answered {status}"),
+                problem: format!("the server responded {status}"),
                 retry_after,
             });
         }

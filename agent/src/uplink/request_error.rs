@@ -39,7 +39,7 @@ impl fmt::Display for RequestError {
             | RequestError::NotFound(problem)
             | RequestError::Refused(problem)
             | RequestError::Busy { problem, .. } => f.write_str(problem),
-            RequestError::Forked => f.write_str("the shore has another batch of this number"),
+            RequestError::Forked => f.write_str("the server has another batch of this number"),
         }
     }
 }
@@ -90,7 +90,7 @@ pub(super) fn classify_problem(
 
 pub(super) fn foreign_response(status: StatusCode) -> RequestError {
     RequestError::Link(format!(
-        "something other than the shore answered ({status}): a network's login page, or a wrong address?"
+        "the response is not from the server ({status}): a network's login page, or a wrong address?"
     ))
 }
 
@@ -112,18 +112,18 @@ fn describe_certificate_error(error: &rustls::Error) -> Option<&'static str> {
     };
     Some(match error {
         CertificateError::Expired | CertificateError::ExpiredContext { .. } => {
-            "the shore's certificate has expired (or this computer's clock is wrong): nothing \
+            "the server's certificate has expired (or this computer's clock is wrong): nothing \
              is sent until it is renewed"
         }
         CertificateError::NotValidYet | CertificateError::NotValidYetContext { .. } => {
-            "the shore's certificate is not valid yet (or this computer's clock is wrong)"
+            "the server's certificate is not valid yet (or this computer's clock is wrong)"
         }
         CertificateError::UnknownIssuer | CertificateError::BadSignature => {
-            "whoever answers has a certificate of an authority that is not believed here: \
-             another network's, or pinned_ca is wrong"
+            "the certificate is of an authority that is not trusted here: another network \
+             responded, or pinned_ca is wrong"
         }
         CertificateError::NotValidForName | CertificateError::NotValidForNameContext { .. } => {
-            "whoever answers has the certificate of another server"
+            "the certificate belongs to another server"
         }
         _ => return None,
     })
@@ -137,7 +137,7 @@ pub(super) fn link_error(error: &reqwest::Error) -> RequestError {
         cause = inner;
     }
     let kind = if error.is_timeout() {
-        "no answer in time"
+        "no response in time"
     } else if error.is_connect() {
         "cannot connect"
     } else {

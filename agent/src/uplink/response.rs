@@ -88,7 +88,7 @@ impl Uplink {
             }
             (RequestError::Unauthorized(_), _) => {
                 problem = format!(
-                    "the shore does not know this agent any more ({problem}): enrol it again \
+                    "the server does not know this agent any more ({problem}): enrol it again \
                      with a new code; its samples are kept"
                 );
                 (LinkState::Refused, self.backoff.most())

@@ -160,17 +160,17 @@ impl GnssClock {
                 format!("{:+.0} days", unconfirmed.jump_s / 86_400.0)
             };
             let what = if unconfirmed.is_first {
-                format!("is {offset} from what this computer's clock or spool says")
+                format!("differs by {offset} from this computer's clock or spool")
             } else {
                 format!("jumped by {offset}")
             };
             return Some(format!(
-                "the receiver's time {what}: nothing is sampled until it is clear which is right"
+                "the receiver's time {what}: nothing is sampled until it is clear which time is right"
             ));
         }
         self.rolled_over.then(|| {
             "the receiver's date is 1024 weeks behind, after a roll-over of the GNSS weeks: it \
-             is put right here"
+             is corrected here"
                 .to_owned()
         })
     }

@@ -62,7 +62,7 @@ async fn no_json_of_a_proxy_passes_for_the_servers_word() {
     rig.sealed.notify_one();
     let says = |link: &LinkStatus| {
         let problem = link.problem.as_deref();
-        problem.is_some_and(|problem| problem.contains("other than the shore"))
+        problem.is_some_and(|problem| problem.contains("not from the server"))
     };
     rig.link.wait_for(says).await.unwrap();
     rig.all_sent().await;

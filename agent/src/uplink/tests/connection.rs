@@ -124,7 +124,7 @@ async fn a_failed_handshake_is_charged_and_a_missing_server_is_not() {
     let Err(RequestError::Link(said)) = refused else {
         panic!("{refused:?}");
     };
-    assert!(said.contains("not believed here"), "{said}");
+    assert!(said.contains("not trusted here"), "{said}");
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
