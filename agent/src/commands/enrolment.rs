@@ -75,7 +75,7 @@ fn server_url(text: &str) -> Result<String, BadInput> {
     if url.scheme() == "http"
         && !matches!(url.host_str(), Some("localhost" | "127.0.0.1" | "[::1]"))
     {
-        tracing::warn!("without https, the token travels in the clear");
+        tracing::warn!("without https the token is sent unencrypted");
     }
     Ok(url.as_str().trim_end_matches('/').to_owned())
 }

@@ -60,7 +60,7 @@ pub(super) async fn set_exclusion(
             .send()
             .await;
         if let Err(error) = response {
-            tracing::debug!(%error, "no running agent answers");
+            tracing::debug!(%error, "no running agent responds");
         }
     }
     let said = exclusion.map_or_else(

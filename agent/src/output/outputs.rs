@@ -131,7 +131,7 @@ async fn accept(
                     let serving = serve(stream, lines, write_timeout);
                     let served = shutdown.run_until_cancelled(serving).await;
                     let reason = served.unwrap_or("the agent stops");
-                    tracing::info!(%address, reason, "a heading client is gone");
+                    tracing::info!(%address, reason, "a heading client disconnected");
                 });
             }
             Err(error) => {
@@ -150,8 +150,8 @@ async fn serve(
     write_timeout: Duration,
 ) -> &'static str {
     if let Err(error) = bound_send_buffer(&stream, write_timeout) {
-        tracing::warn!(%error, "a client's buffer cannot be bounded");
-        return "it might get old headings";
+        tracing::warn!(%error, "a client's send buffer cannot be limited");
+        return "its send buffer cannot be limited";
     }
     loop {
         let line = match lines.recv().await {
@@ -191,7 +191,7 @@ fn bound_send_buffer(stream: &TcpStream, write_timeout: Duration) -> io::Result<
 /// Makes closing reset the connection; otherwise the kernel would go on delivering.
 fn discard_unsent(stream: &TcpStream) {
     if let Err(error) = SockRef::from(stream).set_linger(Some(Duration::ZERO)) {
-        tracing::debug!(%error, "a client's buffer is left to the kernel");
+        tracing::debug!(%error, "a client's send buffer cannot be discarded");
     }
 }
 
@@ -207,7 +207,7 @@ async fn write_serial(
             .await;
         let Some(Err(error)) = result else { return };
         if !reported {
-            tracing::warn!(path = config.path, %error, "the serial output fails; trying on");
+            tracing::warn!(path = config.path, %error, "the serial output failed, retrying");
             reported = true;
         }
         if shutdown

@@ -162,11 +162,14 @@ impl RawLog {
             return;
         }
         if self.problem.is_none() {
-            tracing::warn!(problem, "the ring gives way; it begins again in an hour");
+            tracing::warn!(
+                problem,
+                "the raw log was deleted to free the disk, it restarts in an hour"
+            );
         }
         let emptied = self.file.take().map(|file| file.set_len(0));
         if let Some(Err(error)) = emptied {
-            tracing::warn!(%error, "the ring cannot be emptied");
+            tracing::warn!(%error, "the raw log cannot be emptied");
         }
         self.problem = Some(problem.to_owned());
         self.paused_until = Some(now + PAUSE_AFTER_FULL);

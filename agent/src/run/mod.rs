@@ -142,7 +142,7 @@ impl Agent {
         self.save_clock_checkpoint().await;
         self.raw_log.flush(Instant::now());
         if let Err(error) = self.uplink.await {
-            tracing::error!(%error, "the uplink ended badly");
+            tracing::error!(%error, "the uplink failed");
         }
         tracing::info!("stopped");
     }

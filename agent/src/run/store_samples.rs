@@ -107,7 +107,7 @@ impl Agent {
             .save_clock_checkpoint(&ClockCheckpoint { ship, computer })
             .await
         {
-            tracing::error!(%error, "the time cannot be noted");
+            tracing::error!(%error, "the clock checkpoint cannot be stored");
         }
     }
 
@@ -132,7 +132,7 @@ impl Agent {
             .and(within_disk)
             .and(within_budget)
         {
-            tracing::error!(%error, "the spool cannot be put in order");
+            tracing::error!(%error, "the spool cannot be merged or thinned");
         }
     }
 

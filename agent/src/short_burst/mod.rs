@@ -48,7 +48,10 @@ async fn step(spool: &Spool, modem: &mut impl Modem) -> Duration {
     match exchange(spool, modem).await {
         Ok(()) => POLL_INTERVAL,
         Err(error) => {
-            tracing::warn!(error = format!("{error:#}"), "the modem's turn failed");
+            tracing::warn!(
+                error = format!("{error:#}"),
+                "the exchange with the modem failed"
+            );
             RETRY_PAUSE
         }
     }
@@ -64,17 +67,21 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
                 let acknowledged = spool
                     .acknowledge_bursts(&identity, ack.contiguous_seq)
                     .await?;
-                tracing::info!(seq = ack.contiguous_seq, acknowledged, "the shore answered");
+                tracing::info!(
+                    seq = ack.contiguous_seq,
+                    acknowledged,
+                    "the server acknowledged batches"
+                );
             }
-            Ok(_) => tracing::warn!("an answer to another stream was passed over"),
-            Err(error) => tracing::warn!(%error, "a message was passed over"),
+            Ok(_) => tracing::warn!("an acknowledgement of another stream was ignored"),
+            Err(error) => tracing::warn!(%error, "an invalid message was ignored"),
         }
     }
     while let Some((batch, sent)) = spool.next_burst_batch().await? {
         let messages = match split(&batch.bytes) {
             Ok(messages) => messages,
             Err(error) => {
-                tracing::error!(seq = batch.seq, %error, "a batch waits for another link");
+                tracing::error!(seq = batch.seq, %error, "a batch is too large for short messages");
                 spool.exclude_from_bursts(&batch).await?;
                 continue;
             }
@@ -88,7 +95,11 @@ async fn exchange(spool: &Spool, modem: &mut impl Modem) -> anyhow::Result<()> {
                 .record_burst_progress(&batch, index + 1, messages.len())
                 .await?;
         }
-        tracing::info!(seq = batch.seq, messages = messages.len(), "a batch is out");
+        tracing::info!(
+            seq = batch.seq,
+            messages = messages.len(),
+            "a batch was sent as short messages"
+        );
     }
     Ok(())
 }

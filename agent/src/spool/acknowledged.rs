@@ -55,7 +55,7 @@ pub(super) async fn reconcile(
             contiguous,
             before,
             batches,
-            "the shore has less than it had"
+            "the server lost batches, they are sent again"
         );
     }
     sqlx::query(

@@ -206,7 +206,7 @@ async fn replace_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bo
 }
 
 async fn quarantine(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sqlx::Result<()> {
-    tracing::error!(problem, "a damaged batch was put aside");
+    tracing::error!(problem, "a damaged batch was quarantined");
     sqlx::query("INSERT INTO quarantine (bytes, problem) VALUES ($1, $2)")
         .bind(bytes)
         .bind(problem)

@@ -141,7 +141,7 @@ pub(super) async fn get<T: DeserializeOwned>(
     match serde_json::from_str(&text) {
         Ok(value) => Ok(Some(value)),
         Err(error) => {
-            tracing::error!(name, %error, "a value in the spool cannot be read; going on without");
+            tracing::error!(name, %error, "a value in the spool cannot be read and is ignored");
             Ok(None)
         }
     }
@@ -219,7 +219,7 @@ fn set_mode(path: &Path, mode: u32) {
         return;
     }
     if let Err(error) = std::fs::set_permissions(path, std::fs::Permissions::from_mode(mode)) {
-        tracing::warn!(path = %path.display(), %error, "others may read what is the agent's own");
+        tracing::warn!(path = %path.display(), %error, "the mode of a private file cannot be set");
     }
 }
 

@@ -159,7 +159,7 @@ async fn carry_over(aside: &Path, spool: &Spool) {
     // Any of them may have been sent.
     let tried = sqlx::query("UPDATE batches SET tried = TRUE");
     if let Err(error) = tried.execute(&spool.pool).await {
-        tracing::error!(%error, "the batches carried over cannot be kept from being thinned");
+        tracing::error!(%error, "the batches carried over cannot be marked as tried");
     }
     let reports = carry_reports_over(&damaged, spool).await;
     damaged.close().await;

@@ -218,7 +218,7 @@ async fn next_seq(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
 }
 
 fn log_dropped_sample(error: impl std::fmt::Display) {
-    tracing::error!(%error, "a damaged sample was left out");
+    tracing::error!(%error, "a damaged sample was dropped");
 }
 
 fn read_sample(text: &str) -> Option<Sample> {

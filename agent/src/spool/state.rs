@@ -88,7 +88,7 @@ impl Spool {
             return Ok(None);
         };
         Ok(serde_json::from_str(&text).unwrap_or_else(|error| {
-            tracing::error!(%error, "the hold in the spool cannot be read; it counts as berthed");
+            tracing::error!(%error, "the hold in the spool cannot be read and counts as berthed");
             Some(Exclusion::Berthed)
         }))
     }

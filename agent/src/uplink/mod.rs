@@ -89,18 +89,18 @@ impl Uplink {
     /// Runs until `shutdown`.
     pub(crate) async fn run(mut self, shutdown: CancellationToken) {
         if let Err(error) = self.spool.unpark().await {
-            tracing::error!(%error, "cannot look at the parked batches");
+            tracing::error!(%error, "the parked batches cannot be queued again");
         }
         let mut retry_parked_at = Instant::now() + RETRY_PARKED_INTERVAL;
         if let Err(error) = self.spool.save_account(&self.budget.account()).await {
-            tracing::error!(%error, "the budget cannot be kept");
+            tracing::error!(%error, "the budget cannot be stored");
         }
         let mut last_response = None;
         loop {
             if retry_parked_at <= Instant::now() {
                 retry_parked_at = Instant::now() + RETRY_PARKED_INTERVAL;
                 if let Err(error) = self.spool.unpark_first().await {
-                    tracing::error!(%error, "cannot look at the parked batches");
+                    tracing::error!(%error, "the parked batches cannot be queued again");
                 }
             }
             let work = self.step(&mut last_response);

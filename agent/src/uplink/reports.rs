@@ -33,7 +33,7 @@ impl Uplink {
             Ok(answer) => {
                 if !self.has_changed_stream(identity).await? {
                     self.spool.mark_report_delivered(report, &answer).await?;
-                    tracing::info!(id = %report.id, "a report is ashore");
+                    tracing::info!(id = %report.id, "a report was delivered");
                 }
                 self.backoff.reset();
                 self.publisher.link.send_modify(|link| {
@@ -43,13 +43,13 @@ impl Uplink {
                 Ok(NextStep::Continue)
             }
             Err(RequestError::Refused(problem)) => {
-                tracing::error!(id = %report.id, problem, "the shore refuses a report");
+                tracing::error!(id = %report.id, problem, "the server refused a report");
                 self.spool.mark_report_refused(report, &problem).await?;
                 Ok(NextStep::Continue)
             }
             // An unknown token will also fail the next request.
             Err(RequestError::Unauthorized(problem) | RequestError::NotFound(problem)) => {
-                tracing::warn!(problem, "the shore does not take reports for now");
+                tracing::warn!(problem, "the server does not accept reports for now");
                 self.reports_paused_until = Some(Instant::now() + self.poll);
                 Ok(NextStep::Continue)
             }

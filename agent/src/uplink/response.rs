@@ -28,7 +28,7 @@ impl Uplink {
                 tracing::info!(
                     seq = batch.seq,
                     bytes = batch.bytes.len(),
-                    "a batch is ashore"
+                    "a batch was delivered"
                 );
             }
             None => self.spool.save_downlink(&downlink).await?,
@@ -40,7 +40,7 @@ impl Uplink {
         if batch.is_some() && self.spool.has_unfillable_gap(contiguous).await? {
             tracing::warn!(
                 contiguous,
-                "the shore lacks batches that are no longer here"
+                "the server lacks batches that are no longer stored here"
             );
             return self.open_stream(identity).await;
         }
@@ -59,14 +59,14 @@ impl Uplink {
         let mut problem = error.to_string();
         let (state, pause) = match (error, batch) {
             (RequestError::Forked, _) => {
-                tracing::warn!("the stream has forked: opening another");
+                tracing::warn!("the stream has forked, opening another");
                 return self.open_stream(identity).await;
             }
             (RequestError::Refused(_), Some(batch)) => {
                 tracing::error!(
                     seq = batch.seq,
                     problem,
-                    "the shore refuses a batch: kept aside"
+                    "the server refused a batch, it is parked"
                 );
                 self.spool.park(batch.seq, &problem).await?;
                 (LinkState::Up, self.backoff.next(&mut self.rng))
@@ -78,7 +78,7 @@ impl Uplink {
             (RequestError::NotFound(_), _) => {
                 tracing::warn!(
                     problem,
-                    "the shore lost the stream: all that is kept goes again"
+                    "the server lost the stream, all retained batches are sent again"
                 );
                 self.spool.requeue_all().await?;
                 if let NextStep::Pause(pause) = self.open_stream(identity).await? {
@@ -105,7 +105,7 @@ impl Uplink {
                 (LinkState::Down, self.backoff.next(&mut self.rng))
             }
         };
-        tracing::warn!(problem, pause_s = pause.as_secs_f64(), "not sent");
+        tracing::warn!(problem, pause_s = pause.as_secs_f64(), "the request failed");
         self.publisher.link.send_modify(|link| {
             link.state = state;
             link.problem = Some(problem);
@@ -129,7 +129,7 @@ impl Uplink {
             }
             Err(error) => {
                 let pause = self.backoff.next(&mut self.rng);
-                tracing::warn!(trouble = %error, pause_s = pause.as_secs_f64(), "no new stream");
+                tracing::warn!(trouble = %error, pause_s = pause.as_secs_f64(), "a new stream cannot be opened");
                 self.publisher.link.send_modify(|link| {
                     link.state = LinkState::Down;
                     link.problem = Some(error.to_string());
@@ -147,7 +147,7 @@ impl Uplink {
         };
         tracing::error!(
             version = unread.version,
-            "the shore sent a model that this agent cannot read: update it"
+            "the server sent a model that this agent cannot read: update the agent"
         );
         let model = self.publisher.model.borrow();
         let known = model.as_ref().and_then(|model| model.replaces.as_ref());

@@ -65,7 +65,7 @@ impl Spool {
             let touched = thin_batches(&mut tx, 0).await? + thin_pending(&mut tx).await?;
             tx.commit().await?;
             if touched == 0 {
-                tracing::warn!(limit_bytes, "the spool is full of what cannot be thinned");
+                tracing::warn!(limit_bytes, "the spool is full and nothing is left to thin");
                 return Ok(());
             }
         }
