@@ -1,9 +1,9 @@
-//! The computer's clock: for the page and the uplink's pauses only. Samples
-//! carry the ship's own time (see [`crate::ship_time`]).
+//! The computer's clock, for the page and the pauses of the uplink only. Samples carry GNSS time
+//! (see `crate::instruments`).
 
 use binnacle_compass::time::Timestamp;
 
-/// The time now, as the computer has it.
+/// Returns the computer's time.
 #[allow(
     clippy::disallowed_methods,
     reason = "the one place where the agent asks the computer for the time"

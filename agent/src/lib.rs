@@ -1,43 +1,35 @@
-//! The shipboard agent: instruments → settled windows → samples → spool → shore,
-//! and from the shore's model a corrected heading back to the bridge.
+//! The shipboard agent: instruments → settled windows → samples → spool → server, and from the
+//! server's model a corrected heading back to the bridge.
 //!
 //! A library only so that tests can reach it; the program is `main.rs`.
 
-pub mod cli;
+pub mod commands;
 mod run;
 
 mod config;
 
 mod input;
-mod observation;
+mod instruments;
 
+mod acquisition;
 mod alert;
-mod hold;
-mod roles;
 mod sampler;
-mod ship;
-mod ship_time;
 mod weak_field;
 
-mod ring;
+mod raw_log;
 mod spool;
 
-mod burst;
+mod short_burst;
 mod uplink;
 
-mod corrected;
+mod card_invalidation;
+mod corrected_heading;
 mod output;
-mod sentences;
-mod work;
 
-mod guests;
-mod offline;
 mod page;
-mod reports;
 mod status;
 
+mod atomic_file;
 mod replay;
-mod whole_file;
 
 mod clock;
-mod clocks;

@@ -6,5 +6,5 @@ fn main() -> ExitCode {
     rustls::crypto::ring::default_provider()
         .install_default()
         .expect("no other provider has been installed before");
-    binnacle_agent::cli::main()
+    binnacle_agent::commands::main()
 }

@@ -1,11 +1,11 @@
-//! Recorded sentences through the same roles and sampler as live ones.
+//! Replay of recorded sentences through the same roles and sampler as live ones.
 //!
-//! Nothing is written before everything was read: a table that is there is whole.
+//! Nothing is written before everything was read, so an existing table is complete.
 
+use crate::acquisition::Acquisition;
 use crate::config::RolesConfig;
 use crate::input;
 use crate::sampler::Tally;
-use crate::ship::Ship;
 use anyhow::Context;
 use binnacle_compass::angle::TrueHeading;
 use binnacle_compass::sample::Sample;
@@ -15,10 +15,10 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use tokio::time::Instant;
 
-/// What recordings came to.
+/// Result of replayed recordings.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Replayed {
-    /// In the order in which they were finished.
+    /// Samples in the order in which they were finished.
     pub(crate) samples: Vec<Sample>,
     /// Ten-second windows by outcome.
     pub(crate) windows: Tally,
@@ -35,8 +35,8 @@ struct Report {
     rejected: BTreeMap<&'static str, u64>,
 }
 
-/// Reads recordings one after another, as one voyage. Inputs have no names in a
-/// recording: sources are told apart by talker and sentence.
+/// Reads recordings one after another, as one voyage. Inputs have no names in a recording: sources
+/// are distinguished by talker and sentence.
 ///
 /// # Errors
 /// When a file cannot be read, or has no sentence in it.
@@ -45,35 +45,40 @@ pub(crate) fn replay(
     roles: &RolesConfig,
     stale_s: f64,
 ) -> anyhow::Result<Replayed> {
-    let mut ship = Ship::new(&roles.of_any_input(), stale_s, Settings::default(), None);
+    let mut acquisition = Acquisition::new(
+        &roles.without_input_names(),
+        stale_s,
+        Settings::default(),
+        None,
+    );
     let mut replayed = Replayed::default();
     let heard = Instant::now();
     for file in files {
         let read = input::replay(file, |observations| {
             for observation in observations {
-                ship.observe(observation, heard);
+                acquisition.observe(observation, heard);
             }
-            replayed.samples.extend(ship.sampler.take_samples());
-            // Nobody stands lookout over a recording.
-            drop(ship.sampler.take_settled());
+            replayed.samples.extend(acquisition.sampler.take_samples());
+            // Recordings raise no alerts.
+            drop(acquisition.sampler.take_settled());
         });
         let read = read.with_context(|| file.display().to_string())?;
         anyhow::ensure!(
             read.total_read() > 0,
-            "{}: none of its {} lines is a sentence with a right checksum",
+            "{}: none of its {} lines is a sentence with a valid checksum",
             file.display(),
             read.total_rejected()
         );
         replayed.sentences.add(&read);
     }
-    ship.sampler.finish();
-    replayed.samples.extend(ship.sampler.take_samples());
-    replayed.windows = ship.sampler.take_tally();
+    acquisition.sampler.finish();
+    replayed.samples.extend(acquisition.sampler.take_samples());
+    replayed.windows = acquisition.sampler.take_tally();
     Ok(replayed)
 }
 
 impl Replayed {
-    /// The tally as one line of JSON.
+    /// Returns the tally as one line of JSON.
     pub(crate) fn report(&self) -> String {
         let report = Report {
             samples: self.samples.len(),
@@ -84,7 +89,7 @@ impl Replayed {
         serde_json::to_string(&report).expect("counts and names are always JSON")
     }
 
-    /// The samples as the table that `fit` reads.
+    /// Returns the samples as the table that `fit` reads.
     pub(crate) fn csv(&self) -> anyhow::Result<Vec<u8>> {
         let mut table = csv::Writer::from_writer(Vec::new());
         table.write_record([
@@ -122,7 +127,7 @@ fn record(sample: &Sample) -> [String; 10] {
     ]
 }
 
-/// An empty field is unknown, never zero.
+/// Formats a number; an empty field is unknown, never zero.
 fn number(value: Option<f64>, decimals: usize) -> String {
     value
         .map(|value| format!("{value:.decimals$}"))

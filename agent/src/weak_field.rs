@@ -1,17 +1,17 @@
-//! Where the horizontal field is too weak to direct a magnetic compass: around
-//! the magnetic poles, of which the southern one lies at sea.
+//! Regions where the horizontal field is too weak for a magnetic compass: around the magnetic
+//! poles, of which the southern one lies at sea.
 
 use binnacle_compass::field::{FieldModel, field};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 
-/// Some 12 % of what a compass has at mid-latitudes.
-pub(crate) const LEAST_H_NT: f64 = 2_000.0;
+/// Least horizontal field for a compass: some 12 % of that at mid-latitudes.
+pub(crate) const MIN_H_NT: f64 = 2_000.0;
 
-/// Whether a compass is of no use here; not where the field is not known.
+/// Returns whether the field is too weak for a compass; `false` where the field is not known.
 pub(crate) fn is_weak(position: Position, time: Timestamp) -> bool {
     field(FieldModel::Igrf14, position, 0.0, time)
-        .is_ok_and(|field| field.for_ship().h_nt < LEAST_H_NT)
+        .is_ok_and(|field| field.for_ship().h_nt < MIN_H_NT)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ mod common;
 use common::agent::{Agent, command};
 use common::bridge::{self, Bridge};
 use common::fetch;
-use common::shore::Shore;
+use common::server::TestServer;
 use serde_json::Value;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{Connection, SqliteConnection};
@@ -158,16 +158,16 @@ async fn asking_for_the_status_makes_no_data_directory() {
 
 #[tokio::test]
 async fn a_wrong_code_is_refused_and_nothing_is_kept() {
-    let shore = Shore::start(None, None).await;
+    let server = TestServer::start(None, None).await;
     let agent = Agent::new(nowhere());
     let done = agent
-        .call(&["enrol", "--server", &shore.url, "--code", "WRONG"])
+        .call(&["enrol", "--server", &server.url, "--code", "WRONG"])
         .await;
     assert_eq!(done.status.code(), Some(2), "{done:?}");
     assert!(text(&done.stderr).contains("No such code"));
     let status = agent.call(&["status"]).await;
     assert!(text(&status.stdout).contains("not enrolled"));
-    agent.enrol(&shore.url).await;
+    agent.enrol(&server.url).await;
     let status = agent.call(&["status"]).await;
     assert!(text(&status.stdout).contains("Txori, Standard compass"));
 }
@@ -200,7 +200,7 @@ async fn a_hold_reaches_the_running_agent_and_outlasts_it() {
 }
 
 #[tokio::test]
-async fn what_has_settled_is_kept_when_the_agent_is_told_to_stop() {
+async fn what_has_settled_is_kept_when_the_agent_is_stopped() {
     let bridge = Bridge::new(600).await;
     bridge.sail();
     let agent = Agent::new(bridge.address);
@@ -259,12 +259,12 @@ async fn what_was_said_in_each_second_can_be_exported_and_bad_questions_are_refu
 }
 
 #[tokio::test]
-async fn a_token_is_replaced_on_board_when_the_shore_has_replaced_it() {
-    let shore = Shore::start(None, None).await;
+async fn a_token_is_replaced_on_board_when_the_server_has_replaced_it() {
+    let server = TestServer::start(None, None).await;
     let agent = Agent::new(nowhere());
     let early = agent.call(&["rotate-token"]).await;
     assert_eq!(early.status.code(), Some(2), "{early:?}");
-    agent.enrol(&shore.url).await;
+    agent.enrol(&server.url).await;
     let done = agent.call(&["rotate-token"]).await;
     assert!(done.status.success(), "{done:?}");
     assert!(!text(&done.stdout).contains("the-next-token"));

@@ -1,5 +1,5 @@
-//! Lightning strikes the compass of a ship under way: the real agent, on board and
-//! towards the shore.
+//! Lightning strikes the compass of a vessel under way: the real agent, on board and towards the
+//! server.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may panic too")]
 
@@ -8,7 +8,7 @@ mod common;
 use binnacle_wire::alert::ShipAlertState;
 use common::agent::{Agent, Running};
 use common::bridge::{Bridge, START_S};
-use common::shore::Shore;
+use common::server::TestServer;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -21,7 +21,7 @@ const HOUR_S: i64 = 3600;
 /// Twenty minutes after a turn, when the compass has long come to rest.
 const STRUCK_S: i64 = 5 * HOUR_S + 1200;
 
-/// What the page has, once it is as wanted.
+/// Waits for a status.
 async fn status_when(running: &Running, wanted: impl Fn(&Value) -> bool) -> Value {
     let seen = timeout(PATIENCE, async {
         loop {
@@ -38,13 +38,13 @@ async fn status_when(running: &Running, wanted: impl Fn(&Value) -> bool) -> Valu
 #[tokio::test]
 async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
     let bridge = Bridge::struck(8 * HOUR_S, STRUCK_S, 25.0).await;
-    let shore = Shore::start(Some(common::model()), None).await;
+    let server = TestServer::start(Some(common::model()), None).await;
     let agent = Agent::new(bridge.address);
     agent.configure("[output]", "alarm_sentence = true");
-    agent.enrol(&shore.url).await;
+    agent.enrol(&server.url).await;
     let running = agent.run().await;
     status_when(&running, |status| status["link"]["state"] == "up").await;
-    shore.kept.lock().unwrap().down = true;
+    server.stored.lock().unwrap().down = true;
     let stream = TcpStream::connect(running.output).await.unwrap();
     let mut lines = BufReader::new(stream).lines();
     bridge.sail();
@@ -90,12 +90,12 @@ async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
     assert_eq!(again["alert"]["id"].as_str(), Some(id));
     assert_eq!(again["alert"]["acknowledged"], true);
 
-    shore.kept.lock().unwrap().down = false;
+    server.stored.lock().unwrap().down = false;
     let waiting = again["spool"]["waiting_batches"].as_u64().unwrap();
     assert!(waiting > 3, "{waiting}");
-    timeout(PATIENCE, shore.has(waiting)).await.unwrap();
-    let order = shore.kept.lock().unwrap().order.clone();
-    let batches = shore.decoded();
+    timeout(PATIENCE, server.has(waiting)).await.unwrap();
+    let order = server.stored.lock().unwrap().order.clone();
+    let batches = server.decoded();
     let of = |seq: u64| &batches[usize::try_from(seq).unwrap() - 1];
     let evidence = order.iter().take_while(|seq| **seq != 1).count();
     assert_eq!(of(order[0]).alerts[0].revision, 2);
@@ -128,17 +128,17 @@ async fn without_a_link_it_is_said_on_board_and_with_one_it_goes_first() {
 #[tokio::test]
 async fn killed_around_the_strike_it_raises_one_alert_and_sends_each_revision_once() {
     let bridge = Bridge::struck(10 * 24 * HOUR_S, STRUCK_S, 25.0).await;
-    let shore = Shore::start(Some(common::model()), Some(5)).await;
+    let server = TestServer::start(Some(common::model()), Some(5)).await;
     let agent = Agent::new(bridge.address);
-    agent.enrol(&shore.url).await;
+    agent.enrol(&server.url).await;
     let running = agent.run().await;
     status_when(&running, |status| status["model"]["version"] == 3).await;
     bridge.sail();
     running.kill().await;
     for round in 1..=8 {
         let running = agent.run().await;
-        let wanted = *shore.news.borrow() + 1 + round % 3;
-        timeout(PATIENCE, shore.has(wanted)).await.unwrap();
+        let wanted = *server.stored_batches.borrow() + 1 + round % 3;
+        timeout(PATIENCE, server.has(wanted)).await.unwrap();
         running.kill().await;
     }
     let running = agent.run().await;
@@ -150,8 +150,8 @@ async fn killed_around_the_strike_it_raises_one_alert_and_sends_each_revision_on
     .await;
     running.kill().await;
 
-    assert_eq!(shore.kept.lock().unwrap().forks, 0);
-    let batches = shore.decoded();
+    assert_eq!(server.stored.lock().unwrap().forks, 0);
+    let batches = server.decoded();
     let alerts: Vec<_> = batches.iter().flat_map(|batch| &batch.alerts).collect();
     let ids: BTreeSet<_> = alerts.iter().map(|alert| alert.id).collect();
     assert_eq!(ids.len(), 1, "{alerts:?}");

@@ -1,4 +1,4 @@
-//! The whole agent between a ship and a shore, over real sockets.
+//! The whole agent between a vessel and a server, over real sockets.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests may panic too")]
 
@@ -10,7 +10,7 @@ use binnacle_nmea::sentence::ThsMode;
 use binnacle_nmea::{Data, parse};
 use common::agent::Agent;
 use common::bridge::{self, Bridge, LEAD_DEG};
-use common::shore::{STREAM, Shore};
+use common::server::{STREAM, TestServer};
 use serde_json::Value;
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{Connection, SqliteConnection};
@@ -23,15 +23,15 @@ use tokio::time::timeout;
 const PATIENCE: Duration = Duration::from_mins(2);
 
 #[tokio::test]
-async fn a_voyage_reaches_the_shore_and_comes_back_as_a_heading() {
+async fn a_voyage_reaches_the_server_and_comes_back_as_a_heading() {
     let seconds = 12 * 3600;
     let bridge = Bridge::new(seconds).await;
-    let shore = Shore::start(Some(common::model()), None).await;
+    let server = TestServer::start(Some(common::model()), None).await;
     let agent = Agent::new(bridge.address);
-    agent.enrol(&shore.url).await;
+    agent.enrol(&server.url).await;
     let running = agent.run().await;
     loop {
-        // Not before the shore's settings are in effect.
+        // Not before the server's settings are in effect.
         let status = common::fetch(running.page, "/api/status").await;
         let status: Value = serde_json::from_str(&status).unwrap();
         if status["link"]["state"] == "up" {
@@ -39,7 +39,7 @@ async fn a_voyage_reaches_the_shore_and_comes_back_as_a_heading() {
         }
     }
     bridge.sail();
-    timeout(PATIENCE, shore.has(10)).await.unwrap();
+    timeout(PATIENCE, server.has(10)).await.unwrap();
 
     // While the bridge talks, the heading is corrected; when it falls silent, not valid.
     let stream = TcpStream::connect(running.output).await.unwrap();
@@ -76,7 +76,7 @@ async fn a_voyage_reaches_the_shore_and_comes_back_as_a_heading() {
     assert!(!log.contains("the-token"), "{log}");
 
     let mut windows = 0;
-    for batch in shore.decoded() {
+    for batch in server.decoded() {
         for sample in batch.samples {
             let lead = wrap_180(sample.gyro.unwrap().degrees() - sample.compass.degrees());
             assert!((lead - LEAD_DEG).abs() < 0.06, "{sample:?}");
@@ -94,13 +94,13 @@ async fn a_voyage_reaches_the_shore_and_comes_back_as_a_heading() {
 async fn killed_again_and_again_it_sends_every_sealed_sample_once() {
     let bridge = Bridge::new(10 * 24 * 3600).await;
     bridge.sail();
-    let shore = Shore::start(None, Some(5)).await;
+    let server = TestServer::start(None, Some(5)).await;
     let agent = Agent::new(bridge.address);
-    agent.enrol(&shore.url).await;
+    agent.enrol(&server.url).await;
     for round in 1..=5 {
         let running = agent.run().await;
-        let wanted = *shore.news.borrow() + 3 * round;
-        timeout(PATIENCE, shore.has(wanted)).await.unwrap();
+        let wanted = *server.stored_batches.borrow() + 3 * round;
+        timeout(PATIENCE, server.has(wanted)).await.unwrap();
         running.kill().await;
     }
     let running = agent.run().await;
@@ -129,14 +129,14 @@ async fn killed_again_and_again_it_sends_every_sealed_sample_once() {
             .fetch_all(&mut spool)
             .await
             .unwrap();
-    let batches = shore.decoded();
+    let batches = server.decoded();
     for ((stream, seq, samples), number) in acknowledged.iter().zip(1..) {
         assert_eq!((stream, *seq), (&STREAM.to_string(), number));
         let sent = &batches[usize::try_from(*seq).unwrap() - 1];
         assert_eq!(sent.samples.len(), usize::try_from(*samples).unwrap());
     }
     assert_eq!(
-        shore.kept.lock().unwrap().forks,
+        server.stored.lock().unwrap().forks,
         0,
         "a batch was changed after it was sent"
     );

@@ -38,7 +38,7 @@ async fn dripping_answer() -> Result<()> {
     let began = Instant::now();
     coast.gateway.met(3, PATIENCE).await?;
     println!("three exchanges were given up in {:?}", began.elapsed());
-    coast.says("/link/problem", "no answer in time").await?;
+    coast.says("/link/problem", "no response in time").await?;
     coast.ensure_nothing_went(&before).await?;
     coast.gateway.set(Manners::Passes);
     let spool = coast.all_ashore().await?;
@@ -66,7 +66,7 @@ async fn expired_certificate() -> Result<()> {
     coast.shore.stopped_for(expires).await?;
     coast.until(2.0).await?;
     let said = coast
-        .says("/link/problem", "the shore's certificate has expired")
+        .says("/link/problem", "the server's certificate has expired")
         .await?;
     ensure!(said.contains("clock is wrong"), "{said}");
     coast.ensure_nothing_went(&before).await?;

@@ -1,21 +1,16 @@
-//! The agent's own alert: the compass, corrected by its model, and the gyro have
-//! parted. It needs no link.
+//! Alert of the agent itself: the corrected compass and its references disagree. It needs no link.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - It is judged on settled windows alone: not in turns, nor until the compass has
-//!   come to rest after one, nor under a hold, nor where the card was withdrawn or
-//!   never was. Waiting is counted in settled windows, so no clock can hurry or hold
-//!   it up.
-//! - There is one alert at a time. It is raised once, changed by revisions, and ended
-//!   once.
-//! - What is known of it is in the spool before it is anywhere else, together with
-//!   the batch that carries it ashore.
+//! - Only settled windows are judged: none in turns, none before the compass has come to rest after
+//!   one, none under an exclusion, none without a valid card. Delays are counted in settled
+//!   windows, so no clock can shorten or extend them.
+//! - At most one alert is open. It is raised once, changed by revisions, and closed once.
+//! - A revision is in the spool before it is published, together with the batch that carries it to
+//!   the server.
 
-mod aboard;
-mod lookout;
-mod sentence;
+mod monitor;
+mod record;
 
-pub(crate) use aboard::{Aboard, AlertStatus};
-pub(crate) use lookout::{Card, Lookout};
-pub(crate) use sentence::AlarmSentence;
+pub(crate) use monitor::{ActiveCard, AlertMonitor};
+pub(crate) use record::{AlertRecord, AlertStatus};

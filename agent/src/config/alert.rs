@@ -1,16 +1,15 @@
-//! `[alert]`: when the agent says that compass and gyro have parted.
+//! `[alert]`: thresholds of the alert that compass and gyro disagree.
 
-use crate::config::PositiveSeconds;
-use crate::sampler::WINDOW_S;
+use super::limits::PositiveSeconds;
 use serde::Deserialize;
 
-/// When the agent raises its own alert.
+/// Thresholds of the agent's own alert.
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct AlertConfig {
-    /// What the ship's gyro may usually err, at the equator.
+    /// Usual error of the vessel's gyro, at the equator.
     pub(crate) gyro_error_deg: GyroError,
-    /// So long they must be apart, counted in settled windows.
+    /// Duration of the disagreement that raises the alert, counted in settled windows.
     pub(crate) settled_s: PositiveSeconds,
 }
 
@@ -23,16 +22,7 @@ impl Default for AlertConfig {
     }
 }
 
-impl AlertConfig {
-    /// Windows that [`AlertConfig::settled_s`] stands for: a minute's at least, a
-    /// day's at most.
-    pub(crate) fn settled_windows(&self) -> usize {
-        let windows = self.settled_s.0 / WINDOW_S as f64;
-        windows.round().clamp(6.0, 8640.0) as usize
-    }
-}
-
-/// Degrees, from a half to thirty.
+/// Usual error of a gyro in degrees, from 0.5 to 30.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f64")]
 pub(crate) struct GyroError(pub(crate) f64);

@@ -1,105 +1,71 @@
-//! `agent.toml`: what is connected, what each source is for, and where results go.
+//! `agent.toml`: inputs, roles of the sources, and destinations.
 //!
-//! Anything unknown, missing or impossible is refused with the file, the line
-//! and the field; a configuration that loads is one that can run. Paths in the
-//! file are relative to the file.
+//! Anything unknown, missing or impossible is refused with file, line and field, so a configuration
+//! that loads can run. Paths in the file are relative to the file.
 
 mod alert;
+mod error;
+mod input;
+mod limits;
+mod output;
+mod profile;
 mod roles;
 mod uplink;
 
 pub(crate) use alert::AlertConfig;
 #[cfg(test)]
 pub(crate) use alert::GyroError;
+pub(crate) use error::ConfigError;
+pub(crate) use input::{Group, HostPort, InputConfig, SignalKUrl};
+pub(crate) use output::{OutputConfig, SerialConfig};
+#[cfg(test)]
+pub(crate) use profile::max_burst_batch_bytes;
+pub(crate) use profile::{ConnectionPolicy, Profile, UploadPlan};
 pub(crate) use roles::{RolesConfig, SourceConfig};
 pub(crate) use uplink::{ModemConfig, UplinkConfig};
 
-use crate::input::InputConfig;
+use error::Problem;
+use limits::{PositiveSeconds, RawLogLimit, SpoolLimit};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
 use std::net::SocketAddr;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-/// All of `agent.toml`.
+/// Contents of `agent.toml`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Config {
-    /// Where the spool is kept.
+    /// Directory of the spool.
     pub(crate) data_dir: PathBuf,
-    /// How much of the disk the spool may take.
+    /// Disk limit of the spool.
     #[serde(default)]
     pub(crate) spool_mb: SpoolLimit,
-    /// How much of the disk what was heard in each second may take; 0 keeps nothing.
-    #[serde(default)]
-    pub(crate) ring_mb: RingLimit,
-    /// What is listened to, by the name that roles refer to.
+    /// Disk limit of the raw log; 0 keeps nothing.
+    #[serde(default, rename = "ring_mb")]
+    pub(crate) raw_log_mb: RawLogLimit,
+    /// Inputs, by the names that roles refer to.
     #[serde(default)]
     pub(crate) inputs: BTreeMap<String, InputConfig>,
-    /// Which source is which instrument.
+    /// Sources of each instrument.
     #[serde(default = "RolesConfig::usual")]
     pub(crate) roles: RolesConfig,
-    /// Where the corrected heading goes.
+    /// Destinations of the corrected heading.
     #[serde(default)]
     pub(crate) output: OutputConfig,
     /// The local page; none when absent.
     pub(crate) page: Option<PageConfig>,
-    /// How the shore is spoken to.
+    /// Connection to the server.
     #[serde(default)]
     pub(crate) uplink: UplinkConfig,
-    /// What carries short-burst messages.
+    /// Modem for short-burst messages.
     pub(crate) modem: Option<ModemConfig>,
-    /// When the agent raises its own alert.
+    /// Thresholds of the agent's own alert.
     #[serde(default)]
     pub(crate) alert: AlertConfig,
-    /// When a source counts as silent.
+    /// Time without readings after which a source counts as silent.
     #[serde(default)]
     pub(crate) silence: SilenceConfig,
-}
-
-/// Where the corrected heading goes.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct OutputConfig {
-    /// Listens here and sends to everyone who connects.
-    pub(crate) tcp_server: Option<SocketAddr>,
-    /// Sends datagrams here; a broadcast address will do.
-    pub(crate) udp: Option<SocketAddr>,
-    /// Writes to this port.
-    pub(crate) serial: Option<SerialConfig>,
-    /// Seconds between two outputs.
-    pub(crate) interval_s: PositiveSeconds,
-    /// Whether to send ALR sentences of the agent's own alert too.
-    pub(crate) alarm_sentence: bool,
-}
-
-impl Default for OutputConfig {
-    fn default() -> OutputConfig {
-        OutputConfig {
-            tcp_server: None,
-            udp: None,
-            serial: None,
-            interval_s: PositiveSeconds(1.0),
-            alarm_sentence: false,
-        }
-    }
-}
-
-/// A serial port to write to.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct SerialConfig {
-    /// As `/dev/ttyUSB0`.
-    pub(crate) path: String,
-    /// Bits a second; IEC 61162-1 has 4800, 61162-2 38400.
-    #[serde(default = "standard_baud")]
-    pub(crate) baud: u32,
-}
-
-fn standard_baud() -> u32 {
-    4800
 }
 
 /// The local page.
@@ -110,11 +76,11 @@ pub(crate) struct PageConfig {
     pub(crate) listen: SocketAddr,
 }
 
-/// When a source counts as silent.
+/// Time without readings after which a source counts as silent.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct SilenceConfig {
-    /// Seconds of ship time.
+    /// Seconds of GNSS time.
     pub(crate) stale_s: PositiveSeconds,
 }
 
@@ -124,114 +90,6 @@ impl Default for SilenceConfig {
             stale_s: PositiveSeconds(15.0),
         }
     }
-}
-
-/// Megabytes (of a million bytes), from 4 to 100 000.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "f64")]
-pub(crate) struct SpoolLimit(f64);
-
-impl SpoolLimit {
-    /// In bytes.
-    pub(crate) fn bytes(self) -> u64 {
-        (self.0 * 1e6) as u64
-    }
-}
-
-impl Default for SpoolLimit {
-    fn default() -> SpoolLimit {
-        SpoolLimit(64.0)
-    }
-}
-
-impl TryFrom<f64> for SpoolLimit {
-    type Error = String;
-    fn try_from(megabytes: f64) -> Result<SpoolLimit, String> {
-        if (4.0..=100_000.0).contains(&megabytes) {
-            Ok(SpoolLimit(megabytes))
-        } else {
-            Err(format!("{megabytes} is not from 4 to 100000 megabytes"))
-        }
-    }
-}
-
-/// Megabytes (of a million bytes), from 1 to 10 000, or 0 for none.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(try_from = "f64")]
-pub(crate) struct RingLimit(f64);
-
-impl RingLimit {
-    /// In bytes.
-    pub(crate) fn bytes(self) -> u64 {
-        (self.0 * 1e6) as u64
-    }
-}
-
-impl Default for RingLimit {
-    fn default() -> RingLimit {
-        RingLimit(64.0)
-    }
-}
-
-impl TryFrom<f64> for RingLimit {
-    type Error = String;
-    fn try_from(megabytes: f64) -> Result<RingLimit, String> {
-        if megabytes == 0.0 || (1.0..=10_000.0).contains(&megabytes) {
-            Ok(RingLimit(megabytes))
-        } else {
-            Err(format!(
-                "{megabytes} is neither 0 nor from 1 to 10000 megabytes"
-            ))
-        }
-    }
-}
-
-/// Seconds, from a hundredth to a year.
-#[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Deserialize)]
-#[serde(try_from = "f64")]
-pub(crate) struct PositiveSeconds(pub(crate) f64);
-
-impl PositiveSeconds {
-    /// As the standard library has it.
-    pub(crate) fn duration(self) -> Duration {
-        Duration::from_secs_f64(self.0)
-    }
-}
-
-impl TryFrom<f64> for PositiveSeconds {
-    type Error = String;
-    fn try_from(seconds: f64) -> Result<PositiveSeconds, String> {
-        if (0.01..=31_557_600.0).contains(&seconds) {
-            Ok(PositiveSeconds(seconds))
-        } else {
-            Err(format!("{seconds} is not from 0.01 to 31557600 seconds"))
-        }
-    }
-}
-
-/// Why a configuration cannot be used: one line for the one who wrote it.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum ConfigError {
-    /// There is no such file, or it cannot be read.
-    #[error("{}: {source}", path.display())]
-    Unreadable {
-        /// The configuration file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// Something in it is wrong.
-    #[error("{}:{line}: {field}{problem}", path.display())]
-    Wrong {
-        /// The configuration file.
-        path: PathBuf,
-        /// Counts from 1.
-        line: usize,
-        /// The key before the value, with a colon; empty when there is none.
-        field: String,
-        /// What is wrong.
-        problem: String,
-    },
 }
 
 impl Config {
@@ -257,21 +115,15 @@ impl Config {
     }
 }
 
-/// A problem and where in the text it is.
-struct Wrong {
-    span: Option<Range<usize>>,
-    problem: String,
-}
-
-fn parse(text: &str) -> Result<Config, Wrong> {
-    let config: Config = toml::from_str(text).map_err(|e| Wrong {
+fn parse(text: &str) -> Result<Config, Problem> {
+    let config: Config = toml::from_str(text).map_err(|e| Problem {
         span: e.span(),
         problem: e.message().replace('\n', "; "),
     })?;
     for source in config.roles.sources() {
         let Some(input) = &source.input else { continue };
         if !config.inputs.contains_key(input.get_ref()) {
-            return Err(Wrong {
+            return Err(Problem {
                 span: Some(input.span()),
                 problem: format!("there is no input named {:?}", input.get_ref()),
             });
@@ -279,35 +131,6 @@ fn parse(text: &str) -> Result<Config, Wrong> {
     }
     config.uplink.check(config.modem.as_ref())?;
     Ok(config)
-}
-
-impl Wrong {
-    fn in_file(self, path: &Path, text: &str) -> ConfigError {
-        let at = self.span.map_or(0, |span| span.start.min(text.len()));
-        let before = text.get(..at).unwrap_or_default();
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        ConfigError::Wrong {
-            path: path.to_owned(),
-            line: before.matches('\n').count() + 1,
-            field: key_before(&text[line_start..at]),
-            problem: self.problem,
-        }
-    }
-}
-
-/// `interval_s = ` gives `interval_s: `, `{ input = "a", talker = ` gives `talker: `.
-fn key_before(text: &str) -> String {
-    let Some((left, _)) = text.rsplit_once('=') else {
-        return String::new();
-    };
-    let key = left
-        .trim_end()
-        .rsplit(|c: char| !(c.is_alphanumeric() || c == '_' || c == '-'))
-        .next();
-    match key {
-        Some(key) if !key.is_empty() => format!("{key}: "),
-        _ => String::new(),
-    }
 }
 
 #[cfg(test)]
@@ -360,7 +183,7 @@ stale_s = 15
         let example = example.map_err(|w| w.problem).unwrap();
         let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
         assert_eq!(example.spool_mb, bare.spool_mb);
-        assert_eq!(example.ring_mb, bare.ring_mb);
+        assert_eq!(example.raw_log_mb, bare.raw_log_mb);
         assert_eq!(example.uplink.profile, bare.uplink.profile);
         assert_eq!(example.uplink.poll(), bare.uplink.poll());
         assert_eq!(example.uplink.retry_min_s, bare.uplink.retry_min_s);

@@ -1,4 +1,4 @@
-//! `[roles]`: which source is which instrument, best first.
+//! `[roles]`: sources of each instrument, best first.
 
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
@@ -7,16 +7,16 @@ use toml::Spanned;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct RolesConfig {
-    /// The magnetic compass, raw.
+    /// Magnetic compass, raw.
     #[serde(deserialize_with = "compass_sources")]
     pub(crate) compass: Vec<SourceConfig>,
-    /// The gyro compass.
+    /// Gyro compass.
     #[serde(deserialize_with = "true_heading_sources")]
     pub(crate) gyro: Vec<SourceConfig>,
-    /// The satellite compass.
+    /// Satellite compass.
     #[serde(deserialize_with = "true_heading_sources")]
     pub(crate) satellite: Vec<SourceConfig>,
-    /// Position, speed and the ship's time.
+    /// Position, speed and GNSS time.
     #[serde(deserialize_with = "position_sources")]
     pub(crate) position: Vec<SourceConfig>,
     /// Rate of turn.
@@ -27,16 +27,16 @@ pub(crate) struct RolesConfig {
     pub(crate) roll: Vec<SourceConfig>,
 }
 
-/// One source: what is left out matches anything.
+/// One source; an omitted key matches anything.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SourceConfig {
-    /// The input's name.
+    /// Name of the input.
     pub(crate) input: Option<Spanned<String>>,
-    /// Two letters.
+    /// Talker, two letters.
     #[serde(default, deserialize_with = "two_letters")]
     pub(crate) talker: Option<[u8; 2]>,
-    /// Three letters.
+    /// Sentence, three letters.
     #[serde(default, deserialize_with = "three_letters")]
     pub(crate) sentence: Option<[u8; 3]>,
     /// HDM only: the heading has had no deviation applied.
@@ -54,14 +54,14 @@ impl SourceConfig {
         }
     }
 
-    /// Whether a talker is the one wanted.
+    /// Returns whether the talker matches.
     pub(crate) fn matches_talker(&self, talker: [u8; 2]) -> bool {
         self.talker.is_none_or(|wanted| wanted == talker)
     }
 }
 
 impl RolesConfig {
-    /// Every source of every role.
+    /// Iterates over the sources of all roles.
     pub(crate) fn sources(&self) -> impl Iterator<Item = &SourceConfig> {
         [
             &self.compass,
@@ -75,8 +75,8 @@ impl RolesConfig {
         .flatten()
     }
 
-    /// The same roles for sources whose input has no name.
-    pub(crate) fn of_any_input(&self) -> RolesConfig {
+    /// Returns the roles without input names, for recordings.
+    pub(crate) fn without_input_names(&self) -> RolesConfig {
         let mut roles = self.clone();
         for sources in [
             &mut roles.compass,
@@ -104,7 +104,7 @@ impl RolesConfig {
         }
     }
 
-    /// What talkers usually are, when nobody has said.
+    /// Returns the conventional talkers of each role.
     pub(crate) fn usual() -> RolesConfig {
         let source = SourceConfig::usual;
         RolesConfig {
@@ -166,7 +166,7 @@ fn compass_sources<'de, D: Deserializer<'de>>(d: D) -> Sources<D::Error> {
         .any(|s| s.sentence == Some(*b"HDM") && !s.raw)
     {
         return Err(serde::de::Error::custom(
-            "HDM may have deviation applied already: set raw = true if it has not",
+            "HDM may already have deviation applied: set raw = true if it has not",
         ));
     }
     Ok(sources)
@@ -201,7 +201,7 @@ fn sources_of<'de, D: Deserializer<'de>>(
         if !allowed.contains(&&sentence) {
             let sentence = String::from_utf8_lossy(&sentence).into_owned();
             return Err(serde::de::Error::custom(format!(
-                "{sentence} cannot serve here: {names} can"
+                "{sentence} cannot serve here: use {names}"
             )));
         }
     }

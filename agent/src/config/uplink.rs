@@ -1,30 +1,30 @@
-//! How the shore is spoken to, and over what.
+//! `[uplink]` and `[modem]`: the connection to the server.
 
-use super::{PositiveSeconds, Wrong};
-use crate::uplink::{EXCHANGE, Line, Plan, Profile};
+use super::error::Problem;
+use super::limits::PositiveSeconds;
+use super::profile::{ConnectionPolicy, EXCHANGE_TIMEOUT, Profile, UploadPlan};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use toml::Spanned;
 
-/// How the shore is spoken to.
+/// Connection to the server.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct UplinkConfig {
-    /// A PEM file: the only authority whose certificates are believed.
+    /// PEM file with the only trusted certificate authority.
     pub(crate) pinned_ca: Option<PathBuf>,
-    /// What the link costs: how often the shore is spoken to, and for how much.
+    /// Cost class of the link: upload interval and daily byte budget.
     pub(crate) profile: Spanned<Profile>,
-    /// A budget in place of the profile's.
-    pub(crate) day_kb: Option<DayBudget>,
-    /// Asks for news when nothing was sent for so many seconds, in place of the
-    /// profile's time.
+    /// Daily budget that replaces the profile's.
+    pub(crate) day_kb: Option<DailyBudget>,
+    /// Interval of polls when nothing was sent, in place of the profile's.
     pub(crate) poll_s: Option<PositiveSeconds>,
-    /// An exchange with the shore that takes longer is given up.
+    /// Timeout of an exchange with the server.
     pub(crate) exchange_s: PositiveSeconds,
-    /// The first pause after a failure, at most.
+    /// Upper bound of the first pause after a failure.
     pub(crate) retry_min_s: Spanned<PositiveSeconds>,
-    /// The longest pause after failures.
+    /// Longest pause after failures.
     pub(crate) retry_max_s: Spanned<PositiveSeconds>,
 }
 
@@ -35,7 +35,7 @@ impl Default for UplinkConfig {
             profile: Spanned::new(0..0, Profile::default()),
             day_kb: None,
             poll_s: None,
-            exchange_s: PositiveSeconds(EXCHANGE.as_secs_f64()),
+            exchange_s: PositiveSeconds(EXCHANGE_TIMEOUT.as_secs_f64()),
             retry_min_s: Spanned::new(0..0, PositiveSeconds(30.0)),
             retry_max_s: Spanned::new(0..0, PositiveSeconds(3_600.0)),
         }
@@ -43,48 +43,48 @@ impl Default for UplinkConfig {
 }
 
 impl UplinkConfig {
-    /// What the profile and the budget come to.
-    pub(crate) fn plan(&self) -> Plan {
+    /// Returns the upload plan of profile and budget.
+    pub(crate) fn plan(&self) -> UploadPlan {
         self.profile
             .get_ref()
-            .plan(self.day_kb.map(DayBudget::octets))
+            .plan(self.day_kb.map(DailyBudget::bytes))
     }
 
-    /// How connections are used.
-    pub(crate) fn line(&self) -> Line {
-        Line {
-            exchange: self.exchange_s.duration(),
-            ..self.plan().line()
+    /// Returns the connection policy.
+    pub(crate) fn connection_policy(&self) -> ConnectionPolicy {
+        ConnectionPolicy {
+            exchange_timeout: self.exchange_s.duration(),
+            ..self.plan().connection_policy()
         }
     }
 
-    /// Whether the settings go together.
-    pub(super) fn check(&self, modem: Option<&ModemConfig>) -> Result<(), Wrong> {
+    /// Fails when settings contradict each other.
+    pub(super) fn check(&self, modem: Option<&ModemConfig>) -> Result<(), Problem> {
         let is_burst = *self.profile.get_ref() == Profile::ShortBurst;
         match modem {
             None if is_burst => {
-                return Err(Wrong {
+                return Err(Problem {
                     span: Some(self.profile.span()),
                     problem: "short-burst needs a [modem]".to_owned(),
                 });
             }
             Some(modem) if !is_burst => {
-                return Err(Wrong {
+                return Err(Problem {
                     span: Some(modem.directory.span()),
-                    problem: "a modem serves the profile short-burst only".to_owned(),
+                    problem: "a modem needs the profile short-burst".to_owned(),
                 });
             }
             _ => {}
         }
         let (min, max) = (&self.retry_min_s, &self.retry_max_s);
         if min.get_ref() > max.get_ref() {
-            // What was left out has no place in the file.
+            // A default has no position in the file.
             let (wrong, other) = if min.span().is_empty() {
                 (max, format!("less than retry_min_s, {}", min.get_ref().0))
             } else {
                 (min, format!("more than retry_max_s, {}", max.get_ref().0))
             };
-            return Err(Wrong {
+            return Err(Problem {
                 span: Some(wrong.span()),
                 problem: format!("{} is {other}", wrong.get_ref().0),
             });
@@ -92,23 +92,23 @@ impl UplinkConfig {
         Ok(())
     }
 
-    /// Asks for news when nothing was sent for so long.
+    /// Returns the interval of polls when nothing was sent.
     pub(crate) fn poll(&self) -> Duration {
         self.poll_s
             .map_or_else(|| self.plan().poll(), PositiveSeconds::duration)
     }
 }
 
-/// What carries short-burst messages.
+/// Modem for short-burst messages.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ModemConfig {
-    /// Messages are written to `out` and read from `in` in this folder.
+    /// Folder with `out` for messages to send and `in` for received ones.
     directory: Spanned<PathBuf>,
 }
 
 impl ModemConfig {
-    /// The folder.
+    /// Returns the folder.
     pub(crate) fn directory(&self) -> &Path {
         self.directory.get_ref()
     }
@@ -122,20 +122,20 @@ impl ModemConfig {
 /// Kilobytes (of a thousand bytes) a day, from 3, one exchange, to a million.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "f64")]
-pub(crate) struct DayBudget(f64);
+pub(crate) struct DailyBudget(f64);
 
-impl DayBudget {
-    /// In octets.
-    pub(crate) fn octets(self) -> f64 {
+impl DailyBudget {
+    /// Returns the budget in bytes.
+    pub(crate) fn bytes(self) -> f64 {
         self.0 * 1e3
     }
 }
 
-impl TryFrom<f64> for DayBudget {
+impl TryFrom<f64> for DailyBudget {
     type Error = String;
-    fn try_from(kilobytes: f64) -> Result<DayBudget, String> {
+    fn try_from(kilobytes: f64) -> Result<DailyBudget, String> {
         if (3.0..=1e6).contains(&kilobytes) {
-            Ok(DayBudget(kilobytes))
+            Ok(DailyBudget(kilobytes))
         } else {
             Err(format!(
                 "{kilobytes} is not from 3 to 1000000 kilobytes a day"
@@ -156,21 +156,27 @@ mod tests {
     fn a_profile_says_how_often_and_for_how_much_and_single_settings_override_it() {
         let bare = parse("data_dir = \"d\"").map_err(|w| w.problem).unwrap();
         let plan = bare.uplink.plan();
-        assert_eq!((plan.seal_s, plan.day_octets), (21_600, None));
+        assert_eq!((plan.seal_s, plan.daily_bytes), (21_600, None));
         let uplink = |lines: &str| {
             let text = format!("data_dir = \"d\"\n[uplink]\n{lines}");
             parse(&text).map_err(|w| w.problem).unwrap().uplink
         };
         let metered = uplink("profile = \"metered\"");
         assert_eq!(metered.plan().seal_s, 86_400);
-        assert_eq!(metered.plan().day_octets, Some(8_000.0));
+        assert_eq!(metered.plan().daily_bytes, Some(8_000.0));
         assert_eq!(metered.poll(), Duration::from_hours(36));
         let own = uplink("profile = \"very-metered\"\nday_kb = 12\npoll_s = 60");
-        assert_eq!(own.plan().day_octets, Some(12_000.0));
+        assert_eq!(own.plan().daily_bytes, Some(12_000.0));
         assert_eq!(own.poll(), Duration::from_mins(1));
-        assert_eq!(own.line().exchange, Duration::from_mins(10));
+        assert_eq!(
+            own.connection_policy().exchange_timeout,
+            Duration::from_mins(10)
+        );
         let hasty = uplink("exchange_s = 2");
-        assert_eq!(hasty.line().exchange, Duration::from_secs(2));
+        assert_eq!(
+            hasty.connection_policy().exchange_timeout,
+            Duration::from_secs(2)
+        );
         let wrong = WHOLE.replace("poll_s = 21600", "profile = \"modem\"");
         let said = message(&wrong);
         assert!(
@@ -197,7 +203,7 @@ mod tests {
         let alone = format!("{WHOLE}\n[modem]\ndirectory = \"sat\"");
         assert_eq!(
             message(&alone),
-            "agent.toml:26: directory: a modem serves the profile short-burst only"
+            "agent.toml:26: directory: a modem needs the profile short-burst"
         );
     }
 }

@@ -1,32 +1,23 @@
-//! From bytes to observations: cut into lines, read, counted.
+//! Decoding of bytes to observations: split into lines, parsed, counted.
 
 use super::readings::{readings, timestamp};
-use crate::observation::{Observation, Reading};
+use crate::instruments::{Observation, RECORDED_TIME, Reading};
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::lines::Line;
 use binnacle_nmea::{Lines, Rejected, Tally, datagram};
 use std::sync::Arc;
 
-/// Talker and sentence of a time that the recording gave, not an instrument.
-const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
-
-/// Whether an observation is the time that a recording gives its lines.
-pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
-    (seen.talker, seen.sentence) == RECORDED_TIME
-}
-
-/// What the lines of an input may have before the sentence.
+/// Kind of input, which decides what may precede a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Source {
-    /// Instruments themselves. A clock in a TAG block is some device's own and
-    /// is not looked at.
+    /// Live instruments. A clock in a TAG block is some device's own and is ignored.
     Live,
-    /// A recording: an RFC 3339 time and a space or tab, or the clock in a TAG
-    /// block, says when a line was received.
+    /// Recording: an RFC 3339 time and a space or tab, or the clock in a TAG block, gives the time
+    /// at which a line was received.
     Recording,
 }
 
-/// Decodes one connection's bytes; a new connection starts a new one.
+/// Decoder of one connection's bytes; a new connection needs a new one.
 #[derive(Debug)]
 pub(super) struct Decoder {
     lines: Lines,
@@ -39,7 +30,7 @@ struct Reader {
     source: Source,
     tally: Tally,
     recorded_at: Option<Timestamp>,
-    /// The text of the last time, which many lines share.
+    /// Text of the last time, which many lines share.
     time_text: Vec<u8>,
     out: Vec<Observation>,
 }
@@ -59,25 +50,25 @@ impl Decoder {
         }
     }
 
-    /// Reads what a chunk completes.
+    /// Decodes the lines that a chunk completes.
     pub(super) fn chunk(&mut self, chunk: &[u8]) {
         let reader = &mut self.reader;
         self.lines.push(chunk, |line| reader.line(line));
     }
 
-    /// Reads the last line, whose end may be missing.
+    /// Decodes the last line, whose end may be missing.
     pub(super) fn finish(&mut self) {
         let reader = &mut self.reader;
         self.lines.finish(|line| reader.line(line));
     }
 
-    /// Reads a datagram of plain sentences.
+    /// Decodes a datagram of plain sentences.
     pub(super) fn plain_datagram(&mut self, bytes: &[u8]) {
         self.chunk(bytes);
         self.finish();
     }
 
-    /// Reads an IEC 61162-450 datagram.
+    /// Decodes an IEC 61162-450 datagram.
     pub(super) fn tagged_datagram(&mut self, bytes: &[u8]) {
         match datagram::lines(bytes) {
             Ok(lines) => lines.for_each(|line| self.reader.line(Line::Whole(line))),
@@ -85,13 +76,13 @@ impl Decoder {
         }
     }
 
-    /// The observations so far; leaves none behind.
+    /// Takes the observations so far.
     pub(super) fn take_observations(&mut self) -> Vec<Observation> {
         let room = Vec::with_capacity(self.reader.out.len());
         std::mem::replace(&mut self.reader.out, room)
     }
 
-    /// The counts so far; leaves none behind.
+    /// Takes the counts so far.
     pub(super) fn take_tally(&mut self) -> Tally {
         std::mem::take(&mut self.reader.tally)
     }
@@ -129,8 +120,7 @@ impl Reader {
         });
     }
 
-    /// What follows the time before a sentence; `None` when there is something
-    /// that should be a time and is not.
+    /// Returns the rest of a line after its time; `None` when something in place of a time is none.
     fn after_time<'a>(&mut self, line: &'a [u8]) -> Option<&'a [u8]> {
         if !line.first().is_some_and(u8::is_ascii_digit) {
             return Some(line);
@@ -163,6 +153,7 @@ impl Reader {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::instruments::is_recorded_time;
 
     const HEADING: &str = "$GPHDT,274.07,T*03";
 

@@ -3,7 +3,7 @@
 use super::decode::{Decoder, Source};
 use super::link::{End, Link};
 use super::pump::pump;
-use crate::observation::Observation;
+use crate::instruments::Observation;
 use binnacle_nmea::Tally;
 use std::fs::File;
 use std::io::{self, Read};
@@ -18,8 +18,8 @@ pub(super) async fn session(path: &Path, link: &Link) -> io::Result<End> {
     Ok(End::Finished)
 }
 
-/// Reads a whole recording, handing observations to `each` in the order of its
-/// lines; its own times come as observations that [`super::is_recorded_time`].
+/// Reads a whole recording and passes its observations to `each` in the order of its lines. The
+/// recording's own times are observations for which [`crate::instruments::is_recorded_time`] holds.
 ///
 /// # Errors
 /// When the file cannot be read.

@@ -1,8 +1,7 @@
-//! What every kind of input needs: where observations go, how it is doing, and
-//! how long to wait before the next try.
+//! Parts that all kinds of inputs share: delivery of observations, counts, connections and pauses.
 
 use super::stats::InputStats;
-use crate::observation::Observation;
+use crate::instruments::Observation;
 use std::io;
 use std::sync::Arc;
 use std::time::Duration;
@@ -10,26 +9,26 @@ use tokio::net::TcpStream;
 use tokio::sync::mpsc;
 use tokio::sync::mpsc::error::TrySendError;
 
-/// How long a connection may take to open.
-pub(super) const CONNECT_LIMIT: Duration = Duration::from_secs(10);
+/// Timeout of a connection attempt.
+pub(super) const CONNECT_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// The system would let tens of megabytes gather, days of a voyage that is
-/// played fast: all lost if the agent is killed. This is a minute of a busy bridge.
+/// Receive buffer of a connection: a minute of a busy bridge. The system's default would hold tens
+/// of megabytes, days of a voyage that is replayed fast, all lost if the agent is killed.
 const RECEIVE_BUFFER_BYTES: usize = 128 * 1024;
 
-const FIRST_PAUSE: Duration = Duration::from_millis(100);
-const LONGEST_PAUSE: Duration = Duration::from_secs(10);
+const MIN_PAUSE: Duration = Duration::from_millis(100);
+const MAX_PAUSE: Duration = Duration::from_secs(10);
 
-/// How a session ended without an error.
+/// Reason for the end of a session without an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// There is no more: the file was read to its end.
+    /// The file was read to its end.
     Finished,
-    /// The other side hung up.
+    /// The other side closed the connection.
     Closed,
 }
 
-/// One input's way into the agent.
+/// Connection of one input to the agent.
 #[derive(Debug)]
 pub(super) struct Link {
     pub(super) name: Arc<str>,
@@ -57,50 +56,55 @@ impl Link {
         }
     }
 
-    /// Whether nobody takes observations any more.
-    pub(super) fn is_abandoned(&self) -> bool {
+    /// Returns whether the receiver of the observations is gone.
+    pub(super) fn is_receiver_closed(&self) -> bool {
         self.tx.is_closed()
     }
 
-    /// Hands observations on, waiting while there is no room.
+    /// Delivers observations, waiting while the channel is full.
     pub(super) async fn deliver(&self, observations: Vec<Observation>) -> io::Result<()> {
         if observations.is_empty() {
             return Ok(());
         }
         let count = observations.len();
-        self.tx.send(observations).await.map_err(|_| abandoned())?;
-        self.stats.handed_on(count);
+        self.tx
+            .send(observations)
+            .await
+            .map_err(|_| receiver_closed())?;
+        self.stats.count_delivered(count);
         Ok(())
     }
 
-    /// Hands observations on, or drops and counts them where there is no room.
+    /// Delivers observations, or drops and counts them when the channel is full.
     pub(super) fn offer(&self, observations: Vec<Observation>) -> io::Result<()> {
         if observations.is_empty() {
             return Ok(());
         }
         let count = observations.len();
         match self.tx.try_send(observations) {
-            Ok(()) => self.stats.handed_on(count),
-            Err(TrySendError::Full(_)) => self.stats.dropped(count),
-            Err(TrySendError::Closed(_)) => return Err(abandoned()),
+            Ok(()) => self.stats.count_delivered(count),
+            Err(TrySendError::Full(_)) => self.stats.count_dropped(count),
+            Err(TrySendError::Closed(_)) => return Err(receiver_closed()),
         }
         Ok(())
     }
 }
 
-fn abandoned() -> io::Error {
+fn receiver_closed() -> io::Error {
     io::Error::new(
         io::ErrorKind::BrokenPipe,
-        "nobody takes the observations any more",
+        "the receiver of observations is closed",
     )
 }
 
-/// Connects, with a limit, and lets the system notice a peer that has gone
-/// without a word: its power may fail at sea.
+/// Connects, with a timeout, and with keep-alives for peers that vanish silently: their power may
+/// fail at sea.
 pub(super) async fn connect(host_port: &str) -> io::Result<TcpStream> {
-    let stream = tokio::time::timeout(CONNECT_LIMIT, TcpStream::connect(host_port))
+    let stream = tokio::time::timeout(CONNECT_TIMEOUT, TcpStream::connect(host_port))
         .await
-        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "no answer to the connection"))??;
+        .map_err(|_| {
+            io::Error::new(io::ErrorKind::TimedOut, "the connection attempt timed out")
+        })??;
     let keepalive = socket2::TcpKeepalive::new()
         .with_time(Duration::from_secs(30))
         .with_interval(Duration::from_secs(10));
@@ -116,14 +120,14 @@ pub(super) struct Backoff(Duration);
 
 impl Default for Backoff {
     fn default() -> Backoff {
-        Backoff(FIRST_PAUSE)
+        Backoff(MIN_PAUSE)
     }
 }
 
 impl Backoff {
     pub(super) fn next_pause(&mut self) -> Duration {
         let pause = self.0;
-        self.0 = (pause * 2).min(LONGEST_PAUSE);
+        self.0 = (pause * 2).min(MAX_PAUSE);
         pause
     }
 }

@@ -1,20 +1,17 @@
-//! What the agent listens to. Each input is one task that delivers observations
-//! into one bounded channel.
+//! Inputs. Each input is one task that delivers observations into one bounded channel.
 //!
-//! What always holds:
-//! - An input never gives up: what cannot be opened, or breaks off, is tried
-//!   again with growing pauses. Only a file comes to an end.
-//! - Nothing is buffered without bound. Where the sender can wait (TCP, serial,
-//!   Signal K, files) it waits while the channel is full; datagrams cannot, and
-//!   those that find no room are counted.
+//! Invariants:
+//! - An input never gives up: what cannot be opened, or breaks off, is retried with growing pauses.
+//!   Only a file has an end.
+//! - Buffers are bounded. Where the sender can wait (TCP, serial, Signal K, files) it waits while
+//!   the channel is full. Datagrams cannot wait; those that do not fit are counted.
 //! - Every line that is not used is counted by reason.
 
-mod config;
 mod decode;
-mod delta;
 mod link;
 mod pump;
 mod readings;
+mod signalk_delta;
 mod stats;
 
 mod file;
@@ -26,12 +23,11 @@ mod udp;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use config::InputConfig;
-pub(crate) use decode::is_recorded_time;
 pub(crate) use file::replay;
 pub(crate) use stats::{InputStats, InputStatus};
 
-use crate::observation::Observation;
+use crate::config::InputConfig;
+use crate::instruments::Observation;
 use link::{Backoff, End, Link};
 use std::io;
 use std::sync::Arc;
@@ -39,8 +35,7 @@ use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 use tokio_util::sync::CancellationToken;
 
-/// Starts reading an input until `shutdown`, the end of a file, or until nobody
-/// takes the observations any more.
+/// Reads an input until `shutdown`, until the end of a file, or until the receiver is gone.
 pub(crate) fn spawn(
     name: Arc<str>,
     config: InputConfig,
@@ -64,7 +59,7 @@ async fn run(config: &InputConfig, link: &Link) {
             Ok(End::Closed) => "the other side has closed the connection".to_owned(),
             Err(error) => error.to_string(),
         };
-        if link.is_abandoned() {
+        if link.is_receiver_closed() {
             return;
         }
         link.closed(&why);

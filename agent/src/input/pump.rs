@@ -1,11 +1,11 @@
-//! Reads a stream of bytes to its end, each chunk one delivery.
+//! Reads a stream of bytes to its end; each chunk is one delivery.
 
 use super::decode::{Decoder, Source};
 use super::link::{End, Link};
 use std::io;
 use tokio::io::{AsyncRead, AsyncReadExt};
 
-/// About eight hundred sentences.
+/// Chunk size: about eight hundred sentences.
 const CHUNK_BYTES: usize = 64 * 1024;
 
 pub(super) async fn pump(
@@ -21,14 +21,13 @@ pub(super) async fn pump(
             break;
         }
         decoder.chunk(&buffer[..count]);
-        link.stats.heard(count, &decoder.take_tally());
+        link.stats.count_received(count, &decoder.take_tally());
         link.deliver(decoder.take_observations()).await?;
     }
-    // The last line of a connection that broke off is a part of a sentence;
-    // that of a recording may be whole.
+    // The last line of a broken connection is incomplete; that of a recording may be whole.
     if source == Source::Recording {
         decoder.finish();
-        link.stats.heard(0, &decoder.take_tally());
+        link.stats.count_received(0, &decoder.take_tally());
         link.deliver(decoder.take_observations()).await?;
     }
     Ok(End::Closed)

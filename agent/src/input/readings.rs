@@ -1,16 +1,16 @@
-//! From sentences to readings: what each sentence says to the agent.
+//! Readings of each kind of sentence.
 //!
-//! VHW, HBT and courses over ground say nothing: VHW repeats the heading of
-//! another instrument without its status, and a course is never a heading.
+//! VHW, HBT and courses over ground give no reading: VHW repeats the heading of another instrument
+//! without its status, and a course is never a heading.
 
-use crate::observation::Reading;
+use crate::instruments::Reading;
 use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
 use binnacle_compass::position::Position;
 use binnacle_compass::time::Timestamp;
 use binnacle_nmea::Data;
 use binnacle_nmea::sentence::{self, Hdg, Rmc, Ths, ThsMode, Xdr};
 
-/// Hands each reading of a sentence to `each`: none, one or two.
+/// Passes each reading of a sentence to `each`: none, one or two.
 pub(super) fn readings(data: &Data, mut each: impl FnMut(Reading)) {
     let reading = match data {
         Data::Hdg(hdg) => compass(hdg),
@@ -60,7 +60,7 @@ fn compass(hdg: &Hdg) -> Option<Reading> {
     })
 }
 
-/// In mode A without a heading the instrument has merely said nothing.
+/// Mode A without a heading is no reading, but not invalid either.
 fn true_heading(ths: &Ths) -> Option<Reading> {
     if ths.mode != ThsMode::Autonomous {
         return Some(Reading::TrueNotValid);
@@ -93,7 +93,7 @@ fn place(position: sentence::Position) -> Option<Position> {
     Position::new(position.lat_deg_north, position.lon_deg_east).ok()
 }
 
-/// An instant, where the calendar has it.
+/// Converts to a timestamp, if the calendar has it.
 pub(super) fn timestamp(unix_micros: i64) -> Option<Timestamp> {
     Timestamp::from_micros(unix_micros).ok()
 }

@@ -1,8 +1,8 @@
 //! Deltas from a Signal K server over a WebSocket.
 
-use super::config::SignalKUrl;
-use super::delta::{Deltas, PATHS};
-use super::link::{CONNECT_LIMIT, End, Link, connect};
+use super::link::{CONNECT_TIMEOUT, End, Link, connect};
+use super::signalk_delta::{DeltaReader, PATHS};
+use crate::config::SignalKUrl;
 use binnacle_nmea::Tally;
 use futures_util::{SinkExt, StreamExt};
 use serde_json::json;
@@ -11,31 +11,31 @@ use tokio_tungstenite::client_async_with_config;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 
-/// Deltas are some hundred bytes; a server that sends more is not one.
-const LONGEST_MESSAGE_BYTES: usize = 1024 * 1024;
+/// Size limit of a message: deltas are some hundred bytes.
+const MAX_MESSAGE_BYTES: usize = 1024 * 1024;
 
 pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
     let stream = connect(&url.host_port()).await?;
     let limits = WebSocketConfig::default()
-        .max_message_size(Some(LONGEST_MESSAGE_BYTES))
-        .max_frame_size(Some(LONGEST_MESSAGE_BYTES));
+        .max_message_size(Some(MAX_MESSAGE_BYTES))
+        .max_frame_size(Some(MAX_MESSAGE_BYTES));
     let handshake = client_async_with_config(url.uri(), stream, Some(limits));
-    let (mut socket, _) = tokio::time::timeout(CONNECT_LIMIT, handshake)
+    let (mut socket, _) = tokio::time::timeout(CONNECT_TIMEOUT, handshake)
         .await
-        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "no answer to the handshake"))?
+        .map_err(|_| io::Error::new(io::ErrorKind::TimedOut, "the handshake timed out"))?
         .map_err(io::Error::other)?;
     socket
         .send(Message::text(subscription()))
         .await
         .map_err(io::Error::other)?;
     link.opened();
-    let mut deltas = Deltas::new(link.name.clone());
+    let mut deltas = DeltaReader::new(link.name.clone());
     while let Some(message) = socket.next().await {
         let message = message.map_err(io::Error::other)?;
-        link.stats.heard(message.len(), &Tally::default());
+        link.stats.count_received(message.len(), &Tally::default());
         match message {
             Message::Text(text) => link.deliver(deltas.read(&text, &link.stats)).await?,
-            Message::Binary(_) => link.stats.refuse("bad delta"),
+            Message::Binary(_) => link.stats.reject("bad delta"),
             Message::Close(_) => return Ok(End::Closed),
             Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}
         }
@@ -43,7 +43,7 @@ pub(super) async fn session(url: &SignalKUrl, link: &Link) -> io::Result<End> {
     Ok(End::Closed)
 }
 
-/// Asks for the paths that are of use, as soon as they change.
+/// Returns the request for the paths in use, sent as soon as they change.
 fn subscription() -> String {
     let paths: Vec<_> = PATHS
         .iter()

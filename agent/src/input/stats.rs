@@ -1,4 +1,4 @@
-//! How an input is doing, shared between its task and the status page.
+//! Counts of an input, shared between its task and the status page.
 
 use binnacle_nmea::Tally;
 use serde::Serialize;
@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Counts since the agent started; written once for each chunk of bytes.
+/// Counts since the agent started; updated once per chunk of bytes.
 #[derive(Debug, Default)]
 pub(crate) struct InputStats(Mutex<Counts>);
 
@@ -19,43 +19,43 @@ struct Counts {
     observations: u64,
     dropped: u64,
     sentences: Tally,
-    /// Signal K values used, and deltas and values refused.
+    /// Signal K values in use, and rejected deltas and values.
     values: BTreeMap<&'static str, u64>,
-    refused: BTreeMap<&'static str, u64>,
+    rejected_values: BTreeMap<&'static str, u64>,
     last_heard: Option<Instant>,
 }
 
-/// An input's counts at one moment.
+/// Snapshot of an input's counts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct InputStatus {
     /// Open or connected.
     pub(crate) connected: bool,
-    /// Why it was closed last, when it is not open.
+    /// Reason for the last closing, while it is not open.
     pub(crate) problem: Option<String>,
-    /// Seconds since the last byte came.
+    /// Seconds since the last byte.
     pub(crate) last_heard_s_ago: Option<f64>,
     /// Bytes received.
     pub(crate) bytes: u64,
-    /// Observations handed on.
+    /// Observations delivered.
     pub(crate) observations: u64,
-    /// Observations that came faster than they could be taken (datagrams only).
+    /// Observations dropped because the channel was full (datagrams only).
     pub(crate) dropped: u64,
-    /// Times it was opened again.
+    /// Number of times it was reopened.
     pub(crate) reconnects: u64,
-    /// Sentences, and Signal K values, that were understood, by kind.
+    /// Parsed sentences and Signal K values, by kind.
     pub(crate) sentences: BTreeMap<&'static str, u64>,
-    /// Lines, deltas and values that were not used, by reason.
+    /// Unused lines, deltas and values, by reason.
     pub(crate) rejected: BTreeMap<&'static str, u64>,
 }
 
 impl InputStats {
-    /// The counts now.
+    /// Returns the counts now.
     pub(crate) fn status(&self) -> InputStatus {
         let counts = self.lock();
         let mut sentences: BTreeMap<_, _> = counts.sentences.sentences().collect();
         sentences.extend(&counts.values);
         let mut rejected: BTreeMap<_, _> = counts.sentences.rejected().collect();
-        rejected.extend(&counts.refused);
+        rejected.extend(&counts.rejected_values);
         InputStatus {
             connected: counts.connected,
             problem: counts.problem.clone(),
@@ -80,7 +80,7 @@ impl InputStats {
         counts.times_opened += 1;
     }
 
-    /// Whether the reason is another than the last.
+    /// Marks the input as closed. Returns whether the reason has changed.
     pub(super) fn closed(&self, problem: &str) -> bool {
         let mut counts = self.lock();
         counts.connected = false;
@@ -91,31 +91,31 @@ impl InputStats {
         true
     }
 
-    /// A chunk came and was read.
-    pub(super) fn heard(&self, bytes: usize, sentences: &Tally) {
+    /// Counts a received chunk.
+    pub(super) fn count_received(&self, bytes: usize, sentences: &Tally) {
         let mut counts = self.lock();
         counts.bytes += bytes as u64;
         counts.sentences.add(sentences);
         counts.last_heard = Some(Instant::now());
     }
 
-    pub(super) fn handed_on(&self, observations: usize) {
+    pub(super) fn count_delivered(&self, observations: usize) {
         self.lock().observations += observations as u64;
     }
 
-    pub(super) fn dropped(&self, observations: usize) {
+    pub(super) fn count_dropped(&self, observations: usize) {
         self.lock().dropped += observations as u64;
     }
 
-    pub(super) fn value(&self, kind: &'static str) {
+    pub(super) fn count_value(&self, kind: &'static str) {
         *self.lock().values.entry(kind).or_default() += 1;
     }
 
-    pub(super) fn refuse(&self, reason: &'static str) {
-        *self.lock().refused.entry(reason).or_default() += 1;
+    pub(super) fn reject(&self, reason: &'static str) {
+        *self.lock().rejected_values.entry(reason).or_default() += 1;
     }
 
-    /// Counts stay sound when a thread dies between two of them.
+    /// Counts stay consistent when a thread dies between two of them.
     fn lock(&self) -> MutexGuard<'_, Counts> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

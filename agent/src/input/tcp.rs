@@ -1,9 +1,9 @@
 //! Sentences over TCP, from a multiplexer or serial server.
 
-use super::config::HostPort;
 use super::decode::Source;
 use super::link::{End, Link, connect};
 use super::pump::pump;
+use crate::config::HostPort;
 use std::io;
 
 pub(super) async fn session(address: &HostPort, link: &Link) -> io::Result<End> {

@@ -1,7 +1,8 @@
 //! Inputs over real sockets, a real pseudo-terminal and real files.
 
-use super::{InputConfig, InputStats, spawn};
-use crate::observation::{Observation, Reading};
+use super::{InputStats, spawn};
+use crate::config::InputConfig;
+use crate::instruments::{Observation, Reading, is_recorded_time};
 use futures_util::{SinkExt, StreamExt};
 use std::net::Ipv4Addr;
 use std::sync::Arc;
@@ -17,7 +18,7 @@ use tokio_util::sync::CancellationToken;
 
 const HEADING: &[u8] = b"$GPHDT,274.07,T*03\r\n";
 const SPOILT: &[u8] = b"$GPHDT,274.08,T*03\r\n";
-/// Only a failing test waits so long.
+/// Timeout; only a failing test reaches it.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 struct Input {
@@ -149,7 +150,7 @@ async fn noise_and_an_endless_line_are_counted_and_what_follows_is_read() {
     input.stop().await;
 }
 
-/// A port that was free a moment ago.
+/// Returns a port that was free a moment ago.
 async fn free_port() -> u16 {
     let socket = UdpSocket::bind("0.0.0.0:0").await.unwrap();
     socket.local_addr().unwrap().port()
@@ -233,7 +234,7 @@ async fn a_file_is_read_to_its_end_once() {
         seen.extend(more);
     }
     assert_eq!(seen.len(), 3);
-    assert!(super::is_recorded_time(&seen[0]));
+    assert!(is_recorded_time(&seen[0]));
     assert!(seen[1..].iter().all(is_heading));
     input.stop().await;
 

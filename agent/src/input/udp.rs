@@ -1,20 +1,20 @@
-//! Sentences in datagrams: plain ones to a port of ours, or those of an
-//! IEC 61162-450 network to its multicast groups.
+//! Sentences in datagrams: plain ones to a local port, or those of an IEC 61162-450 network to its
+//! multicast groups.
 //!
-//! Senders of datagrams do not wait: what finds no room is dropped and counted.
+//! Senders of datagrams do not wait: what does not fit is dropped and counted.
 
-use super::config::Group;
 use super::decode::{Decoder, Source};
 use super::link::{End, Link};
+use crate::config::Group;
 use socket2::{Domain, Protocol, Socket, Type};
 use std::io;
 use std::net::SocketAddr;
 use tokio::net::UdpSocket;
 
-const LONGEST_DATAGRAM: usize = 65_536;
-/// Datagrams that are already there are handed on together, up to so many.
-const MOST_AT_ONCE: usize = 64;
-/// Room in the kernel for a burst while the agent is busy.
+const MAX_DATAGRAM_BYTES: usize = 65_536;
+/// Datagrams that are delivered together when they are already waiting.
+const MAX_DATAGRAMS_AT_ONCE: usize = 64;
+/// Receive buffer for bursts while the agent is busy.
 const RECEIVE_BUFFER_BYTES: usize = 1024 * 1024;
 
 pub(super) async fn unicast(address: SocketAddr, link: &Link) -> io::Result<End> {
@@ -39,7 +39,7 @@ async fn receive(socket: Socket, decode: fn(&mut Decoder, &[u8]), link: &Link) -
     let socket = UdpSocket::from_std(socket.into())?;
     link.opened();
     let mut decoder = Decoder::new(link.name.clone(), Source::Live);
-    let mut buffer = vec![0; LONGEST_DATAGRAM];
+    let mut buffer = vec![0; MAX_DATAGRAM_BYTES];
     loop {
         let mut waiting = Some(socket.recv(&mut buffer).await?);
         let (mut datagrams, mut bytes) = (0, 0);
@@ -47,10 +47,10 @@ async fn receive(socket: Socket, decode: fn(&mut Decoder, &[u8]), link: &Link) -
             decode(&mut decoder, &buffer[..count]);
             datagrams += 1;
             bytes += count;
-            let more = datagrams < MOST_AT_ONCE;
+            let more = datagrams < MAX_DATAGRAMS_AT_ONCE;
             waiting = more.then(|| socket.try_recv(&mut buffer).ok()).flatten();
         }
-        link.stats.heard(bytes, &decoder.take_tally());
+        link.stats.count_received(bytes, &decoder.take_tally());
         link.offer(decoder.take_observations())?;
     }
 }

@@ -1,120 +1,121 @@
-//! Settled ten-second windows from instruments' signals, and samples from them.
+//! Settled ten-second windows from the instruments' signals, and samples from them.
 //!
-//! Pure: time comes with the signals. What always holds:
+//! Pure: time comes with the signals. Invariants:
 //!
-//! - Windows lie on the UTC grid of ten seconds. Each is counted once: accepted,
-//!   or refused by the first reason that applies.
-//! - Only accepted windows are in samples, and each in one sample at most.
+//! - Windows lie on the UTC grid of ten seconds. Each is counted once: accepted, or rejected by the
+//!   first reason that applies.
+//! - Samples contain accepted windows only, each of them at most once.
 //! - The compass heading is the raw reading; no deviation is applied to it.
-//! - No signal, in whatever order or with whatever time, makes it panic.
+//! - No signal causes a panic, in any order and with any time.
 //!
-//! After a turn, eddy currents in the hull and the liquid in the bowl disturb
-//! the compass for two to three minutes (the Gaussian error): windows are
-//! refused until [`Settings::settle_s`] has passed. The limit on swinging is
-//! that of Basterretxea-Iribar, Sotés & Uriarte 2016, J. Navigation.
+//! After a turn, eddy currents in the hull and the liquid in the bowl disturb the compass for two
+//! to three minutes (the Gaussian error). Windows are rejected until [`Settings::settle_s`] has
+//! passed. The limit on swinging is that of Basterretxea-Iribar, Sotés & Uriarte 2016, J.
+//! Navigation.
 
+mod exclusion;
 mod outcome;
-mod stretch;
+mod sample_builder;
 mod track;
 
+pub(crate) use exclusion::Exclusion;
 pub(crate) use outcome::{Outcome, Tally};
-pub(crate) use stretch::{WINDOW_S, Window, median};
+pub(crate) use sample_builder::{WINDOW_S, Window, median};
 
-use crate::hold::Hold;
-use crate::roles::Signal;
+use crate::instruments::Signal;
 use crate::weak_field::is_weak;
 use binnacle_compass::angle::{wrap_180, wrap_360};
 use binnacle_compass::position::Position;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::Settings;
-use stretch::Stretch;
-use track::{Span, Track};
+use sample_builder::SampleBuilder;
+use track::{HeadingSpan, HeadingTrack};
 
-/// Fewer readings than this in ten seconds make no mean.
-const LEAST_READINGS: u32 = 4;
-/// A change of heading beyond this is a turn.
+/// Least number of readings for a ten-second mean.
+const MIN_READINGS: u32 = 4;
+/// Change of heading above which the vessel is turning.
 const TURN_DEG: f64 = 10.0;
-/// Without a heading for more than so many windows, there may have been a turn.
-const LONGEST_BLIND_WINDOWS: i64 = 3;
-/// Positions and speeds serve for so many windows.
-const FIX_LASTS_WINDOWS: i64 = 2;
+/// Windows without a heading above which there may have been a turn.
+const MAX_BLIND_WINDOWS: i64 = 3;
+/// Windows for which a position or speed is valid.
+const FIX_VALID_WINDOWS: i64 = 2;
 const WINDOW_MICROS: i64 = WINDOW_S * 1_000_000;
-/// What a ship and her instruments can say; anything else is not taken.
+/// Plausible range; other values are ignored.
 const SPEED_KN: std::ops::RangeInclusive<f64> = 0.0..=100.0;
 const RATE_OF_TURN_DEG_MIN: std::ops::RangeInclusive<f64> = -720.0..=720.0;
 
-/// The state between two signals.
+/// State between two signals.
 #[derive(Debug)]
 pub(crate) struct Sampler {
     settings: Settings,
-    hold: Option<Hold>,
-    /// The open window, in tens of seconds since 1970.
+    exclusion: Option<Exclusion>,
+    /// Open window, in tens of seconds since 1970.
     window: Option<i64>,
-    compass: Track,
-    gyro: Track,
-    satellite: Track,
+    compass: HeadingTrack,
+    gyro: HeadingTrack,
+    satellite: HeadingTrack,
     rate_of_turn: (f64, u32),
     position: Option<(Position, i64)>,
     speed: Option<(f64, i64)>,
-    turns: Turns,
-    stretch: Stretch,
+    turns: TurnTracker,
+    builder: SampleBuilder,
     samples: Vec<Sample>,
     settled: Vec<Window>,
     tally: Tally,
 }
 
-/// Where the ship last steadied, and when the compass has come to rest.
+/// Last steady heading, and the time when the compass has come to rest.
 #[derive(Debug, Default)]
-struct Turns {
-    /// The heading that a turn is measured from, unwound.
+struct TurnTracker {
+    /// Heading that a turn is measured from, unwound.
     anchor: Option<f64>,
-    /// The first window that may be settled.
+    /// First window that may be settled.
     settled_from: Option<i64>,
-    /// The last window that had a heading.
+    /// Last window that had a heading.
     seen: Option<i64>,
 }
 
 impl Sampler {
-    /// A sampler that has heard nothing yet.
-    pub(crate) fn new(settings: Settings, hold: Option<Hold>) -> Sampler {
+    /// Creates a sampler without any signal.
+    pub(crate) fn new(settings: Settings, exclusion: Option<Exclusion>) -> Sampler {
         Sampler {
             settings,
-            hold,
+            exclusion,
             window: None,
-            compass: Track::default(),
-            gyro: Track::default(),
-            satellite: Track::default(),
+            compass: HeadingTrack::default(),
+            gyro: HeadingTrack::default(),
+            satellite: HeadingTrack::default(),
             rate_of_turn: (0.0, 0),
             position: None,
             speed: None,
-            turns: Turns::default(),
-            stretch: Stretch::default(),
+            turns: TurnTracker::default(),
+            builder: SampleBuilder::default(),
             samples: Vec::new(),
             settled: Vec::new(),
             tally: Tally::default(),
         }
     }
 
-    /// Puts new limits in effect from the open window on.
+    /// Applies new limits from the open window on.
     pub(crate) fn set_settings(&mut self, settings: Settings) {
         self.settings = settings;
     }
 
-    /// Begins or ends a hold, from the open window on.
-    pub(crate) fn set_hold(&mut self, hold: Option<Hold>) {
-        self.hold = hold;
+    /// Begins or ends an exclusion, from the open window on.
+    pub(crate) fn set_exclusion(&mut self, exclusion: Option<Exclusion>) {
+        self.exclusion = exclusion;
     }
 
-    /// Takes what an instrument said.
-    pub(crate) fn take(&mut self, signal: Signal) {
+    /// Applies a signal of an instrument.
+    pub(crate) fn apply(&mut self, signal: Signal) {
         match signal {
             Signal::Time(now) => self.advance(window_of(now)),
             Signal::Jump(now) => self.jump(window_of(now)),
-            Signal::Compass(heading) => self.compass.take(heading.degrees()),
-            Signal::Gyro(heading) => self.gyro.take(heading.degrees()),
+            Signal::Compass(heading) => self.compass.add(heading.degrees()),
+            Signal::Gyro(heading) => self.gyro.add(heading.degrees()),
             Signal::GyroInvalid => self.gyro.invalidate(),
-            Signal::Satellite(heading) => self.satellite.take(heading.degrees()),
+            Signal::Satellite(heading) => self.satellite.add(heading.degrees()),
             Signal::SatelliteInvalid => self.satellite.invalidate(),
             Signal::Position(position) => self.position = self.window.map(|w| (position, w)),
             Signal::Speed(knots) if SPEED_KN.contains(&knots) => {
@@ -127,41 +128,40 @@ impl Sampler {
         }
     }
 
-    /// The samples that are finished; leaves none behind.
+    /// Takes the finished samples.
     pub(crate) fn take_samples(&mut self) -> Vec<Sample> {
         std::mem::take(&mut self.samples)
     }
 
-    /// Whether there are finished samples.
+    /// Returns whether there are finished samples.
     pub(crate) fn has_samples(&self) -> bool {
         !self.samples.is_empty()
     }
 
-    /// The windows that were accepted since this was last asked, oldest first.
+    /// Takes the windows accepted since the last call, oldest first.
     pub(crate) fn take_settled(&mut self) -> Vec<Window> {
         std::mem::take(&mut self.settled)
     }
 
-    /// Makes a sample of what has settled so far, and goes on with another.
-    pub(crate) fn cut(&mut self) {
-        self.samples.extend(self.stretch.finish());
+    /// Makes a sample of the windows settled so far, and begins another.
+    pub(crate) fn cut_sample(&mut self) {
+        self.samples.extend(self.builder.finish());
     }
 
-    /// Windows by outcome since this was last asked.
+    /// Takes the windows by outcome since the last call.
     pub(crate) fn take_tally(&mut self) -> Tally {
         self.tally.take()
     }
 
-    /// Ends the stretch that is open, as when the agent stops: what has settled
-    /// so far becomes a sample. The open window is dropped.
+    /// Finishes the open sample, as when the agent stops. The open window is dropped.
     pub(crate) fn finish(&mut self) {
-        self.samples.extend(self.stretch.finish());
-        self.begin(None);
+        self.samples.extend(self.builder.finish());
+        self.reset(None);
     }
 
     fn advance(&mut self, now: i64) {
         let Some(open) = self.window else {
-            self.begin(Some(now));
+            self.reset(Some(now));
             return;
         };
         if now <= open {
@@ -177,19 +177,19 @@ impl Sampler {
         for track in [&mut self.compass, &mut self.gyro, &mut self.satellite] {
             track.forget();
         }
-        self.samples.extend(self.stretch.expire(now));
+        self.samples.extend(self.builder.expire(now));
     }
 
     fn jump(&mut self, now: i64) {
         if self.window.is_some() {
             self.tally.add(Outcome::Clock, 1);
         }
-        self.samples.extend(self.stretch.finish());
-        self.begin(Some(now));
+        self.samples.extend(self.builder.finish());
+        self.reset(Some(now));
     }
 
-    /// Forgets everything that was open and begins at a window.
-    fn begin(&mut self, window: Option<i64>) {
+    /// Discards everything open and begins at a window.
+    fn reset(&mut self, window: Option<i64>) {
         self.window = window;
         self.compass.forget();
         self.gyro.forget();
@@ -197,19 +197,19 @@ impl Sampler {
         self.rate_of_turn = (0.0, 0);
         self.position = None;
         self.speed = None;
-        self.turns = Turns::default();
+        self.turns = TurnTracker::default();
     }
 
     fn close(&mut self, index: i64) {
-        let outcome = match self.judge(index) {
+        let outcome = match self.evaluate(index) {
             Ok(window) => {
                 self.settled.push(window);
-                let finished = self.stretch.add(window, self.settings.sample_s);
+                let finished = self.builder.add(window, self.settings.sample_s);
                 self.samples.extend(finished);
                 Outcome::Accepted
             }
             Err(reason) => {
-                self.samples.extend(self.stretch.expire(index));
+                self.samples.extend(self.builder.expire(index));
                 reason
             }
         };
@@ -220,29 +220,29 @@ impl Sampler {
         self.rate_of_turn = (0.0, 0);
     }
 
-    /// The window's means, or the first reason to refuse it.
-    fn judge(&mut self, index: i64) -> Result<Window, Outcome> {
+    /// Returns the means of the window, or the first reason to reject it.
+    fn evaluate(&mut self, index: i64) -> Result<Window, Outcome> {
         let rate = self.rate_of_turn_deg_min();
         let turning = rate.is_some_and(|r| r.abs() > self.settings.max_rate_of_turn_deg_min);
-        let settled = self.follow_turns(index, turning);
-        if let Some(hold) = self.hold {
-            return Err(hold.outcome());
+        let settled = self.track_turns(index, turning);
+        if let Some(exclusion) = self.exclusion {
+            return Err(exclusion.outcome());
         }
         let compass = self.compass.span().ok_or(Outcome::NoCompass)?;
         let (gyro, satellite) = (self.gyro.span(), self.satellite.span());
         if gyro.or(satellite).is_none() {
             return Err(Outcome::NoReference);
         }
-        let position = fresh(self.position, index).ok_or(Outcome::NoPosition)?;
+        let position = if_fresh(self.position, index).ok_or(Outcome::NoPosition)?;
         if is_weak(position, start_of(index)?) {
             return Err(Outcome::HighLatitude);
         }
-        let enough = |span: &Span| span.readings >= LEAST_READINGS;
+        let enough = |span: &HeadingSpan| span.readings >= MIN_READINGS;
         let (gyro, satellite) = (gyro.filter(enough), satellite.filter(enough));
         if !enough(&compass) || gyro.or(satellite).is_none() {
             return Err(Outcome::Sparse);
         }
-        let sog_kn = fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
+        let sog_kn = if_fresh(self.speed, index).ok_or(Outcome::NoSpeed)?;
         if sog_kn < self.settings.min_sog_kn {
             return Err(Outcome::Slow);
         }
@@ -255,7 +255,7 @@ impl Sampler {
         if self.heading_track().swing_deg() > 2.0 * self.settings.max_swing_deg {
             return Err(Outcome::Swinging);
         }
-        let degrees = |span: Span| wrap_360(span.mean);
+        let degrees = |span: HeadingSpan| wrap_360(span.mean);
         Ok(Window {
             index,
             compass_deg: degrees(compass),
@@ -267,8 +267,8 @@ impl Sampler {
         })
     }
 
-    /// Notes turns and blind stretches; whether the compass has come to rest.
-    fn follow_turns(&mut self, index: i64, turning: bool) -> bool {
+    /// Records turns and gaps. Returns whether the compass has come to rest.
+    fn track_turns(&mut self, index: i64, turning: bool) -> bool {
         let Some(span) = self.heading_track().span() else {
             return false;
         };
@@ -277,7 +277,7 @@ impl Sampler {
         let turns = &mut self.turns;
         let blind = turns
             .seen
-            .is_none_or(|seen| index - seen > LONGEST_BLIND_WINDOWS);
+            .is_none_or(|seen| index - seen > MAX_BLIND_WINDOWS);
         let turned = turns
             .anchor
             .is_none_or(|anchor| wrap_180(heading - anchor).abs() > TURN_DEG);
@@ -294,15 +294,15 @@ impl Sampler {
         index >= settled_from
     }
 
-    /// The best heading to tell turns and swings by.
-    fn heading_track(&self) -> &Track {
+    /// Returns the best heading for detecting turns and swings.
+    fn heading_track(&self) -> &HeadingTrack {
         [&self.gyro, &self.satellite]
             .into_iter()
             .find(|track| track.span().is_some())
             .unwrap_or(&self.compass)
     }
 
-    /// The mean of the instrument's, else by how much the heading moved.
+    /// Returns the mean of the rate-of-turn indicator, or the change of the heading.
     fn rate_of_turn_deg_min(&self) -> Option<f64> {
         let (sum, readings) = self.rate_of_turn;
         if readings > 0 {
@@ -321,9 +321,9 @@ fn start_of(window: i64) -> Result<Timestamp, Outcome> {
     Timestamp::from_micros(micros).map_err(|_| Outcome::Clock)
 }
 
-fn fresh<T: Copy>(last: Option<(T, i64)>, index: i64) -> Option<T> {
+fn if_fresh<T: Copy>(last: Option<(T, i64)>, index: i64) -> Option<T> {
     let (value, at) = last?;
-    (index - at < FIX_LASTS_WINDOWS).then_some(value)
+    (index - at < FIX_VALID_WINDOWS).then_some(value)
 }
 
 #[cfg(test)]

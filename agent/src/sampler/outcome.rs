@@ -1,21 +1,21 @@
-//! What became of a ten-second window, and how often.
+//! Outcomes of ten-second windows, and their counts.
 
 use std::collections::BTreeMap;
 
-/// Accepted, or the first reason that it was not.
+/// Acceptance, or the first reason for rejection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// Went into a sample.
+    /// Part of a sample.
     Accepted,
-    /// The crew said that the ship lies alongside.
-    HoldBerthed,
-    /// The crew said that magnetic cargo is aboard.
-    HoldMagneticCargo,
-    /// The crew said that degaussing is under way.
-    HoldDegaussing,
-    /// The ship's clock jumped while it was open.
+    /// Excluded by the crew: alongside.
+    ExcludedBerthed,
+    /// Excluded by the crew: magnetic cargo on board.
+    ExcludedMagneticCargo,
+    /// Excluded by the crew: degaussing.
+    ExcludedDegaussing,
+    /// The GNSS clock jumped while the window was open.
     Clock,
-    /// No time stamp fell into it.
+    /// No time stamp in the window.
     NoTime,
     /// No compass heading.
     NoCompass,
@@ -29,21 +29,21 @@ pub(crate) enum Outcome {
     Sparse,
     /// Too slow over ground.
     Slow,
-    /// The rate of turn was above the limit.
+    /// Rate of turn above the limit.
     Turning,
-    /// Too soon after a turn, or after the agent began to listen.
+    /// Too soon after a turn, or after the start of the agent.
     Settling,
-    /// The heading swung too far.
+    /// Heading swung too far.
     Swinging,
-    /// The horizontal field is too weak for a compass.
+    /// Horizontal field too weak for a compass.
     HighLatitude,
 }
 
 const ALL: [(Outcome, &str); 16] = [
     (Outcome::Accepted, "accepted"),
-    (Outcome::HoldBerthed, "hold_berthed"),
-    (Outcome::HoldMagneticCargo, "hold_magnetic_cargo"),
-    (Outcome::HoldDegaussing, "hold_degaussing"),
+    (Outcome::ExcludedBerthed, "hold_berthed"),
+    (Outcome::ExcludedMagneticCargo, "hold_magnetic_cargo"),
+    (Outcome::ExcludedDegaussing, "hold_degaussing"),
     (Outcome::Clock, "clock"),
     (Outcome::NoTime, "no_time"),
     (Outcome::NoCompass, "no_compass"),
@@ -69,26 +69,26 @@ impl Tally {
         *count = count.saturating_add(windows);
     }
 
-    /// What has been counted of one outcome.
-    pub(crate) fn of(&self, outcome: Outcome) -> u64 {
+    /// Returns the count of one outcome.
+    pub(crate) fn count(&self, outcome: Outcome) -> u64 {
         self.0[outcome as usize]
     }
 
-    /// By name, without what did not happen.
+    /// Returns the non-zero counts by name.
     pub(crate) fn by_name(&self) -> BTreeMap<String, u64> {
         ALL.iter()
-            .filter(|(outcome, _)| self.of(*outcome) > 0)
-            .map(|(outcome, name)| ((*name).to_owned(), self.of(*outcome)))
+            .filter(|(outcome, _)| self.count(*outcome) > 0)
+            .map(|(outcome, name)| ((*name).to_owned(), self.count(*outcome)))
             .collect()
     }
 
-    /// What has been counted, starting again from nothing.
+    /// Takes the counts and resets them.
     pub(crate) fn take(&mut self) -> Tally {
         std::mem::take(self)
     }
 
-    /// The sum of two tallies.
-    pub(crate) fn plus(&mut self, other: &Tally) {
+    /// Adds the counts of another tally.
+    pub(crate) fn add_all(&mut self, other: &Tally) {
         for (count, more) in self.0.iter_mut().zip(other.0) {
             *count = count.saturating_add(more);
         }

@@ -1,4 +1,4 @@
-//! The sampler on small made-up voyages.
+//! The sampler on small simulated voyages.
 
 use super::*;
 use binnacle_compass::angle::{CompassHeading, TrueHeading};
@@ -22,7 +22,7 @@ fn gyro(degrees: f64) -> Signal {
     Signal::Gyro(TrueHeading::new(degrees).unwrap())
 }
 
-/// One second of a ship that steers by gyro and whose compass reads 3° less.
+/// One second of a vessel that steers by gyro and whose compass reads 3° less.
 fn second(time_s: i64, heading_deg: f64) -> Vec<Signal> {
     vec![
         Signal::Time(at(time_s)),
@@ -39,7 +39,7 @@ fn sampler() -> Sampler {
 
 fn feed(sampler: &mut Sampler, signals: impl IntoIterator<Item = Signal>) {
     for signal in signals {
-        sampler.take(signal);
+        sampler.apply(signal);
     }
 }
 
@@ -59,8 +59,8 @@ fn a_steady_hour_settles_first_and_is_then_sampled_every_ten_minutes() {
     let mut sampler = sampler();
     sail(&mut sampler, 0..3601, |_| 1.0);
     let (samples, tally) = finished(sampler);
-    assert_eq!(tally.of(Outcome::Settling), 19);
-    assert_eq!(tally.of(Outcome::Accepted), 341);
+    assert_eq!(tally.count(Outcome::Settling), 19);
+    assert_eq!(tally.count(Outcome::Accepted), 341);
     let windows: Vec<u16> = samples.iter().map(|s| s.windows).collect();
     assert_eq!(windows, [60, 60, 60, 60, 60, 41]);
     let first = &samples[0];
@@ -77,11 +77,11 @@ fn nothing_is_sampled_beside_a_magnetic_pole() {
     let pole = Position::new(-64.0, 136.0).unwrap();
     for time in 0..1200 {
         feed(&mut sampler, second(time, 1.0));
-        sampler.take(Signal::Position(pole));
+        sampler.apply(Signal::Position(pole));
     }
     let (samples, tally) = finished(sampler);
     assert_eq!(samples, []);
-    assert_eq!(tally.of(Outcome::HighLatitude), 119);
+    assert_eq!(tally.count(Outcome::HighLatitude), 119);
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn nothing_is_sampled_for_three_minutes_after_a_turn() {
         .unwrap();
     let first_window = resumed.time.plus_seconds(-5.0 * f64::from(resumed.windows));
     assert!(first_window >= at(1330), "{first_window}");
-    assert!(tally.of(Outcome::Settling) > 19 + 18);
+    assert!(tally.count(Outcome::Settling) > 19 + 18);
     assert!(samples.iter().all(|s| s.spread_deg.unwrap_or(0.0) < 0.01));
 }
 
@@ -114,15 +114,15 @@ fn a_fast_turn_counts_as_turning_by_the_instrument_or_by_the_heading() {
                 } else {
                     0.0
                 };
-                sampler.take(Signal::RateOfTurn(rate));
+                sampler.apply(Signal::RateOfTurn(rate));
             }
         }
         let (_, tally) = finished(sampler);
         assert!(
-            tally.of(Outcome::Turning) >= 1,
+            tally.count(Outcome::Turning) >= 1,
             "instrument: {with_instrument}"
         );
-        assert!(tally.of(Outcome::Settling) >= 19 + 18);
+        assert!(tally.count(Outcome::Settling) >= 19 + 18);
     }
 }
 
@@ -134,8 +134,8 @@ fn a_swing_beyond_two_degrees_either_way_is_refused() {
             90.0 + amplitude * (t as f64 / 3.0).sin()
         });
         let (_, tally) = finished(sampler);
-        assert_eq!(tally.of(Outcome::Swinging) > 0, refused, "{amplitude}");
-        assert_eq!(tally.of(Outcome::Accepted) > 0, !refused, "{amplitude}");
+        assert_eq!(tally.count(Outcome::Swinging) > 0, refused, "{amplitude}");
+        assert_eq!(tally.count(Outcome::Accepted) > 0, !refused, "{amplitude}");
     }
 }
 
@@ -155,7 +155,11 @@ fn each_thing_that_is_missing_is_named() {
             feed(&mut sampler, heard);
         }
         let (samples, tally) = finished(sampler);
-        assert_eq!((samples.len(), tally.of(outcome)), (0, 60), "{outcome:?}");
+        assert_eq!(
+            (samples.len(), tally.count(outcome)),
+            (0, 60),
+            "{outcome:?}"
+        );
     }
 }
 
@@ -165,22 +169,26 @@ fn slow_sparse_and_held_windows_are_named() {
     let mut sparse = sampler();
     for time in 0..601 {
         for signal in second(time, 90.0) {
-            slow.take(match signal {
+            slow.apply(match signal {
                 Signal::Speed(_) => Signal::Speed(3.9),
                 other => other,
             });
             if time % 4 == 0 || !matches!(signal, Signal::Compass(_)) {
-                sparse.take(signal);
+                sparse.apply(signal);
             }
         }
     }
-    assert_eq!(finished(slow).1.of(Outcome::Slow), 60);
-    assert_eq!(finished(sparse).1.of(Outcome::Sparse), 60);
-    for hold in [Hold::Berthed, Hold::MagneticCargo, Hold::Degaussing] {
-        let mut sampler = Sampler::new(Settings::default(), Some(hold));
+    assert_eq!(finished(slow).1.count(Outcome::Slow), 60);
+    assert_eq!(finished(sparse).1.count(Outcome::Sparse), 60);
+    for exclusion in [
+        Exclusion::Berthed,
+        Exclusion::MagneticCargo,
+        Exclusion::Degaussing,
+    ] {
+        let mut sampler = Sampler::new(Settings::default(), Some(exclusion));
         sail(&mut sampler, 0..601, |_| 90.0);
         let (samples, tally) = finished(sampler);
-        assert_eq!((samples.len(), tally.of(hold.outcome())), (0, 60));
+        assert_eq!((samples.len(), tally.count(exclusion.outcome())), (0, 60));
     }
 }
 
@@ -189,8 +197,8 @@ fn a_satellite_compass_that_says_invalid_is_absent() {
     let mut sampler = sampler();
     for time in 0..601 {
         feed(&mut sampler, second(time, 90.0));
-        sampler.take(Signal::Satellite(TrueHeading::new(170.0).unwrap()));
-        sampler.take(Signal::SatelliteInvalid);
+        sampler.apply(Signal::Satellite(TrueHeading::new(170.0).unwrap()));
+        sampler.apply(Signal::SatelliteInvalid);
     }
     let (samples, _) = finished(sampler);
     assert_eq!(samples.len(), 1);
@@ -201,11 +209,11 @@ fn a_satellite_compass_that_says_invalid_is_absent() {
 fn a_clock_that_jumps_voids_the_open_window_and_settles_anew() {
     let mut sampler = sampler();
     sail(&mut sampler, 0..605, |_| 90.0);
-    sampler.take(Signal::Jump(at(-9000)));
+    sampler.apply(Signal::Jump(at(-9000)));
     sail(&mut sampler, -8999..-8400, |_| 90.0);
     let (samples, tally) = finished(sampler);
-    assert_eq!(tally.of(Outcome::Clock), 1);
-    assert!(tally.of(Outcome::Settling) >= 2 * 18);
+    assert_eq!(tally.count(Outcome::Clock), 1);
+    assert!(tally.count(Outcome::Settling) >= 2 * 18);
     assert_eq!(samples.len(), 2);
     assert!(samples.iter().all(|s| s.windows > 30 && s.windows < 60));
 }
@@ -216,12 +224,12 @@ fn windows_without_a_time_stamp_are_counted_and_end_the_stretch() {
     sail(&mut sampler, 0..600, |_| 90.0);
     sail(&mut sampler, 900..1500, |_| 90.0);
     let (samples, tally) = finished(sampler);
-    assert_eq!(tally.of(Outcome::NoTime), 30);
+    assert_eq!(tally.count(Outcome::NoTime), 30);
     assert_eq!(samples.len(), 2);
 }
 
 #[test]
-fn settings_from_shore_take_effect_at_once() {
+fn settings_from_server_take_effect_at_once() {
     let mut sampler = sampler();
     sail(&mut sampler, 0..1000, |_| 90.0);
     sampler.set_settings(Settings {
@@ -229,7 +237,7 @@ fn settings_from_shore_take_effect_at_once() {
         ..Settings::default()
     });
     sail(&mut sampler, 1000..1200, |_| 90.0);
-    assert!(finished(sampler).1.of(Outcome::Slow) >= 19);
+    assert!(finished(sampler).1.count(Outcome::Slow) >= 19);
 }
 
 #[test]
@@ -266,7 +274,7 @@ proptest! {
         feed(&mut sampler, signals);
         let (samples, tally) = finished(sampler);
         let windows: u64 = samples.iter().map(|s| u64::from(s.windows)).sum();
-        prop_assert!(windows <= tally.of(Outcome::Accepted));
+        prop_assert!(windows <= tally.count(Outcome::Accepted));
         for sample in samples {
             prop_assert!(sample.windows >= 1);
             prop_assert!(sample.gyro.is_some() || sample.satellite.is_some());
@@ -278,11 +286,11 @@ proptest! {
         let mut sampler = sampler();
         for time in 0..800 {
             let yaw = (time as f64 / 5.0).sin();
-            sampler.take(Signal::Time(at(time)));
-            sampler.take(Signal::Position(place()));
-            sampler.take(Signal::Speed(12.0));
-            sampler.take(compass(heading + yaw + lead));
-            sampler.take(gyro(heading + yaw));
+            sampler.apply(Signal::Time(at(time)));
+            sampler.apply(Signal::Position(place()));
+            sampler.apply(Signal::Speed(12.0));
+            sampler.apply(compass(heading + yaw + lead));
+            sampler.apply(gyro(heading + yaw));
         }
         let (samples, _) = finished(sampler);
         prop_assert!(!samples.is_empty());

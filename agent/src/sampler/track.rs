@@ -1,36 +1,36 @@
-//! One instrument's heading through the windows, unwound so that north is no edge.
+//! Heading of one instrument over the windows, unwound across north.
 
 use binnacle_compass::angle::wrap_180;
 
-/// A heading as it was in one window.
+/// Heading in one window.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Span {
+pub(super) struct HeadingSpan {
     /// Mean of the readings, unwound.
     pub(super) mean: f64,
-    /// Least, unwound.
+    /// Lowest reading, unwound.
     low: f64,
-    /// Most, unwound.
+    /// Highest reading, unwound.
     high: f64,
-    /// How many readings.
+    /// Number of readings.
     pub(super) readings: u32,
 }
 
-/// The readings of one instrument: the open window and the two before it.
+/// Readings of one instrument: the open window and the two before it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Track {
-    /// The latest reading, in degrees that go on past a full circle.
+pub(super) struct HeadingTrack {
+    /// Latest reading, in degrees that continue past a full circle.
     unwound: Option<f64>,
     sum: f64,
     low: f64,
     high: f64,
     readings: u32,
     invalid: bool,
-    earlier: [Option<Span>; 2],
+    earlier: [Option<HeadingSpan>; 2],
 }
 
-impl Track {
-    /// Takes a heading in degrees.
-    pub(super) fn take(&mut self, degrees: f64) {
+impl HeadingTrack {
+    /// Adds a heading in degrees.
+    pub(super) fn add(&mut self, degrees: f64) {
         let unwound = match self.unwound {
             Some(last) => last + wrap_180(degrees - last),
             None => degrees,
@@ -45,17 +45,17 @@ impl Track {
         self.readings += 1;
     }
 
-    /// The instrument said that it is not to be trusted: nothing in this window is.
+    /// Marks the window as invalid: the instrument reported itself as not to be trusted.
     pub(super) fn invalidate(&mut self) {
         self.invalid = true;
     }
 
-    /// The heading in the open window, if there was any.
-    pub(super) fn span(&self) -> Option<Span> {
+    /// Returns the heading in the open window, if it has readings.
+    pub(super) fn span(&self) -> Option<HeadingSpan> {
         if self.readings == 0 || self.invalid {
             return None;
         }
-        Some(Span {
+        Some(HeadingSpan {
             mean: self.sum / f64::from(self.readings),
             low: self.low,
             high: self.high,
@@ -63,8 +63,8 @@ impl Track {
         })
     }
 
-    /// How far the heading went from end to end in this window and the two
-    /// before it: thirty seconds.
+    /// Returns the peak-to-peak range of the heading over this window and the two before it: thirty
+    /// seconds.
     pub(super) fn swing_deg(&self) -> f64 {
         let spans = self.earlier.iter().copied().chain([self.span()]).flatten();
         let (low, high) = spans.fold((f64::MAX, f64::MIN), |(low, high), span| {
@@ -73,7 +73,7 @@ impl Track {
         (high - low).max(0.0)
     }
 
-    /// How far the mean moved since the window before, if both had readings.
+    /// Returns the change of the mean since the previous window, if both had readings.
     pub(super) fn moved_deg(&self) -> Option<f64> {
         Some(self.span()?.mean - self.earlier[0]?.mean)
     }
@@ -85,9 +85,9 @@ impl Track {
         self.invalid = false;
     }
 
-    /// Forgets the windows before, which no longer adjoin this one.
+    /// Discards the previous windows, which no longer adjoin this one.
     pub(super) fn forget(&mut self) {
-        *self = Track::default();
+        *self = HeadingTrack::default();
     }
 }
 
@@ -98,9 +98,9 @@ mod tests {
 
     #[test]
     fn a_mean_across_north_is_north() {
-        let mut track = Track::default();
+        let mut track = HeadingTrack::default();
         for degrees in [359.0, 1.0, 358.0, 2.0] {
-            track.take(degrees);
+            track.add(degrees);
         }
         let mean = wrap_180(track.span().unwrap().mean);
         assert!(mean.abs() < 1e-9, "{}", wrap_360(mean));
@@ -109,26 +109,26 @@ mod tests {
 
     #[test]
     fn swing_looks_back_two_windows_and_no_further() {
-        let mut track = Track::default();
-        track.take(10.0);
+        let mut track = HeadingTrack::default();
+        track.add(10.0);
         track.close();
         for _ in 0..2 {
-            track.take(20.0);
+            track.add(20.0);
             assert!((track.swing_deg() - 10.0).abs() < 1e-9);
             track.close();
         }
-        track.take(20.0);
+        track.add(20.0);
         assert!(track.swing_deg() < 1e-9);
     }
 
     #[test]
     fn an_invalid_reading_spoils_its_window_only() {
-        let mut track = Track::default();
-        track.take(10.0);
+        let mut track = HeadingTrack::default();
+        track.add(10.0);
         track.invalidate();
         assert_eq!(track.span(), None);
         track.close();
-        track.take(10.0);
+        track.add(10.0);
         assert!(track.span().is_some());
     }
 }

@@ -1,57 +1,35 @@
-//! Sealed batches: which is next, what became of it, and a new stream.
+//! Sealed batches: their order, their state, and the change to another stream.
 
+use super::acknowledged;
+use super::database::{Spool, get, put};
+use super::identity::Identity;
+use super::keys::{CONTIGUOUS_SEQ, IDENTITY, NEXT_SEQ};
 use super::seal::insert_batch;
-use super::{CONTIGUOUS_SEQ, IDENTITY, Identity, NEXT_SEQ, Spool, get, keep_downlink, kept, put};
+use super::state::save_downlink;
 use binnacle_wire::batch::{Batch, StreamId};
 use binnacle_wire::messages::Downlink;
-use serde::{Deserialize, Serialize};
 use sqlx::SqliteConnection;
 use std::collections::BTreeMap;
 
-/// So many acknowledged batches are remembered.
-const REMEMBERED: i64 = 20_000;
+/// Acknowledged batches whose number, size and checksum are recorded.
+const MAX_ACKNOWLEDGED: i64 = 20_000;
 
-/// A batch as it is sent.
+/// A batch ready to send.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct SealedBatch {
-    /// Its number within the stream.
+    /// Number within the stream.
     pub(crate) seq: u64,
-    /// The frame.
+    /// Encoded frame.
     pub(crate) bytes: Vec<u8>,
-    /// Whether it goes before everything else.
+    /// Set for a batch that is sent before everything else.
     pub(crate) urgent: bool,
-    /// How many it holds.
+    /// Number of its samples.
     pub(crate) samples: u64,
 }
 
-/// How far the shore has come with what is here.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Standing {
-    /// Samples that are in no batch yet.
-    pub(crate) pending_samples: u64,
-    /// Sealed batches that were not acknowledged.
-    pub(crate) waiting_batches: u64,
-    /// Batches that the shore refused; kept, and offered again.
-    pub(crate) parked_batches: u64,
-    /// Why the last of those was refused.
-    pub(crate) parked_because: Option<String>,
-    /// Batches that the shore acknowledged, as far as they are remembered.
-    pub(crate) acknowledged_batches: u64,
-    /// The samples in those.
-    pub(crate) acknowledged_samples: u64,
-    /// Every batch up to this one is durable on shore.
-    pub(crate) contiguous_seq: u64,
-    /// What all of that takes on the disk.
-    #[serde(default)]
-    pub(crate) used_bytes: u64,
-    /// Batches that were thinned for want of room and wait.
-    #[serde(default)]
-    pub(crate) thinned_batches: u64,
-}
-
 impl Spool {
-    /// The batch that is to be sent next: evidence of alerts, the newest first, then
-    /// what has samples, then the rest, the oldest first.
+    /// Returns the next batch to send: evidence of alerts, newest first, then batches with samples,
+    /// then the rest, oldest first.
     pub(crate) async fn next_batch(&self) -> sqlx::Result<Option<SealedBatch>> {
         let row: Option<(i64, Vec<u8>, bool, i64)> = sqlx::query_as(
             "SELECT seq, bytes, urgent, samples FROM batches WHERE standing = 'waiting'
@@ -68,8 +46,8 @@ impl Spool {
         }))
     }
 
-    /// How many others wait.
-    pub(crate) async fn waiting_beside(&self, seq: u64) -> sqlx::Result<u64> {
+    /// Counts the other waiting batches.
+    pub(crate) async fn count_other_waiting(&self, seq: u64) -> sqlx::Result<u64> {
         let others: i64 = sqlx::query_scalar(
             "SELECT COUNT(*) FROM batches WHERE standing = 'waiting' AND seq <> $1",
         )
@@ -79,9 +57,9 @@ impl Spool {
         Ok(others.unsigned_abs())
     }
 
-    /// Notes that these very bytes are about to be sent: they are not changed any more.
-    /// `false` when the batch is another by now.
-    pub(crate) async fn note_try(&self, batch: &SealedBatch) -> sqlx::Result<bool> {
+    /// Marks these very bytes as sent, after which they are never changed. Returns `false` when the
+    /// batch has been changed meanwhile.
+    pub(crate) async fn mark_tried(&self, batch: &SealedBatch) -> sqlx::Result<bool> {
         let mut tx = self.write().await?;
         let noted = sqlx::query("UPDATE batches SET tried = TRUE WHERE seq = $1 AND bytes = $2")
             .bind(batch.seq.cast_signed())
@@ -92,8 +70,8 @@ impl Spool {
         Ok(noted.rows_affected() > 0)
     }
 
-    /// The shore has this batch: notes it, and what follows from how far the shore says
-    /// that it has come ([`super::kept`]).
+    /// Acknowledges a batch, and reconciles the spool with the server's contiguous number
+    /// ([`super::acknowledged`]).
     pub(crate) async fn acknowledge(
         &self,
         stream: StreamId,
@@ -103,7 +81,7 @@ impl Spool {
         let mut tx = self.write().await?;
         let before = get(&mut tx, CONTIGUOUS_SEQ).await?.unwrap_or(0);
         put(&mut tx, CONTIGUOUS_SEQ, &downlink.contiguous_seq).await?;
-        keep_downlink(&mut tx, downlink).await?;
+        save_downlink(&mut tx, downlink).await?;
         let was_refused: Option<i64> = sqlx::query_scalar(
             "SELECT 1 FROM batches WHERE seq = $1 AND bytes = $2 AND problem IS NOT NULL",
         )
@@ -123,17 +101,17 @@ impl Spool {
         .fetch_optional(&mut *tx)
         .await?;
         if let Some(samples) = samples {
-            remember(&mut tx, stream, batch, samples).await?;
+            record_acknowledged(&mut tx, stream, batch, samples).await?;
         }
-        kept::look(&mut tx, batch.seq, before, downlink).await?;
+        acknowledged::reconcile(&mut tx, batch.seq, before, downlink).await?;
         tx.commit().await
     }
 
-    /// The shore refused this batch: keeps it, and goes on without it. One that the disk has
-    /// damaged is put aside, and an empty one takes its number: the shore need not wait for it.
+    /// Parks a batch that the server refused. A batch damaged by the disk is quarantined, and an
+    /// empty one takes its number, so that the server need not wait for it.
     pub(crate) async fn park(&self, seq: u64, problem: &str) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        if give_up_damaged(&mut tx, seq).await? {
+        if replace_damaged(&mut tx, seq).await? {
             return tx.commit().await;
         }
         sqlx::query("UPDATE batches SET standing = 'parked', problem = $2 WHERE seq = $1")
@@ -144,14 +122,14 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Gives all parked batches another chance, as at a start.
+    /// Queues all parked batches again, as at a start.
     pub(crate) async fn unpark(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         unpark(&mut tx).await?;
         tx.commit().await
     }
 
-    /// Gives the first parked batch another chance: if it is taken, the others have it too.
+    /// Queues the first parked batch again: if it is accepted, the others follow.
     pub(crate) async fn unpark_first(&self) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         sqlx::query(
@@ -163,8 +141,8 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Goes on in a new stream of the same identity: batches that were not
-    /// acknowledged are numbered anew in it.
+    /// Continues in a new stream of the same identity: batches that were not acknowledged are
+    /// renumbered in it.
     pub(crate) async fn move_to_stream(&self, stream: StreamId) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
         renumber(&mut tx, stream).await?;
@@ -174,8 +152,8 @@ impl Spool {
         tx.commit().await
     }
 
-    /// Whether the shore lacks batches that are no longer here, as when it was
-    /// restored from an old copy: its contiguous number can then never rise.
+    /// Returns whether the server lacks batches that are no longer here, as after a restore from an
+    /// old backup. Its contiguous number can then never rise.
     pub(crate) async fn has_unfillable_gap(&self, contiguous_seq: u64) -> sqlx::Result<bool> {
         let mut connection = self.pool.acquire().await?;
         let wanted = contiguous_seq.saturating_add(1);
@@ -186,37 +164,6 @@ impl Spool {
         let next = get::<u64>(&mut connection, NEXT_SEQ).await?.unwrap_or(1);
         Ok(here.is_none() && wanted < next)
     }
-
-    /// How far the shore has come.
-    pub(crate) async fn standing(&self) -> sqlx::Result<Standing> {
-        let pending_samples = self.pending().await?.samples;
-        let mut connection = self.pool.acquire().await?;
-        let (waiting, parked, thinned, because): (i64, i64, i64, Option<String>) = sqlx::query_as(
-            "SELECT COUNT(*) FILTER (WHERE standing = 'waiting'),
-                    COUNT(*) FILTER (WHERE standing = 'parked'),
-                    COUNT(*) FILTER (WHERE standing <> 'acknowledged' AND thinned > 0),
-                    (SELECT problem FROM batches WHERE standing = 'parked'
-                     ORDER BY seq DESC LIMIT 1)
-             FROM batches",
-        )
-        .fetch_one(&mut *connection)
-        .await?;
-        let (batches, samples): (i64, i64) =
-            sqlx::query_as("SELECT COUNT(*), COALESCE(SUM(samples), 0) FROM acknowledged")
-                .fetch_one(&mut *connection)
-                .await?;
-        Ok(Standing {
-            pending_samples,
-            waiting_batches: waiting.cast_unsigned(),
-            parked_batches: parked.cast_unsigned(),
-            parked_because: because,
-            acknowledged_batches: batches.cast_unsigned(),
-            acknowledged_samples: samples.cast_unsigned(),
-            contiguous_seq: get(&mut connection, CONTIGUOUS_SEQ).await?.unwrap_or(0),
-            used_bytes: super::room::used_bytes(&mut connection).await?,
-            thinned_batches: thinned.cast_unsigned(),
-        })
-    }
 }
 
 async fn unpark(tx: &mut SqliteConnection) -> sqlx::Result<()> {
@@ -226,8 +173,9 @@ async fn unpark(tx: &mut SqliteConnection) -> sqlx::Result<()> {
     Ok(())
 }
 
-/// Whether this batch was damaged, and is put aside.
-async fn give_up_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
+/// Quarantines the batch if it is damaged, and puts an empty one in its place. Returns whether it
+/// was.
+async fn replace_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bool> {
     let bytes: Option<Vec<u8>> = sqlx::query_scalar("SELECT bytes FROM batches WHERE seq = $1")
         .bind(seq.cast_signed())
         .fetch_optional(&mut *tx)
@@ -239,7 +187,7 @@ async fn give_up_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bo
     let Err(problem) = binnacle_wire::decode(&bytes) else {
         return Ok(false);
     };
-    put_aside(tx, &bytes, &problem.to_string()).await?;
+    quarantine(tx, &bytes, &problem.to_string()).await?;
     let empty = Batch {
         stream: identity.stream,
         seq,
@@ -257,8 +205,8 @@ async fn give_up_damaged(tx: &mut SqliteConnection, seq: u64) -> sqlx::Result<bo
     Ok(true)
 }
 
-async fn put_aside(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sqlx::Result<()> {
-    tracing::error!(problem, "a damaged batch was put aside");
+async fn quarantine(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sqlx::Result<()> {
+    tracing::error!(problem, "a damaged batch was quarantined");
     sqlx::query("INSERT INTO quarantine (bytes, problem) VALUES ($1, $2)")
         .bind(bytes)
         .bind(problem)
@@ -267,7 +215,7 @@ async fn put_aside(tx: &mut SqliteConnection, bytes: &[u8], problem: &str) -> sq
     Ok(())
 }
 
-pub(super) async fn remember(
+pub(super) async fn record_acknowledged(
     tx: &mut SqliteConnection,
     stream: StreamId,
     batch: &SealedBatch,
@@ -284,22 +232,23 @@ pub(super) async fn remember(
     .execute(&mut *tx)
     .await?;
     sqlx::query("DELETE FROM acknowledged WHERE id <= (SELECT MAX(id) FROM acknowledged) - $1")
-        .bind(REMEMBERED)
+        .bind(MAX_ACKNOWLEDGED)
         .execute(tx)
         .await?;
     Ok(())
 }
 
-/// Of what the frame holds. With its own checksum at its end every frame has the same.
+/// Returns the checksum of the frame's content. Including its own checksum, every frame would have
+/// the same.
 fn checksum(frame: &[u8]) -> u32 {
     let content = frame.len().saturating_sub(4);
     crc32fast::hash(&frame[..content])
 }
 
-/// Numbers the batches that were not acknowledged from 1 in another stream.
+/// Renumbers the batches that were not acknowledged from 1 in another stream.
 ///
-/// What was acknowledged is durable on shore in the old stream, and dropped
-/// here. Bytes that no longer read are put aside, never fatal.
+/// Acknowledged batches are durable on the server in the old stream, and are deleted here.
+/// Unreadable bytes are quarantined and never fatal.
 pub(super) async fn renumber(tx: &mut SqliteConnection, stream: StreamId) -> sqlx::Result<()> {
     let rows: Vec<(Vec<u8>, bool)> = sqlx::query_as(
         "SELECT bytes, urgent FROM batches WHERE standing <> 'acknowledged' ORDER BY seq",
@@ -309,19 +258,19 @@ pub(super) async fn renumber(tx: &mut SqliteConnection, stream: StreamId) -> sql
     sqlx::query("DELETE FROM batches").execute(&mut *tx).await?;
     let mut next = 1;
     for (bytes, urgent) in rows {
-        match in_stream(&bytes, stream, next) {
+        match reencode(&bytes, stream, next) {
             Ok((bytes, samples)) => {
                 insert_batch(tx, next, &bytes, samples, urgent).await?;
                 next += 1;
             }
-            Err(problem) => put_aside(tx, &bytes, &problem).await?,
+            Err(problem) => quarantine(tx, &bytes, &problem).await?,
         }
     }
     put(tx, NEXT_SEQ, &next).await?;
     put(tx, CONTIGUOUS_SEQ, &0_u64).await
 }
 
-fn in_stream(bytes: &[u8], stream: StreamId, seq: u64) -> Result<(Vec<u8>, usize), String> {
+fn reencode(bytes: &[u8], stream: StreamId, seq: u64) -> Result<(Vec<u8>, usize), String> {
     let mut batch = binnacle_wire::decode(bytes).map_err(|e| e.to_string())?;
     batch.stream = stream;
     batch.seq = seq;

@@ -1,14 +1,15 @@
-//! A damaged spool is put aside, and what can still be read is carried over: a
-//! ship must not have to wait in port for somebody to delete a file.
+//! Repair of a damaged spool: it is quarantined, and its readable rows are carried over. A vessel
+//! must not have to wait in port for somebody to delete a file.
 
+use super::database::{Spool, connect, create_private};
+use super::reports;
 use super::seal::insert_batch;
-use super::{Spool, connect, reports};
 use anyhow::Context;
 use sqlx::{FromRow, Row, SqlitePool};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// Kept open while an agent runs: two agents on one spool would fork its stream.
+/// Lock held while an agent runs: two agents on one spool would fork its stream.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: File,
@@ -19,9 +20,9 @@ const CORRUPT: i32 = 11;
 const NOT_A_DATABASE: i32 = 26;
 
 impl Spool {
-    /// Opens the spool for the agent itself: alone, and repaired if need be.
+    /// Opens the spool for the agent itself: exclusively, and repaired if necessary.
     pub(crate) async fn open_for_agent(directory: &Path) -> anyhow::Result<(Spool, Lock)> {
-        super::create_private(directory, &directory.join("spool.db"))
+        create_private(directory, &directory.join("spool.db"))
             .with_context(|| format!("{}: cannot create the spool", directory.display()))?;
         let lock = lock(directory)?;
         let error = match open_checked(directory).await {
@@ -31,7 +32,7 @@ impl Spool {
         if !error.downcast_ref::<sqlx::Error>().is_some_and(is_damage) {
             return Err(error);
         }
-        let aside = put_aside(directory)?;
+        let aside = quarantine(directory)?;
         let name = aside.display().to_string();
         tracing::error!(
             aside = name,
@@ -73,7 +74,7 @@ async fn open_checked(directory: &Path) -> anyhow::Result<Spool> {
 
 fn is_damage(error: &sqlx::Error) -> bool {
     match error {
-        // What `quick_check` said, or text that is none.
+        // An answer of `quick_check`, or invalid text.
         sqlx::Error::Decode(_) | sqlx::Error::ColumnDecode { .. } => true,
         sqlx::Error::Database(error) => {
             let code = error.code().and_then(|code| code.parse::<i32>().ok());
@@ -83,8 +84,8 @@ fn is_damage(error: &sqlx::Error) -> bool {
     }
 }
 
-/// Renames the database and its journal; the new name.
-fn put_aside(directory: &Path) -> anyhow::Result<PathBuf> {
+/// Renames the database and its journal. Returns the new path.
+fn quarantine(directory: &Path) -> anyhow::Result<PathBuf> {
     let free = |number: &u32| !directory.join(format!("damaged-{number}.db")).exists();
     let number = (1..1000_u32).find(free).unwrap_or_default();
     let aside = directory.join(format!("damaged-{number}.db"));
@@ -101,8 +102,8 @@ fn put_aside(directory: &Path) -> anyhow::Result<PathBuf> {
     Ok(aside)
 }
 
-/// Copies what reads, row by row. What is lost is lost: the shore notices
-/// numbers that are used again, and gives the agent a new stream.
+/// Copies the readable rows one by one. The server notices numbers that are used again, and gives
+/// the agent a new stream.
 async fn carry_over(aside: &Path, spool: &Spool) {
     let damaged = match connect(aside).await {
         Ok(damaged) => damaged,
@@ -158,7 +159,7 @@ async fn carry_over(aside: &Path, spool: &Spool) {
     // Any of them may have been sent.
     let tried = sqlx::query("UPDATE batches SET tried = TRUE");
     if let Err(error) = tried.execute(&spool.pool).await {
-        tracing::error!(%error, "the batches carried over cannot be kept from being thinned");
+        tracing::error!(%error, "the batches carried over cannot be marked as tried");
     }
     let reports = carry_reports_over(&damaged, spool).await;
     damaged.close().await;
@@ -186,7 +187,7 @@ async fn carry_reports_over(damaged: &SqlitePool, spool: &Spool) -> usize {
     carried
 }
 
-/// The rows of a query up to the first that cannot be read.
+/// Returns the rows of a query up to the first unreadable one.
 async fn rows(damaged: &SqlitePool, query: &'static str) -> Vec<sqlx::sqlite::SqliteRow> {
     use futures_util::StreamExt;
     let mut stream = sqlx::query(query).fetch(damaged);
@@ -204,7 +205,7 @@ mod tests {
     use crate::spool::Seal;
     use tempfile::TempDir;
 
-    /// A spool with something of everything; closed, so that it is one file.
+    /// Creates a spool with rows in every table; closed, so that it is one file.
     async fn closed_spool(directory: &Path) -> Vec<u8> {
         let spool = Spool::open(directory).await.unwrap();
         spool.enrol(&identity(7)).await.unwrap();
@@ -216,7 +217,7 @@ mod tests {
         }
         let report = serde_json::from_str(r#"{"kind":"shock","from":"2026-11-21T06:00:00Z"}"#);
         let (id, report) = (uuid::Uuid::from_u128(1), report.unwrap());
-        let kept = spool.keep_report(id, report, String::new(), false, sample(0).time);
+        let kept = spool.save_report(id, report, String::new(), false, sample(0).time);
         kept.await.unwrap();
         let rest: Vec<_> = (100..140).map(sample).collect();
         spool.store(&rest, &accepted(1), Seal::Full).await.unwrap();

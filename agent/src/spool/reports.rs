@@ -1,10 +1,9 @@
-//! What officers reported for the logbook, until it is ashore and for a while after.
+//! Officers' reports for the logbook, until they are delivered and for a while after.
 //!
-//! What always holds: a report keeps the id it was given on board; a change raises
-//! its revision and makes it wait again; an answer counts only for the revision
-//! that was sent.
+//! Invariants: a report keeps the id it was given on board. A change raises its revision and makes
+//! it wait again. A response counts only for the revision that was sent.
 
-use super::Spool;
+use super::database::Spool;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::logbook::Report;
 use binnacle_wire::messages::{LogbookAnswer, LogbookReport};
@@ -12,72 +11,73 @@ use serde::{Deserialize, Serialize};
 use sqlx::SqliteConnection;
 use uuid::Uuid;
 
-/// So many reports are shown; older ones that are ashore are forgotten.
-const REMEMBERED: i64 = 100;
-/// More reports than anybody writes on a voyage: whoever sends more means harm.
-const MOST_WAITING: i64 = 1000;
-/// What became of a report that the shore withdrew.
-const WITHDRAWN_ASHORE: &str = "withdrawn ashore";
+/// Number of listed reports; older delivered ones are deleted.
+const MAX_LISTED: i64 = 100;
+/// Limit on waiting reports: more than anybody writes on a voyage, so more means abuse.
+const MAX_WAITING: i64 = 1000;
+/// Problem of a report that was withdrawn on the server.
+const WITHDRAWN_BY_SERVER: &str = "withdrawn ashore";
 
-/// A report and how far it has come.
+/// A report and its delivery.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StoredReport {
     pub(crate) id: Uuid,
     #[serde(flatten)]
     pub(crate) sent: LogbookReport,
-    /// When it was last changed.
+    /// Time of the last change.
     pub(crate) written_at: Timestamp,
-    pub(crate) standing: ReportStanding,
-    /// Why it was refused, or what became of it ashore.
+    #[serde(rename = "standing")]
+    pub(crate) state: ReportState,
+    /// Reason for a refusal, or its withdrawal on the server.
     pub(crate) problem: Option<String>,
 }
 
 impl StoredReport {
-    /// Whether it counts no more, on board or ashore.
-    pub(crate) fn is_taken_back(&self) -> bool {
-        self.sent.withdrawn || self.problem.as_deref() == Some(WITHDRAWN_ASHORE)
+    /// Returns whether the report is withdrawn, on board or on the server.
+    pub(crate) fn is_withdrawn(&self) -> bool {
+        self.sent.withdrawn || self.problem.as_deref() == Some(WITHDRAWN_BY_SERVER)
     }
 }
 
-/// How far a report has come.
+/// Delivery of a report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, sqlx::Type)]
 #[serde(rename_all = "snake_case")]
 #[sqlx(rename_all = "snake_case")]
-pub(crate) enum ReportStanding {
-    /// To be sent.
+pub(crate) enum ReportState {
+    /// Waiting to be sent.
     Waiting,
     /// In the logbook.
     Ashore,
-    /// The shore does not take it: the officer must change it.
+    /// Refused by the server: the officer must change it.
     Refused,
 }
 
-/// Why a report was not kept.
+/// Reason that a report was not stored.
 #[derive(Debug, thiserror::Error)]
-pub(crate) enum NotKept {
-    /// It was taken back before.
-    #[error("this report was taken back; write another")]
-    TakenBack,
-    /// There are too many.
-    #[error("{MOST_WAITING} reports wait for the link already")]
+pub(crate) enum SaveReportError {
+    /// The report is withdrawn.
+    #[error("this report was withdrawn; write a new one")]
+    Withdrawn,
+    /// Too many reports are waiting.
+    #[error("{MAX_WAITING} reports are already waiting for the link")]
     TooMany,
     /// The spool failed.
     #[error("the report cannot be stored")]
     Spool(#[from] sqlx::Error),
 }
 
-pub(super) type Row = (String, String, i64, ReportStanding, Option<String>);
+pub(super) type Row = (String, String, i64, ReportState, Option<String>);
 
 impl Spool {
-    /// Keeps a report, or a change of one; the same again changes nothing.
-    pub(crate) async fn keep_report(
+    /// Stores a report, or a change of one; an identical report changes nothing.
+    pub(crate) async fn save_report(
         &self,
         id: Uuid,
         report: Report,
         reporter: String,
         withdrawn: bool,
         now: Timestamp,
-    ) -> Result<StoredReport, NotKept> {
+    ) -> Result<StoredReport, SaveReportError> {
         let mut tx = self.write().await?;
         let before = find(&mut tx, id).await?;
         let revision = before.as_ref().map_or(0, |before| before.sent.revision) + 1;
@@ -96,16 +96,16 @@ impl Spool {
                 return Ok(before);
             }
             if before.sent.withdrawn {
-                return Err(NotKept::TakenBack);
+                return Err(SaveReportError::Withdrawn);
             }
-        } else if count_waiting(&mut tx).await? >= MOST_WAITING {
-            return Err(NotKept::TooMany);
+        } else if count_waiting(&mut tx).await? >= MAX_WAITING {
+            return Err(SaveReportError::TooMany);
         }
         let stored = StoredReport {
             id,
             sent,
             written_at: now,
-            standing: ReportStanding::Waiting,
+            state: ReportState::Waiting,
             problem: None,
         };
         put(&mut tx, &stored).await?;
@@ -113,19 +113,19 @@ impl Spool {
         Ok(stored)
     }
 
-    /// The latest reports, the latest first.
+    /// Returns the latest reports, newest first.
     pub(crate) async fn reports(&self) -> sqlx::Result<Vec<StoredReport>> {
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT id, report, written_micros, standing, problem FROM reports
              ORDER BY number DESC LIMIT $1",
         )
-        .bind(REMEMBERED)
+        .bind(MAX_LISTED)
         .fetch_all(&self.pool)
         .await?;
         Ok(rows.into_iter().filter_map(read).collect())
     }
 
-    /// The first report that waits to be sent.
+    /// Returns the first report that waits to be sent.
     pub(crate) async fn next_report(&self) -> sqlx::Result<Option<StoredReport>> {
         let rows: Vec<Row> = sqlx::query_as(
             "SELECT id, report, written_micros, standing, problem FROM reports
@@ -136,39 +136,39 @@ impl Spool {
         Ok(rows.into_iter().find_map(read))
     }
 
-    /// The shore has answered to a revision of a report.
-    pub(crate) async fn report_answered(
+    /// Marks a revision of a report as delivered.
+    pub(crate) async fn mark_report_delivered(
         &self,
         sent: &StoredReport,
         answer: &LogbookAnswer,
     ) -> sqlx::Result<()> {
         let withdrawn = answer.withdrawn && !sent.sent.withdrawn;
-        let problem = withdrawn.then_some(WITHDRAWN_ASHORE);
-        self.set_standing(sent, ReportStanding::Ashore, problem)
+        let problem = withdrawn.then_some(WITHDRAWN_BY_SERVER);
+        self.set_report_state(sent, ReportState::Ashore, problem)
             .await
     }
 
-    /// The shore will never take this revision of a report.
-    pub(crate) async fn report_refused(
+    /// Marks a revision of a report as refused for good.
+    pub(crate) async fn mark_report_refused(
         &self,
         sent: &StoredReport,
         problem: &str,
     ) -> sqlx::Result<()> {
-        self.set_standing(sent, ReportStanding::Refused, Some(problem))
+        self.set_report_state(sent, ReportState::Refused, Some(problem))
             .await
     }
 
-    async fn set_standing(
+    async fn set_report_state(
         &self,
         sent: &StoredReport,
-        standing: ReportStanding,
+        state: ReportState,
         problem: Option<&str>,
     ) -> sqlx::Result<()> {
         let mut tx = self.write().await?;
-        // Changed meanwhile: then the answer is for what it was.
+        // A report changed meanwhile is not the one that was sent.
         if find(&mut tx, sent.id).await?.as_ref() == Some(sent) {
             let stored = StoredReport {
-                standing,
+                state,
                 problem: problem.map(str::to_owned),
                 ..sent.clone()
             };
@@ -178,14 +178,14 @@ impl Spool {
             "DELETE FROM reports WHERE standing = 'ashore'
              AND number <= (SELECT MAX(number) FROM reports) - $1",
         )
-        .bind(REMEMBERED)
+        .bind(MAX_LISTED)
         .execute(&mut *tx)
         .await?;
         tx.commit().await
     }
 }
 
-/// Stores a report in its place.
+/// Inserts or replaces a report.
 pub(super) async fn put(tx: &mut SqliteConnection, stored: &StoredReport) -> sqlx::Result<()> {
     let report = serde_json::to_string(&stored.sent).map_err(|e| sqlx::Error::Encode(e.into()))?;
     sqlx::query(
@@ -198,14 +198,14 @@ pub(super) async fn put(tx: &mut SqliteConnection, stored: &StoredReport) -> sql
     .bind(stored.id.to_string())
     .bind(report)
     .bind(stored.written_at.micros())
-    .bind(stored.standing)
+    .bind(stored.state)
     .bind(&stored.problem)
     .execute(tx)
     .await?;
     Ok(())
 }
 
-/// What waits was reported of another ship: it must not go into this one's logbook.
+/// Refuses the waiting reports of another vessel: they must not go into this one's logbook.
 pub(super) async fn refuse_waiting(tx: &mut SqliteConnection, ship: &str) -> sqlx::Result<()> {
     sqlx::query("UPDATE reports SET standing = 'refused', problem = $1 WHERE standing = 'waiting'")
         .bind(format!("reported on board {ship}"))
@@ -230,14 +230,14 @@ async fn count_waiting(tx: &mut SqliteConnection) -> sqlx::Result<i64> {
         .await
 }
 
-/// A row that does not read is reported and passed over: it must not stop the rest.
-pub(super) fn read((id, report, written_micros, standing, problem): Row) -> Option<StoredReport> {
+/// Reads a row. An unreadable one is logged and skipped, because it must not block the rest.
+pub(super) fn read((id, report, written_micros, state, problem): Row) -> Option<StoredReport> {
     let read = || -> anyhow::Result<StoredReport> {
         Ok(StoredReport {
             id: id.parse()?,
             sent: serde_json::from_str(&report)?,
             written_at: Timestamp::from_micros(written_micros)?,
-            standing,
+            state,
             problem,
         })
     };
@@ -269,14 +269,18 @@ mod tests {
         .unwrap()
     }
 
-    async fn keep(spool: &Spool, note: &str, withdrawn: bool) -> Result<StoredReport, NotKept> {
+    async fn keep(
+        spool: &Spool,
+        note: &str,
+        withdrawn: bool,
+    ) -> Result<StoredReport, SaveReportError> {
         let report = lightning(note);
         spool
-            .keep_report(ID, report, "Li".to_owned(), withdrawn, time())
+            .save_report(ID, report, "Li".to_owned(), withdrawn, time())
             .await
     }
 
-    fn taken(revision: u32) -> LogbookAnswer {
+    fn accepted_answer(revision: u32) -> LogbookAnswer {
         LogbookAnswer {
             revision,
             withdrawn: false,
@@ -302,14 +306,17 @@ mod tests {
         let sent = keep(&spool, "a", false).await.unwrap();
         let changed = keep(&spool, "b", false).await.unwrap();
         assert_eq!(changed.sent.revision, 2);
-        spool.report_answered(&sent, &taken(1)).await.unwrap();
+        spool
+            .mark_report_delivered(&sent, &accepted_answer(1))
+            .await
+            .unwrap();
         assert_eq!(spool.next_report().await.unwrap(), Some(changed.clone()));
-        spool.report_answered(&changed, &taken(2)).await.unwrap();
+        spool
+            .mark_report_delivered(&changed, &accepted_answer(2))
+            .await
+            .unwrap();
         assert_eq!(spool.next_report().await.unwrap(), None);
-        assert_eq!(
-            spool.reports().await.unwrap()[0].standing,
-            ReportStanding::Ashore
-        );
+        assert_eq!(spool.reports().await.unwrap()[0].state, ReportState::Ashore);
     }
 
     #[tokio::test]
@@ -320,7 +327,7 @@ mod tests {
         let back = keep(&spool, "a", true).await.unwrap();
         assert_eq!(keep(&spool, "a", true).await.unwrap(), back);
         let error = keep(&spool, "b", false).await.unwrap_err();
-        assert!(matches!(error, NotKept::TakenBack));
+        assert!(matches!(error, SaveReportError::Withdrawn));
         assert_eq!(spool.next_report().await.unwrap(), Some(back));
     }
 
@@ -341,8 +348,8 @@ mod tests {
         };
         spool.enrol(&other).await.unwrap();
         assert_eq!(spool.next_report().await.unwrap(), None);
-        let told = spool.reports().await.unwrap()[0].problem.clone();
-        assert_eq!(told.as_deref(), Some("reported on board Txori"));
+        let problem = spool.reports().await.unwrap()[0].problem.clone();
+        assert_eq!(problem.as_deref(), Some("reported on board Txori"));
     }
 
     #[tokio::test]
@@ -353,9 +360,9 @@ mod tests {
         for number in 0..120 {
             let (id, reporter) = (Uuid::from_u128(1000 + number), String::new());
             let report = lightning("x");
-            let stored = spool.keep_report(id, report, reporter, false, time());
+            let stored = spool.save_report(id, report, reporter, false, time());
             spool
-                .report_answered(&stored.await.unwrap(), &taken(1))
+                .mark_report_delivered(&stored.await.unwrap(), &accepted_answer(1))
                 .await
                 .unwrap();
         }

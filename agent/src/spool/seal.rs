@@ -1,7 +1,9 @@
-//! From samples to sealed batches, in one transaction.
+//! Sealing of samples into batches, in one transaction.
 
-use super::{ALERT, IDENTITY, Identity, NEXT_SEQ, Spool, THINNED, forget, get, put};
-use crate::alert::Aboard;
+use super::database::{Spool, forget, get, put};
+use super::identity::Identity;
+use super::keys::{ALERT, IDENTITY, NEXT_SEQ, THINNED};
+use crate::alert::AlertRecord;
 use binnacle_compass::sample::Sample;
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::alert::ShipAlert;
@@ -10,32 +12,31 @@ use binnacle_wire::codec;
 use sqlx::SqliteConnection;
 use std::collections::BTreeMap;
 
-/// A batch is sealed when it holds so many samples, some 4 kB: what a connection costs
-/// is little beside it.
+/// Samples at which a batch is sealed, some 4 kB: the cost of a connection is small beside it.
 pub(crate) const SAMPLES_PER_BATCH: u32 = 512;
 
-/// Whether to seal what is pending.
+/// Extent of sealing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Seal {
-    /// Only full batches.
+    /// Full batches only.
     Full,
-    /// Everything, the tally too.
+    /// Everything, including the tally.
     All,
 }
 
-/// What is not sealed yet.
+/// Unsealed samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub(crate) struct Pending {
-    /// How many samples.
+    /// Number of samples.
     pub(crate) samples: u64,
-    /// The time of the first.
+    /// Time of the first sample.
     pub(crate) since: Option<Timestamp>,
 }
 
 impl Spool {
-    /// Adds samples and counted windows, and seals. Without an identity nothing
-    /// is sealed: there is no stream to number it in. Returns what then pends
-    /// and how many batches were sealed.
+    /// Adds samples and counted windows, and seals. Nothing is sealed without an identity, because
+    /// there is no stream to number it in. Returns what remains pending and how many batches were
+    /// sealed.
     pub(crate) async fn store(
         &self,
         samples: &[Sample],
@@ -66,15 +67,14 @@ impl Spool {
         Ok((pending, sealed))
     }
 
-    /// Adds samples and counted windows, and seals all there is as evidence of alerts,
-    /// which go with the newest samples. What is known of the last alert is kept in
-    /// the same breath.
+    /// Adds samples and counted windows, and seals everything as evidence of alerts, which go with
+    /// the newest samples. The record of the last alert is stored in the same transaction.
     pub(crate) async fn store_evidence(
         &self,
         samples: &[Sample],
         tally: &BTreeMap<String, u64>,
         alerts: &[ShipAlert],
-        aboard: Option<&Aboard>,
+        record: Option<&AlertRecord>,
     ) -> sqlx::Result<(Pending, usize)> {
         let mut tx = self.write().await?;
         for sample in samples {
@@ -83,18 +83,18 @@ impl Spool {
         for (reason, windows) in tally {
             add_to_tally(&mut tx, reason, *windows).await?;
         }
-        if let Some(aboard) = aboard {
-            put(&mut tx, ALERT, aboard).await?;
+        if let Some(record) = record {
+            put(&mut tx, ALERT, record).await?;
         }
         let mut sealed = 0;
         if let Some(identity) = get::<Identity>(&mut tx, IDENTITY).await? {
             if alerts.iter().any(|alert| alert.revision == 1) {
-                // What was sealed last lies just before the alert.
-                hurry_newest(&mut tx).await?;
+                // The batch sealed last lies just before the alert.
+                prioritise_newest(&mut tx).await?;
             }
             while pending(&mut tx).await?.samples > u64::from(SAMPLES_PER_BATCH) {
                 sealed += usize::from(seal_one(&mut tx, &identity, &[]).await?);
-                hurry_newest(&mut tx).await?;
+                prioritise_newest(&mut tx).await?;
             }
             sealed += usize::from(seal_one(&mut tx, &identity, alerts).await?);
         }
@@ -103,7 +103,7 @@ impl Spool {
         Ok((pending, sealed))
     }
 
-    /// What is not sealed yet.
+    /// Returns the unsealed samples.
     pub(crate) async fn pending(&self) -> sqlx::Result<Pending> {
         let mut connection = self.pool.acquire().await?;
         pending(&mut connection).await
@@ -147,8 +147,8 @@ async fn pending(connection: &mut SqliteConnection) -> sqlx::Result<Pending> {
     })
 }
 
-/// Lets the batch that was sealed last go first, if it waits.
-async fn hurry_newest(tx: &mut SqliteConnection) -> sqlx::Result<()> {
+/// Moves the batch sealed last to the front, if it waits.
+async fn prioritise_newest(tx: &mut SqliteConnection) -> sqlx::Result<()> {
     sqlx::query(
         "UPDATE batches SET urgent = TRUE
          WHERE standing = 'waiting' AND seq = (SELECT MAX(seq) FROM batches)",
@@ -158,8 +158,7 @@ async fn hurry_newest(tx: &mut SqliteConnection) -> sqlx::Result<()> {
     Ok(())
 }
 
-/// Seals the oldest samples, the whole tally, and alerts; `false` when there is
-/// nothing.
+/// Seals the oldest samples, the whole tally, and alerts; `false` when there is nothing.
 async fn seal_one(
     tx: &mut SqliteConnection,
     identity: &Identity,
@@ -180,7 +179,10 @@ async fn seal_one(
     if rows.is_empty() && tally.is_empty() && alerts.is_empty() {
         return Ok(false);
     }
-    let mut samples: Vec<Sample> = rows.iter().filter_map(|(_, text)| readable(text)).collect();
+    let mut samples: Vec<Sample> = rows
+        .iter()
+        .filter_map(|(_, text)| read_sample(text))
+        .collect();
     samples.sort_by_key(|sample| sample.time);
     let thinned = get(tx, THINNED).await?;
     if thinned.is_some() {
@@ -205,7 +207,8 @@ async fn seal_one(
     Ok(true)
 }
 
-/// Never a number that a batch here has, also when damage took the counter.
+/// Returns the next free number, never that of an existing batch, even when damage took the
+/// counter.
 async fn next_seq(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
     let highest: Option<i64> = sqlx::query_scalar("SELECT MAX(seq) FROM batches")
         .fetch_one(&mut *tx)
@@ -214,19 +217,21 @@ async fn next_seq(tx: &mut SqliteConnection) -> sqlx::Result<u64> {
     Ok(get::<u64>(tx, NEXT_SEQ).await?.unwrap_or(1).max(free))
 }
 
-fn left_out(error: impl std::fmt::Display) {
-    tracing::error!(%error, "a damaged sample was left out");
+fn log_dropped_sample(error: impl std::fmt::Display) {
+    tracing::error!(%error, "a damaged sample was dropped");
 }
 
-fn readable(text: &str) -> Option<Sample> {
-    let sample: Sample = serde_json::from_str(text).map_err(left_out).ok()?;
-    // Damage on the disk may leave a number that reads but that no batch can
-    // carry: it must not keep the others from being sealed.
-    codec::check(&sample, 0).map_err(left_out).ok()?;
+fn read_sample(text: &str) -> Option<Sample> {
+    let sample: Sample = serde_json::from_str(text)
+        .map_err(log_dropped_sample)
+        .ok()?;
+    // Damage on the disk may leave a readable number that no batch can carry. It must not keep the
+    // other samples from being sealed.
+    codec::check(&sample, 0).map_err(log_dropped_sample).ok()?;
     Some(sample)
 }
 
-/// Adds a sealed batch that waits to be sent.
+/// Inserts a sealed batch that waits to be sent.
 pub(super) async fn insert_batch(
     tx: &mut SqliteConnection,
     seq: u64,

@@ -1,9 +1,9 @@
-//! How long to wait after failures: longer and longer, never for good.
+//! Pauses after failures: they grow, but never end the retries.
 
 use rand::{Rng, RngExt};
 use std::time::Duration;
 
-/// Exponential backoff with full jitter above a least pause.
+/// Exponential backoff with full jitter above a minimum pause.
 #[derive(Clone, Debug)]
 pub(crate) struct Backoff {
     least: Duration,
@@ -12,7 +12,7 @@ pub(crate) struct Backoff {
 }
 
 impl Backoff {
-    /// Pauses between `least` and `most`.
+    /// Creates a backoff with pauses between `least` and `most`.
     pub(crate) fn new(least: Duration, most: Duration) -> Backoff {
         Backoff {
             least,
@@ -21,12 +21,12 @@ impl Backoff {
         }
     }
 
-    /// All is well again.
+    /// Resets the backoff after a success.
     pub(crate) fn reset(&mut self) {
         self.failures = 0;
     }
 
-    /// The pause after one more failure: anywhere from the least to a limit
+    /// Returns the pause after one more failure: a random value between the minimum and a limit
     /// that doubles each time, so that a fleet does not come back all at once.
     pub(crate) fn next(&mut self, rng: &mut impl Rng) -> Duration {
         self.failures = self.failures.saturating_add(1);
@@ -38,7 +38,7 @@ impl Backoff {
         self.least + spread.mul_f64(rng.random::<f64>())
     }
 
-    /// The longest pause.
+    /// Returns the longest pause.
     pub(crate) fn most(&self) -> Duration {
         self.most
     }

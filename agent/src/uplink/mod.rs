@@ -1,36 +1,37 @@
-//! Sealed batches to the shore, models and settings back: one after another,
-//! again and again, never giving up.
+//! Uplink: sealed batches to the server, models and settings back, one after another, with retries
+//! that never end.
 //!
-//! What always holds:
+//! Invariants:
 //!
-//! - A batch counts as sent when the shore's answer has been read and kept, not
-//!   before. Until then it is sent again, byte for byte.
-//! - No failure loses data or stops the agent; each is on the page in words.
-//! - Evidence of an alert goes before everything else, and cuts a pause short.
-//! - Nothing is sent that the day's budget does not allow ([`plan`]); it is paid for,
-//!   and that is kept, before it is sent.
-//! - A report for the logbook goes before the other batches: it is short, and changes
-//!   how they are read. One that the shore does not take keeps nothing else back.
-//! - A model or settings that arrive are kept first and then in effect at once.
+//! - A batch counts as sent only when the server's response has been read and stored. Until then it
+//!   is sent again, byte for byte.
+//! - No failure loses data or stops the agent; each is shown on the page in words.
+//! - Evidence of an alert goes before everything else, and ends a pause.
+//! - Nothing is sent that the daily budget does not allow ([`budget`]). A request is charged, and
+//!   the charge stored, before it is sent.
+//! - A report for the logbook goes before the other batches: it is short, and changes how they are
+//!   interpreted. A refused report blocks nothing.
+//! - A new model or new settings are stored first and then take effect at once.
 
-mod aboard;
-mod answer;
 mod backoff;
-mod plan;
+mod budget;
+mod client;
 mod reports;
-mod shore;
+mod request;
+mod request_error;
+mod response;
 mod start;
 mod status;
 
-pub(crate) use plan::{Account, EXCHANGE, Plan, Profile, REQUEST_OCTETS};
-pub(crate) use shore::{Line, Shore, Trouble};
-pub(crate) use start::{Told, prepare};
-pub(crate) use status::{LinkState, LinkStatus, Tell};
+pub(crate) use client::ServerClient;
+pub(crate) use request_error::RequestError;
+pub(crate) use start::{UplinkHandle, prepare};
+pub(crate) use status::{LinkState, LinkStatus, Publisher};
 
-use aboard::Aboard;
 use backoff::Backoff;
-use plan::{Budget, Class, Now};
-use shore::Have;
+use budget::{Budget, ClockReading, Priority};
+use client::KnownVersions;
+use request::BatchContext;
 
 use crate::spool::{Identity, Spool};
 use binnacle_compass::time::Timestamp;
@@ -41,46 +42,46 @@ use tokio::sync::{Notify, watch};
 use tokio::time::{Instant, timeout};
 use tokio_util::sync::CancellationToken;
 
-/// How often a pause or idleness is interrupted to see whether the agent was enrolled anew.
-const LOOK_FOR_ENROLMENT: Duration = Duration::from_secs(5);
-/// What the shore refused is offered again so often: it may be another version by then.
-const OFFER_AGAIN: Duration = Duration::from_hours(24);
+/// Interval at which a pause or idleness checks whether the agent was enrolled anew.
+const ENROLMENT_POLL_INTERVAL: Duration = Duration::from_secs(5);
+/// Interval at which a refused batch is sent again: the server may have another version by then.
+const RETRY_PARKED_INTERVAL: Duration = Duration::from_hours(24);
 
-/// Everything the uplink works with.
+/// State of the uplink.
 #[derive(Debug)]
 pub(crate) struct Uplink {
     pub(crate) spool: Spool,
-    pub(crate) shore: Shore,
+    pub(crate) client: ServerClient,
     pub(crate) backoff: Backoff,
-    /// Asks for news when nothing was sent for so long.
+    /// Interval of polls when nothing was sent.
     pub(crate) poll: Duration,
     pub(crate) budget: Budget,
     pub(crate) ship_time: watch::Receiver<Option<Timestamp>>,
-    pub(crate) tell: Tell,
-    /// Whether the connection stays open when all is said.
-    pub(crate) keeps_line: bool,
-    /// Whether something was sent since all was said.
-    pub(crate) in_touch: bool,
-    /// The token that the model and settings in effect came with.
+    pub(crate) publisher: Publisher,
+    /// Set if the connection stays open after an exchange.
+    pub(crate) keeps_connection: bool,
+    /// Set once something was sent since the last exchange ended.
+    pub(crate) exchange_open: bool,
+    /// Token of the current model and settings.
     pub(crate) token: Option<String>,
-    /// The token that the shore did not know when it last answered.
-    pub(crate) refused: Option<String>,
-    /// A shore that knows no reports is not asked again before this.
-    pub(crate) no_reports_before: Option<Instant>,
-    /// Rings when a batch has been sealed or a report was written.
+    /// Last token that the server did not know.
+    pub(crate) refused_token: Option<String>,
+    /// End of the pause for a server that knows no reports.
+    pub(crate) reports_paused_until: Option<Instant>,
+    /// Notified when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
-    /// Rings when evidence of an alert has been sealed.
+    /// Notified when evidence of an alert has been sealed.
     pub(crate) urgent: Arc<Notify>,
     pub(crate) rng: StdRng,
 }
 
-/// What to do next.
-enum Next {
-    /// Look for work at once.
-    GoOn,
-    /// Wait for a sealed batch, or for so long.
+/// Next step of the uplink.
+enum NextStep {
+    /// Continue at once.
+    Continue,
+    /// Wait for a sealed batch, at most for this duration.
     Idle(Duration),
-    /// Wait for so long, work or no work.
+    /// Wait for this duration, whatever is sealed.
     Pause(Duration),
 }
 
@@ -88,21 +89,21 @@ impl Uplink {
     /// Runs until `shutdown`.
     pub(crate) async fn run(mut self, shutdown: CancellationToken) {
         if let Err(error) = self.spool.unpark().await {
-            tracing::error!(%error, "cannot look at the parked batches");
+            tracing::error!(%error, "the parked batches cannot be queued again");
         }
-        let mut offer_again = Instant::now() + OFFER_AGAIN;
-        if let Err(error) = self.spool.keep_account(&self.budget.account()).await {
-            tracing::error!(%error, "the budget cannot be kept");
+        let mut retry_parked_at = Instant::now() + RETRY_PARKED_INTERVAL;
+        if let Err(error) = self.spool.save_account(&self.budget.account()).await {
+            tracing::error!(%error, "the budget cannot be stored");
         }
-        let mut answered = None;
+        let mut last_response = None;
         loop {
-            if offer_again <= Instant::now() {
-                offer_again = Instant::now() + OFFER_AGAIN;
+            if retry_parked_at <= Instant::now() {
+                retry_parked_at = Instant::now() + RETRY_PARKED_INTERVAL;
                 if let Err(error) = self.spool.unpark_first().await {
-                    tracing::error!(%error, "cannot look at the parked batches");
+                    tracing::error!(%error, "the parked batches cannot be queued again");
                 }
             }
-            let work = self.step(&mut answered);
+            let work = self.step(&mut last_response);
             let Some(next) = shutdown.run_until_cancelled(work).await else {
                 return;
             };
@@ -113,137 +114,139 @@ impl Uplink {
         }
     }
 
-    /// One request at most; `answered` is when the shore last answered.
-    async fn step(&mut self, answered: &mut Option<Instant>) -> Next {
-        match self.try_step(answered).await {
+    /// Sends at most one request; `last_response` is the time of the server's last response.
+    async fn step(&mut self, last_response: &mut Option<Instant>) -> NextStep {
+        match self.try_step(last_response).await {
             Ok(next) => next,
             Err(error) => {
                 tracing::error!(%error, "the spool cannot be used");
-                Next::Pause(self.backoff.next(&mut self.rng))
+                NextStep::Pause(self.backoff.next(&mut self.rng))
             }
         }
     }
 
-    async fn try_step(&mut self, answered: &mut Option<Instant>) -> sqlx::Result<Next> {
+    async fn try_step(&mut self, last_response: &mut Option<Instant>) -> sqlx::Result<NextStep> {
         let Some(identity) = self.spool.identity().await? else {
-            self.tell.link.send_replace(LinkStatus::default());
-            return Ok(Next::Idle(LOOK_FOR_ENROLMENT));
+            self.publisher.link.send_replace(LinkStatus::default());
+            return Ok(NextStep::Idle(ENROLMENT_POLL_INTERVAL));
         };
         if self.token.as_ref() != Some(&identity.token) {
-            self.enrolled_anew(&identity).await?;
-            *answered = None;
+            self.load_enrolment(&identity).await?;
+            *last_response = None;
         }
-        if answered.is_none() {
-            self.connecting();
+        if last_response.is_none() {
+            self.publish_connecting();
         }
         let batch = self.spool.next_batch().await?;
         let has_evidence = batch.as_ref().is_some_and(|batch| batch.urgent);
         if !has_evidence && let Some(report) = self.next_report().await? {
             return self.send_report(&identity, &report).await;
         }
-        let have = Have {
-            model: self.tell.model.borrow().as_ref().map(|model| model.id),
-            settings: self.tell.settings.borrow().version,
+        let known = KnownVersions {
+            model: self.publisher.model.borrow().as_ref().map(|model| model.id),
+            settings: self.publisher.settings.borrow().version,
         };
-        let (class, octets) = match &batch {
-            Some(batch) if batch.urgent => (Class::Alert, batch.bytes.len()),
-            Some(batch) if batch.samples > 0 => (Class::Samples, batch.bytes.len()),
-            Some(batch) => (Class::Rest, batch.bytes.len()),
-            None => (Class::Rest, 0),
+        let (priority, bytes) = match &batch {
+            Some(batch) if batch.urgent => (Priority::Alert, batch.bytes.len()),
+            Some(batch) if batch.samples > 0 => (Priority::Samples, batch.bytes.len()),
+            Some(batch) => (Priority::Other, batch.bytes.len()),
+            None => (Priority::Other, 0),
         };
         if batch.is_none() {
-            let idle = answered.map(|at| at.elapsed());
+            let idle = last_response.map(|at| at.elapsed());
             if let Some(left) = idle.and_then(|idle| self.poll.checked_sub(idle)) {
                 self.end_exchange();
-                return Ok(Next::Idle(left));
+                return Ok(NextStep::Idle(left));
             }
         }
-        if let Some(wait) = self.budget.wait(class, octets, self.now()) {
-            return Ok(Next::Idle(wait));
+        if let Some(wait) = self.budget.delay_for(priority, bytes, self.now()) {
+            return Ok(NextStep::Idle(wait));
         }
         if let Some(batch) = &batch
-            && !self.spool.note_try(batch).await?
+            && !self.spool.mark_tried(batch).await?
         {
-            return Ok(Next::GoOn);
+            return Ok(NextStep::Continue);
         }
-        let cost = self.spend(octets).await?;
+        let cost = self.charge(bytes).await?;
         let result = match &batch {
             Some(batch) => {
-                let aboard = Aboard {
-                    waits: self.spool.waiting_beside(batch.seq).await?,
-                    budget: self.budget.short_percent(),
+                let context = BatchContext {
+                    waiting_batches: self.spool.count_other_waiting(batch.seq).await?,
+                    budget_percent: self.budget.remaining_percent(),
                 };
-                let sent = self.shore.put_batch(&identity, batch, have, aboard);
+                let sent = self.client.put_batch(&identity, batch, known, context);
                 sent.await
             }
-            None => self.shore.downlink(&identity, have).await,
+            None => self.client.downlink(&identity, known).await,
         };
-        self.settle(cost, result.as_ref().err()).await?;
+        self.settle_cost(cost, result.as_ref().err()).await?;
         match result {
             Ok(downlink) => {
-                *answered = Some(Instant::now());
-                self.succeed(&identity, batch.as_ref(), downlink).await
+                *last_response = Some(Instant::now());
+                self.handle_success(&identity, batch.as_ref(), downlink)
+                    .await
             }
-            Err(trouble) => self.fail(&identity, batch.as_ref(), trouble).await,
+            Err(error) => self.handle_failure(&identity, batch.as_ref(), error).await,
         }
     }
 
-    /// Whether another stream has taken the place of this one meanwhile: an answer for
-    /// it changes nothing any more. Another token changes nothing about what was said.
-    async fn has_left(&self, identity: &Identity) -> sqlx::Result<bool> {
+    /// Returns whether the agent has changed to another stream meanwhile, so that a response for
+    /// this one is void. Another token does not matter.
+    async fn has_changed_stream(&self, identity: &Identity) -> sqlx::Result<bool> {
         let now = self.spool.identity().await?;
         Ok(now.is_none_or(|now| now.stream != identity.stream))
     }
 
-    /// All is said for now.
+    /// Ends an exchange: nothing is left to send for now.
     fn end_exchange(&mut self) {
-        if self.in_touch && !self.keeps_line {
-            self.shore.hang_up();
+        if self.exchange_open && !self.keeps_connection {
+            self.client.close_connection();
         }
-        self.in_touch = false;
+        self.exchange_open = false;
     }
 
-    fn now(&self) -> Now {
-        Now {
+    fn now(&self) -> ClockReading {
+        ClockReading {
             monotonic: Instant::now(),
             ship: *self.ship_time.borrow(),
         }
     }
 
-    /// Pays for a request, and keeps that: an agent that dies of it again and again
-    /// does not spend more.
-    async fn spend(&mut self, octets: usize) -> sqlx::Result<f64> {
-        self.in_touch = true;
-        let cost = self.budget.spend(octets, self.now());
-        self.spool.keep_account(&self.budget.account()).await?;
+    /// Charges a request and stores the balance: an agent that dies of it again and again spends no
+    /// more.
+    async fn charge(&mut self, bytes: usize) -> sqlx::Result<f64> {
+        self.exchange_open = true;
+        let cost = self.budget.charge(bytes, self.now());
+        self.spool.save_account(&self.budget.account()).await?;
         Ok(cost)
     }
 
-    /// Pays for the answer, or takes back what no connection cost.
-    async fn settle(&mut self, cost: f64, trouble: Option<&Trouble>) -> sqlx::Result<()> {
-        if let Some(Trouble::NoConnection(_)) = trouble {
-            self.budget.take_back(cost);
+    /// Charges the response, or refunds a request without a connection.
+    async fn settle_cost(&mut self, cost: f64, error: Option<&RequestError>) -> sqlx::Result<()> {
+        if let Some(RequestError::NoConnection(_)) = error {
+            self.budget.refund(cost);
         }
-        self.budget.answered(self.shore.take_octets());
-        self.spool.keep_account(&self.budget.account()).await
+        self.budget
+            .charge_response(self.client.take_received_bytes());
+        self.spool.save_account(&self.budget.account()).await
     }
 
-    /// What the spool has is in effect: nothing of another compass, if it is one.
-    async fn enrolled_anew(&mut self, identity: &Identity) -> sqlx::Result<()> {
-        self.tell.model.send_replace(self.spool.model().await?);
-        self.tell
+    /// Publishes model and settings of the spool: none of another compass.
+    async fn load_enrolment(&mut self, identity: &Identity) -> sqlx::Result<()> {
+        self.publisher.model.send_replace(self.spool.model().await?);
+        self.publisher
             .withdrawn
             .send_replace(self.spool.card_withdrawn().await?);
-        self.tell
+        self.publisher
             .settings
             .send_replace(self.spool.settings().await?);
         self.token = Some(identity.token.clone());
-        self.no_reports_before = None;
+        self.reports_paused_until = None;
         Ok(())
     }
 
-    fn connecting(&self) {
-        self.tell.link.send_if_modified(|link| {
+    fn publish_connecting(&self) {
+        self.publisher.link.send_if_modified(|link| {
             let first = link.state == LinkState::NotEnrolled;
             if first {
                 link.state = LinkState::Connecting;
@@ -252,15 +255,15 @@ impl Uplink {
         });
     }
 
-    async fn wait(&mut self, next: Next) {
+    async fn wait(&mut self, next: NextStep) {
         match next {
-            Next::GoOn => {}
-            Next::Idle(longest) => {
-                // A batch that was sealed meanwhile has left its ring behind.
-                let longest = longest.min(LOOK_FOR_ENROLMENT);
+            NextStep::Continue => {}
+            NextStep::Idle(longest) => {
+                // A batch sealed meanwhile has left its notification.
+                let longest = longest.min(ENROLMENT_POLL_INTERVAL);
                 timeout(longest, self.sealed.notified()).await.ok();
             }
-            Next::Pause(pause) => {
+            NextStep::Pause(pause) => {
                 let urgent = self.urgent.clone();
                 tokio::select! {
                     () = self.pause(pause) => return,
@@ -271,12 +274,12 @@ impl Uplink {
         }
     }
 
-    /// Waits, but not longer than until the agent is enrolled anew.
+    /// Waits for the pause, or until the agent is enrolled anew.
     async fn pause(&self, pause: Duration) {
         let until = Instant::now() + pause;
         let before = self.spool.identity().await.ok().flatten();
         while Instant::now() < until {
-            tokio::time::sleep_until(until.min(Instant::now() + LOOK_FOR_ENROLMENT)).await;
+            tokio::time::sleep_until(until.min(Instant::now() + ENROLMENT_POLL_INTERVAL)).await;
             let Ok(identity) = self.spool.identity().await else {
                 continue;
             };

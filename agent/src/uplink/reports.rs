@@ -1,15 +1,15 @@
-//! Reports for the logbook on their way: each by itself, before the batches.
+//! Delivery of reports for the logbook: each by itself, before the batches.
 
-use super::plan::Class;
-use super::shore::Trouble;
-use super::{LinkState, Next, Uplink};
+use super::budget::Priority;
+use super::request_error::RequestError;
+use super::{LinkState, NextStep, Uplink};
 use crate::spool::{Identity, StoredReport};
 use tokio::time::Instant;
 
 impl Uplink {
     pub(super) async fn next_report(&self) -> sqlx::Result<Option<StoredReport>> {
         if self
-            .no_reports_before
+            .reports_paused_until
             .is_some_and(|time| Instant::now() < time)
         {
             return Ok(None);
@@ -21,39 +21,39 @@ impl Uplink {
         &mut self,
         identity: &Identity,
         report: &StoredReport,
-    ) -> sqlx::Result<Next> {
-        let octets = serde_json::to_vec(&report.sent).map_or(0, |text| text.len());
-        if let Some(wait) = self.budget.wait(Class::Report, octets, self.now()) {
-            return Ok(Next::Idle(wait));
+    ) -> sqlx::Result<NextStep> {
+        let bytes = serde_json::to_vec(&report.sent).map_or(0, |text| text.len());
+        if let Some(wait) = self.budget.delay_for(Priority::Report, bytes, self.now()) {
+            return Ok(NextStep::Idle(wait));
         }
-        let cost = self.spend(octets).await?;
-        let result = self.shore.put_report(identity, report).await;
-        self.settle(cost, result.as_ref().err()).await?;
+        let cost = self.charge(bytes).await?;
+        let result = self.client.put_report(identity, report).await;
+        self.settle_cost(cost, result.as_ref().err()).await?;
         match result {
             Ok(answer) => {
-                if !self.has_left(identity).await? {
-                    self.spool.report_answered(report, &answer).await?;
-                    tracing::info!(id = %report.id, "a report is ashore");
+                if !self.has_changed_stream(identity).await? {
+                    self.spool.mark_report_delivered(report, &answer).await?;
+                    tracing::info!(id = %report.id, "a report was delivered");
                 }
                 self.backoff.reset();
-                self.tell.link.send_modify(|link| {
+                self.publisher.link.send_modify(|link| {
                     link.state = LinkState::Up;
                     link.problem = None;
                 });
-                Ok(Next::GoOn)
+                Ok(NextStep::Continue)
             }
-            Err(Trouble::Refused(problem)) => {
-                tracing::error!(id = %report.id, problem, "the shore refuses a report");
-                self.spool.report_refused(report, &problem).await?;
-                Ok(Next::GoOn)
+            Err(RequestError::Refused(problem)) => {
+                tracing::error!(id = %report.id, problem, "the server refused a report");
+                self.spool.mark_report_refused(report, &problem).await?;
+                Ok(NextStep::Continue)
             }
-            // A token that is not known any more shows itself in what is sent next.
-            Err(Trouble::Unknown(problem) | Trouble::NotFound(problem)) => {
-                tracing::warn!(problem, "the shore does not take reports for now");
-                self.no_reports_before = Some(Instant::now() + self.poll);
-                Ok(Next::GoOn)
+            // An unknown token will also fail the next request.
+            Err(RequestError::Unauthorized(problem) | RequestError::NotFound(problem)) => {
+                tracing::warn!(problem, "the server does not accept reports for now");
+                self.reports_paused_until = Some(Instant::now() + self.poll);
+                Ok(NextStep::Continue)
             }
-            Err(trouble) => self.fail(identity, None, trouble).await,
+            Err(error) => self.handle_failure(identity, None, error).await,
         }
     }
 }

@@ -1,6 +1,6 @@
-//! An uplink made ready, and what it and the rest of the agent tell each other.
+//! Start of the uplink, and its handle for the rest of the agent.
 
-use super::{Backoff, Budget, LinkStatus, Shore, Tell, Uplink};
+use super::{Backoff, Budget, LinkStatus, Publisher, ServerClient, Uplink};
 use crate::config::UplinkConfig;
 use crate::spool::Spool;
 use binnacle_compass::time::Timestamp;
@@ -11,31 +11,31 @@ use std::sync::Arc;
 use tokio::sync::{Notify, watch};
 use tokio::time::Instant;
 
-/// The agent's side of it.
+/// Handle of the uplink for the rest of the agent.
 #[derive(Debug)]
-pub(crate) struct Told {
-    /// The model to steer by.
+pub(crate) struct UplinkHandle {
+    /// Current model.
     pub(crate) model: watch::Receiver<Option<ModelDownlink>>,
-    /// Why that model holds no more.
+    /// Withdrawal of that model.
     pub(crate) withdrawn: watch::Receiver<Option<CardWithdrawn>>,
-    /// How to sample and send.
+    /// Settings of sampling and upload.
     pub(crate) settings: watch::Receiver<Settings>,
-    /// How the link is.
+    /// State of the link.
     pub(crate) link: watch::Receiver<LinkStatus>,
-    /// The ship's time, which earns the budget.
+    /// GNSS time, by which the budget accrues.
     pub(crate) ship_time: watch::Sender<Option<Timestamp>>,
-    /// To be rung when a batch has been sealed or a report was written.
+    /// To be notified when a batch has been sealed or a report was written.
     pub(crate) sealed: Arc<Notify>,
-    /// To be rung when evidence of an alert has been sealed.
+    /// To be notified when evidence of an alert has been sealed.
     pub(crate) urgent: Arc<Notify>,
 }
 
-/// Goes on where the spool says that it was.
+/// Creates an uplink that continues with the state of the spool.
 pub(crate) async fn prepare(
     config: &UplinkConfig,
     spool: &Spool,
-) -> anyhow::Result<(Uplink, Told)> {
-    let tell = Tell {
+) -> anyhow::Result<(Uplink, UplinkHandle)> {
+    let publisher = Publisher {
         model: watch::Sender::new(spool.model().await?),
         withdrawn: watch::Sender::new(spool.card_withdrawn().await?),
         settings: watch::Sender::new(spool.settings().await?),
@@ -44,37 +44,42 @@ pub(crate) async fn prepare(
             ..LinkStatus::default()
         }),
     };
-    let told = Told {
-        model: tell.model.subscribe(),
-        withdrawn: tell.withdrawn.subscribe(),
-        settings: tell.settings.subscribe(),
-        link: tell.link.subscribe(),
+    let uplink_handle = UplinkHandle {
+        model: publisher.model.subscribe(),
+        withdrawn: publisher.withdrawn.subscribe(),
+        settings: publisher.settings.subscribe(),
+        link: publisher.link.subscribe(),
         ship_time: watch::Sender::new(None),
         sealed: Arc::default(),
         urgent: Arc::default(),
     };
     let account = spool.account().await?;
     let plan = config.plan();
-    let line = config.line();
+    let connection_policy = config.connection_policy();
     let uplink = Uplink {
         spool: spool.clone(),
         token: spool.identity().await?.map(|identity| identity.token),
-        refused: None,
-        shore: Shore::new(config.pinned_ca.as_deref(), &line)?,
+        refused_token: None,
+        client: ServerClient::new(config.pinned_ca.as_deref(), &connection_policy)?,
         backoff: Backoff::new(
             config.retry_min_s.get_ref().duration(),
             config.retry_max_s.get_ref().duration(),
         ),
         poll: config.poll(),
-        budget: Budget::new(&plan, account, line.idle, Instant::now()),
-        ship_time: told.ship_time.subscribe(),
-        tell,
-        keeps_line: plan.keeps_line(),
-        in_touch: false,
-        no_reports_before: None,
-        sealed: told.sealed.clone(),
-        urgent: told.urgent.clone(),
+        budget: Budget::new(
+            &plan,
+            account,
+            connection_policy.idle_timeout,
+            Instant::now(),
+        ),
+        ship_time: uplink_handle.ship_time.subscribe(),
+        publisher,
+        keeps_connection: plan.keeps_connection(),
+        exchange_open: false,
+        reports_paused_until: None,
+        sealed: uplink_handle.sealed.clone(),
+        urgent: uplink_handle.urgent.clone(),
         rng: StdRng::from_rng(&mut rand::rng()),
     };
-    Ok((uplink, told))
+    Ok((uplink, uplink_handle))
 }

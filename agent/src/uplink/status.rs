@@ -1,47 +1,47 @@
-//! How the link is, and what the shore decides, for the rest of the agent.
+//! State of the link, and publication of the server's decisions to the rest of the agent.
 
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::{CardWithdrawn, ModelDownlink, Settings};
 use serde::{Deserialize, Serialize};
 use tokio::sync::watch;
 
-/// How the link is, for the page.
+/// State of the link, for the page.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LinkStatus {
-    /// In one word.
+    /// State in one word.
     pub(crate) state: LinkState,
-    /// What is wrong, in words.
+    /// Description of the fault.
     pub(crate) problem: Option<String>,
-    /// When the shore last answered, by its clock.
+    /// Time of the server's last response, by its clock.
     pub(crate) last_contact: Option<Timestamp>,
 }
 
-/// How the link is, in one word.
+/// State of the link in one word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum LinkState {
-    /// There is no token: see `enrol`.
+    /// No token: see `enrol`.
     #[default]
     NotEnrolled,
-    /// The first try is under way.
+    /// First attempt under way.
     Connecting,
-    /// The last request was answered.
+    /// Last request succeeded.
     Up,
-    /// The last request was not answered.
+    /// Last request failed.
     Down,
-    /// The shore does not know the token or the stream.
+    /// Token or stream unknown to the server.
     Refused,
 }
 
-/// What the shore decides, as it is now.
+/// Publisher of the server's decisions.
 #[derive(Debug)]
-pub(crate) struct Tell {
-    /// The model to steer by.
+pub(crate) struct Publisher {
+    /// Current model.
     pub(crate) model: watch::Sender<Option<ModelDownlink>>,
-    /// Why that model holds no more.
+    /// Withdrawal of that model.
     pub(crate) withdrawn: watch::Sender<Option<CardWithdrawn>>,
-    /// How to sample and send.
+    /// Settings of sampling and upload.
     pub(crate) settings: watch::Sender<Settings>,
-    /// How the link is.
+    /// State of the link.
     pub(crate) link: watch::Sender<LinkStatus>,
 }

@@ -16,9 +16,9 @@ pub(crate) struct Agent {
 pub(crate) struct Running {
     pub(crate) process: Child,
     log: Lines<BufReader<ChildStderr>>,
-    /// Where the corrected heading comes out.
+    /// Address of the corrected heading's output.
     pub(crate) output: SocketAddr,
-    /// Where the local page is.
+    /// Address of the local page.
     pub(crate) page: SocketAddr,
 }
 
@@ -86,7 +86,7 @@ stale_s = 3
 
     pub(crate) async fn enrol(&self, server: &str) {
         let done = self
-            .call(&["enrol", "--server", server, "--code", super::shore::CODE])
+            .call(&["enrol", "--server", server, "--code", super::server::CODE])
             .await;
         assert!(done.status.success(), "{done:?}");
     }
@@ -122,7 +122,7 @@ impl Running {
         self.process.kill().await.unwrap();
     }
 
-    /// Signal 15; its exit code and the rest of its log.
+    /// Sends signal 15. Returns the exit code and the rest of the log.
     pub(crate) async fn terminate(mut self) -> (Option<i32>, String) {
         let id = i32::try_from(self.process.id().unwrap()).unwrap();
         kill_process(Pid::from_raw(id).unwrap(), Signal::TERM).unwrap();

@@ -1,5 +1,5 @@
-//! The instruments of a ship that steers four courses in turn, an hour each,
-//! whose compass reads 3° less than the gyro.
+//! Instruments of a vessel that steers four courses in turn, an hour each, and whose compass reads
+//! 3° less than the gyro.
 
 use binnacle_nmea::sentence::{Hdg, Position, Rmc, Rot, Ths, ThsMode};
 use binnacle_nmea::time::from_unix_micros;
@@ -11,15 +11,15 @@ use tokio::sync::watch;
 
 /// 2026-09-01T00:00:00Z.
 pub(crate) const START_S: i64 = 1_788_220_800;
-/// What the compass reads less than the gyro.
+/// Difference by which the compass reads less than the gyro.
 pub(crate) const LEAD_DEG: f64 = 3.0;
 
-/// Everything the instruments say in one second.
+/// All sentences of one second.
 pub(crate) fn second(offset_s: i64) -> Vec<u8> {
     second_with(offset_s, LEAD_DEG)
 }
 
-/// The same with a compass that reads so much less than the gyro.
+/// All sentences of one second, with a compass that reads `lead_deg` less than the gyro.
 fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
     let mut out = Vec::with_capacity(256);
     let heading = heading_deg(offset_s);
@@ -64,13 +64,13 @@ fn second_with(offset_s: i64, lead_deg: f64) -> Vec<u8> {
     out
 }
 
-/// The course at a time; it changes at once at the full hour.
+/// Heading at a time; it changes at once at the full hour.
 pub(crate) fn heading_deg(offset_s: i64) -> f64 {
     45.0 + 90.0 * (offset_s / 3600 % 4) as f64
 }
 
-/// A TCP server that plays the voyage as fast as it is read. A new connection
-/// goes on where the last one was. It begins when it is told to.
+/// A TCP server that plays the voyage as fast as it is read. A new connection continues where the
+/// last one ended. It begins with [`Bridge::sail`].
 pub(crate) struct Bridge {
     pub(crate) address: SocketAddr,
     begin: watch::Sender<bool>,
@@ -82,13 +82,13 @@ impl Bridge {
         self.begin.send_replace(true);
     }
 
-    /// Will play `seconds`, and be silent then without hanging up.
+    /// Creates a bridge that plays `seconds` and is silent then without closing the connection.
     pub(crate) async fn new(seconds: i64) -> Bridge {
         Bridge::struck(seconds, seconds, 0.0).await
     }
 
-    /// The same, and lightning strikes after `struck_s`: from then on the compass reads
-    /// `off_deg` less than before.
+    /// Creates a bridge whose compass is struck by lightning after `struck_s`: from then on it
+    /// reads `off_deg` less than before.
     pub(crate) async fn struck(seconds: i64, struck_s: i64, off_deg: f64) -> Bridge {
         let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
         let address = listener.local_addr().unwrap();

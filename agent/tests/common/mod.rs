@@ -1,17 +1,17 @@
-//! A made-up ship that talks over TCP, a made-up shore, and the real agent.
+//! A simulated vessel that sends over TCP, a fake server, and the real agent.
 
 #![allow(dead_code, reason = "each test program uses its part")]
 
 pub(crate) mod agent;
 pub(crate) mod bridge;
-pub(crate) mod shore;
+pub(crate) mod server;
 
 use binnacle_compass::model::{Model, Parameters};
 use binnacle_compass::time::Timestamp;
 use binnacle_wire::messages::ModelDownlink;
 use uuid::Uuid;
 
-/// A model that says only: everything is 2.5° east of what it seems.
+/// A model that adds 2.5° everywhere.
 pub(crate) fn model() -> ModelDownlink {
     let mut covariance = [[0.0; 8]; 8];
     covariance[7][7] = 0.04;

@@ -2,14 +2,14 @@
 
 use super::*;
 
-fn aboard(revision: u32) -> Aboard {
-    Aboard {
+fn record(revision: u32) -> AlertRecord {
+    AlertRecord {
         alert: alert(revision),
         acknowledged: false,
-        followed: false,
-        parted: 8,
-        raised_by_deg: None,
-        is_doubted: false,
+        followed_up: false,
+        departed_sectors: 8,
+        raised_limit_deg: None,
+        clearance_revoked: false,
     }
 }
 
@@ -19,7 +19,7 @@ async fn an_alert_is_kept_with_the_batch_that_carries_it_and_hurries_the_one_bef
     for minute in [0, 10, 20] {
         seal(&spool, minute..minute + 1).await;
     }
-    let known = aboard(1);
+    let known = record(1);
     let stored = spool
         .store_evidence(&[sample(30)], &accepted(60), &[alert(1)], Some(&known))
         .await;
@@ -62,7 +62,7 @@ async fn evidence_stays_evidence_in_another_stream_and_an_alert_of_another_ship_
     let (_directory, spool) = enrolled().await;
     let none = BTreeMap::new();
     spool
-        .store_evidence(&[], &none, &[alert(1)], Some(&aboard(1)))
+        .store_evidence(&[], &none, &[alert(1)], Some(&record(1)))
         .await
         .unwrap();
     seal(&spool, 1..2).await;

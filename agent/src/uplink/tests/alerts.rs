@@ -3,7 +3,7 @@
 use super::*;
 use binnacle_wire::alert::{ShipAlert, ShipAlertState};
 
-/// Seals a sample with an alert, as when compass and gyro have parted.
+/// Seals a sample with an alert that compass and gyro disagree.
 pub(super) async fn seal_evidence(spool: &Spool, number: i64) {
     let at = time().plus_seconds(number as f64 * 600.0);
     let alert = ShipAlert {
@@ -23,7 +23,7 @@ pub(super) async fn seal_evidence(spool: &Spool, number: i64) {
     assert_eq!(sealed.unwrap().1, 1);
 }
 
-/// A shore that asks to be left alone for an hour, and an agent that obeys.
+/// A server that asks for a pause of an hour, and an agent that obeys.
 async fn waiting_rig(batches: i64) -> Rig {
     let busy = (
         StatusCode::TOO_MANY_REQUESTS,
@@ -56,11 +56,8 @@ async fn evidence_goes_before_the_backlog_and_the_reports_and_once() {
         [0, 1, 2, 3, 5],
         "a report, then the oldest first"
     );
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!(
-        (standing.acknowledged_batches, standing.contiguous_seq),
-        (6, 6)
-    );
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.acknowledged_batches, status.contiguous_seq), (6, 6));
 }
 
 #[tokio::test]

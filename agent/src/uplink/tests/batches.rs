@@ -1,4 +1,4 @@
-//! Batches, whatever the shore and the link do.
+//! Batches, whatever server and link do.
 
 use super::*;
 
@@ -11,12 +11,9 @@ async fn every_batch_is_sent_and_then_forgotten() {
     rig.sealed.notify_one();
     rig.link.mark_unchanged();
     rig.all_sent().await;
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!(
-        (standing.acknowledged_samples, standing.contiguous_seq),
-        (4, 4)
-    );
-    assert_eq!(standing.waiting_batches, 0);
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.acknowledged_samples, status.contiguous_seq), (4, 4));
+    assert_eq!(status.waiting_batches, 0);
     assert_eq!(rig.link.borrow().last_contact, Some(time()));
 }
 
@@ -39,11 +36,11 @@ async fn no_failure_of_the_link_loses_a_batch() {
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1, 2]);
     assert_eq!(rig.fake.lock().unwrap().requests, 6 + 2);
-    assert_eq!(rig.spool.standing().await.unwrap().acknowledged_batches, 2);
+    assert_eq!(rig.spool.status().await.unwrap().acknowledged_batches, 2);
 }
 
 #[tokio::test]
-async fn no_json_of_a_proxy_passes_for_the_shores_word() {
+async fn no_json_of_a_proxy_passes_for_the_servers_word() {
     let says = |status: u16, body: Value| {
         let status = StatusCode::from_u16(status).unwrap();
         (status, Json(body)).into_response()
@@ -65,18 +62,18 @@ async fn no_json_of_a_proxy_passes_for_the_shores_word() {
     rig.sealed.notify_one();
     let says = |link: &LinkStatus| {
         let problem = link.problem.as_deref();
-        problem.is_some_and(|problem| problem.contains("other than the shore"))
+        problem.is_some_and(|problem| problem.contains("not from the server"))
     };
     rig.link.wait_for(says).await.unwrap();
     rig.all_sent().await;
-    // It was neither put aside nor sent with all the others, nor in another stream.
+    // It was neither parked nor sent with all the others, nor in another stream.
     assert_eq!(rig.seqs(STREAM), [1, 2, 3, 4]);
     let fake = rig.fake.lock().unwrap();
     assert_eq!((fake.requests, fake.streams), (3 + 7 + 1, 0));
 }
 
 #[tokio::test]
-async fn the_shore_is_given_the_time_it_asks_for() {
+async fn the_server_is_given_the_time_it_asks_for() {
     let busy = (
         StatusCode::TOO_MANY_REQUESTS,
         [("retry-after", "1")],
@@ -111,7 +108,7 @@ async fn a_forked_stream_is_left_for_a_new_one() {
 }
 
 #[tokio::test]
-async fn a_shore_that_lost_its_batches_gets_them_again() {
+async fn a_server_that_lost_its_batches_gets_them_again() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
     rig.fake.lock().unwrap().batches.clear();
@@ -123,10 +120,10 @@ async fn a_shore_that_lost_its_batches_gets_them_again() {
 }
 
 #[tokio::test]
-async fn a_shore_that_lost_what_is_not_kept_gets_a_new_stream() {
+async fn a_server_that_lost_what_is_not_kept_gets_a_new_stream() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
-    rig.spool.make_room(1).await.unwrap();
+    rig.spool.shrink_to_limit(1).await.unwrap();
     rig.fake.lock().unwrap().batches.clear();
     seal(&rig.spool, 3).await;
     seal(&rig.spool, 4).await;
@@ -138,7 +135,7 @@ async fn a_shore_that_lost_what_is_not_kept_gets_a_new_stream() {
 }
 
 #[tokio::test]
-async fn a_shore_that_lost_the_stream_gets_all_of_it_in_a_new_one() {
+async fn a_server_that_lost_the_stream_gets_all_of_it_in_a_new_one() {
     let mut rig = rig(3, Fake::default()).await;
     rig.all_sent().await;
     let lost = problem(StatusCode::NOT_FOUND, "not-found");
@@ -159,16 +156,16 @@ async fn a_refused_batch_is_kept_aside_and_does_not_block_the_next() {
     let mut rig = rig(2, fake).await;
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [2]);
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!((standing.parked_batches, standing.contiguous_seq), (1, 0));
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.parked_batches, status.contiguous_seq), (1, 0));
     assert_eq!(
-        standing.parked_because.as_deref(),
+        status.parked_because.as_deref(),
         Some("422 undecodable: why")
     );
 }
 
 #[tokio::test]
-async fn what_was_refused_goes_when_the_shore_takes_the_first_of_it() {
+async fn what_was_refused_goes_when_the_server_takes_the_first_of_it() {
     let refusal = || problem(StatusCode::UNPROCESSABLE_ENTITY, "undecodable");
     let fake = Fake {
         answers: [refusal(), refusal(), refusal()].into(),
@@ -176,7 +173,7 @@ async fn what_was_refused_goes_when_the_shore_takes_the_first_of_it() {
     };
     let mut rig = rig(3, fake).await;
     rig.all_sent().await;
-    assert_eq!(rig.spool.standing().await.unwrap().parked_batches, 3);
+    assert_eq!(rig.spool.status().await.unwrap().parked_batches, 3);
     rig.spool.unpark_first().await.unwrap();
     rig.link.mark_unchanged();
     rig.sealed.notify_one();
@@ -199,8 +196,8 @@ async fn a_batch_that_the_disk_has_damaged_keeps_no_number_open() {
     rig.link.mark_unchanged();
     rig.sealed.notify_one();
     rig.all_sent().await;
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!((standing.parked_batches, standing.contiguous_seq), (0, 2));
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!((status.parked_batches, status.contiguous_seq), (0, 2));
     let fake = rig.fake.lock().unwrap();
     let samples =
         |seq| binnacle_wire::decode(&fake.batches[&(STREAM, seq)]).map(|b| b.samples.len());

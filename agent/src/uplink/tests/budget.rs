@@ -1,13 +1,13 @@
-//! What a day's budget allows, and what of that outlives the agent.
+//! The daily budget, and its balance over a restart.
 
 use super::alerts::seal_evidence;
 use super::*;
 
-fn left(octets: f64) -> Account {
-    Account {
+fn left(bytes: f64) -> BudgetAccount {
+    BudgetAccount {
         profile: Profile::Metered,
-        day_octets: Some(8_000.0),
-        left_octets: octets,
+        daily_bytes: Some(8_000.0),
+        remaining_bytes: bytes,
         ship_time: Some(time()),
     }
 }
@@ -23,7 +23,7 @@ async fn what_cannot_be_afforded_waits_until_the_ships_clock_has_earned_it() {
     up.await.unwrap();
     assert_eq!(rig.seqs(STREAM), [3], "the evidence, on credit");
     let overdrawn = rig.spool.account().await.unwrap().unwrap();
-    assert!(overdrawn.left_octets < 0.0, "{overdrawn:?}");
+    assert!(overdrawn.remaining_bytes < 0.0, "{overdrawn:?}");
     rig.ship_time
         .send_replace(Some(time().plus_seconds(2.0 * 86_400.0)));
     rig.sealed.notify_one();
@@ -33,7 +33,7 @@ async fn what_cannot_be_afforded_waits_until_the_ships_clock_has_earned_it() {
 }
 
 #[tokio::test]
-async fn what_waits_is_told_and_the_budget_where_it_is_short() {
+async fn waiting_batches_are_reported_and_the_budget_where_it_is_short() {
     let said = |rig: &Rig| -> Vec<[Option<String>; 3]> {
         let of = |query: &HashMap<String, String>| {
             ["waits", "wait", "budget"].map(|name| query.get(name).cloned())
@@ -55,9 +55,10 @@ async fn what_waits_is_told_and_the_budget_where_it_is_short() {
 
     let mut rig = rig_with(1, Fake::default(), &plenty, Some(left(6_000.0))).await;
     rig.all_sent().await;
-    let [[waits, wait, budget]]: &[[Option<String>; 3]; 1] = &said(&rig).try_into().unwrap();
-    assert_eq!((waits, wait), (&None, &word("20")));
-    // Less than a day's, and a connection with its request is paid for.
+    let [[waiting_batches, wait, budget]]: &[[Option<String>; 3]; 1] =
+        &said(&rig).try_into().unwrap();
+    assert_eq!((waiting_batches, wait), (&None, &word("20")));
+    // Less than a day's, and a connection with its request is charged.
     let budget: i32 = budget.as_ref().expect("it is short").parse().unwrap();
     assert!((40..50).contains(&budget), "{budget} %");
 }
@@ -74,7 +75,10 @@ async fn a_request_is_paid_for_before_it_is_made_and_the_answer_after() {
     let answer = 13;
     // A connection, a request, and the segments of both bodies.
     let cost = 1_700.0 + 389.0 + 1.07 * (sent + answer) as f64;
-    assert!((kept.left_octets + cost - 8_000.0).abs() < 1.0, "{kept:?}");
+    assert!(
+        (kept.remaining_bytes + cost - 8_000.0).abs() < 1.0,
+        "{kept:?}"
+    );
 }
 
 #[tokio::test]
@@ -82,9 +86,9 @@ async fn an_ordinary_exchange_is_one_request() {
     let settings = other_settings();
     let mut rig = rig(1, Fake::with_settings(&settings)).await;
     rig.all_sent().await;
-    let standing = rig.spool.standing().await.unwrap();
+    let status = rig.spool.status().await.unwrap();
     assert_eq!(
-        (standing.acknowledged_batches, standing.waiting_batches),
+        (status.acknowledged_batches, status.waiting_batches),
         (1, 0)
     );
     assert_eq!(*rig.settings.borrow(), settings);

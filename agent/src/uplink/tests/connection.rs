@@ -1,4 +1,4 @@
-//! What a connection is used for, over real TLS.
+//! Use of connections, over real TLS.
 
 use super::*;
 use axum::serve::Listener;
@@ -10,13 +10,13 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio_rustls::TlsAcceptor;
 use tokio_rustls::server::TlsStream;
 
-type Kinds = Arc<Mutex<Vec<Option<HandshakeKind>>>>;
+type HandshakeKinds = Arc<Mutex<Vec<Option<HandshakeKind>>>>;
 
-/// Notes how hands were shaken.
+/// Records the kind of each handshake.
 struct Tls {
     listener: TcpListener,
     acceptor: TlsAcceptor,
-    kinds: Kinds,
+    kinds: HandshakeKinds,
 }
 
 impl Listener for Tls {
@@ -39,9 +39,9 @@ impl Listener for Tls {
     }
 }
 
-/// A shore with a certificate of its own: where it is, the certificate, and how hands
-/// were shaken.
-async fn shore() -> (Identity, String, Kinds) {
+/// Starts a server with a certificate of its own. Returns its address, the certificate, and the
+/// kinds of handshakes.
+async fn tls_server() -> (Identity, String, HandshakeKinds) {
     rustls::crypto::ring::default_provider()
         .install_default()
         .ok();
@@ -55,7 +55,7 @@ async fn shore() -> (Identity, String, Kinds) {
     let tls = Tls {
         listener: TcpListener::bind("127.0.0.1:0").await.unwrap(),
         acceptor: TlsAcceptor::from(Arc::new(config)),
-        kinds: Kinds::default(),
+        kinds: HandshakeKinds::default(),
     };
     let kinds = tls.kinds.clone();
     let port = tls.local_addr().unwrap().port();
@@ -70,23 +70,26 @@ fn at_port(port: u16) -> Identity {
     identity(format!("https://localhost:{port}"))
 }
 
-/// An agent that believes this certificate only.
-fn believer(pem: &str, profile: Profile) -> Shore {
+/// Creates a client that trusts this certificate only.
+fn trusting_client(pem: &str, profile: Profile) -> ServerClient {
     let directory = TempDir::new().unwrap();
     let pinned = directory.path().join("ca.pem");
     std::fs::write(&pinned, pem).unwrap();
-    Shore::new(Some(&pinned), &profile.plan(None).line()).unwrap()
+    ServerClient::new(Some(&pinned), &profile.plan(None).connection_policy()).unwrap()
 }
 
-/// How hands were shaken when the shore was asked for news so many times in a row.
-async fn asked(times: usize, profile: Profile, hangs_up: bool) -> Vec<Option<HandshakeKind>> {
-    let (identity, pem, kinds) = shore().await;
-    let mut shore = believer(&pem, profile);
+/// Returns the kinds of handshakes of several polls in a row.
+async fn handshakes(times: usize, profile: Profile, closes: bool) -> Vec<Option<HandshakeKind>> {
+    let (identity, pem, kinds) = tls_server().await;
+    let mut client = trusting_client(&pem, profile);
     for _ in 0..times {
-        shore.downlink(&identity, Have::default()).await.unwrap();
-        assert!(shore.take_octets() >= 13);
-        if hangs_up {
-            shore.hang_up();
+        client
+            .downlink(&identity, KnownVersions::default())
+            .await
+            .unwrap();
+        assert!(client.take_received_bytes() >= 13);
+        if closes {
+            client.close_connection();
         }
     }
     kinds.lock().unwrap().clone()
@@ -94,39 +97,43 @@ async fn asked(times: usize, profile: Profile, hangs_up: bool) -> Vec<Option<Han
 
 #[tokio::test]
 async fn what_follows_at_once_goes_over_the_same_connection() {
-    assert_eq!(asked(3, Profile::Standard, false).await.len(), 1);
+    assert_eq!(handshakes(3, Profile::Standard, false).await.len(), 1);
 }
 
 #[tokio::test]
-async fn after_a_connection_that_was_hung_up_its_session_is_resumed() {
-    let kinds = asked(2, Profile::Standard, true).await;
+async fn a_session_is_resumed_after_its_connection_was_closed() {
+    let kinds = handshakes(2, Profile::Standard, true).await;
     let wanted = [Some(HandshakeKind::Full), Some(HandshakeKind::Resumed)];
     assert_eq!(kinds, wanted);
 }
 
 #[tokio::test]
-async fn who_calls_once_a_day_has_no_session_to_resume() {
-    let kinds = asked(2, Profile::Metered, true).await;
+async fn a_client_that_connects_once_a_day_resumes_no_session() {
+    let kinds = handshakes(2, Profile::Metered, true).await;
     assert_eq!(kinds, [Some(HandshakeKind::Full); 2]);
 }
 
 #[tokio::test]
-async fn hands_that_were_not_shaken_are_paid_for_and_nobody_at_all_is_not() {
-    let (identity_there, pem, _) = shore().await;
+async fn a_failed_handshake_is_charged_and_a_missing_server_is_not() {
+    let (identity_there, pem, _) = tls_server().await;
     let other = generate_simple_self_signed(vec!["localhost".to_owned()]).unwrap();
-    let suspicious = believer(&other.cert.pem(), Profile::Standard);
-    let refused = suspicious.downlink(&identity_there, Have::default()).await;
-    let Err(Trouble::Link(said)) = refused else {
+    let distrusting = trusting_client(&other.cert.pem(), Profile::Standard);
+    let refused = distrusting
+        .downlink(&identity_there, KnownVersions::default())
+        .await;
+    let Err(RequestError::Link(said)) = refused else {
         panic!("{refused:?}");
     };
-    assert!(said.contains("not believed here"), "{said}");
+    assert!(said.contains("not trusted here"), "{said}");
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let port = listener.local_addr().unwrap().port();
     drop(listener);
-    let believer = believer(&pem, Profile::Standard);
-    let nobody = believer.downlink(&at_port(port), Have::default()).await;
+    let client = trusting_client(&pem, Profile::Standard);
+    let nobody = client
+        .downlink(&at_port(port), KnownVersions::default())
+        .await;
     assert!(
-        matches!(nobody, Err(Trouble::NoConnection(_))),
+        matches!(nobody, Err(RequestError::NoConnection(_))),
         "{nobody:?}"
     );
 }

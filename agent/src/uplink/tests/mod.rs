@@ -1,15 +1,16 @@
-//! The uplink against a made-up shore on a real socket.
+//! The uplink against a fake server on a real socket.
 
 mod alerts;
 mod batches;
 mod budget;
 mod connection;
+mod downlink;
 mod reports;
 mod token;
-mod told;
 
 use super::*;
-use crate::spool::Seal;
+use crate::config::{Profile, UploadPlan};
+use crate::spool::{BudgetAccount, Seal};
 use axum::body::Bytes;
 use axum::extract::{Path, Query, State};
 use axum::http::StatusCode;
@@ -28,7 +29,7 @@ use std::sync::Mutex;
 use tempfile::TempDir;
 use uuid::Uuid;
 
-/// What the shore was sent, and what it is to answer before it behaves well.
+/// Requests that the server received, and its responses before it behaves well.
 #[derive(Default)]
 struct Fake {
     batches: BTreeMap<(Uuid, u64), Vec<u8>>,
@@ -37,18 +38,18 @@ struct Fake {
     answers: VecDeque<Response>,
     settings: Option<Settings>,
     withdrawn: Option<CardWithdrawn>,
-    /// A model as no agent knows it.
+    /// A model that no agent can read.
     unreadable: Option<Value>,
     requests: u32,
     polls: u32,
     reports: Vec<(Uuid, LogbookReport)>,
     report_answers: VecDeque<Response>,
-    /// The batches that were kept, in order; 0 for a report.
+    /// Numbers of the stored batches, in order; 0 for a report.
     order: Vec<u64>,
 }
 
 impl Fake {
-    /// A shore that has settings of its own.
+    /// A server with settings of its own.
     fn with_settings(settings: &Settings) -> Fake {
         Fake {
             settings: Some(settings.clone()),
@@ -118,15 +119,15 @@ async fn get_downlink(
     answer_in_form(&fake, stream, &query)
 }
 
-/// In the form that was asked for; what no agent knows is JSON, as an old shore's is.
+/// Responds in the requested form; an unreadable model is JSON, as of an old server.
 fn answer_in_form(fake: &Fake, stream: Uuid, query: &HashMap<String, String>) -> Response {
     let sent = downlink(fake, stream);
     if fake.unreadable.is_some() || query["form"] != "1" {
         return Json(sent).into_response();
     }
     let sent = serde_json::from_value(sent).unwrap();
-    let octets = binnacle_wire::downlink::encode(&sent).unwrap();
-    octets.into_response()
+    let bytes = binnacle_wire::downlink::encode(&sent).unwrap();
+    bytes.into_response()
 }
 
 async fn open_stream(State(fake): State<Shared>) -> Response {
@@ -174,13 +175,18 @@ impl Drop for Rig {
 
 const STREAM: Uuid = Uuid::from_u128(7);
 
-/// An enrolled agent's spool with `batches` sealed, and a shore to send to.
+/// An enrolled agent's spool with `batches` sealed, and a server to send to.
 async fn rig(batches: i64, fake: Fake) -> Rig {
     rig_with(batches, fake, &Profile::Standard.plan(None), None).await
 }
 
-/// The same with a budget, of which so much is left.
-async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account>) -> Rig {
+/// Like [`rig`], with a budget and its balance.
+async fn rig_with(
+    batches: i64,
+    fake: Fake,
+    plan: &UploadPlan,
+    account: Option<BudgetAccount>,
+) -> Rig {
     rustls::crypto::ring::default_provider()
         .install_default()
         .ok();
@@ -211,21 +217,26 @@ async fn rig_with(batches: i64, fake: Fake, plan: &Plan, account: Option<Account
     let uplink = Uplink {
         spool: spool.clone(),
         token: Some(identity.token.clone()),
-        refused: None,
-        shore: Shore::new(None, &plan.line()).unwrap(),
+        refused_token: None,
+        client: ServerClient::new(None, &plan.connection_policy()).unwrap(),
         backoff: Backoff::new(Duration::from_millis(10), Duration::from_millis(40)),
         poll: Duration::from_hours(1),
-        budget: Budget::new(plan, account, plan.line().idle, Instant::now()),
+        budget: Budget::new(
+            plan,
+            account,
+            plan.connection_policy().idle_timeout,
+            Instant::now(),
+        ),
         ship_time: ship_time.subscribe(),
-        tell: Tell {
+        publisher: Publisher {
             model: watch::channel(None).0,
             withdrawn: withdrawn_tx,
             settings: settings_tx,
             link: link_tx,
         },
-        keeps_line: plan.keeps_line(),
-        in_touch: false,
-        no_reports_before: None,
+        keeps_connection: plan.keeps_connection(),
+        exchange_open: false,
+        reports_paused_until: None,
         sealed: sealed.clone(),
         urgent: urgent.clone(),
         rng: StdRng::seed_from_u64(1),

@@ -1,7 +1,7 @@
 //! Officers' reports.
 
 use super::*;
-use crate::spool::ReportStanding;
+use crate::spool::ReportState;
 
 impl Rig {
     /// Writes a report as the page does.
@@ -11,13 +11,13 @@ impl Rig {
         }));
         let (id, reporter) = (Uuid::from_u128(number), "Li".to_owned());
         self.spool
-            .keep_report(id, report.unwrap(), reporter, false, time())
+            .save_report(id, report.unwrap(), reporter, false, time())
             .await
             .unwrap();
         self.sealed.notify_one();
     }
 
-    /// Waits until no report waits.
+    /// Waits until no report is waiting.
     async fn reports_settled(&self) {
         let settled = async {
             while self.spool.next_report().await.unwrap().is_some() {
@@ -28,9 +28,9 @@ impl Rig {
         patience.await.expect("the reports are sent");
     }
 
-    async fn standings(&self) -> Vec<ReportStanding> {
+    async fn states(&self) -> Vec<ReportState> {
         let reports = self.spool.reports().await.unwrap();
-        reports.iter().map(|report| report.standing).collect()
+        reports.iter().map(|report| report.state).collect()
     }
 }
 
@@ -46,7 +46,7 @@ async fn a_report_is_sent_until_it_is_answered() {
     rig.report(1).await;
     rig.reports_settled().await;
     rig.all_sent().await;
-    assert_eq!(rig.standings().await, [ReportStanding::Ashore]);
+    assert_eq!(rig.states().await, [ReportState::Ashore]);
     let sent = &rig.fake.lock().unwrap().reports;
     assert_eq!(sent.len(), 3);
     assert!(sent.iter().all(|report| *report == sent[0]), "{sent:?}");
@@ -64,14 +64,14 @@ async fn a_report_that_is_refused_is_kept_with_the_reason_and_the_next_one_goes(
     rig.reports_settled().await;
     rig.report(2).await;
     rig.reports_settled().await;
-    let (ashore, refused) = (ReportStanding::Ashore, ReportStanding::Refused);
-    assert_eq!(rig.standings().await, [ashore, refused]);
+    let (ashore, refused) = (ReportState::Ashore, ReportState::Refused);
+    assert_eq!(rig.states().await, [ashore, refused]);
     let reports = rig.spool.reports().await.unwrap();
     assert_eq!(reports[1].problem.as_deref(), Some("422 invalid: why"));
 }
 
 #[tokio::test]
-async fn a_shore_that_knows_no_reports_gets_its_batches_all_the_same() {
+async fn a_server_that_knows_no_reports_gets_its_batches_all_the_same() {
     let unknown = problem(StatusCode::NOT_FOUND, "not-found");
     let fake = Fake {
         report_answers: VecDeque::from([unknown]),
@@ -83,5 +83,5 @@ async fn a_shore_that_knows_no_reports_gets_its_batches_all_the_same() {
     rig.sealed.notify_one();
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);
-    assert_eq!(rig.standings().await, [ReportStanding::Waiting]);
+    assert_eq!(rig.states().await, [ReportState::Waiting]);
 }

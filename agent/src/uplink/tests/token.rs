@@ -1,4 +1,4 @@
-//! Which of two tokens the shore knows.
+//! Two tokens, one of which the server knows.
 
 use super::*;
 
@@ -12,7 +12,7 @@ async fn an_agent_that_did_not_hear_whether_its_token_was_replaced_tries_both() 
     let mut rig = rig(0, fake).await;
     let up = rig.link.wait_for(|link| link.state == LinkState::Up);
     up.await.unwrap();
-    rig.spool.keep_other_token("new").await.unwrap();
+    rig.spool.save_other_token("new").await.unwrap();
     seal(&rig.spool, 1).await;
     rig.sealed.notify_one();
     rig.link.mark_unchanged();
@@ -30,7 +30,7 @@ async fn an_agent_of_whose_tokens_none_is_known_says_that_it_must_be_enrolled_ag
     let unknown = || problem(StatusCode::UNAUTHORIZED, "unauthorized");
     let mut rig = rig(0, Fake::default()).await;
     rig.all_sent().await;
-    rig.spool.keep_other_token("before").await.unwrap();
+    rig.spool.save_other_token("before").await.unwrap();
     let answers = [unknown(), unknown(), unknown()];
     rig.fake.lock().unwrap().answers.extend(answers);
     seal(&rig.spool, 1).await;
@@ -40,7 +40,7 @@ async fn an_agent_of_whose_tokens_none_is_known_says_that_it_must_be_enrolled_ag
         problem.is_some_and(|problem| problem.contains("enrol it again"))
     };
     rig.link.wait_for(says).await.unwrap();
-    // It goes on asking with either, and knows when it is known.
+    // It goes on trying either, and recovers when one is known.
     rig.all_sent().await;
     assert_eq!(rig.seqs(STREAM), [1]);
     assert_eq!(rig.fake.lock().unwrap().requests, 3 + 1);
@@ -66,11 +66,11 @@ async fn a_token_that_is_replaced_while_a_batch_is_on_its_way_costs_no_second_on
     while rig.fake.lock().unwrap().requests == 0 {
         tokio::task::yield_now().await;
     }
-    rig.spool.keep_other_token("new").await.unwrap();
+    rig.spool.save_other_token("new").await.unwrap();
     assert!(rig.spool.swap_tokens("t").await.unwrap());
     is_replaced.send(()).unwrap();
     rig.all_sent().await;
     assert_eq!(rig.fake.lock().unwrap().requests, 1);
-    let standing = rig.spool.standing().await.unwrap();
-    assert_eq!(standing.acknowledged_batches, 1);
+    let status = rig.spool.status().await.unwrap();
+    assert_eq!(status.acknowledged_batches, 1);
 }

@@ -1,0 +1,107 @@
+//! The commands `enrol` and `rotate-token`.
+
+use super::bad_input::BadInput;
+use crate::config::Config;
+use crate::spool::{Identity, Spool};
+use crate::uplink::{RequestError, ServerClient};
+use std::io::Write;
+
+pub(super) async fn enrol(config: &Config, server: &str, code: &str) -> anyhow::Result<()> {
+    let server = server_url(server)?;
+    let client = ServerClient::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.connection_policy(),
+    )?;
+    let spool = Spool::open(&config.data_dir).await?;
+    let answer = match client.enrol(&server, code.trim()).await {
+        Ok(answer) => answer,
+        Err(
+            error @ (RequestError::Unauthorized(_)
+            | RequestError::NotFound(_)
+            | RequestError::Refused(_)),
+        ) => {
+            return Err(BadInput(format!("the code was refused: {error}")).into());
+        }
+        Err(error) => anyhow::bail!("{server}: {error}"),
+    };
+    let said = format!("enrolled: {}, {}", answer.vessel_name, answer.compass_name);
+    spool
+        .enrol(&Identity {
+            server,
+            token: answer.token,
+            other_token: None,
+            stream: answer.stream,
+            vessel_name: answer.vessel_name,
+            compass_name: answer.compass_name,
+        })
+        .await?;
+    writeln!(std::io::stdout(), "{said}")?;
+    Ok(())
+}
+
+/// Replaces the agent's token. The new token is stored before the server activates it, so that a
+/// lost response locks nobody out: the agent then tries both.
+pub(super) async fn rotate_token(config: &Config) -> anyhow::Result<()> {
+    let client = ServerClient::new(
+        config.uplink.pinned_ca.as_deref(),
+        &config.uplink.connection_policy(),
+    )?;
+    let spool = Spool::open(&config.data_dir).await?;
+    let Some(identity) = spool.identity().await? else {
+        return Err(BadInput("the agent is not enrolled".to_owned()).into());
+    };
+    let server = &identity.server;
+    let failed = |error: RequestError| anyhow::anyhow!("{server}: {error}");
+    let new = client.propose_token(&identity).await.map_err(failed)?;
+    spool.save_other_token(&new.token).await?;
+    client
+        .replace_token(&identity, &new)
+        .await
+        .map_err(failed)?;
+    spool.swap_tokens(&identity.token).await?;
+    writeln!(std::io::stdout(), "the token was replaced")?;
+    Ok(())
+}
+
+fn server_url(text: &str) -> Result<String, BadInput> {
+    let bad = |why: &str| BadInput(format!("--server {text:?} {why}"));
+    let url = reqwest::Url::parse(text).map_err(|e| bad(&format!("is not a URL: {e}")))?;
+    if !matches!(url.scheme(), "http" | "https") || url.host().is_none() {
+        return Err(bad("is not an http or https URL"));
+    }
+    if url.query().is_some() || url.fragment().is_some() || !url.username().is_empty() {
+        return Err(bad("must be scheme, host, port and path only"));
+    }
+    if url.scheme() == "http"
+        && !matches!(url.host_str(), Some("localhost" | "127.0.0.1" | "[::1]"))
+    {
+        tracing::warn!("without https the token is sent unencrypted");
+    }
+    Ok(url.as_str().trim_end_matches('/').to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_server_is_a_url_without_a_slash_at_its_end() {
+        assert_eq!(
+            server_url("https://b.example/").unwrap(),
+            "https://b.example"
+        );
+        assert_eq!(
+            server_url("http://127.0.0.1:8080").unwrap(),
+            "http://127.0.0.1:8080"
+        );
+        for wrong in [
+            "b.example",
+            "ftp://b.example",
+            "",
+            "https://u@b.example",
+            "http://x/?q",
+        ] {
+            assert!(server_url(wrong).is_err(), "{wrong}");
+        }
+    }
+}

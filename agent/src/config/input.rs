@@ -1,0 +1,265 @@
+//! `[inputs.NAME]`: one input, of exactly one kind.
+
+use super::output::SerialConfig;
+use serde::Deserialize;
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::path::{Path, PathBuf};
+use tokio_tungstenite::tungstenite::http::Uri;
+
+/// One input.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "InputTable")]
+pub(crate) enum InputConfig {
+    /// Reads a serial port.
+    Serial(SerialConfig),
+    /// Connects to a host and port.
+    Tcp(HostPort),
+    /// Receives datagrams of plain sentences at this address, broadcast ones too.
+    Udp(SocketAddr),
+    /// Joins an IEC 61162-450 transmission group.
+    Multicast(Group),
+    /// Connects to a Signal K server.
+    SignalK(SignalKUrl),
+    /// Reads recorded sentences to their end.
+    File(PathBuf),
+}
+
+impl InputConfig {
+    /// Makes paths relative to the configuration's directory.
+    pub(crate) fn resolve(&mut self, directory: &Path) {
+        if let InputConfig::File(path) = self {
+            *path = directory.join(&path);
+        }
+    }
+
+    /// Returns the kind by its name in the file.
+    pub(crate) fn kind(&self) -> &'static str {
+        match self {
+            InputConfig::Serial(_) => "serial",
+            InputConfig::Tcp(_) => "tcp",
+            InputConfig::Udp(_) => "udp",
+            InputConfig::Multicast(_) => "multicast",
+            InputConfig::SignalK(_) => "signalk",
+            InputConfig::File(_) => "file",
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct InputTable {
+    serial: Option<SerialConfig>,
+    tcp: Option<HostPort>,
+    udp: Option<SocketAddr>,
+    multicast: Option<Group>,
+    signalk: Option<SignalKUrl>,
+    file: Option<PathBuf>,
+}
+
+impl TryFrom<InputTable> for InputConfig {
+    type Error = String;
+
+    fn try_from(table: InputTable) -> Result<InputConfig, String> {
+        let given: Vec<InputConfig> = [
+            table.serial.map(InputConfig::Serial),
+            table.tcp.map(InputConfig::Tcp),
+            table.udp.map(InputConfig::Udp),
+            table.multicast.map(InputConfig::Multicast),
+            table.signalk.map(InputConfig::SignalK),
+            table.file.map(InputConfig::File),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        let kinds: Vec<&str> = given.iter().map(InputConfig::kind).collect();
+        let found = match kinds.as_slice() {
+            [] => "none".to_owned(),
+            kinds => kinds.join(" and "),
+        };
+        <[InputConfig; 1]>::try_from(given)
+            .map(|[input]| input)
+            .map_err(|_| {
+                format!(
+                    "an input has exactly one of serial, tcp, udp, multicast, signalk and file; \
+                     this one has {found}"
+                )
+            })
+    }
+}
+
+/// Host name or address, colon and port; resolved at each connection.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+pub(crate) struct HostPort(String);
+
+impl HostPort {
+    /// Returns the text as written.
+    pub(crate) fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl TryFrom<String> for HostPort {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<HostPort, String> {
+        let good = text.rsplit_once(':').is_some_and(|(host, port)| {
+            !host.is_empty() && port.parse::<u16>().is_ok_and(|port| port > 0)
+        });
+        if good {
+            Ok(HostPort(text))
+        } else {
+            Err(format!(
+                "{text:?} is not a host and a port, as \"10.0.0.5:10110\""
+            ))
+        }
+    }
+}
+
+/// A multicast group, and the interface to join it on.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "GroupText")]
+pub(crate) struct Group {
+    /// Address and port; IEC 61162-450 has 239.192.0.1 to 64, ports 60001 to 60009.
+    pub(crate) address: SocketAddrV4,
+    /// Address of the interface; unspecified lets the system choose.
+    pub(crate) interface: Ipv4Addr,
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "expected \"239.192.0.4:60004\" or { group = \"239.192.0.4:60004\", interface = \"192.168.1.2\" }"
+)]
+enum GroupText {
+    Short(SocketAddrV4),
+    Long(LongGroup),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LongGroup {
+    group: SocketAddrV4,
+    interface: Ipv4Addr,
+}
+
+impl TryFrom<GroupText> for Group {
+    type Error = String;
+
+    fn try_from(text: GroupText) -> Result<Group, String> {
+        let (address, interface) = match text {
+            GroupText::Short(address) => (address, Ipv4Addr::UNSPECIFIED),
+            GroupText::Long(long) => (long.group, long.interface),
+        };
+        if !address.ip().is_multicast() {
+            return Err(format!("{address} is not a multicast address"));
+        }
+        Ok(Group { address, interface })
+    }
+}
+
+/// Address of a Signal K stream, `ws://…`.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(try_from = "String")]
+pub(crate) struct SignalKUrl(Uri);
+
+impl SignalKUrl {
+    /// Returns the whole address.
+    pub(crate) fn uri(&self) -> &Uri {
+        &self.0
+    }
+
+    /// Returns host and port to connect to.
+    pub(crate) fn host_port(&self) -> String {
+        let host = self
+            .0
+            .host()
+            .expect("the host was checked when it was made");
+        format!("{host}:{}", self.0.port_u16().unwrap_or(80))
+    }
+}
+
+impl TryFrom<String> for SignalKUrl {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<SignalKUrl, String> {
+        let wrong =
+            || format!("{text:?} is not an address as \"ws://10.0.0.5:3000/signalk/v1/stream\"");
+        let uri: Uri = text.parse().map_err(|_| wrong())?;
+        match (uri.scheme_str(), uri.host()) {
+            (Some("ws"), Some(host)) if !host.is_empty() => Ok(SignalKUrl(uri)),
+            _ => Err(wrong()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(toml: &str) -> Result<InputConfig, String> {
+        toml::from_str(toml).map_err(|error| error.message().to_owned())
+    }
+
+    #[test]
+    fn every_kind_is_read() {
+        for (text, kind) in [
+            (
+                "serial = { path = \"/dev/ttyUSB0\", baud = 38400 }",
+                "serial",
+            ),
+            ("serial = { path = \"/dev/ttyUSB0\" }", "serial"),
+            ("tcp = \"127.0.0.1:10110\"", "tcp"),
+            ("tcp = \"bridge.local:10110\"", "tcp"),
+            ("udp = \"0.0.0.0:10110\"", "udp"),
+            ("multicast = \"239.192.0.4:60004\"", "multicast"),
+            (
+                "multicast = { group = \"239.192.0.4:60004\", interface = \"10.0.0.1\" }",
+                "multicast",
+            ),
+            (
+                "signalk = \"ws://host:3000/signalk/v1/stream?subscribe=none\"",
+                "signalk",
+            ),
+            ("file = \"log.nmea\"", "file"),
+        ] {
+            assert_eq!(read(text).unwrap().kind(), kind, "{text}");
+        }
+    }
+
+    #[test]
+    fn an_input_of_no_kind_or_of_two_is_refused() {
+        assert!(read("").unwrap_err().ends_with("this one has none"));
+        let two = read("tcp = \"h:1\"\nudp = \"0.0.0.0:1\"").unwrap_err();
+        assert!(two.ends_with("this one has tcp and udp"), "{two}");
+    }
+
+    #[test]
+    fn what_cannot_work_is_refused_by_its_value() {
+        for (text, named) in [
+            ("tpc = \"h:1\"", "tpc"),
+            ("tcp = \"h\"", "\"h\""),
+            ("tcp = \"h:0\"", "h:0"),
+            ("tcp = \":10110\"", ":10110"),
+            ("udp = \"10110\"", "socket address"),
+            ("multicast = \"192.168.1.1:60004\"", "192.168.1.1:60004"),
+            ("multicast = 5", "239.192.0.4:60004"),
+            ("signalk = \"http://host:3000/\"", "http://host:3000/"),
+            ("signalk = \"wss://host:3000/\"", "wss://host:3000/"),
+            ("signalk = \"ws:\"", "ws:"),
+            ("serial = { path = \"/dev/x\", bauds = 1 }", "bauds"),
+        ] {
+            let message = read(text).unwrap_err();
+            assert!(message.contains(named), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn only_paths_of_files_follow_the_configuration() {
+        let mut file = read("file = \"log.nmea\"").unwrap();
+        file.resolve(Path::new("/etc/binnacle"));
+        assert!(
+            matches!(&file, InputConfig::File(path) if path == Path::new("/etc/binnacle/log.nmea"))
+        );
+    }
+}

@@ -1,0 +1,483 @@
+//! Signal K deltas: values of each path in the agent's units and signs.
+//!
+//! Signal K 1.7, "Keys reference (vessel)": SI units, radians, east and starboard and bow-up
+//! positive; `navigation.headingCompass` is the raw reading, `headingMagnetic` has deviation
+//! applied. Readings get the talker `SK` and the sentence with the same meaning.
+//!
+//! Values that a server computes are ignored: a true heading made of a magnetic one is no reference
+//! for the compass. Other vessels are ignored too.
+
+use super::stats::InputStats;
+use crate::instruments::{Observation, Reading};
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
+use serde::Deserialize;
+use serde_json::Value;
+use std::borrow::Cow;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Paths to subscribe to.
+pub(super) const PATHS: [&str; 10] = [
+    "navigation.headingCompass",
+    "navigation.headingMagnetic",
+    "navigation.headingTrue",
+    "navigation.magneticDeviation",
+    "navigation.magneticVariation",
+    "navigation.rateOfTurn",
+    "navigation.attitude",
+    "navigation.position",
+    "navigation.speedOverGround",
+    "navigation.datetime",
+];
+
+const TALKER: [u8; 2] = *b"SK";
+const KNOTS_A_METRE_PER_SECOND: f64 = 3600.0 / 1852.0;
+/// Highest plausible speed.
+const MAX_SPEED_M_S: f64 = 100.0;
+/// Highest plausible rate of turn.
+const MAX_TURN_RAD_S: f64 = PI;
+/// Rounding tolerance: four decimals of a full circle may exceed it.
+const ROUNDING_RAD: f64 = 1e-4;
+/// Source of values that the server computes itself.
+const DERIVED: &str = "derived-data";
+
+/// Reader of one connection's messages.
+#[derive(Debug)]
+pub(super) struct DeltaReader {
+    input: Arc<str>,
+    /// `vessels.urn:…`, once the server has identified itself.
+    own_ship: Option<String>,
+    /// Last value of the server; never applied.
+    deviation: Option<Deviation>,
+    variation: Option<Variation>,
+}
+
+/// A delta, or the server's greeting, reduced to the fields in use.
+#[derive(Deserialize)]
+struct Message<'a> {
+    #[serde(borrow, rename = "self")]
+    own_ship: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    context: Option<Cow<'a, str>>,
+    #[serde(borrow, default)]
+    updates: Vec<Update<'a>>,
+}
+
+#[derive(Deserialize)]
+struct Update<'a> {
+    #[serde(borrow, rename = "$source")]
+    source: Option<Cow<'a, str>>,
+    /// Absent in updates of metadata.
+    #[serde(borrow, default)]
+    values: Vec<PathValue<'a>>,
+}
+
+#[derive(Deserialize)]
+struct PathValue<'a> {
+    #[serde(borrow)]
+    path: Cow<'a, str>,
+    value: Value,
+}
+
+#[derive(Deserialize)]
+struct Attitude {
+    roll: Option<f64>,
+    pitch: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct LatLon {
+    latitude: f64,
+    longitude: f64,
+}
+
+/// A value that its path must not have.
+struct InvalidValue;
+
+impl DeltaReader {
+    pub(super) fn new(input: Arc<str>) -> DeltaReader {
+        DeltaReader {
+            input,
+            own_ship: None,
+            deviation: None,
+            variation: None,
+        }
+    }
+
+    /// Returns the observations of one message; unused parts are counted.
+    pub(super) fn read(&mut self, text: &str, stats: &InputStats) -> Vec<Observation> {
+        let mut out = Vec::new();
+        let Ok(message) = serde_json::from_str::<Message<'_>>(text) else {
+            stats.reject("bad delta");
+            return out;
+        };
+        if let Some(own_ship) = message.own_ship {
+            self.own_ship = Some(strip_vessel_prefix(&own_ship).to_owned());
+        }
+        if !self.is_own_ship(message.context.as_deref()) {
+            stats.reject("another vessel");
+            return out;
+        }
+        for update in &message.updates {
+            if update.source.as_deref().is_some_and(is_derived) {
+                stats.reject("computed by the server");
+                continue;
+            }
+            // A compass reading is combined with the deviation beside it.
+            let (differences, others): (Vec<_>, Vec<_>) = update
+                .values
+                .iter()
+                .partition(|value| value.path.starts_with("navigation.magnetic"));
+            for value in differences.into_iter().chain(others) {
+                self.read_value(value, stats, &mut out);
+            }
+        }
+        out
+    }
+
+    fn is_own_ship(&self, context: Option<&str>) -> bool {
+        match context.map(strip_vessel_prefix) {
+            None | Some("self") => true,
+            Some(context) => self.own_ship.as_deref() == Some(context),
+        }
+    }
+
+    fn read_value(
+        &mut self,
+        value: &PathValue<'_>,
+        stats: &InputStats,
+        out: &mut Vec<Observation>,
+    ) {
+        let Some(path) = PATHS.into_iter().find(|path| *path == value.path) else {
+            return stats.reject("unknown path");
+        };
+        let before = out.len();
+        let mut push = |sentence: &[u8; 3], reading| {
+            out.push(Observation {
+                input: Arc::clone(&self.input),
+                talker: TALKER,
+                sentence: *sentence,
+                reading,
+            });
+        };
+        let read = match path {
+            "navigation.magneticDeviation" => difference_deg(&value.value).map(|deg| {
+                self.deviation = deg.and_then(Deviation::new);
+            }),
+            "navigation.magneticVariation" => difference_deg(&value.value).map(|deg| {
+                self.variation = deg.and_then(Variation::new);
+            }),
+            "navigation.headingCompass" => direction_deg(&value.value).map(|deg| {
+                if let Some(raw) = deg.and_then(CompassHeading::new) {
+                    let (deviation, variation) = (self.deviation, self.variation);
+                    let reading = Reading::Compass {
+                        raw,
+                        deviation,
+                        variation,
+                    };
+                    push(b"HDG", reading);
+                }
+            }),
+            _ => read_standalone(path, &value.value, &mut push),
+        };
+        if read.is_err() {
+            out.truncate(before);
+            return stats.reject("bad value");
+        }
+        stats.count_value(path);
+    }
+}
+
+/// Reads a path whose value stands alone.
+fn read_standalone(
+    path: &str,
+    value: &Value,
+    push: &mut impl FnMut(&[u8; 3], Reading),
+) -> Result<(), InvalidValue> {
+    if value.is_null() {
+        return Ok(());
+    }
+    match path {
+        "navigation.headingMagnetic" => {
+            let heading = direction_deg(value)?.and_then(MagneticHeading::new);
+            push(b"HDM", Reading::Magnetic(heading.ok_or(InvalidValue)?));
+        }
+        "navigation.headingTrue" => {
+            let heading = direction_deg(value)?.and_then(TrueHeading::new);
+            push(b"HDT", Reading::True(heading.ok_or(InvalidValue)?));
+        }
+        "navigation.rateOfTurn" => {
+            let rate = number(value)?;
+            if rate.abs() > MAX_TURN_RAD_S {
+                return Err(InvalidValue);
+            }
+            let deg_min = rate.to_degrees() * 60.0;
+            push(b"ROT", Reading::RateOfTurn { deg_min });
+        }
+        "navigation.attitude" => {
+            let attitude = Attitude::deserialize(value).map_err(|_| InvalidValue)?;
+            if let Some(pitch) = attitude.pitch {
+                let deg = tilt_deg(pitch)?;
+                push(b"XDR", Reading::Pitch { deg });
+            }
+            if let Some(roll) = attitude.roll {
+                let deg = tilt_deg(roll)?;
+                push(b"XDR", Reading::Roll { deg });
+            }
+        }
+        "navigation.position" => {
+            let lat_lon = LatLon::deserialize(value).map_err(|_| InvalidValue)?;
+            let fix = Reading::Fix {
+                position: Position::new(lat_lon.latitude, lat_lon.longitude)
+                    .map_err(|_| InvalidValue)?,
+                time: None,
+                sog_kn: None,
+            };
+            push(b"RMC", fix);
+        }
+        "navigation.speedOverGround" => {
+            let speed_m_s = number(value)?;
+            if !(0.0..=MAX_SPEED_M_S).contains(&speed_m_s) {
+                return Err(InvalidValue);
+            }
+            let sog_kn = speed_m_s * KNOTS_A_METRE_PER_SECOND;
+            push(b"VTG", Reading::Speed { sog_kn });
+        }
+        _ => {
+            let text = value.as_str().ok_or(InvalidValue)?;
+            let at = Timestamp::parse(text).map_err(|_| InvalidValue)?;
+            push(b"ZDA", Reading::Time(at));
+        }
+    }
+    Ok(())
+}
+
+fn strip_vessel_prefix(context: &str) -> &str {
+    context.strip_prefix("vessels.").unwrap_or(context)
+}
+
+fn is_derived(source: &str) -> bool {
+    source == DERIVED || source.starts_with("derived-data.")
+}
+
+fn number(value: &Value) -> Result<f64, InvalidValue> {
+    value
+        .as_f64()
+        .filter(|number| number.is_finite())
+        .ok_or(InvalidValue)
+}
+
+/// Converts radians from 0 to a full circle to degrees; `None` for null.
+fn direction_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
+    bounded_deg(value, 0.0 - ROUNDING_RAD..=TAU + ROUNDING_RAD)
+}
+
+/// Converts radians from −π to π to degrees; `None` for null.
+fn difference_deg(value: &Value) -> Result<Option<f64>, InvalidValue> {
+    bounded_deg(value, -PI - ROUNDING_RAD..=PI + ROUNDING_RAD)
+}
+
+fn bounded_deg(
+    value: &Value,
+    range: std::ops::RangeInclusive<f64>,
+) -> Result<Option<f64>, InvalidValue> {
+    if value.is_null() {
+        return Ok(None);
+    }
+    let radians = number(value)?;
+    if !range.contains(&radians) {
+        return Err(InvalidValue);
+    }
+    Ok(Some(radians.to_degrees()))
+}
+
+fn tilt_deg(radians: f64) -> Result<f64, InvalidValue> {
+    if radians.abs() > PI {
+        return Err(InvalidValue);
+    }
+    Ok(radians.to_degrees())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn read_all(messages: &[Value]) -> (Vec<Observation>, InputStats) {
+        let stats = InputStats::default();
+        let mut reader = DeltaReader::new("sk".into());
+        let mut out = Vec::new();
+        for message in messages {
+            out.extend(reader.read(&message.to_string(), &stats));
+        }
+        (out, stats)
+    }
+
+    fn delta(values: &Value) -> Value {
+        json!({"context": "vessels.self", "updates": [{"$source": "n2k.1", "values": values}]})
+    }
+
+    fn one(path: &str, value: &Value) -> Vec<Reading> {
+        let (seen, _) = read_all(&[delta(&json!([{"path": path, "value": value}]))]);
+        seen.into_iter().map(|seen| seen.reading).collect()
+    }
+
+    #[test]
+    fn a_compass_reading_goes_with_the_deviation_and_variation_of_either_sign() {
+        for (deviation, variation) in [
+            (0.05_f64, 0.3_f64),
+            (0.05, -0.3),
+            (-0.05, 0.3),
+            (-0.05, -0.3),
+        ] {
+            let (seen, stats) = read_all(&[delta(&json!([
+                {"path": "navigation.headingCompass", "value": 1.5},
+                {"path": "navigation.magneticDeviation", "value": deviation},
+                {"path": "navigation.magneticVariation", "value": variation},
+            ]))]);
+            let Reading::Compass {
+                raw,
+                deviation: found_deviation,
+                variation: found_variation,
+            } = seen[0].reading
+            else {
+                panic!("{seen:?}");
+            };
+            assert!((raw.radians() - 1.5).abs() < 1e-12);
+            let degrees = found_deviation.unwrap().degrees_east();
+            assert!((degrees.to_radians() - deviation).abs() < 1e-12);
+            let degrees = found_variation.unwrap().degrees_east();
+            assert!((degrees.to_radians() - variation).abs() < 1e-12);
+            assert_eq!((&seen[0].talker, &seen[0].sentence), (b"SK", b"HDG"));
+            assert_eq!(stats.status().sentences["navigation.headingCompass"], 1);
+        }
+    }
+
+    #[test]
+    fn a_deviation_of_null_is_unknown_again() {
+        let compass = json!({"path": "navigation.headingCompass", "value": 0.0});
+        let deviation =
+            |value: Value| json!({"path": "navigation.magneticDeviation", "value": value});
+        let (seen, _) = read_all(&[
+            delta(&json!([compass])),
+            delta(&json!([deviation(json!(0.1)), compass])),
+            delta(&json!([deviation(json!(null)), compass])),
+        ]);
+        let known: Vec<_> = seen
+            .iter()
+            .map(|seen| {
+                matches!(
+                    seen.reading,
+                    Reading::Compass {
+                        deviation: Some(_),
+                        ..
+                    }
+                )
+            })
+            .collect();
+        assert_eq!(known, [false, true, false]);
+    }
+
+    #[test]
+    fn units_and_signs_are_the_agents_own() {
+        let rate = one("navigation.rateOfTurn", &json!(-0.01));
+        assert!(
+            matches!(rate[..], [Reading::RateOfTurn { deg_min }] if (deg_min + 34.377).abs() < 1e-3)
+        );
+        let speed = one("navigation.speedOverGround", &json!(5.144_444_444));
+        assert!(matches!(speed[..], [Reading::Speed { sog_kn }] if (sog_kn - 10.0).abs() < 1e-6));
+        let attitude = one(
+            "navigation.attitude",
+            &json!({"roll": -0.1, "pitch": 0.05, "yaw": 1}),
+        );
+        assert!(
+            matches!(attitude[..], [Reading::Pitch { deg: pitch }, Reading::Roll { deg: roll }]
+                if pitch > 2.8 && roll < -5.7)
+        );
+        let fix = one(
+            "navigation.position",
+            &json!({"latitude": -43.5, "longitude": -5.25}),
+        );
+        assert_eq!(
+            fix,
+            [Reading::Fix {
+                position: Position::new(-43.5, -5.25).unwrap(),
+                time: None,
+                sog_kn: None
+            }]
+        );
+        let time = one("navigation.datetime", &json!("2026-01-02T12:00:00.000Z"));
+        assert_eq!(
+            time,
+            [Reading::Time(
+                Timestamp::parse("2026-01-02T12:00:00Z").unwrap()
+            )]
+        );
+    }
+
+    #[test]
+    fn null_is_unknown_and_what_is_out_of_range_is_counted() {
+        for path in PATHS {
+            assert_eq!(one(path, &json!(null)), [], "{path}");
+            for wrong in [
+                json!("x"),
+                json!([1]),
+                json!({"a": 1}),
+                json!(true),
+                json!(1e300),
+            ] {
+                let harmless = path == "navigation.attitude" && wrong.is_object();
+                let (seen, stats) = read_all(&[delta(&json!([{"path": path, "value": wrong}]))]);
+                assert_eq!(stats.status().rejected.contains_key("bad value"), !harmless);
+                assert_eq!(seen, [], "{path} {wrong}");
+            }
+        }
+        assert_eq!(one("navigation.headingTrue", &json!(TAU + 5e-5)).len(), 1);
+        assert_eq!(one("navigation.headingTrue", &json!(6.3)), []);
+        assert_eq!(one("navigation.headingTrue", &json!(-0.1)), []);
+        assert_eq!(
+            one(
+                "navigation.position",
+                &json!({"latitude": 95, "longitude": 0})
+            ),
+            []
+        );
+    }
+
+    #[test]
+    fn other_vessels_and_computed_values_are_left_out() {
+        let heading = json!([{"path": "navigation.headingTrue", "value": 1.0}]);
+        let of = |context: &str| json!({"context": context, "updates": [{"values": heading}]});
+        let computed = json!({"updates": [{"$source": "derived-data", "values": heading}]});
+        let (seen, stats) = read_all(&[
+            of("vessels.urn:mrn:imo:mmsi:230099999"),
+            json!({"name": "server", "version": "2", "self": "vessels.urn:mrn:imo:mmsi:230099999"}),
+            of("vessels.urn:mrn:imo:mmsi:230099999"),
+            of("vessels.urn:mrn:imo:mmsi:266000000"),
+            computed,
+        ]);
+        assert_eq!(seen.len(), 1);
+        let rejected = stats.status().rejected;
+        assert_eq!(rejected["another vessel"], 2);
+        assert_eq!(rejected["computed by the server"], 1);
+    }
+
+    #[test]
+    fn what_is_no_delta_is_counted() {
+        let stats = InputStats::default();
+        let mut reader = DeltaReader::new("sk".into());
+        for text in [
+            "",
+            "{",
+            "[]",
+            "5",
+            "{\"updates\": 5}",
+            "{\"updates\":[{\"values\":[{}]}]}",
+        ] {
+            assert_eq!(reader.read(text, &stats), []);
+        }
+        assert_eq!(stats.status().rejected["bad delta"], 6);
+    }
+}

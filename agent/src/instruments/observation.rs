@@ -1,0 +1,86 @@
+//! Observations: readings of instruments, whatever input carried them. Inputs make them; roles and
+//! sampler use them.
+//!
+//! A value that the instrument left empty is absent, never zero. The compass heading is always the
+//! raw reading, before any deviation.
+
+use binnacle_compass::angle::{CompassHeading, Deviation, MagneticHeading, TrueHeading, Variation};
+use binnacle_compass::position::Position;
+use binnacle_compass::time::Timestamp;
+use std::sync::Arc;
+
+/// Talker of the agent's own sentences. Sources without a configured talker never match its
+/// HDG and THS.
+pub(crate) const AGENT_TALKER: [u8; 2] = *b"II";
+
+/// Talker and sentence of a time that the recording gave, not an instrument.
+pub(crate) const RECORDED_TIME: ([u8; 2], [u8; 3]) = (*b"--", *b"LOG");
+
+/// Returns whether an observation is the time that a recording gives its lines.
+pub(crate) fn is_recorded_time(seen: &Observation) -> bool {
+    (seen.talker, seen.sentence) == RECORDED_TIME
+}
+
+/// One reading from one source.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Observation {
+    /// Configured name of the input.
+    pub(crate) input: Arc<str>,
+    /// Talker (`HC`, `HE`, `GP` …); `SK` for Signal K.
+    pub(crate) talker: [u8; 2],
+    /// Sentence (`HDG`, `THS` …), given to Signal K values by their meaning.
+    pub(crate) sentence: [u8; 3],
+    /// Content of the sentence.
+    pub(crate) reading: Reading,
+}
+
+/// Readings that the agent uses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Reading {
+    /// HDG: the sensor's own reading, with its deviation and variation.
+    Compass {
+        /// Before deviation.
+        raw: CompassHeading,
+        /// As the instrument gives it; never applied.
+        deviation: Option<Deviation>,
+        /// As the instrument gives it; never applied.
+        variation: Option<Variation>,
+    },
+    /// HDM: only the configuration knows whether deviation was applied.
+    Magnetic(MagneticHeading),
+    /// HDT, or THS in mode A.
+    True(TrueHeading),
+    /// A true heading that the instrument itself marks as not valid (THS mode other than A).
+    TrueNotValid,
+    /// A valid fix; `time` when the sentence carries UTC date and time.
+    Fix {
+        /// Position.
+        position: Position,
+        /// UTC date and time of the fix.
+        time: Option<Timestamp>,
+        /// Speed over ground.
+        sog_kn: Option<f64>,
+    },
+    /// ZDA: UTC date and time alone.
+    Time(Timestamp),
+    /// VTG: speed over ground.
+    Speed {
+        /// Knots.
+        sog_kn: f64,
+    },
+    /// ROT with status A: degrees a minute, starboard positive.
+    RateOfTurn {
+        /// Degrees a minute.
+        deg_min: f64,
+    },
+    /// Roll, degrees, starboard down positive.
+    Roll {
+        /// Degrees.
+        deg: f64,
+    },
+    /// Pitch, degrees, bow up positive.
+    Pitch {
+        /// Degrees.
+        deg: f64,
+    },
+}

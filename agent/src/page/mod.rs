@@ -1,0 +1,236 @@
+//! The local page: one HTML file, the status as JSON, the hold buttons, and the logbook's form.
+//!
+//! For the vessel's own network, without a login. A foreign web site that an officer has open must
+//! not be able to press a button. Every change therefore needs a header that no form can send, and
+//! requests under names that resolve elsewhere are refused.
+
+mod acknowledgements;
+mod exclusions;
+mod http_limits;
+mod reports;
+mod request_guard;
+mod state;
+
+pub(crate) use exclusions::ExclusionRequest;
+pub(crate) use request_guard::GUARD_HEADER;
+pub(crate) use state::PageState;
+
+use crate::config::PageConfig;
+use crate::status::Status;
+use acknowledgements::acknowledge;
+use anyhow::Context;
+use axum::extract::{DefaultBodyLimit, State};
+use axum::http::header::CONTENT_SECURITY_POLICY;
+use axum::middleware;
+use axum::response::{Html, IntoResponse};
+use axum::routing::{get, post, put};
+use axum::{Json, Router};
+use exclusions::set_exclusion;
+use http_limits::LimitedListener;
+use request_guard::reject_foreign_sites;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use tokio::net::TcpListener;
+use tokio_util::sync::CancellationToken;
+
+/// Size limit of a request: a report's note has at most 1000 characters.
+const MAX_REQUEST_BYTES: usize = 16 * 1024;
+
+/// Serves the page until `shutdown`, if it is configured, and stores its address in the spool.
+pub(crate) async fn serve(
+    config: Option<&PageConfig>,
+    page: PageState,
+    shutdown: &CancellationToken,
+) -> anyhow::Result<Option<SocketAddr>> {
+    let Some(config) = config else {
+        page.spool.set_page_address(None).await?;
+        return Ok(None);
+    };
+    let listener = TcpListener::bind(config.listen)
+        .await
+        .with_context(|| format!("page.listen {}: cannot listen", config.listen))?;
+    let address = listener.local_addr()?;
+    page.spool.set_page_address(Some(address)).await?;
+    let stopped = shutdown.clone().cancelled_owned();
+    tokio::spawn(async move {
+        let served = axum::serve(LimitedListener::new(listener), router(page))
+            .with_graceful_shutdown(stopped)
+            .await;
+        if let Err(error) = served {
+            tracing::error!(%error, "the local page stopped");
+        }
+    });
+    Ok(Some(address))
+}
+
+/// Returns the routes of the page.
+pub(crate) fn router(page: PageState) -> Router {
+    Router::new()
+        .route("/", get(show))
+        .route("/api/status", get(status))
+        .route("/api/hold", post(set_exclusion))
+        .route("/api/alert/acknowledge", post(acknowledge))
+        .route("/api/reports", get(reports::list_reports))
+        .route("/api/reports/{id}", put(reports::put_report))
+        .layer(DefaultBodyLimit::max(MAX_REQUEST_BYTES))
+        .layer(middleware::from_fn(reject_foreign_sites))
+        .with_state(page)
+}
+
+async fn show() -> impl IntoResponse {
+    let policy = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
+                  connect-src 'self'; form-action 'none'; frame-ancestors 'none'";
+    (
+        [(CONTENT_SECURITY_POLICY, policy)],
+        Html(include_str!("page.html")),
+    )
+}
+
+async fn status(State(page): State<PageState>) -> Json<Arc<Status>> {
+    Json(page.status.borrow().clone())
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::alert::AlertRecord;
+    use crate::sampler::Exclusion;
+    use crate::spool::Spool;
+    use axum::body::Body;
+    use axum::extract::Request;
+    use axum::http::StatusCode;
+    use binnacle_wire::alert::{ShipAlert, ShipAlertState};
+    use tempfile::TempDir;
+    use tokio::sync::{Notify, watch};
+    use tower::ServiceExt;
+    use uuid::Uuid;
+
+    pub(crate) async fn page() -> (TempDir, PageState, Router) {
+        let directory = TempDir::new().unwrap();
+        let spool = Spool::open(directory.path()).await.unwrap();
+        let page = PageState {
+            spool,
+            status: watch::channel(Arc::new(Status::default())).1,
+            exclusion: watch::Sender::new(None),
+            acknowledged: watch::Sender::new(None),
+            upload_wakeup: Arc::new(Notify::new()),
+        };
+        let router = router(page.clone());
+        (directory, page, router)
+    }
+
+    fn exclusion(headers: &[(&str, &str)]) -> Request {
+        let mut request = Request::post("/api/hold")
+            .header("content-type", "application/json")
+            .header("host", "192.168.1.9:8090");
+        for (name, value) in headers {
+            request = request.header(*name, *value);
+        }
+        request.body(Body::from(r#"{"hold":"berthed"}"#)).unwrap()
+    }
+
+    #[tokio::test]
+    async fn the_button_holds_at_once_and_after_a_restart() {
+        let (_directory, page, router) = page().await;
+        let own = [
+            ("x-binnacle-request", "1"),
+            ("origin", "http://192.168.1.9:8090"),
+        ];
+        let answer = router.oneshot(exclusion(&own)).await.unwrap();
+        assert_eq!(answer.status(), StatusCode::OK);
+        assert_eq!(*page.exclusion.borrow(), Some(Exclusion::Berthed));
+        assert_eq!(
+            page.spool.exclusion().await.unwrap(),
+            Some(Exclusion::Berthed)
+        );
+    }
+
+    #[tokio::test]
+    async fn another_site_cannot_press_it() {
+        let (_directory, page, router) = page().await;
+        let tricks: [&[(&str, &str)]; 3] = [
+            &[],
+            &[
+                ("x-binnacle-request", "1"),
+                ("origin", "http://evil.example"),
+            ],
+            &[("origin", "null"), ("x-binnacle-request", "1")],
+        ];
+        for headers in tricks {
+            let answer = router.clone().oneshot(exclusion(headers)).await.unwrap();
+            assert_eq!(answer.status(), StatusCode::FORBIDDEN, "{headers:?}");
+        }
+        assert_eq!(*page.exclusion.borrow(), None);
+    }
+
+    #[tokio::test]
+    async fn a_name_on_the_internet_is_not_this_page() {
+        let (_directory, _page, router) = page().await;
+        for (host, status) in [
+            ("evil.example:8090", StatusCode::FORBIDDEN),
+            ("127.0.0.1.evil.example", StatusCode::FORBIDDEN),
+            ("localhost:8090", StatusCode::OK),
+            ("[::1]:8090", StatusCode::OK),
+            ("bridge.local", StatusCode::OK),
+            ("10.0.0.4", StatusCode::OK),
+        ] {
+            let request = Request::get("/api/status").header("host", host);
+            let request = request.body(Body::empty()).unwrap();
+            let answer = router.clone().oneshot(request).await.unwrap();
+            assert_eq!(answer.status(), status, "{host}");
+        }
+    }
+
+    #[test]
+    fn the_page_asks_nothing_of_the_outside_world() {
+        let html = include_str!("page.html");
+        for outside in ["http://", "https://", "//cdn", "@import", "<link"] {
+            assert!(!html.contains(outside), "{outside}");
+        }
+    }
+
+    #[tokio::test]
+    async fn an_alert_is_acknowledged_once_it_is_known_and_only_from_here() {
+        let (_directory, page, router) = page().await;
+        let at = binnacle_compass::time::Timestamp::parse("2026-11-21T07:00:00Z").unwrap();
+        let id = Uuid::from_u128(0xa1);
+        let record = AlertRecord {
+            alert: ShipAlert {
+                id,
+                revision: 1,
+                state: ShipAlertState::Open,
+                since: at,
+                at,
+                gyro_departure_deg: Some(20.0),
+                satellite_departure_deg: None,
+                limit_deg: 4.0,
+                model_version: 1,
+            },
+            acknowledged: false,
+            followed_up: false,
+            departed_sectors: 1,
+            raised_limit_deg: None,
+            clearance_revoked: false,
+        };
+        page.spool.save_alert(&record).await.unwrap();
+        let press = |id: Uuid, guard: &str| {
+            Request::post("/api/alert/acknowledge")
+                .header("content-type", "application/json")
+                .header("host", "192.168.1.9:8090")
+                .header("x-binnacle-request", guard)
+                .body(Body::from(format!(r#"{{"id":"{id}"}}"#)))
+                .unwrap()
+        };
+        let status = |request: Request| {
+            let router = router.clone();
+            async move { router.oneshot(request).await.unwrap().status() }
+        };
+        assert_eq!(status(press(id, "0")).await, StatusCode::FORBIDDEN);
+        let other = Uuid::from_u128(2);
+        assert_eq!(status(press(other, "1")).await, StatusCode::NOT_FOUND);
+        assert!(!page.spool.alert().await.unwrap().unwrap().acknowledged);
+        assert_eq!(status(press(id, "1")).await, StatusCode::OK);
+        assert!(page.spool.alert().await.unwrap().unwrap().acknowledged);
+        assert_eq!(*page.acknowledged.borrow(), Some(id));
+    }
+}

@@ -1,0 +1,213 @@
+//! The running agent: inputs to samples, samples to the spool, and the corrected heading out, per
+//! observation, second and output interval.
+//!
+//! One task owns the state; nothing is locked. When the disk is slow, this task waits, its channel
+//! fills, and the inputs wait in turn. A recording that is replayed fast is throttled and never
+//! lost.
+
+mod alert_watch;
+mod heading;
+mod live_status;
+mod start;
+mod store_samples;
+
+use crate::acquisition::Acquisition;
+use crate::alert::{AlertMonitor, AlertRecord};
+use crate::config::{Config, SilenceConfig, UploadPlan};
+use crate::input::InputStats;
+use crate::instruments::Observation;
+use crate::output::{AlarmSentence, Outputs};
+use crate::raw_log::{RawLog, Second};
+use crate::sampler::{Exclusion, Tally};
+use crate::spool::{Pending, Seal, Spool, StoredReport};
+use crate::status::Status;
+use crate::uplink::UplinkHandle;
+use binnacle_compass::sample::Sample;
+use binnacle_compass::time::Timestamp;
+use binnacle_wire::alert::ShipAlert;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::{mpsc, watch};
+use tokio::time::{Instant, MissedTickBehavior, interval};
+use tokio_util::sync::CancellationToken;
+use uuid::Uuid;
+
+/// Samples that are written to the spool together; fewer are written after a second.
+pub(crate) const SAMPLES_PER_COMMIT: usize = 64;
+/// Deliveries of observations that may wait; they are lost when the agent dies.
+const CHANNEL_CAPACITY: usize = 8;
+const TICK: Duration = Duration::from_secs(1);
+
+/// Runs until `shutdown`; everything settled is in the spool then.
+pub(crate) async fn run(config: Config, shutdown: CancellationToken) -> anyhow::Result<()> {
+    let (spool, _alone) = Spool::open_for_agent(&config.data_dir).await?;
+    let agent = Agent::start(config, spool.clone(), &shutdown).await?;
+    agent.run(shutdown).await;
+    spool.set_page_address(None).await.ok();
+    spool.close().await;
+    Ok(())
+}
+
+struct Agent {
+    acquisition: Acquisition,
+    /// Server's time of the last contact.
+    last_contact: Option<Timestamp>,
+    silence: SilenceConfig,
+    spool: Spool,
+    spool_limit_bytes: u64,
+    raw_log: RawLog,
+    plan: UploadPlan,
+    uplink_handle: UplinkHandle,
+    /// Reports of the officers.
+    reports: Vec<StoredReport>,
+    observations: mpsc::Receiver<Vec<Observation>>,
+    inputs: Vec<(String, Arc<InputStats>)>,
+    outputs: Outputs,
+    interval: Duration,
+    exclusion: watch::Sender<Option<Exclusion>>,
+    alert_monitor: AlertMonitor,
+    /// Alert as the spool has it.
+    stored_alert: Option<AlertRecord>,
+    /// Set if the last heading sent was withheld because its band was too wide.
+    withheld: bool,
+    acknowledged: watch::Receiver<Option<Uuid>>,
+    alarm: Option<AlarmSentence>,
+    status: watch::Sender<Arc<Status>>,
+    uplink: tokio::task::JoinHandle<()>,
+    unstored: Unstored,
+    windows: Tally,
+}
+
+/// Results of the sampler that the spool does not have yet.
+#[derive(Debug, Default)]
+struct Unstored {
+    samples: Vec<Sample>,
+    tally: Tally,
+    /// Revisions of alerts.
+    alerts: Vec<ShipAlert>,
+    /// Reason why the spool does not store them.
+    problem: Option<String>,
+    /// Unsealed contents of the spool.
+    pending: Pending,
+    /// GNSS time when the tally was last sealed.
+    tally_since: Option<Timestamp>,
+}
+
+impl Agent {
+    async fn run(mut self, shutdown: CancellationToken) {
+        let mut second = interval(TICK);
+        let mut output = interval(self.interval);
+        for ticks in [&mut second, &mut output] {
+            ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        }
+        let mut exclusion = self.exclusion.subscribe();
+        loop {
+            tokio::select! {
+                () = shutdown.cancelled() => break,
+                Some(observations) = self.observations.recv() => self.observe(&observations).await,
+                _ = second.tick() => self.run_every_second().await,
+                _ = output.tick() => self.send_heading(),
+                Ok(()) = self.uplink_handle.settings.changed() => {
+                    let settings = self.uplink_handle.settings.borrow_and_update().clone();
+                    self.acquisition.sampler.set_settings(settings);
+                }
+                Ok(()) = self.uplink_handle.link.changed() => {
+                    let contact = self.uplink_handle.link.borrow_and_update().last_contact;
+                    if let Some(time) = contact.filter(|_| contact != self.last_contact) {
+                        self.acquisition.correct_reference_time(time, Instant::now());
+                    }
+                    self.last_contact = contact;
+                }
+                Ok(()) = exclusion.changed() => {
+                    let exclusion = *exclusion.borrow_and_update();
+                    self.acquisition.sampler.set_exclusion(exclusion);
+                }
+                Ok(()) = self.acknowledged.changed() => {
+                    let seen = *self.acknowledged.borrow_and_update();
+                    if let Some(id) = seen {
+                        self.alert_monitor.acknowledge(id);
+                    }
+                }
+            }
+        }
+        self.stop().await;
+    }
+
+    /// Stores what has settled, and lets the uplink finish its exchange.
+    async fn stop(mut self) {
+        self.observations.close();
+        self.acquisition.sampler.finish();
+        self.collect();
+        self.store(Seal::Full).await;
+        self.save_clock_checkpoint().await;
+        self.raw_log.flush(Instant::now());
+        if let Err(error) = self.uplink.await {
+            tracing::error!(%error, "the uplink failed");
+        }
+        tracing::info!("stopped");
+    }
+
+    async fn observe(&mut self, observations: &[Observation]) {
+        let heard = Instant::now();
+        for observation in observations {
+            self.acquisition.observe(observation, heard);
+            if let Some(time) = self.acquisition.time() {
+                let (readings, stale) =
+                    (&self.acquisition.readings, self.silence.stale_s.duration());
+                let second = || Second::from_readings(time, readings, stale, heard);
+                self.raw_log.record(time, second, heard);
+            }
+        }
+        self.update_alert();
+        if !self.acquisition.sampler.has_samples() {
+            return;
+        }
+        self.collect();
+        let seal = self.seal_due();
+        if seal == Seal::All
+            || !self.unstored.alerts.is_empty()
+            || self.unstored.samples.len() >= SAMPLES_PER_COMMIT
+        {
+            self.store(seal).await;
+        }
+    }
+
+    async fn run_every_second(&mut self) {
+        self.update_alert();
+        self.collect();
+        let seal = self.seal_due();
+        let unstored = &self.unstored;
+        if seal == Seal::All || !unstored.samples.is_empty() || !unstored.alerts.is_empty() {
+            self.store(seal).await;
+        }
+        self.save_alert().await;
+        self.uplink_handle
+            .ship_time
+            .send_replace(self.acquisition.time());
+        match self.spool.exclusion().await {
+            Ok(exclusion) => {
+                // The command line stores it there when it finds no page.
+                self.exclusion
+                    .send_if_modified(|known| std::mem::replace(known, exclusion) != exclusion);
+            }
+            Err(error) => tracing::error!(%error, "the spool cannot be read"),
+        }
+        match self.spool.reports().await {
+            Ok(reports) => self.reports = reports,
+            Err(error) => tracing::error!(%error, "the spool cannot be read"),
+        }
+        let status = self.build_status().await;
+        self.status.send_replace(Arc::new(status));
+    }
+
+    fn collect(&mut self) {
+        let tally = self.acquisition.sampler.take_tally();
+        self.windows.add_all(&tally);
+        self.unstored.tally.add_all(&tally);
+        let samples = self.acquisition.sampler.take_samples();
+        self.unstored.samples.extend(samples);
+        if self.unstored.tally_since.is_none() {
+            self.unstored.tally_since = self.acquisition.time();
+        }
+    }
+}

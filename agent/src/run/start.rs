@@ -1,0 +1,109 @@
+//! Start of the agent.
+
+use super::{Agent, CHANNEL_CAPACITY, Unstored};
+use crate::acquisition::Acquisition;
+use crate::alert::AlertMonitor;
+use crate::clock;
+use crate::config::{Config, InputConfig};
+use crate::input::{self, InputStats};
+use crate::output::{AlarmSentence, Outputs};
+use crate::page::{self, PageState};
+use crate::raw_log::RawLog;
+use crate::sampler::Tally;
+use crate::short_burst::{self, FileModem};
+use crate::spool::Spool;
+use crate::status::Status;
+use crate::uplink;
+use anyhow::Context;
+use std::sync::Arc;
+use tokio::sync::{mpsc, watch};
+use tokio::time::Instant;
+use tokio_util::sync::CancellationToken;
+
+impl Agent {
+    /// Starts the inputs, the outputs, the page and the uplink.
+    pub(super) async fn start(
+        config: Config,
+        spool: Spool,
+        shutdown: &CancellationToken,
+    ) -> anyhow::Result<Agent> {
+        let (uplink, uplink_handle) = uplink::prepare(&config.uplink, &spool).await?;
+        let exclusion = spool.exclusion().await?;
+        let stored_alert = spool.alert().await?;
+        let judged_by = uplink_handle.model.borrow().as_ref().map(|model| model.id);
+        let settings = uplink_handle.settings.borrow().clone();
+        let last_contact = uplink_handle.link.borrow().last_contact;
+        let stale_s = config.silence.stale_s.0;
+        let mut acquisition = Acquisition::new(&config.roles, stale_s, settings, exclusion);
+        let is_recorded = |input: &InputConfig| matches!(input, InputConfig::File(_));
+        if !config.inputs.values().any(is_recorded) {
+            // The computer may have lost its time with its power.
+            let known = last_contact.map_or(clock::now(), |contact| contact.max(clock::now()));
+            acquisition.set_reference_time(known, Instant::now());
+            if let Some(before) = spool.clock_checkpoint().await? {
+                acquisition.restore_clock_checkpoint(before);
+            }
+        }
+        let reports = spool.reports().await?;
+        let unstored = Unstored {
+            pending: spool.pending().await?,
+            ..Unstored::default()
+        };
+
+        let outputs = Outputs::open(&config.output, shutdown).await?;
+        let exclusion = watch::Sender::new(exclusion);
+        let status = watch::Sender::new(Arc::new(Status::default()));
+        let acknowledged = watch::Sender::new(None);
+        let acknowledged_rx = acknowledged.subscribe();
+        let served = PageState {
+            spool: spool.clone(),
+            status: status.subscribe(),
+            exclusion: exclusion.clone(),
+            acknowledged,
+            upload_wakeup: uplink_handle.sealed.clone(),
+        };
+        let page = page::serve(config.page.as_ref(), served, shutdown).await?;
+        let uplink = tokio::spawn(uplink.run(shutdown.clone()));
+        if let Some(modem) = &config.modem {
+            let modem = FileModem::open(modem.directory())
+                .with_context(|| modem.directory().display().to_string())?;
+            tokio::spawn(short_burst::run(spool.clone(), modem, shutdown.clone()));
+        }
+
+        let (tx, observations) = mpsc::channel(CHANNEL_CAPACITY);
+        let mut inputs = Vec::new();
+        for (name, input) in config.inputs {
+            let stats = Arc::new(InputStats::default());
+            inputs.push((name.clone(), stats.clone()));
+            input::spawn(name.into(), input, tx.clone(), stats, shutdown.clone());
+        }
+        let page = page.map(|address| address.to_string());
+        let output = outputs.tcp_address.map(|address| address.to_string());
+        tracing::info!(page, output, inputs = inputs.len(), "ready");
+        Ok(Agent {
+            acquisition,
+            last_contact,
+            silence: config.silence,
+            spool,
+            spool_limit_bytes: config.spool_mb.bytes(),
+            raw_log: RawLog::open(&config.data_dir, config.raw_log_mb.bytes()),
+            plan: config.uplink.plan(),
+            uplink_handle,
+            reports,
+            observations,
+            inputs,
+            outputs,
+            interval: config.output.interval_s.duration(),
+            exclusion,
+            alert_monitor: AlertMonitor::new(config.alert, stored_alert, judged_by),
+            stored_alert,
+            withheld: false,
+            acknowledged: acknowledged_rx,
+            alarm: config.output.alarm_sentence.then(AlarmSentence::default),
+            status,
+            uplink,
+            unstored,
+            windows: Tally::default(),
+        })
+    }
+}

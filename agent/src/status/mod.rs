@@ -1,0 +1,128 @@
+//! Status of the agent in one value: for the local page and for `status`.
+
+mod offline;
+mod text;
+
+pub(crate) use offline::offline_status;
+
+use crate::alert::AlertStatus;
+use crate::corrected_heading::{CardRow, CorrectedHeading};
+use crate::input::InputStatus;
+use crate::raw_log::RawLogStatus;
+use crate::sampler::Exclusion;
+use crate::spool::{BudgetAccount, SpoolStatus};
+use crate::uplink::LinkStatus;
+use binnacle_compass::angle::TrueHeading;
+use binnacle_compass::time::Timestamp;
+use binnacle_wire::messages::CardWithdrawn;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Status of the agent, as the page shows it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Status {
+    /// Version of the agent.
+    pub(crate) agent_version: String,
+    /// Set while an agent is running: the rest is live then, otherwise from the spool.
+    pub(crate) running: bool,
+    pub(crate) vessel_name: Option<String>,
+    pub(crate) compass_name: Option<String>,
+    /// GNSS time.
+    pub(crate) ship_time: Option<Timestamp>,
+    /// Fault of the receiver's time.
+    #[serde(default)]
+    pub(crate) clock_problem: Option<String>,
+    /// Reason why samples cannot be stored.
+    #[serde(default)]
+    pub(crate) storage_problem: Option<String>,
+    pub(crate) heading: CorrectedHeading,
+    /// Last alert of the agent itself, open or closed.
+    #[serde(default)]
+    pub(crate) alert: Option<AlertStatus>,
+    pub(crate) gyro_deg: Option<TrueHeading>,
+    pub(crate) satellite_deg: Option<TrueHeading>,
+    pub(crate) sog_kn: Option<f64>,
+    pub(crate) rate_of_turn_deg_min: Option<f64>,
+    pub(crate) roll_deg: Option<f64>,
+    pub(crate) model: Option<ModelStatus>,
+    /// Deviation on every 15° at the vessel's position.
+    pub(crate) card: Vec<CardRow>,
+    #[serde(rename = "hold")]
+    pub(crate) exclusion: Option<Exclusion>,
+    /// Ten-second windows by outcome since the agent started.
+    pub(crate) windows: BTreeMap<String, u64>,
+    pub(crate) inputs: Vec<InputReport>,
+    pub(crate) link: LinkStatus,
+    pub(crate) spool: SpoolStatus,
+    /// Byte budget of the link, and its balance.
+    #[serde(default)]
+    pub(crate) budget: Option<BudgetAccount>,
+    /// Raw log.
+    #[serde(default, rename = "ring")]
+    pub(crate) raw_log: Option<RawLogStatus>,
+}
+
+/// Model in use.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ModelStatus {
+    pub(crate) version: u32,
+    /// Time of its last sample.
+    pub(crate) data_until: Timestamp,
+    /// Age of its last sample, by GNSS time.
+    pub(crate) age_days: Option<f64>,
+    /// Reason why it is no longer valid; nothing is corrected by it then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) withdrawn: Option<CardWithdrawn>,
+    /// Reason why no card from before its epoch is valid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) replaces: Option<CardWithdrawn>,
+}
+
+/// State of an input; counts are since the agent started.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct InputReport {
+    pub(crate) name: String,
+    pub(crate) connected: bool,
+    /// Reason why it is not connected.
+    pub(crate) problem: Option<String>,
+    pub(crate) last_heard_s_ago: Option<f64>,
+    /// Parsed sentences and values, by kind.
+    pub(crate) sentences: BTreeMap<String, u64>,
+    /// Unused lines, by reason.
+    pub(crate) rejected: BTreeMap<String, u64>,
+    /// Observations dropped because the channel was full.
+    pub(crate) dropped: u64,
+}
+
+impl InputReport {
+    /// Converts an input's counts.
+    pub(crate) fn new(name: &str, status: InputStatus) -> InputReport {
+        let owned = |counts: BTreeMap<&'static str, u64>| {
+            let owned = counts.into_iter();
+            owned
+                .map(|(name, count)| (name.to_owned(), count))
+                .collect()
+        };
+        InputReport {
+            name: name.to_owned(),
+            connected: status.connected,
+            problem: status.problem,
+            last_heard_s_ago: status.last_heard_s_ago,
+            sentences: owned(status.sentences),
+            rejected: owned(status.rejected),
+            dropped: status.dropped,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_json_reads_back() {
+        let status = Status::default();
+        let json = serde_json::to_string(&status).unwrap();
+        assert_eq!(serde_json::from_str::<Status>(&json).unwrap(), status);
+    }
+}

@@ -1,0 +1,230 @@
+//! The status as text for a terminal.
+
+use super::{InputReport, Status};
+use binnacle_wire::alert::ShipAlertState;
+use binnacle_wire::messages::CardWithdrawn;
+use std::fmt::Write;
+
+impl Status {
+    /// Formats the status for a terminal.
+    pub(crate) fn text(&self) -> String {
+        let mut out = String::new();
+        self.write_text(&mut out)
+            .expect("a String takes every write");
+        out
+    }
+
+    fn write_text(&self, out: &mut String) -> std::fmt::Result {
+        let running = if self.running {
+            "running"
+        } else {
+            "not running"
+        };
+        writeln!(out, "agent      {} {running}", self.agent_version)?;
+        if let (Some(vessel), Some(compass)) = (&self.vessel_name, &self.compass_name) {
+            writeln!(out, "vessel     {vessel}, {compass}")?;
+        }
+        if let Some(time) = self.ship_time {
+            writeln!(out, "ship time  {time}")?;
+        }
+        for (what, problem) in [
+            ("CLOCK", &self.clock_problem),
+            ("STORAGE", &self.storage_problem),
+        ] {
+            if let Some(problem) = problem {
+                writeln!(out, "{what:<11}{problem}")?;
+            }
+        }
+        self.write_alert(out)?;
+        self.write_heading(out)?;
+        match &self.model {
+            Some(model) => {
+                let age = model.age_days.map(|d| format!(", {d:.1} days old"));
+                let age = age.unwrap_or_default();
+                writeln!(
+                    out,
+                    "model      version {}, data until {}{age}",
+                    model.version, model.data_until
+                )?;
+                if let Some(withdrawn) = &model.withdrawn {
+                    writeln!(out, "           {}: not in use", withdrawn.in_words())?;
+                    writeln!(out, "           {}", CardWithdrawn::ADVICE)?;
+                } else if let Some(replaces) = &model.replaces {
+                    writeln!(out, "           {}", replaces.of_older_cards())?;
+                }
+            }
+            None => writeln!(out, "model      none")?,
+        }
+        if let Some(exclusion) = self.exclusion {
+            writeln!(out, "hold       {exclusion}: nothing is sampled")?;
+        }
+        self.write_link(out)?;
+        for input in &self.inputs {
+            input.write_text(out)?;
+        }
+        for (outcome, windows) in &self.windows {
+            writeln!(out, "windows    {windows} {outcome}")?;
+        }
+        Ok(())
+    }
+
+    fn write_alert(&self, out: &mut String) -> std::fmt::Result {
+        let Some(alert) = &self.alert else {
+            return Ok(());
+        };
+        if alert.alert.state != ShipAlertState::Open {
+            return writeln!(out, "alert      {}", alert.summary);
+        }
+        let seen = if alert.acknowledged {
+            " (acknowledged)"
+        } else {
+            ""
+        };
+        writeln!(out, "ALERT      {}{seen}", alert.summary)?;
+        writeln!(out, "           {}", alert.advice)
+    }
+
+    fn write_heading(&self, out: &mut String) -> std::fmt::Result {
+        let heading = &self.heading;
+        if let Some(compass) = heading.compass_deg {
+            writeln!(out, "compass    {compass}")?;
+        }
+        if let (Some(deviation), Some(magnetic)) = (heading.deviation_deg, heading.magnetic_deg) {
+            let band = heading.band95_deg.map(|band| format!(" ± {band:.1}°"));
+            writeln!(
+                out,
+                "magnetic   {magnetic} (deviation {deviation}{})",
+                band.unwrap_or_default()
+            )?;
+        }
+        if let (Some(variation), Some(true_heading)) = (heading.variation_deg, heading.true_deg) {
+            writeln!(out, "true       {true_heading} (variation {variation})")?;
+        }
+        if let Some(problem) = &heading.problem {
+            writeln!(out, "heading    not corrected: {problem}")?;
+        }
+        Ok(())
+    }
+
+    fn write_link(&self, out: &mut String) -> std::fmt::Result {
+        let state = serde_json::to_value(self.link.state).unwrap_or_default();
+        let state = state.as_str().unwrap_or_default().replace('_', " ");
+        write!(out, "link       {state}")?;
+        if let Some(problem) = &self.link.problem {
+            write!(out, ": {problem}")?;
+        }
+        if let Some(contact) = self.link.last_contact {
+            write!(out, ", last response {contact}")?;
+        }
+        writeln!(out)?;
+        if let Some(budget) = &self.budget {
+            write!(out, "profile    {}", budget.profile)?;
+            if let Some(day) = budget.daily_bytes {
+                let left = budget.remaining_bytes;
+                write!(out, ", {left:.0} bytes left at {day:.0} a day")?;
+            }
+            writeln!(out)?;
+        }
+        let spool = &self.spool;
+        writeln!(
+            out,
+            "spool      {} samples not sealed, {} batches to send, {} acknowledged",
+            spool.pending_samples, spool.waiting_batches, spool.acknowledged_batches
+        )?;
+        if spool.thinned_batches > 0 {
+            writeln!(
+                out,
+                "           {} batches were thinned for disk space or budget",
+                spool.thinned_batches
+            )?;
+        }
+        if let Some(raw_log) = &self.raw_log {
+            let (size, limit) = (raw_log.bytes as f64 / 1e6, raw_log.limit_bytes as f64 / 1e6);
+            write!(out, "ring       {size:.1} of {limit:.1} MB")?;
+            if let Some(problem) = &raw_log.problem {
+                write!(out, ", nothing is recorded for now: {problem}")?;
+            }
+            writeln!(out)?;
+        }
+        if spool.parked_batches > 0 {
+            let because = spool.parked_because.as_deref().unwrap_or("no reason given");
+            writeln!(
+                out,
+                "REFUSED    {} batches were refused by the server: {because}",
+                spool.parked_batches
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl InputReport {
+    fn write_text(&self, out: &mut String) -> std::fmt::Result {
+        let state = match (&self.problem, self.connected) {
+            (_, true) => "connected",
+            (Some(problem), false) => problem,
+            (None, false) => "not connected",
+        };
+        let sentences: u64 = self.sentences.values().sum();
+        write!(
+            out,
+            "input      {}: {state}, {sentences} sentences",
+            self.name
+        )?;
+        for (reason, lines) in &self.rejected {
+            write!(out, ", {lines} {reason}")?;
+        }
+        if self.dropped > 0 {
+            write!(out, ", {} dropped", self.dropped)?;
+        }
+        writeln!(out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Profile;
+    use crate::corrected_heading::CorrectedHeading;
+    use crate::sampler::Exclusion;
+    use crate::spool::{BudgetAccount, SpoolStatus};
+
+    #[test]
+    fn the_text_says_what_is_wrong() {
+        let status = Status {
+            agent_version: "0.1.0".to_owned(),
+            exclusion: Some(Exclusion::Berthed),
+            clock_problem: Some("the receiver's time jumped".to_owned()),
+            storage_problem: Some("samples cannot be stored".to_owned()),
+            heading: CorrectedHeading {
+                problem: Some("there is no model yet".to_owned()),
+                ..CorrectedHeading::default()
+            },
+            budget: Some(BudgetAccount {
+                profile: Profile::Metered,
+                daily_bytes: Some(8_000.0),
+                remaining_bytes: -120.4,
+                ship_time: None,
+            }),
+            spool: SpoolStatus {
+                parked_batches: 2,
+                parked_because: Some("422 undecodable".to_owned()),
+                ..SpoolStatus::default()
+            },
+            ..Status::default()
+        };
+        let text = status.text();
+        for wanted in [
+            "0.1.0 not running",
+            "berthed: nothing is sampled",
+            "CLOCK      the receiver's time jumped\n",
+            "STORAGE    samples cannot be stored\n",
+            "not corrected: there is no model yet",
+            "link       not enrolled\n",
+            "profile    metered, -120 bytes left at 8000 a day\n",
+            "2 batches were refused by the server: 422 undecodable",
+        ] {
+            assert!(text.contains(wanted), "{wanted:?} is not in\n{text}");
+        }
+    }
+}
