@@ -1,5 +1,5 @@
-//! Any bytes, as they are and with the checksum made right: `decode` answers or
-//! refuses, and what it answers can be written again, to the same meaning.
+//! Any bytes, as they are and with the checksum made right: `decode` accepts or
+//! refuses, and an accepted batch can be written again with the same meaning.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! What is printed is read back as the same value, and no bytes make it panic.
+//! Printed sentences are read back unchanged, and no bytes cause a panic.
 
 use binnacle_nmea::sentence::{
     Gga, Gll, Hbt, Hdg, Hdm, Hdt, Position, Rmc, Rot, Ths, ThsMode, Vhw, Vtg, Xdr, Zda,
