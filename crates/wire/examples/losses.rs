@@ -1,5 +1,5 @@
-//! What the estimator loses by what a frame rounds, and by samples that are left out:
-//! the tables of BENCHMARKS.md.
+//! Precision that the estimator loses to a frame's rounding and to thinned
+//! samples: the tables of BENCHMARKS.md.
 //!
 //! `cargo run --release -p binnacle-wire --example losses [SHIPS]`, with the number of
 //! ships of each kind. Ships and their errors are those of the estimator's own studies,
@@ -25,22 +25,24 @@ use voyages::{Faults, Variety, predicted, true_deviation};
 
 const HEADINGS: usize = 36;
 const DAYS: f64 = 30.0;
-/// So much of its standard error moves a curve that was tipped to another fit.
+/// A curve that moves by this fraction of its standard error has tipped to
+/// another fit.
 const TIPPED: f64 = 0.25;
 const VARIETIES: [Variety; 3] = [Variety::Rich, Variety::Medium, Variety::Poor];
 
-/// What the analysis says of a ship's deviation where she is at the end, by heading.
+/// The analysed deviation of a ship at its last position, by heading.
 #[derive(Clone, Copy)]
 struct Curve {
     deviations_deg: [f64; HEADINGS],
-    /// Mean variance, without what no heading can tell from the reference's constant.
+    /// Mean variance, without the part inseparable from the reference's
+    /// constant.
     variance: f64,
 }
 
-/// The rows that are analysed of a voyage.
+/// Chooses the rows of a voyage to analyse.
 type Rows = dyn Fn(&Log) -> Vec<Sample> + Sync;
 
-/// A way to them.
+/// A named choice of rows.
 struct Way {
     name: String,
     rows: Box<Rows>,
@@ -70,8 +72,8 @@ fn main() {
     );
 }
 
-/// Samples as each profile sends them: the same in batches of other sizes; and what thinning
-/// leaves of those when the link does not keep up.
+/// Samples as each profile sends them, in batches of other sizes, and the
+/// remainder after thinning when the link does not keep up.
 fn thinned() -> Vec<Way> {
     let mut ways = vec![way("ten minutes' means, unrounded", |log| {
         log.samples.clone()
@@ -92,8 +94,8 @@ fn thinned() -> Vec<Way> {
     ways
 }
 
-/// Of each 10° of heading the first few in so many seconds, as the agent thins samples that
-/// have equally many windows.
+/// Keeps the first `most` samples per 10° of heading and time window, as the
+/// agent thins samples with equal numbers of windows.
 fn thin(samples: &[Sample], seconds: i64, most: usize) -> Vec<Sample> {
     let mut kept: BTreeMap<(i64, i64), usize> = BTreeMap::new();
     let samples = samples.iter().filter(|s| {
@@ -106,8 +108,8 @@ fn thin(samples: &[Sample], seconds: i64, most: usize) -> Vec<Sample> {
     samples.copied().collect()
 }
 
-/// Each column rounded alone, in the frame's step and in greater ones; and all, through
-/// frames.
+/// Each column rounded alone, in the frame's step and in coarser ones; then all
+/// columns, through frames.
 fn rounded() -> Vec<Way> {
     let mut ways = Vec::new();
     for step in [0.02, 0.05, 0.1, 0.2, 0.5] {
@@ -159,13 +161,13 @@ fn round(value: f64, step: f64) -> f64 {
     (value / step).round() * step
 }
 
-/// The compass's heading, its difference from the gyro's changed.
+/// The compass heading after `change` of its difference from the gyro.
 fn less(s: &Sample, change: impl Fn(f64) -> f64) -> CompassHeading {
     let gyro = s.gyro.unwrap().degrees();
     CompassHeading::new(gyro + change(wrap_180(s.compass.degrees() - gyro))).unwrap()
 }
 
-/// Through frames of so many hours each, as they go ashore.
+/// Samples after encoding and decoding in frames of `hours` hours each.
 fn framed(samples: &[Sample], hours: i64) -> Vec<Sample> {
     let batches = samples.chunk_by(|a, b| {
         let batch = |s: &Sample| s.time.micros().div_euclid(hours * 3_600_000_000);
@@ -185,18 +187,20 @@ fn framed(samples: &[Sample], hours: i64) -> Vec<Sample> {
     batches.flat_map(through).collect()
 }
 
-/// One voyage by the usual rows and by others.
+/// One voyage, analysed with the usual rows and with others.
 struct Pair {
-    /// Mean squares over headings, of both against the truth and of one against the other.
+    /// Mean squares over headings: both against the truth, and one against the
+    /// other.
     usual_error: f64,
     error: f64,
     change: f64,
-    /// Mean variances that the analysis states.
+    /// Mean variances stated by the analysis.
     usual_variance: f64,
     variance: f64,
 }
 
-/// Analyses each ship by `usual` rows and by each way, and prints how those differ.
+/// Analyses each ship with the `usual` rows and with each variant, and prints
+/// the differences.
 fn compare(usual_name: &str, ships: u64, usual: fn(&Log) -> Vec<Sample>, ways: &[Way]) {
     let found = each_ship(ships, |seed| {
         let log = sail(seed);
@@ -229,7 +233,7 @@ fn print(name: &str, pairs: &[&Pair]) {
         let sum = |of: fn(&Pair) -> f64| pairs.iter().map(|p| of(p)).sum::<f64>();
         (sum(|p| p.error) / sum(|p| p.usual_error)).sqrt()
     };
-    // How much the ratio owes to which ships were drawn: each left out in turn.
+    // Jackknife over the ships: the ratio's dependence on the ships drawn.
     let n = pairs.len() as f64;
     let all = ratio(pairs);
     let spread: f64 = (0..pairs.len())
@@ -240,8 +244,8 @@ fn print(name: &str, pairs: &[&Pair]) {
         })
         .sum();
     let error = pairs.iter().map(|p| p.error).sum::<f64>() / n;
-    // A search for levels of noise, or for changes, may be in the balance: then a hair
-    // decides between two fits.
+    // A search for noise levels or changes may be a close decision: a tiny
+    // difference then tips it to another fit.
     let (kept, tipped): (Vec<&Pair>, Vec<&Pair>) = pairs
         .iter()
         .partition(|p| p.change < TIPPED.powi(2) * p.usual_variance);
@@ -283,7 +287,7 @@ fn sail(seed: u64) -> Log {
     sail_log(9_000 + seed, &plan)
 }
 
-/// The true deviation, the gyro's constant counted to it: no heading tells them apart.
+/// The true deviation plus the gyro's constant: no heading can separate them.
 fn truth(log: &Log) -> [f64; HEADINGS] {
     std::array::from_fn(|k| {
         let compass = 10.0 * k as f64;
@@ -292,7 +296,7 @@ fn truth(log: &Log) -> [f64; HEADINGS] {
     })
 }
 
-/// None where the analysis gives no model, or takes the voyage for more than one epoch.
+/// `None` where the analysis gives no model or several epochs.
 fn curve(log: &Log, samples: &[Sample]) -> Option<Curve> {
     let analysis = analyse(samples, &[], &AnalysisSettings::default());
     let [epoch] = &analysis.epochs[..] else {
@@ -309,7 +313,7 @@ fn curve(log: &Log, samples: &[Sample]) -> Option<Curve> {
     })
 }
 
-/// Does a piece of work for ships of each kind, on all cores, results in order.
+/// Runs `work` for ships of each kind on all cores; results in order.
 fn each_ship<T: Send>(ships: u64, work: impl Fn(u64) -> T + Sync) -> Vec<T> {
     let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
     let seeds = 3 * ships;

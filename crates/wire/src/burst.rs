@@ -1,34 +1,34 @@
-//! Frames cut into short-burst messages, and joined again: for a link that carries a
-//! few hundred octets at a time and forgets, repeats and reorders.
+//! Frames split into short-burst messages, and joined again, for a link that
+//! carries a few hundred bytes at a time and loses, repeats and reorders them.
 //!
-//! What always holds: what is joined is a frame that [`decode`](crate::decode) reads;
-//! however messages come, [`Joiner`] keeps no more than [`MOST_OPEN`] frames' worth of
-//! them; no octets make either panic.
+//! Invariants: a joined frame can be read by [`decode`](crate::decode).
+//! Whatever the order of messages, [`Joiner`] keeps at most [`MOST_OPEN`]
+//! frames' worth of them. No bytes cause a panic.
 
 use crate::batch::StreamId;
 use crate::codec::{self, DecodeError};
 use std::collections::VecDeque;
 
-/// The largest message that any of these modems takes.
+/// The largest message that every one of these modems accepts.
 pub const MESSAGE_OCTETS: usize = 340;
-/// Parts of one frame.
+/// The most parts of one frame.
 pub const PARTS_MAX: usize = 16;
-/// Frames that a joiner waits for the rest of.
+/// The most incomplete frames that a joiner keeps.
 pub const MOST_OPEN: usize = 256;
 
-/// First octet of a part of a frame.
+/// First byte of a part of a frame.
 const PART: u8 = 0xb1;
-/// First octet of an acknowledgement.
+/// First byte of an acknowledgement.
 const ACK: u8 = 0xb2;
-/// Kind and check.
+/// Bytes of kind and check.
 const HEAD_OCTETS: usize = 3;
 const TAG_OCTETS: usize = 4;
 const VARINT_MAX: usize = 10;
 
-/// Why a frame cannot be cut, or a message not be read.
+/// The reason why a frame cannot be split, or a message not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BurstError {
-    /// Not a frame, whole or joined.
+    /// Not a frame, either given or joined.
     #[error(transparent)]
     Frame(#[from] DecodeError),
     /// It would take more than [`PARTS_MAX`] messages.
@@ -37,31 +37,31 @@ pub enum BurstError {
     /// More than [`MESSAGE_OCTETS`].
     #[error("a message of {0} octets is too long")]
     TooLong(usize),
-    /// Not one of these messages.
+    /// A message of an unknown kind.
     #[error("not a short-burst message")]
     NotOurs,
-    /// Ends within its head.
+    /// The message ends within its head.
     #[error("the message is cut short")]
     Truncated,
-    /// The check does not fit.
+    /// The check does not match.
     #[error("the message is damaged")]
     Damaged,
-    /// A part beyond the last.
+    /// The part's number is beyond the last.
     #[error("part {part} of {parts}")]
     NoSuchPart {
-        /// From 0.
+        /// Number of the part, from 0.
         part: usize,
-        /// How many there are.
+        /// Number of parts.
         parts: usize,
     },
 }
 
-/// What stands for a stream in a message: the end of its UUID.
+/// Short form of a stream in a message: the end of its UUID.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StreamTag([u8; TAG_OCTETS]);
 
 impl StreamTag {
-    /// Of a stream.
+    /// Returns the tag of a stream.
     pub fn of(stream: StreamId) -> StreamTag {
         let octets = stream.0.as_bytes();
         let mut tag = [0; TAG_OCTETS];
@@ -70,21 +70,22 @@ impl StreamTag {
     }
 }
 
-/// Every batch up to this one is durable on shore.
+/// Acknowledgement that every batch up to this one is durable on the server.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ack {
-    /// Whose.
+    /// The stream.
     pub stream: StreamTag,
     /// As in [`Downlink`](crate::messages::Downlink).
     pub contiguous_seq: u64,
 }
 
-/// The octets of a frame that so many messages carry, whatever its number.
+/// Returns the most bytes of a frame that `messages` messages carry, for any
+/// sequence number.
 pub const fn capacity(messages: usize) -> usize {
     messages * (MESSAGE_OCTETS - HEAD_OCTETS - TAG_OCTETS - VARINT_MAX - 1)
 }
 
-/// Cuts a frame into messages, as even as they can be.
+/// Splits a frame into messages of nearly equal size.
 ///
 /// # Errors
 /// When it is not a frame, or too large.
@@ -107,17 +108,18 @@ pub fn split(frame: &[u8]) -> Result<Vec<Vec<u8>>, BurstError> {
     Ok(messages.collect())
 }
 
-/// The shore's answer.
+/// Writes the server's acknowledgement.
 pub fn write_ack(ack: Ack) -> Vec<u8> {
     let mut content = ack.stream.0.to_vec();
     put_varint(&mut content, ack.contiguous_seq);
     message(ACK, &content)
 }
 
-/// Reads what [`write_ack`] wrote; what a later shore may add to it is passed over.
+/// Reads the bytes of [`write_ack`]; fields that a later server may append are
+/// ignored.
 ///
 /// # Errors
-/// When the message is another one, or damaged.
+/// When the message is of another kind, or damaged.
 pub fn read_ack(octets: &[u8]) -> Result<Ack, BurstError> {
     let mut rest = content(ACK, octets)?;
     Ok(Ack {
@@ -126,14 +128,14 @@ pub fn read_ack(octets: &[u8]) -> Result<Ack, BurstError> {
     })
 }
 
-/// Joins the parts of frames, in whatever order they come.
+/// Joins the parts of frames, in any order.
 #[derive(Debug, Default)]
 pub struct Joiner {
-    /// The one that was begun first in front.
+    /// Incomplete frames, the oldest first.
     open: VecDeque<Open>,
 }
 
-/// A frame of which not everything is there.
+/// An incomplete frame.
 #[derive(Debug)]
 struct Open {
     stream: StreamTag,
@@ -142,13 +144,15 @@ struct Open {
 }
 
 impl Joiner {
-    /// Takes a message; the frame, when it was the last part of one.
+    /// Adds a message, and returns the frame that it completes.
     ///
-    /// A part that came before in other octets begins its frame anew: an agent's spool
-    /// may have been lost. A frame that was joined and begins again is joined again.
+    /// A part that differs from an earlier one restarts its frame: an agent's
+    /// spool may have been lost. A frame that was joined before may be joined
+    /// again.
     ///
     /// # Errors
-    /// When the message is none, or what was joined is no frame; that one is forgotten.
+    /// When the message cannot be read, or the joined bytes are not a frame;
+    /// those bytes are then dropped.
     pub fn take(&mut self, octets: &[u8]) -> Result<Option<Vec<u8>>, BurstError> {
         let mut rest = content(PART, octets)?;
         let (stream, seq) = (take_tag(&mut rest)?, take_varint(&mut rest)?);
@@ -182,8 +186,8 @@ impl Joiner {
         Ok(Some(frame))
     }
 
-    /// Frames of which parts are missing: the stream, the number, and how many are there
-    /// of how many.
+    /// Incomplete frames: stream, sequence number, parts received and parts in
+    /// all.
     pub fn incomplete(&self) -> impl Iterator<Item = (StreamTag, u64, usize, usize)> {
         self.open.iter().map(|open| {
             let there = open.parts.iter().flatten().count();
@@ -209,7 +213,7 @@ fn message(kind: u8, content: &[u8]) -> Vec<u8> {
     octets
 }
 
-/// What follows kind and check, if they are right.
+/// The content behind kind and check, if both are right.
 fn content(kind: u8, octets: &[u8]) -> Result<&[u8], BurstError> {
     if octets.len() > MESSAGE_OCTETS {
         return Err(BurstError::TooLong(octets.len()));

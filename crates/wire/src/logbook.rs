@@ -1,64 +1,65 @@
-//! What people report for the magnetic logbook, on board or ashore.
+//! Reports for the magnetic logbook, from the vessel or from the office.
 //!
-//! What always holds: a report that [`Report::checked`] gave back is one line of a
-//! logbook: it lies in this era and does not begin in the future, ends no earlier than it
-//! begins, and its words are trimmed, few, and without control characters.
+//! Invariants of a report that [`Report::checked`] returned: it does not begin
+//! before GPS time or in the future, and ends no earlier than it begins. Its
+//! texts are trimmed, short, and without control characters.
 
 use binnacle_magnetics::analyse::{Cargo, LogbookEntry, LogbookError, LogbookKind};
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
 
-/// Longest name of a hatch or a port, and of a person, in characters.
+/// The longest name of a hatch, port or person, in characters.
 pub const MAX_NAME: usize = 100;
-/// Longest note, in characters.
+/// The longest note, in characters.
 pub const MAX_NOTE: usize = 1000;
 
-/// The first instant of GPS time, 1980-01-06: nothing here is older.
+/// The first instant of GPS time, 1980-01-06: the earliest time of a report.
 const EARLIEST_MICROS: i64 = 315_964_800_000_000;
-/// A reporter's clock, or the time zone in mind, may be wrong by so much.
+/// Tolerance for a reporter's wrong clock or time zone.
 const AHEAD_S: f64 = 86_400.0;
-/// Cargo and docks last for weeks or months: an end further ahead is of a year mistaken.
+/// Cargo and docks last for weeks or months: an end further ahead has a wrong
+/// year.
 const LONGEST_AHEAD_S: f64 = 366.0 * 86_400.0;
 
 /// One event, as its reporter writes it down.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
-    /// What happened.
+    /// The kind of event.
     pub kind: LogbookKind,
-    /// When it happened, or began.
+    /// Time of the event, or its start.
     pub from: Timestamp,
-    /// When it ended; none for an event or for what still goes on.
+    /// Its end; none for an instant or an event that lasts.
     #[serde(default)]
     pub to: Option<Timestamp>,
-    /// What the magnetic cargo was.
+    /// The kind of magnetic cargo.
     #[serde(default)]
     pub cargo: Option<Cargo>,
-    /// Where the magnetic cargo lies.
+    /// The hatch in which the magnetic cargo lies.
     #[serde(default)]
     pub hatch: Option<String>,
-    /// The port, where there is one.
+    /// The port, if in one.
     #[serde(default)]
     pub port: Option<String>,
-    /// In the reporter's own words.
+    /// The reporter's own words.
     #[serde(default)]
     pub note: String,
 }
 
-/// What is wrong with a report.
+/// The reason for refusing a report.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field}: {detail}")]
 pub struct ReportError {
     /// The field at fault.
     pub field: &'static str,
-    /// What is wrong with it.
+    /// The fault in it.
     pub detail: String,
 }
 
 impl Report {
-    /// The report with its words trimmed, if it can be one.
+    /// Returns the report with its texts trimmed.
     ///
     /// # Errors
-    /// [`ReportError`] with the first field that cannot be.
+    /// [`ReportError`] with the first bad field.
     pub fn checked(self, now: Timestamp) -> Result<Report, ReportError> {
         let latest = now.plus_seconds(AHEAD_S);
         if self.from.micros() < EARLIEST_MICROS {
@@ -85,8 +86,8 @@ impl Report {
         }
     }
 
-    /// The report, if its end is none of a year mistaken. Asked of who writes it down: what was
-    /// kept once is carried on, and may be taken back.
+    /// Returns the report, unless its end is too far ahead. Only a new report
+    /// is checked: one that was stored may still be sent again or withdrawn.
     ///
     /// # Errors
     /// [`ReportError`] when it ends more than a year after `now`.
@@ -97,7 +98,7 @@ impl Report {
         })
     }
 
-    /// What an analysis makes of it: everything but the words.
+    /// The entry for the analysis, without the texts.
     pub fn entry(&self) -> LogbookEntry {
         LogbookEntry {
             from: self.from,
@@ -109,7 +110,7 @@ impl Report {
     }
 }
 
-/// The name of a person who reports, trimmed; empty when none is given.
+/// Returns the reporter's name, trimmed; empty when none is given.
 ///
 /// # Errors
 /// [`ReportError`] when it is too long or has control characters.
@@ -121,7 +122,7 @@ pub fn reporter(name: &str) -> Result<String, ReportError> {
     Ok(name)
 }
 
-/// A name on one line; none when nothing is in it.
+/// Returns a name on one line; `None` when it is empty.
 fn optional(field: &'static str, name: Option<&str>) -> Result<Option<String>, ReportError> {
     let name = words(field, name.unwrap_or_default(), MAX_NAME)?;
     if name.contains('\n') {

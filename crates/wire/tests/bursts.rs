@@ -22,7 +22,7 @@ fn day(seed: u64) -> Vec<u8> {
 
 #[test]
 fn an_ordinary_day_fits_into_three_messages() {
-    // Not one ten minutes of the day is missing; most days have fewer samples.
+    // No ten-minute mean of the day is missing; most days have fewer samples.
     for seed in 0..50 {
         let messages = split(&day(seed)).unwrap();
         assert!(messages.len() <= 3, "seed {seed}: {}", messages.len());
@@ -136,7 +136,8 @@ fn hex(octets: &[u8]) -> String {
     text
 }
 
-/// One message a line; the last line is the frame. Never changed, as the frames are.
+/// One message per line; the last line is the frame. Never changed, like the
+/// frames.
 #[test]
 fn the_vector_is_what_is_written() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/bursts/day.txt");
@@ -150,7 +151,7 @@ fn the_vector_is_what_is_written() {
     lines.push(hex(&write_ack(ack)));
     lines.push(hex(&frame));
     assert_eq!(vector.lines().collect::<Vec<_>>(), lines);
-    // A plain frame, as agents wrote them then: it still means the same.
+    // A plain frame of earlier agents: it still means the same.
     let meant = encode(&batch(130, voyage(2, 114))).unwrap();
     assert_eq!(decode(&frame), decode(&meant));
 }
@@ -222,7 +223,7 @@ proptest! {
     fn no_octets_make_the_joiner_panic(octets in prop::collection::vec(any::<u8>(), 0..400)) {
         let _ = Joiner::default().take(&octets);
         let _ = read_ack(&octets);
-        // With a check that fits, so that what lies behind it is reached.
+        // With a matching check, so that the code behind it is reached.
         for kind in [0xb1_u8, 0xb2] {
             let crc = crc32fast::hash(&[&[kind][..], &octets[..]].concat()) as u16;
             let message = [&[kind][..], &crc.to_le_bytes(), &octets[..]].concat();

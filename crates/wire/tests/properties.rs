@@ -1,4 +1,4 @@
-//! What holds for every batch and for any bytes.
+//! Properties of every batch and of any bytes.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -17,7 +17,7 @@ use proptest::prelude::*;
 use support::Dice;
 use uuid::Uuid;
 
-/// Room for the floating-point sums of the test itself.
+/// Tolerance for the floating-point sums of the test itself.
 const SLACK: f64 = 1e-9;
 
 fn samples() -> impl Strategy<Value = Vec<Sample>> {
@@ -158,7 +158,7 @@ fn with_checksum(mut body: Vec<u8>) -> Vec<u8> {
     body
 }
 
-/// Whatever is answered can be sent on.
+/// Every decoded batch can be encoded again.
 fn answer(bytes: &[u8]) -> bool {
     let Ok(batch) = decode(bytes) else {
         return false;
@@ -215,7 +215,7 @@ fn twenty_thousand_mutations_never_panic() {
         }
     }
     assert_eq!(stale, 10_000);
-    // Both happen often, or the mutations do not reach what they are meant to.
+    // Both must happen often; otherwise the mutations miss their target.
     assert!(
         refused > 2000 && answered > 500,
         "{refused} refused, {answered} answered"
@@ -224,7 +224,8 @@ fn twenty_thousand_mutations_never_panic() {
 
 fn mutate(body: &mut Vec<u8>, dice: &mut Dice) {
     for _ in 0..=dice.next() % 3 {
-        // Behind the version, mostly: what lies before has few ways to be wrong.
+        // Mostly behind the version: the bytes before it have few ways to be
+        // wrong.
         let at = (dice.next() as usize % body.len()).max(dice.next() as usize % 4);
         match dice.next() % 5 {
             0 => body[at] = dice.next() as u8,
@@ -252,7 +253,7 @@ fn a_small_frame_cannot_claim_many_samples() {
 
 #[test]
 fn a_small_dense_frame_cannot_claim_many_samples() {
-    // Few octets may hold many samples that are all alike, and no more than that.
+    // A few bytes may hold many equal samples, and no more than that.
     let alike = support::batch(1, vec![support::voyage(1, 1)[0]; MAX_SAMPLES]);
     let frame = encode(&alike).unwrap();
     assert!(frame.len() < 600, "{}", frame.len());
@@ -276,7 +277,8 @@ fn a_frame_of_all_columns_and_samples_ends_with_its_octets() {
     body.extend([1, 0, 0xff, 0xff, 3, 64]);
     body.extend((1..=64).flat_map(|id| [id, 0x10]));
     body.resize(MAX_BYTES - 4, 0);
-    // Zeros are values like the one before: few of these octets are needed for all.
+    // Zeros are values like the one before: few of these bytes are needed for
+    // all.
     assert_eq!(decode(&with_checksum(body)), Err(DecodeError::TrailingBits));
 }
 

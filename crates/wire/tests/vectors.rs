@@ -1,7 +1,7 @@
-//! The frames that every encoder and decoder must agree on, and the second
-//! decoder, in Python, against them and against many more.
+//! The frames that every encoder and decoder must agree on. The second decoder,
+//! in Python, is checked against them and many more.
 //!
-//! `UPDATE_VECTORS=1` writes those that are missing; none is ever changed.
+//! `UPDATE_VECTORS=1` writes missing ones; none is ever changed.
 
 #![allow(clippy::unwrap_used, reason = "these are tests, helpers included")]
 
@@ -20,8 +20,8 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use support::{Dice, batch, voyage};
 
-/// Batches, the vectors that `encode` makes of them, and the plain frames that earlier
-/// agents made: of those without samples there is one kind only.
+/// Batches with the names of their dense vectors and of the plain frames of
+/// earlier agents; batches without samples have one kind only.
 fn written() -> Vec<(&'static str, &'static str, Batch)> {
     let mut references = voyage(3, 40);
     for (row, sample) in references.iter_mut().enumerate() {
@@ -88,7 +88,7 @@ fn noted(seq: u64, samples: Vec<Sample>, revisions: &[u32], thinned: Option<u64>
     }
 }
 
-/// Frames that only a later or a wrong encoder writes.
+/// Frames that only a later or a faulty encoder writes.
 fn edited() -> Vec<(&'static str, Vec<u8>)> {
     let good = unhex(&read("quarter_day.hex"));
     let dense = encode(&batch(7, voyage(2, 29))).unwrap();
@@ -149,7 +149,7 @@ fn dense_unknown_column() -> Vec<u8> {
         .expect("some end is a column")
 }
 
-/// Nothing but ones where the columns are: the first has gaps, and predictor 15.
+/// Ones in place of the columns: the first has gaps, and predictor 15.
 fn dense_unknown_predictor() -> Vec<u8> {
     let mut body = b"BN\x01\x02".to_vec();
     body.extend([0x11; 16]);
@@ -171,10 +171,10 @@ fn with_note(kind: u8, octets: &[u8]) -> Vec<u8> {
     sealed(body)
 }
 
-/// An alert with something after it that a later agent may say.
+/// An alert with extra bytes at the end, as a later agent may write.
 fn longer_alert() -> Vec<u8> {
     let frame = encode(&noted(1, Vec::new(), &[1], None)).unwrap();
-    // The note's octets: from after the head, seq, tally, count, kind and length.
+    // The note's bytes, behind the head, seq, tally, count, kind and length.
     let from = frame
         .windows(16)
         .position(|id| id == support::alert(1).id.as_bytes());
@@ -191,7 +191,7 @@ fn unknown_column() -> Vec<u8> {
     // seq 1; no tally; one sample; six columns.
     body.extend([1, 0, 1, 6]);
     body.extend([1, 0x50, 2, 0x13, 3, 0x13, 6, 0x22, 10, 0x10, 77, 0x10]);
-    // Each: all there, predictor 0, first value as a zigzag varint.
+    // Each column: all present, predictor 0, first value as a zigzag varint.
     let firsts: [i64; 6] = [358_000_000, 43_350, -3_030, 4_500, 60, -5];
     let mut bits = String::new();
     for first in firsts {
@@ -260,7 +260,7 @@ fn folder(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The stored frame and batch of a name.
+/// The stored frame and batch of a vector.
 fn stored(name: &str, bytes: &[u8]) -> (Vec<u8>, Value) {
     let frame = folder("vectors").join(format!("{name}.hex"));
     let meaning = frame.with_extension("json");

@@ -1,5 +1,6 @@
-//! A column in a dense frame: which samples have it, the predictor, the first value and
-//! the residuals, in range-coded answers whose odds each column learns anew.
+//! A column in a dense frame: presence, predictor, first value and residuals.
+//! All are range-coded with adaptive bit models, which start afresh in each
+//! column.
 
 use super::bits::{unzigzag, zigzag};
 use super::error::DecodeError;
@@ -8,18 +9,18 @@ use super::range::{Odds, RangeReader, RangeWriter};
 use super::stack::bounded;
 
 const PREDICTOR_BITS: u32 = 4;
-/// Bits of the first value's length.
+/// Bits of the first value's length field.
 const FIRST_LENGTH_BITS: u32 = 6;
 /// Residuals lie within ±2⁵⁴: their lengths are 0 to 55.
 const LONGEST: usize = 55;
 
-/// What a column has learned of its residuals.
+/// Adaptive bit models of a column's residuals.
 #[derive(Clone, Debug)]
 struct Habits {
-    /// Whether the length is greater than this.
+    /// Models of "longer than this index?".
     longer: [Odds; LONGEST],
     negative: Odds,
-    /// The bit after the highest, by length.
+    /// Models of the bit after the highest, by length.
     second: [Odds; LONGEST + 1],
 }
 
@@ -106,7 +107,7 @@ fn residuals(predictor: Predictor, present: &[(i64, i64)]) -> Vec<i64> {
         .collect()
 }
 
-/// Bits that residuals take, near enough to choose by.
+/// Approximate size of the residuals in bits, for the choice of a predictor.
 fn cost(residuals: &[i64]) -> u64 {
     let (mut writer, mut habits) = (RangeWriter::new(), Habits::NONE);
     for residual in residuals {
@@ -115,8 +116,8 @@ fn cost(residuals: &[i64]) -> u64 {
     writer.bits_written()
 }
 
-/// Reads a column of `count` samples. `times` is `None` for the column of
-/// times itself, which cannot be foretold from them.
+/// Reads a column of `count` samples. `times` is `None` for the column of times
+/// itself, which cannot be predicted from them.
 pub(super) fn read(
     reader: &mut RangeReader<'_>,
     id: u64,
@@ -155,7 +156,8 @@ fn read_first(reader: &mut RangeReader<'_>) -> Result<u64, DecodeError> {
     Ok(1 << (length - 1) | reader.bits(length - 1)?)
 }
 
-/// Whether all are there; if not, whether each is, by whether the one before was.
+/// Writes one bit for "all present"; otherwise one bit per value, modelled by
+/// the presence of the value before.
 fn write_presence(writer: &mut RangeWriter, values: &[Option<i64>]) {
     let is_whole = values.iter().all(Option::is_some);
     writer.bits(u64::from(!is_whole), 1);
@@ -169,7 +171,7 @@ fn write_presence(writer: &mut RangeWriter, values: &[Option<i64>]) {
     }
 }
 
-/// `None` when every sample has the value.
+/// Reads the presence of each value; `None` when every sample has one.
 fn read_presence(
     reader: &mut RangeReader<'_>,
     count: usize,

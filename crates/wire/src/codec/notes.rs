@@ -1,5 +1,5 @@
-//! Notes in a frame: what is neither tally nor sample. Each says its kind and its
-//! length, so that a decoder passes over those that it does not know.
+//! Notes in a frame: everything but the tally and the samples. Each states its
+//! kind and length, so that a decoder skips unknown kinds.
 
 use super::bits::{BitReader, BitWriter, unzigzag, zigzag};
 use super::error::{DecodeError, EncodeError};
@@ -8,7 +8,7 @@ use crate::batch::Thinned;
 use binnacle_magnetics::time::Timestamp;
 use uuid::Uuid;
 
-/// Notes that one frame may have.
+/// The most notes of one frame.
 const NOTES_MAX: u64 = 255;
 const ALERT: u64 = 1;
 const THINNED: u64 = 2;
@@ -18,7 +18,7 @@ const TENTHS_PER_DEG: f64 = 10.0;
 const GYRO_THERE: u64 = 1;
 const SATELLITE_THERE: u64 = 2;
 
-/// What a frame's notes hold.
+/// The contents of a frame's notes.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     pub(super) alerts: Vec<ShipAlert>,
@@ -96,7 +96,8 @@ fn tenths(field: &'static str, degrees: f64) -> Result<i64, EncodeError> {
     Ok((degrees * TENTHS_PER_DEG).round() as i64)
 }
 
-/// Reads what [`write()`] wrote, and what a later agent may add to it.
+/// Reads the notes of [`write()`], and skips fields that a later agent
+/// appended.
 pub(super) fn read(reader: &mut BitReader<'_>) -> Result<Notes, DecodeError> {
     let count = reader.varint()?;
     if count > NOTES_MAX {

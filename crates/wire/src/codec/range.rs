@@ -1,31 +1,31 @@
-//! Yes or no, many times, in as few octets as chance allows: a range coder (Martin 1979)
-//! whose odds are counted as it goes.
+//! An adaptive binary range coder (Martin 1979): each bit costs as much as it
+//! was unlikely.
 //!
-//! The octets are the digits of a number from 0 up to 1. Each answer takes its share of
-//! the range that is left, and the number lies in what remains. Integers only: every
-//! decoder in every language comes to the same answers.
+//! The bytes are the digits of a number from 0 up to 1. Each bit narrows the
+//! range, and the number lies in the part that remains. Integers only: every
+//! decoder in every language gets the same bits.
 
 use super::error::DecodeError;
 
-/// The range is widened by an octet when it is narrower.
+/// The range is widened by a byte when it is narrower than this.
 const NARROW: u64 = 1 << 24;
 const WHOLE: u64 = 1 << 32;
-/// Octets of the number that a reader looks at.
+/// Bytes of the number that a decoder holds.
 const AHEAD: usize = 4;
 
-/// How often an answer was no and yes.
+/// An adaptive bit model: counts of 0 and 1 so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Odds([u32; 2]);
 
 impl Odds {
-    /// Nothing is known yet.
+    /// The model before the first bit.
     pub(super) const EVEN: Odds = Odds([2, 2]);
-    /// What an answer adds to its count.
+    /// Added to the count of each bit seen.
     const STEP: u32 = 5;
-    /// Counts are halved when their sum is greater: odds may change.
+    /// Counts are halved when their sum exceeds this, so that the model adapts.
     const MOST: u32 = 320;
 
-    /// The part of a range that belongs to no.
+    /// The part of a range that belongs to 0.
     fn no_of(self, range: u64) -> u64 {
         let [no, yes] = self.0.map(u64::from);
         range / (no + yes) * no
@@ -39,7 +39,7 @@ impl Odds {
     }
 }
 
-/// Collects answers.
+/// Writes bits.
 #[derive(Clone, Debug)]
 pub(super) struct RangeWriter {
     octets: Vec<u8>,
@@ -56,28 +56,28 @@ impl RangeWriter {
         }
     }
 
-    /// An answer of which something is known.
+    /// Writes a modelled bit.
     pub(super) fn answer(&mut self, odds: &mut Odds, yes: bool) {
         self.narrow(odds.no_of(self.range), yes);
         odds.learn(yes);
     }
 
-    /// The lowest `count` bits of `value`, of which nothing is known.
+    /// Writes the lowest `count` bits of `value`, unmodelled.
     pub(super) fn bits(&mut self, value: u64, count: u32) {
         for shift in (0..count).rev() {
             self.narrow(self.range / 2, value >> shift & 1 == 1);
         }
     }
 
-    /// Bits that it would take to end here, to the nearest above.
+    /// The size in bits if the stream ended here, rounded up.
     pub(super) fn bits_written(&self) -> u64 {
         8 * self.octets.len() as u64 + u64::from((WHOLE / self.range).ilog2())
     }
 
-    /// The fewest octets that lead a reader to these answers.
+    /// Returns the fewest bytes that decode to these bits.
     pub(super) fn into_octets(mut self) -> Vec<u8> {
-        // A multiple of NARROW lies in a range that is not narrow; none is needed where
-        // 0 or 1 does.
+        // A multiple of NARROW lies in a range that is not narrow. No byte is
+        // needed where 0 or 1 lies in it.
         let end = self.low + self.range;
         if self.low > 0 && end <= WHOLE {
             self.low = self.low.next_multiple_of(NARROW);
@@ -105,7 +105,7 @@ impl RangeWriter {
         }
     }
 
-    /// A sum that has reached 1 belongs to the digits before.
+    /// A sum that has reached 1 carries into the digits before.
     fn carry(&mut self) {
         if self.low < WHOLE {
             return;
@@ -120,13 +120,13 @@ impl RangeWriter {
     }
 }
 
-/// Reads what [`RangeWriter`] wrote.
+/// Reads the bits of a [`RangeWriter`].
 #[derive(Debug)]
 pub(super) struct RangeReader<'a> {
     octets: &'a [u8],
-    /// Octets taken, those after the end too, which are zeros.
+    /// Bytes read, including the zeros after the end.
     taken: usize,
-    /// How far into the range the number lies.
+    /// The number's offset in the range.
     number: u64,
     range: u64,
 }
@@ -145,14 +145,14 @@ impl<'a> RangeReader<'a> {
         Ok(reader)
     }
 
-    /// An answer of which something is known.
+    /// Reads a modelled bit.
     pub(super) fn answer(&mut self, odds: &mut Odds) -> Result<bool, DecodeError> {
         let yes = self.narrow(odds.no_of(self.range))?;
         odds.learn(yes);
         Ok(yes)
     }
 
-    /// An unsigned number of `count` bits, at most 64, of which nothing is known.
+    /// Reads an unmodelled, unsigned number of `count` bits, at most 64.
     pub(super) fn bits(&mut self, count: u32) -> Result<u64, DecodeError> {
         let mut value = 0;
         for _ in 0..count {
@@ -161,9 +161,9 @@ impl<'a> RangeReader<'a> {
         Ok(value)
     }
 
-    /// Refuses octets that no answer came from.
+    /// Refuses bytes that no bit was read from.
     pub(super) fn finish(self) -> Result<(), DecodeError> {
-        // The writer's last octet may not have been needed before.
+        // The writer's last byte may not have been needed so far.
         if self.taken + 1 < self.octets.len() + AHEAD {
             return Err(DecodeError::TrailingBits);
         }
@@ -200,7 +200,7 @@ impl<'a> RangeReader<'a> {
 mod tests {
     use super::*;
 
-    /// Answers of which one in `rare` is yes, by a linear congruential generator.
+    /// Random bits, true once in `rare`, by a linear congruential generator.
     fn answers(seed: u64, count: usize, rare: u64) -> Vec<bool> {
         let mut state = seed;
         let mut next = || {

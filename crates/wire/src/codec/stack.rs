@@ -1,19 +1,19 @@
-//! One column in a plain frame, as agents wrote them before there were dense ones: which
-//! samples have it, the predictor, the first value and the residuals.
+//! A column in a plain frame, written by agents before dense frames: presence,
+//! predictor, first value and residuals.
 
 use super::bits::{BitReader, unzigzag};
 use super::error::DecodeError;
 use super::predict::{Foresight, Predictor, VALUE_LIMIT};
 use super::rice;
 
-/// Bits that a column without gaps takes at the very least.
+/// The least number of bits of a column without gaps.
 pub(super) fn min_bits(count: usize) -> usize {
     // Presence, predictor, first value, the blocks' codes.
     1 + 3 + 8 + rice::min_bits(count.saturating_sub(1))
 }
 
-/// Reads a column of `count` samples. `times` is `None` for the column of
-/// times itself, which cannot be foretold from them.
+/// Reads a column of `count` samples. `times` is `None` for the column of times
+/// itself, which cannot be predicted from them.
 pub(super) fn read(
     reader: &mut BitReader<'_>,
     id: u64,
@@ -55,7 +55,7 @@ pub(super) fn bounded(value: i64, column: u64, row: usize) -> Result<i64, Decode
     Err(DecodeError::OutOfRange { row, column })
 }
 
-/// `None` when every sample has the value.
+/// Reads the presence of each value; `None` when every sample has one.
 fn read_presence(
     reader: &mut BitReader<'_>,
     id: u64,

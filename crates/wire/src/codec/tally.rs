@@ -5,11 +5,11 @@ use super::error::{DecodeError, EncodeError};
 use crate::reasons;
 use std::collections::BTreeMap;
 
-/// Reasons that one tally may have.
+/// The most reasons of one tally.
 const REASONS_MAX: usize = 255;
-/// Bytes of a reason's name.
+/// The most bytes of a reason's name.
 const NAME_MAX: usize = 64;
-/// Stands for a name in place of a number.
+/// Stands in place of a number before a name.
 const NAMED: u64 = 0;
 
 /// Writes the tally in order of the names.
@@ -41,7 +41,7 @@ fn write_name(writer: &mut BitWriter, name: &str) -> Result<(), EncodeError> {
     Ok(())
 }
 
-/// Reads what [`write()`] wrote, in any order of names.
+/// Reads the tally of [`write()`], with the names in any order.
 pub(super) fn read(reader: &mut BitReader<'_>) -> Result<BTreeMap<String, u64>, DecodeError> {
     let entries = reader.varint()?;
     let mut tally = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Batches there and back, at the edges of everything.
+//! Round trips of batches at the limits of every field.
 
 use super::*;
 use crate::batch::{Batch, StreamId};
@@ -218,7 +218,7 @@ fn each_kind_of_damage_has_its_own_error() {
     assert_eq!(decode(&edited(&bytes, 20, 0)), Err(DecodeError::SeqZero));
 }
 
-/// The frame with one byte changed and its checksum made right again.
+/// The frame with one byte changed and its checksum recomputed.
 fn edited(bytes: &[u8], at: usize, byte: u8) -> Vec<u8> {
     let mut body = bytes[..bytes.len() - 4].to_vec();
     body[at] = byte;

@@ -1,9 +1,10 @@
-//! A model in a compact answer: parameters as they are, the covariance by its
+//! A model in a compact response: parameters as they are, the covariance by its
 //! standard errors and the Cholesky factor of its correlations.
 //!
-//! The factor's rows have length 1, so that each rounded entry changes the standard error
-//! of a deviation by no more than 2⁻¹⁶ of a parameter's own share in it, also where two
-//! parameters' large shares all but cancel. Rounding the covariance itself would not.
+//! The factor's rows have length 1. Each rounded entry therefore changes the
+//! standard error of a deviation by no more than 2⁻¹⁶ of a parameter's own
+//! share in it. This holds also where the large shares of two parameters all
+//! but cancel; rounding the covariance itself would not.
 
 use super::{read_time, read_withdrawn, write_time, write_withdrawn};
 use crate::codec::bits::{BitReader, BitWriter};
@@ -15,18 +16,18 @@ const HAS_REPLACES: u64 = 1;
 const HAS_COVARIANCE: u64 = 2;
 const HAS_IDENTIFIABLE: u64 = 4;
 const HAS_RMS: u64 = 8;
-/// Parameters and the constant.
+/// Seven parameters and the constant.
 const COUNT: usize = 8;
-/// What stands for 1 in an entry of the factor.
+/// Value of an entry of 1 in the factor.
 const ONE: f64 = 32_767.0;
 const THOUSANDTHS_PER_DEG: f64 = 1_000.0;
-/// How far from 1 rounding may leave a correlation with itself; what is further away was
-/// no covariance.
+/// The greatest distance from 1 that rounding leaves in a correlation with
+/// itself; anything further away was not a covariance.
 const SLACK: f64 = 1e-4;
-/// A residual of more is none.
+/// The largest credible residual.
 const RMS_MAX_DEG: f64 = 180.0;
 
-/// The part's octets; `None` when there is a number that is none.
+/// Writes the part; `None` when a number is not finite or out of range.
 pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
     let model = &sent.model;
     let mut writer = BitWriter::default();
@@ -64,7 +65,8 @@ pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
     Some(writer.into_bytes())
 }
 
-/// Reads what [`octets`] wrote; what follows is a later shore's.
+/// Reads the bytes of [`octets`]; fields that a later server appended are
+/// ignored.
 pub(super) fn read(reader: &mut BitReader<'_>) -> Option<ModelDownlink> {
     let id = Uuid::from_u64_pair(reader.bits(64).ok()?, reader.bits(64).ok()?);
     let version = u32::try_from(reader.varint().ok()?).ok()?;
@@ -189,7 +191,8 @@ fn read_float(reader: &mut BitReader<'_>) -> Option<f64> {
 fn write_covariance(writer: &mut BitWriter, covariance: &Covariance) -> Option<()> {
     let mut errors = [0.0; COUNT];
     for (index, error) in errors.iter_mut().enumerate() {
-        // Rounding of a parameter that is known exactly may go below nil.
+        // Rounding may make the variance of an exactly known parameter
+        // negative.
         *error = covariance[index][index].max(0.0).sqrt();
         write_float(writer, *error)?;
     }

@@ -6,14 +6,15 @@ use binnacle_magnetics::ship::EarthField;
 use proptest::prelude::*;
 use serde_json::json;
 
-/// What ships' parameters and constants differ by, and are known to at worst.
+/// The range of ships' parameters and constants, and of their worst standard
+/// errors.
 const SPREAD: [f64; 8] = [3000.0, 0.1, 3000.0, 0.1, 0.1, 0.02, 0.02, 3.0];
 
 fn at(text: &str) -> Timestamp {
     Timestamp::parse(text).unwrap()
 }
 
-/// Any eight numbers from −1 to 1, as parameters and a constant.
+/// A model of eight numbers from −1 to 1, scaled to parameters and a constant.
 fn model(of: [f64; 8], covariance: Option<&Covariance>) -> Model {
     let names = [
         "bx_nt",
@@ -39,8 +40,9 @@ fn model(of: [f64; 8], covariance: Option<&Covariance>) -> Model {
     serde_json::from_value(json).unwrap()
 }
 
-/// A covariance with standard errors of a tenth of the spread at most, bx and χ13, by and
-/// χ23, A and the constant all but bound to each other.
+/// A covariance with standard errors of a tenth of the spread at most. Its bx
+/// and χ13, its by and χ23, and its A and the constant are all but perfectly
+/// correlated.
 fn covariance(factor: &[f64]) -> Covariance {
     let mut rows = [[0.0; 8]; 8];
     for (row, drawn) in rows.iter_mut().zip(factor.chunks(8)) {
@@ -130,7 +132,7 @@ proptest! {
 fn an_answer_comes_back_as_it_was_sent() {
     let mut downlink = sent(model([0.25; 8], None));
     let parameters = &mut downlink.model.as_mut().unwrap().model;
-    // What a single-precision number holds exactly.
+    // Numbers that single precision holds exactly.
     parameters.parameters_over_lambda = decode(&encode(&sent(parameters.clone())).unwrap())
         .unwrap()
         .model
