@@ -5,7 +5,7 @@
 mod common;
 
 use binnacle_wire::batch::StreamId;
-use binnacle_wire::burst::{Ack, Joiner, MESSAGE_OCTETS, StreamTag, write_ack};
+use binnacle_wire::burst::{Ack, Joiner, MESSAGE_BYTES, StreamTag, write_ack};
 use common::agent::Agent;
 use common::bridge::Bridge;
 use common::fetch;
@@ -57,7 +57,7 @@ async fn a_day_goes_ashore_in_three_messages_and_is_forgotten_when_it_is_answere
     };
     let (sent, frame) = timeout(PATIENCE, whole).await.expect("a day is out");
     assert!(sent.len() <= 3, "{}", sent.len());
-    assert!(sent.iter().all(|m| m.len() <= MESSAGE_OCTETS));
+    assert!(sent.iter().all(|m| m.len() <= MESSAGE_BYTES));
     let batch = binnacle_wire::decode(&frame).unwrap();
     let (first, last) = (&batch.samples[0], batch.samples.last().unwrap());
     let hours = last.time.seconds_since(first.time) / 3_600.0;

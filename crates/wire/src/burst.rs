@@ -10,7 +10,7 @@ use crate::codec::{self, DecodeError};
 use std::collections::VecDeque;
 
 /// The largest message that every one of these modems accepts.
-pub const MESSAGE_OCTETS: usize = 340;
+pub const MESSAGE_BYTES: usize = 340;
 /// The most parts of one frame.
 pub const PARTS_MAX: usize = 16;
 /// The most incomplete frames that a joiner keeps.
@@ -21,8 +21,8 @@ const PART: u8 = 0xb1;
 /// First byte of an acknowledgement.
 const ACK: u8 = 0xb2;
 /// Bytes of kind and check.
-const HEAD_OCTETS: usize = 3;
-const TAG_OCTETS: usize = 4;
+const HEAD_BYTES: usize = 3;
+const TAG_BYTES: usize = 4;
 const VARINT_MAX: usize = 10;
 
 /// The reason why a frame cannot be split, or a message not be read.
@@ -34,7 +34,7 @@ pub enum BurstError {
     /// It would take more than [`PARTS_MAX`] messages.
     #[error("a frame of {0} octets is too large for {PARTS_MAX} messages")]
     TooLarge(usize),
-    /// More than [`MESSAGE_OCTETS`].
+    /// More than [`MESSAGE_BYTES`].
     #[error("a message of {0} octets is too long")]
     TooLong(usize),
     /// A message of an unknown kind.
@@ -58,14 +58,14 @@ pub enum BurstError {
 
 /// Short form of a stream in a message: the end of its UUID.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct StreamTag([u8; TAG_OCTETS]);
+pub struct StreamTag([u8; TAG_BYTES]);
 
 impl StreamTag {
     /// Returns the tag of a stream.
     pub fn of(stream: StreamId) -> StreamTag {
-        let octets = stream.0.as_bytes();
-        let mut tag = [0; TAG_OCTETS];
-        tag.copy_from_slice(&octets[octets.len() - TAG_OCTETS..]);
+        let bytes = stream.0.as_bytes();
+        let mut tag = [0; TAG_BYTES];
+        tag.copy_from_slice(&bytes[bytes.len() - TAG_BYTES..]);
         StreamTag(tag)
     }
 }
@@ -82,7 +82,7 @@ pub struct Ack {
 /// Returns the most bytes of a frame that `messages` messages carry, for any
 /// sequence number.
 pub const fn capacity(messages: usize) -> usize {
-    messages * (MESSAGE_OCTETS - HEAD_OCTETS - TAG_OCTETS - VARINT_MAX - 1)
+    messages * (MESSAGE_BYTES - HEAD_BYTES - TAG_BYTES - VARINT_MAX - 1)
 }
 
 /// Splits a frame into messages of nearly equal size.
@@ -93,7 +93,7 @@ pub fn split(frame: &[u8]) -> Result<Vec<Vec<u8>>, BurstError> {
     let batch = codec::decode(frame)?;
     let mut head = StreamTag::of(batch.stream).0.to_vec();
     put_varint(&mut head, batch.seq);
-    let room = MESSAGE_OCTETS - HEAD_OCTETS - head.len() - 1;
+    let room = MESSAGE_BYTES - HEAD_BYTES - head.len() - 1;
     let parts = frame.len().div_ceil(room);
     if parts > PARTS_MAX {
         return Err(BurstError::TooLarge(frame.len()));
@@ -120,8 +120,8 @@ pub fn write_ack(ack: Ack) -> Vec<u8> {
 ///
 /// # Errors
 /// When the message is of another kind, or damaged.
-pub fn read_ack(octets: &[u8]) -> Result<Ack, BurstError> {
-    let mut rest = content(ACK, octets)?;
+pub fn read_ack(bytes: &[u8]) -> Result<Ack, BurstError> {
+    let mut rest = content(ACK, bytes)?;
     Ok(Ack {
         stream: take_tag(&mut rest)?,
         contiguous_seq: take_varint(&mut rest)?,
@@ -153,8 +153,8 @@ impl Joiner {
     /// # Errors
     /// When the message cannot be read, or the joined bytes are not a frame;
     /// those bytes are then dropped.
-    pub fn take(&mut self, octets: &[u8]) -> Result<Option<Vec<u8>>, BurstError> {
-        let mut rest = content(PART, octets)?;
+    pub fn take(&mut self, bytes: &[u8]) -> Result<Option<Vec<u8>>, BurstError> {
+        let mut rest = content(PART, bytes)?;
         let (stream, seq) = (take_tag(&mut rest)?, take_varint(&mut rest)?);
         let (&place, chunk) = rest.split_first().ok_or(BurstError::Truncated)?;
         let (part, parts) = (usize::from(place >> 4), usize::from(place & 15) + 1);
@@ -207,19 +207,19 @@ impl Open {
 }
 
 fn message(kind: u8, content: &[u8]) -> Vec<u8> {
-    let mut octets = vec![kind];
-    octets.extend(check(kind, content).to_le_bytes());
-    octets.extend(content);
-    octets
+    let mut bytes = vec![kind];
+    bytes.extend(check(kind, content).to_le_bytes());
+    bytes.extend(content);
+    bytes
 }
 
 /// The content behind kind and check, if both are right.
-fn content(kind: u8, octets: &[u8]) -> Result<&[u8], BurstError> {
-    if octets.len() > MESSAGE_OCTETS {
-        return Err(BurstError::TooLong(octets.len()));
+fn content(kind: u8, bytes: &[u8]) -> Result<&[u8], BurstError> {
+    if bytes.len() > MESSAGE_BYTES {
+        return Err(BurstError::TooLong(bytes.len()));
     }
-    let (head, content) = octets
-        .split_first_chunk::<HEAD_OCTETS>()
+    let (head, content) = bytes
+        .split_first_chunk::<HEAD_BYTES>()
         .ok_or(BurstError::Truncated)?;
     if head[0] != kind {
         return Err(BurstError::NotOurs);
@@ -238,25 +238,25 @@ fn check(kind: u8, content: &[u8]) -> u16 {
     crc.finalize() as u16
 }
 
-fn put_varint(octets: &mut Vec<u8>, mut value: u64) {
+fn put_varint(bytes: &mut Vec<u8>, mut value: u64) {
     while value >= 0x80 {
-        octets.push(value as u8 | 0x80);
+        bytes.push(value as u8 | 0x80);
         value >>= 7;
     }
-    octets.push(value as u8);
+    bytes.push(value as u8);
 }
 
 fn take_varint(rest: &mut &[u8]) -> Result<u64, BurstError> {
     let mut value = 0_u64;
     for shift in (0..64).step_by(7) {
-        let (&octet, left) = rest.split_first().ok_or(BurstError::Truncated)?;
+        let (&byte, left) = rest.split_first().ok_or(BurstError::Truncated)?;
         *rest = left;
-        let bits = u64::from(octet & 0x7f);
+        let bits = u64::from(byte & 0x7f);
         if bits << shift >> shift != bits {
             return Err(BurstError::Damaged);
         }
         value |= bits << shift;
-        if octet & 0x80 == 0 {
+        if byte & 0x80 == 0 {
             return Ok(value);
         }
     }
@@ -265,7 +265,7 @@ fn take_varint(rest: &mut &[u8]) -> Result<u64, BurstError> {
 
 fn take_tag(rest: &mut &[u8]) -> Result<StreamTag, BurstError> {
     let (tag, left) = rest
-        .split_first_chunk::<TAG_OCTETS>()
+        .split_first_chunk::<TAG_BYTES>()
         .ok_or(BurstError::Truncated)?;
     *rest = left;
     Ok(StreamTag(*tag))

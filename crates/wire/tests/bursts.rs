@@ -5,7 +5,7 @@
 mod support;
 
 use binnacle_wire::burst::{
-    Ack, BurstError, Joiner, MESSAGE_OCTETS, MOST_OPEN, StreamTag, capacity, read_ack, split,
+    Ack, BurstError, Joiner, MESSAGE_BYTES, MOST_OPEN, StreamTag, capacity, read_ack, split,
     write_ack,
 };
 use binnacle_wire::{decode, encode};
@@ -26,7 +26,7 @@ fn an_ordinary_day_fits_into_three_messages() {
     for seed in 0..50 {
         let messages = split(&day(seed)).unwrap();
         assert!(messages.len() <= 3, "seed {seed}: {}", messages.len());
-        assert!(messages.iter().all(|m| m.len() <= MESSAGE_OCTETS));
+        assert!(messages.iter().all(|m| m.len() <= MESSAGE_BYTES));
     }
 }
 
@@ -128,10 +128,10 @@ fn an_acknowledgement_is_read_with_what_a_later_shore_adds() {
     assert_eq!(read_ack(part), Err(BurstError::NotOurs));
 }
 
-fn hex(octets: &[u8]) -> String {
+fn hex(bytes: &[u8]) -> String {
     let mut text = String::new();
-    for octet in octets {
-        write!(text, "{octet:02x}").unwrap();
+    for byte in bytes {
+        write!(text, "{byte:02x}").unwrap();
     }
     text
 }
@@ -182,9 +182,9 @@ fn the_python_joiner_agrees_on_the_vector_and_on_a_mixed_hundred() {
     }
     for index in (1..mixed.len()).rev() {
         mixed.swap(index, dice.next() as usize % (index + 1));
-        let octets = mixed[index].len();
+        let length = mixed[index].len();
         if dice.next().is_multiple_of(8) {
-            mixed[index][dice.next() as usize % octets] ^= 16;
+            mixed[index][dice.next() as usize % length] ^= 16;
         }
     }
     messages.extend(mixed.iter().map(|message| hex(message)));
@@ -204,8 +204,8 @@ fn the_python_joiner_agrees_on_the_vector_and_on_a_mixed_hundred() {
     let mut joiner = Joiner::default();
     let wanted = messages.iter().map(|message| {
         let pairs = message.as_bytes().chunks(2);
-        let octet = |pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
-        match joiner.take(&pairs.map(octet).collect::<Vec<u8>>()) {
+        let byte = |pair| u8::from_str_radix(std::str::from_utf8(pair).unwrap(), 16).unwrap();
+        match joiner.take(&pairs.map(byte).collect::<Vec<u8>>()) {
             Ok(Some(frame)) => hex(&frame),
             Ok(None) => "waits".to_owned(),
             Err(_) => "refused".to_owned(),
@@ -220,13 +220,13 @@ fn the_python_joiner_agrees_on_the_vector_and_on_a_mixed_hundred() {
 
 proptest! {
     #[test]
-    fn no_octets_make_the_joiner_panic(octets in prop::collection::vec(any::<u8>(), 0..400)) {
-        let _ = Joiner::default().take(&octets);
-        let _ = read_ack(&octets);
+    fn no_bytes_make_the_joiner_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        let _ = Joiner::default().take(&bytes);
+        let _ = read_ack(&bytes);
         // With a matching check, so that the code behind it is reached.
         for kind in [0xb1_u8, 0xb2] {
-            let crc = crc32fast::hash(&[&[kind][..], &octets[..]].concat()) as u16;
-            let message = [&[kind][..], &crc.to_le_bytes(), &octets[..]].concat();
+            let crc = crc32fast::hash(&[&[kind][..], &bytes[..]].concat()) as u16;
+            let message = [&[kind][..], &crc.to_le_bytes(), &bytes[..]].concat();
             let _ = Joiner::default().take(&message);
             let _ = read_ack(&message);
         }

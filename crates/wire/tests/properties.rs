@@ -271,7 +271,7 @@ fn a_small_dense_frame_cannot_claim_many_samples() {
 }
 
 #[test]
-fn a_frame_of_all_columns_and_samples_ends_with_its_octets() {
+fn a_frame_of_all_columns_and_samples_ends_with_its_bytes() {
     let mut body = b"BN\x01\x02".to_vec();
     body.extend([0x11; 16]);
     body.extend([1, 0, 0xff, 0xff, 3, 64]);

@@ -160,12 +160,12 @@ fn dense_unknown_predictor() -> Vec<u8> {
 }
 
 /// No sample, and one note.
-fn with_note(kind: u8, octets: &[u8]) -> Vec<u8> {
+fn with_note(kind: u8, bytes: &[u8]) -> Vec<u8> {
     let mut body = b"BN\x01\x01".to_vec();
     body.extend([0x11; 16]);
     // seq 1; no tally; one note.
-    body.extend([1, 0, 1, kind, octets.len() as u8]);
-    body.extend(octets);
+    body.extend([1, 0, 1, kind, bytes.len() as u8]);
+    body.extend(bytes);
     // No samples, no columns.
     body.extend([0, 0]);
     sealed(body)
@@ -179,9 +179,9 @@ fn longer_alert() -> Vec<u8> {
         .windows(16)
         .position(|id| id == support::alert(1).id.as_bytes());
     let from = from.unwrap();
-    let mut octets = frame[from..frame.len() - 6].to_vec();
-    octets.extend(b"and more");
-    octets
+    let mut bytes = frame[from..frame.len() - 6].to_vec();
+    bytes.extend(b"and more");
+    bytes
 }
 
 /// One sample of five columns and a column 77, which no version has yet.
@@ -203,8 +203,8 @@ fn unknown_column() -> Vec<u8> {
         }
         write!(bits, "{code:08b}").unwrap();
     }
-    for octet in bits.as_bytes().chunks(8) {
-        let text = format!("{:0<8}", std::str::from_utf8(octet).unwrap());
+    for byte in bits.as_bytes().chunks(8) {
+        let text = format!("{:0<8}", std::str::from_utf8(byte).unwrap());
         body.push(u8::from_str_radix(&text, 2).unwrap());
     }
     sealed(body)

@@ -30,9 +30,9 @@ impl BitWriter {
     }
 
     /// Appends whole bytes.
-    pub(crate) fn octets(&mut self, octets: &[u8]) {
-        for octet in octets {
-            self.bits(u64::from(*octet), 8);
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.bits(u64::from(*byte), 8);
         }
     }
 
@@ -127,7 +127,7 @@ impl<'a> BitReader<'a> {
     }
 
     /// Reads whole bytes.
-    pub(crate) fn octets(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
+    pub(crate) fn bytes(&mut self, count: usize) -> Result<Vec<u8>, DecodeError> {
         if self.left() / 8 < count {
             return Err(DecodeError::Truncated);
         }

@@ -49,12 +49,12 @@ pub fn encode(batch: &Batch) -> Result<Vec<u8>, EncodeError> {
     let columns = columns::from_samples(&samples);
 
     let mut writer = BitWriter::default();
-    writer.octets(&MAGIC);
+    writer.bytes(&MAGIC);
     let has_notes = !batch.alerts.is_empty() || batch.thinned.is_some();
     let notes = if has_notes { HAS_NOTES } else { 0 };
     let dense = if samples.is_empty() { 0 } else { IS_DENSE };
-    writer.octets(&[VERSION, notes | dense]);
-    writer.octets(batch.stream.0.as_bytes());
+    writer.bytes(&[VERSION, notes | dense]);
+    writer.bytes(batch.stream.0.as_bytes());
     writer.varint(batch.seq);
     tally::write(&mut writer, &batch.tally)?;
     if has_notes {
@@ -84,7 +84,7 @@ fn write_columns(columns: &[Column]) -> Vec<u8> {
         // The column of times is the first, and whole.
         times.get_or_insert_with(|| column.values.iter().flatten().copied().collect());
     }
-    writer.into_octets()
+    writer.into_bytes()
 }
 
 /// Reads a frame.

@@ -37,7 +37,7 @@ pub(super) fn write(
     }
     writer.varint(count);
     for alert in alerts {
-        write_note(writer, ALERT, &alert_octets(alert)?);
+        write_note(writer, ALERT, &encode_alert(alert)?);
     }
     if let Some(thinned) = thinned {
         let mut note = BitWriter::default();
@@ -48,18 +48,18 @@ pub(super) fn write(
     Ok(())
 }
 
-fn write_note(writer: &mut BitWriter, kind: u64, octets: &[u8]) {
+fn write_note(writer: &mut BitWriter, kind: u64, bytes: &[u8]) {
     writer.varint(kind);
-    writer.varint(octets.len() as u64);
-    writer.octets(octets);
+    writer.varint(bytes.len() as u64);
+    writer.bytes(bytes);
 }
 
-fn alert_octets(alert: &ShipAlert) -> Result<Vec<u8>, EncodeError> {
+fn encode_alert(alert: &ShipAlert) -> Result<Vec<u8>, EncodeError> {
     let mut note = BitWriter::default();
     if alert.revision == 0 {
         return Err(EncodeError::Alert("revision"));
     }
-    note.octets(alert.id.as_bytes());
+    note.bytes(alert.id.as_bytes());
     note.varint(u64::from(alert.revision));
     let state = match alert.state {
         ShipAlertState::Open => 0,
@@ -107,8 +107,8 @@ pub(super) fn read(reader: &mut BitReader<'_>) -> Result<Notes, DecodeError> {
     for _ in 0..count {
         let kind = reader.varint()?;
         let length = usize::try_from(reader.varint()?).map_err(|_| DecodeError::Truncated)?;
-        let octets = reader.octets(length)?;
-        let mut note = BitReader::new(&octets);
+        let bytes = reader.bytes(length)?;
+        let mut note = BitReader::new(&bytes);
         match kind {
             ALERT => notes.alerts.push(read_alert(&mut note)?),
             THINNED if notes.thinned.is_some() => return Err(DecodeError::BadNote(kind)),

@@ -42,7 +42,7 @@ impl Odds {
 /// Writes bits.
 #[derive(Clone, Debug)]
 pub(super) struct RangeWriter {
-    octets: Vec<u8>,
+    bytes: Vec<u8>,
     low: u64,
     range: u64,
 }
@@ -50,7 +50,7 @@ pub(super) struct RangeWriter {
 impl RangeWriter {
     pub(super) fn new() -> RangeWriter {
         RangeWriter {
-            octets: Vec::new(),
+            bytes: Vec::new(),
             low: 0,
             range: WHOLE,
         }
@@ -71,23 +71,23 @@ impl RangeWriter {
 
     /// The size in bits if the stream ended here, rounded up.
     pub(super) fn bits_written(&self) -> u64 {
-        8 * self.octets.len() as u64 + u64::from((WHOLE / self.range).ilog2())
+        8 * self.bytes.len() as u64 + u64::from((WHOLE / self.range).ilog2())
     }
 
     /// Returns the fewest bytes that decode to these bits.
-    pub(super) fn into_octets(mut self) -> Vec<u8> {
+    pub(super) fn into_bytes(mut self) -> Vec<u8> {
         // A multiple of NARROW lies in a range that is not narrow. No byte is
         // needed where 0 or 1 lies in it.
         let end = self.low + self.range;
         if self.low > 0 && end <= WHOLE {
             self.low = self.low.next_multiple_of(NARROW);
             self.carry();
-            self.octets.push((self.low >> 24) as u8);
+            self.bytes.push((self.low >> 24) as u8);
         } else if self.low > 0 {
             self.low = WHOLE;
             self.carry();
         }
-        self.octets
+        self.bytes
     }
 
     fn narrow(&mut self, no: u64, yes: bool) {
@@ -99,7 +99,7 @@ impl RangeWriter {
         }
         self.carry();
         while self.range < NARROW {
-            self.octets.push((self.low >> 24) as u8);
+            self.bytes.push((self.low >> 24) as u8);
             self.low = self.low << 8 & (WHOLE - 1);
             self.range <<= 8;
         }
@@ -111,9 +111,9 @@ impl RangeWriter {
             return;
         }
         self.low -= WHOLE;
-        for octet in self.octets.iter_mut().rev() {
-            *octet = octet.wrapping_add(1);
-            if *octet != 0 {
+        for byte in self.bytes.iter_mut().rev() {
+            *byte = byte.wrapping_add(1);
+            if *byte != 0 {
                 return;
             }
         }
@@ -123,7 +123,7 @@ impl RangeWriter {
 /// Reads the bits of a [`RangeWriter`].
 #[derive(Debug)]
 pub(super) struct RangeReader<'a> {
-    octets: &'a [u8],
+    bytes: &'a [u8],
     /// Bytes read, including the zeros after the end.
     taken: usize,
     /// The number's offset in the range.
@@ -132,9 +132,9 @@ pub(super) struct RangeReader<'a> {
 }
 
 impl<'a> RangeReader<'a> {
-    pub(super) fn new(octets: &'a [u8]) -> Result<RangeReader<'a>, DecodeError> {
+    pub(super) fn new(bytes: &'a [u8]) -> Result<RangeReader<'a>, DecodeError> {
         let mut reader = RangeReader {
-            octets,
+            bytes,
             taken: 0,
             number: 0,
             range: WHOLE,
@@ -164,7 +164,7 @@ impl<'a> RangeReader<'a> {
     /// Refuses bytes that no bit was read from.
     pub(super) fn finish(self) -> Result<(), DecodeError> {
         // The writer's last byte may not have been needed so far.
-        if self.taken + 1 < self.octets.len() + AHEAD {
+        if self.taken + 1 < self.bytes.len() + AHEAD {
             return Err(DecodeError::TrailingBits);
         }
         Ok(())
@@ -186,12 +186,12 @@ impl<'a> RangeReader<'a> {
     }
 
     fn take(&mut self) -> Result<(), DecodeError> {
-        if self.taken >= self.octets.len() + AHEAD {
+        if self.taken >= self.bytes.len() + AHEAD {
             return Err(DecodeError::Truncated);
         }
-        let octet = self.octets.get(self.taken).copied().unwrap_or(0);
+        let byte = self.bytes.get(self.taken).copied().unwrap_or(0);
         self.taken += 1;
-        self.number = self.number << 8 | u64::from(octet);
+        self.number = self.number << 8 | u64::from(byte);
         Ok(())
     }
 }
@@ -218,11 +218,11 @@ mod tests {
             writer.answer(&mut odds, *yes);
             writer.bits(u64::from(*yes), 1);
         }
-        writer.into_octets()
+        writer.into_bytes()
     }
 
-    fn read(octets: &[u8], count: usize) -> Result<Vec<bool>, DecodeError> {
-        let (mut reader, mut odds) = (RangeReader::new(octets)?, Odds::EVEN);
+    fn read(bytes: &[u8], count: usize) -> Result<Vec<bool>, DecodeError> {
+        let (mut reader, mut odds) = (RangeReader::new(bytes)?, Odds::EVEN);
         let mut answers = Vec::new();
         for _ in 0..count {
             answers.push(reader.answer(&mut odds)?);
@@ -237,8 +237,8 @@ mod tests {
         for seed in 0..300 {
             for rare in [1, 2, 3, 50, 5_000] {
                 let sent = answers(seed, seed as usize, rare);
-                let octets = written(&sent);
-                assert_eq!(read(&octets, sent.len()).unwrap(), sent, "{seed} {rare}");
+                let bytes = written(&sent);
+                assert_eq!(read(&bytes, sent.len()).unwrap(), sent, "{seed} {rare}");
             }
         }
     }
@@ -254,20 +254,20 @@ mod tests {
         writer.bits(0x0123_4567_89ab_cdef, 64);
         assert_eq!(writer.bits_written(), 64);
         assert_eq!(
-            writer.into_octets(),
+            writer.into_bytes(),
             0x0123_4567_89ab_cdef_u64.to_be_bytes()
         );
     }
 
     #[test]
-    fn octets_too_many_or_too_few_are_refused() {
+    fn bytes_too_many_or_too_few_are_refused() {
         let sent = answers(1, 200, 3);
-        let mut octets = written(&sent);
+        let mut bytes = written(&sent);
         assert_eq!(
-            read(&octets[..octets.len() - 6], 200),
+            read(&bytes[..bytes.len() - 6], 200),
             Err(DecodeError::Truncated)
         );
-        octets.extend([0, 0]);
-        assert_eq!(read(&octets, 200), Err(DecodeError::TrailingBits));
+        bytes.extend([0, 0]);
+        assert_eq!(read(&bytes, 200), Err(DecodeError::TrailingBits));
     }
 }

@@ -37,7 +37,7 @@ fn write_name(writer: &mut BitWriter, name: &str) -> Result<(), EncodeError> {
     }
     writer.varint(NAMED);
     writer.varint(name.len() as u64);
-    writer.octets(name.as_bytes());
+    writer.bytes(name.as_bytes());
     Ok(())
 }
 
@@ -68,5 +68,5 @@ fn read_name(reader: &mut BitReader<'_>, entry: usize) -> Result<String, DecodeE
     if length == 0 || length > NAME_MAX as u64 {
         return Err(DecodeError::BadReason(entry));
     }
-    String::from_utf8(reader.octets(length as usize)?).map_err(|_| DecodeError::BadReason(entry))
+    String::from_utf8(reader.bytes(length as usize)?).map_err(|_| DecodeError::BadReason(entry))
 }

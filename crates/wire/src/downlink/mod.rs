@@ -61,12 +61,12 @@ pub fn card_tag(model: Uuid) -> String {
 /// goes as JSON.
 pub fn encode(downlink: &Downlink) -> Option<Vec<u8>> {
     let mut writer = BitWriter::default();
-    writer.octets(&MAGIC);
-    writer.octets(&[FORM]);
+    writer.bytes(&MAGIC);
+    writer.bytes(&[FORM]);
     writer.varint(downlink.contiguous_seq);
     write_time(&mut writer, downlink.server_time)?;
     if let Some(model) = &downlink.model {
-        write_part(&mut writer, MODEL, &model::octets(model)?);
+        write_part(&mut writer, MODEL, &model::encode(model)?);
     }
     if let Some(withdrawn) = &downlink.card_withdrawn {
         let mut part = BitWriter::default();
@@ -116,8 +116,8 @@ pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
         server_time: read_time(&mut reader).ok_or(DecodeError::Bad("time"))?,
     };
     while reader.left() > 0 {
-        let (kind, octets) = read_part(&mut reader).ok_or(DecodeError::Damaged)?;
-        let mut part = BitReader::new(&octets);
+        let (kind, bytes) = read_part(&mut reader).ok_or(DecodeError::Damaged)?;
+        let mut part = BitReader::new(&bytes);
         match kind {
             MODEL => {
                 let model = model::read(&mut part).ok_or(DecodeError::Bad("model"))?;
@@ -128,27 +128,27 @@ pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
                 let withdrawn = withdrawn.ok_or(DecodeError::Bad("withdrawal"))?;
                 downlink.card_withdrawn = Some(withdrawn);
             }
-            SETTINGS => downlink.settings = Some(read_settings(&octets)?),
+            SETTINGS => downlink.settings = Some(read_settings(&bytes)?),
             _ => {}
         }
     }
     Ok(downlink)
 }
 
-fn write_part(writer: &mut BitWriter, kind: u64, octets: &[u8]) {
+fn write_part(writer: &mut BitWriter, kind: u64, bytes: &[u8]) {
     writer.varint(kind);
-    writer.varint(octets.len() as u64);
-    writer.octets(octets);
+    writer.varint(bytes.len() as u64);
+    writer.bytes(bytes);
 }
 
 fn read_part(reader: &mut BitReader<'_>) -> Option<(u64, Vec<u8>)> {
     let kind = reader.varint().ok()?;
     let length = usize::try_from(reader.varint().ok()?).ok()?;
-    Some((kind, reader.octets(length).ok()?))
+    Some((kind, reader.bytes(length).ok()?))
 }
 
-fn read_settings(octets: &[u8]) -> Result<Settings, DecodeError> {
-    serde_json::from_slice(octets).map_err(|_| DecodeError::Bad("settings"))
+fn read_settings(bytes: &[u8]) -> Result<Settings, DecodeError> {
+    serde_json::from_slice(bytes).map_err(|_| DecodeError::Bad("settings"))
 }
 
 /// Writes whole seconds since 1970; `None` for an earlier time.
@@ -170,7 +170,7 @@ fn write_withdrawn(writer: &mut BitWriter, withdrawn: &CardWithdrawn) -> Option<
         return None;
     }
     writer.varint(reason.len() as u64);
-    writer.octets(reason);
+    writer.bytes(reason);
     Some(())
 }
 
@@ -180,7 +180,7 @@ fn read_withdrawn(reader: &mut BitReader<'_>) -> Option<CardWithdrawn> {
     if length > MAX_REASON_BYTES {
         return None;
     }
-    let reason = String::from_utf8(reader.octets(length).ok()?).ok()?;
+    let reason = String::from_utf8(reader.bytes(length).ok()?).ok()?;
     Some(CardWithdrawn { since, reason })
 }
 

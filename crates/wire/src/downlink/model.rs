@@ -28,10 +28,10 @@ const SLACK: f64 = 1e-4;
 const RMS_MAX_DEG: f64 = 180.0;
 
 /// Writes the part; `None` when a number is not finite or out of range.
-pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
+pub(super) fn encode(sent: &ModelDownlink) -> Option<Vec<u8>> {
     let model = &sent.model;
     let mut writer = BitWriter::default();
-    writer.octets(sent.id.as_bytes());
+    writer.bytes(sent.id.as_bytes());
     writer.varint(u64::from(sent.version));
     write_time(&mut writer, sent.data_until)?;
     let there = |there: bool, flag| if there { flag } else { 0 };
@@ -53,8 +53,8 @@ pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
     }
     if let Some(identifiable) = model.identifiable {
         let bits = answers(identifiable);
-        let octet = (0..COUNT).fold(0, |octet, i| octet | (u64::from(bits[i]) << i));
-        writer.bits(octet, 8);
+        let byte = (0..COUNT).fold(0, |byte, i| byte | (u64::from(bits[i]) << i));
+        writer.bits(byte, 8);
     }
     if let Some(rms_deg) = model.rms_deg {
         if !(0.0..=RMS_MAX_DEG).contains(&rms_deg) {
@@ -65,7 +65,7 @@ pub(super) fn octets(sent: &ModelDownlink) -> Option<Vec<u8>> {
     Some(writer.into_bytes())
 }
 
-/// Reads the bytes of [`octets`]; fields that a later server appended are
+/// Reads the bytes of [`encode`]; fields that a later server appended are
 /// ignored.
 pub(super) fn read(reader: &mut BitReader<'_>) -> Option<ModelDownlink> {
     let id = Uuid::from_u64_pair(reader.bits(64).ok()?, reader.bits(64).ok()?);
@@ -159,8 +159,8 @@ fn answers(of: Identifiable) -> [bool; COUNT] {
     ]
 }
 
-fn identifiable(octet: u64) -> Identifiable {
-    let known = |index: u32| octet >> index & 1 == 1;
+fn identifiable(byte: u64) -> Identifiable {
+    let known = |index: u32| byte >> index & 1 == 1;
     Identifiable {
         bx_nt: known(0),
         chi13: known(1),
@@ -178,13 +178,13 @@ fn write_float(writer: &mut BitWriter, value: f64) -> Option<()> {
     if !single.is_finite() {
         return None;
     }
-    writer.octets(&single.to_le_bytes());
+    writer.bytes(&single.to_le_bytes());
     Some(())
 }
 
 fn read_float(reader: &mut BitReader<'_>) -> Option<f64> {
-    let octets: [u8; 4] = reader.octets(4).ok()?.try_into().ok()?;
-    let single = f32::from_le_bytes(octets);
+    let bytes: [u8; 4] = reader.bytes(4).ok()?.try_into().ok()?;
+    let single = f32::from_le_bytes(bytes);
     single.is_finite().then_some(f64::from(single))
 }
 
@@ -203,7 +203,7 @@ fn write_covariance(writer: &mut BitWriter, covariance: &Covariance) -> Option<(
             return None;
         }
         for entry in &row[..=index] {
-            writer.octets(&((entry * ONE).round() as i16).to_le_bytes());
+            writer.bytes(&((entry * ONE).round() as i16).to_le_bytes());
         }
     }
     Some(())
@@ -242,8 +242,8 @@ fn read_covariance(reader: &mut BitReader<'_>) -> Option<Covariance> {
     let mut factor = [[0.0; COUNT]; COUNT];
     for (index, row) in factor.iter_mut().enumerate() {
         for entry in &mut row[..=index] {
-            let octets: [u8; 2] = reader.octets(2).ok()?.try_into().ok()?;
-            *entry = f64::from(i16::from_le_bytes(octets)) / ONE * errors[index];
+            let bytes: [u8; 2] = reader.bytes(2).ok()?.try_into().ok()?;
+            *entry = f64::from(i16::from_le_bytes(bytes)) / ONE * errors[index];
         }
     }
     let mut covariance = [[0.0; COUNT]; COUNT];

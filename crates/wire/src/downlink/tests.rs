@@ -157,7 +157,7 @@ fn an_answer_comes_back_as_it_was_sent() {
 }
 
 #[test]
-fn a_whole_model_fits_into_two_hundred_octets() {
+fn a_whole_model_fits_into_two_hundred_bytes() {
     let mut downlink = sent(model([0.25; 8], Some(&covariance(&[0.5; 64]))));
     assert!(encode(&downlink).unwrap().len() < 230);
     downlink.model.as_mut().unwrap().replaces = None;
