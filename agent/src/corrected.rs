@@ -120,7 +120,7 @@ fn fill(corrected: &mut Corrected, from: Ingredients<'_>) -> Result<(), String> 
     let model = from.model.ok_or("there is no model yet")?;
     // Better no heading than one by magnetism that the ship no longer has.
     if let Some(withdrawn) = from.withdrawn {
-        return Err(withdrawn.in_words());
+        return Err(withdrawn.to_string());
     }
     if from.alert.is_some_and(Aboard::is_of_the_compass) {
         return Err("the alert says not to steer by it".to_owned());

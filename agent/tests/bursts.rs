@@ -47,7 +47,7 @@ async fn a_day_goes_ashore_in_three_messages_and_is_forgotten_when_it_is_answere
         loop {
             let mut joiner = Joiner::default();
             let sent = messages(&modem.join("out"));
-            let frame = sent.iter().find_map(|m| joiner.take(m).unwrap());
+            let frame = sent.iter().find_map(|m| joiner.push(m).unwrap());
             if let Some(frame) = frame {
                 return (sent, frame);
             }
@@ -64,7 +64,7 @@ async fn a_day_goes_ashore_in_three_messages_and_is_forgotten_when_it_is_answere
     assert!((23.0..25.0).contains(&hours), "{hours}");
     assert!(batch.samples.len() > 100, "{}", batch.samples.len());
     let ack = write_ack(Ack {
-        stream: StreamTag::of(StreamId(STREAM)),
+        stream: StreamTag::from_stream(StreamId(STREAM)),
         contiguous_seq: 1,
     });
     std::fs::write(modem.join("in").join("answer.tmp"), ack).unwrap();

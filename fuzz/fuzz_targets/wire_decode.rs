@@ -9,7 +9,7 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = decode(bytes);
-    let _ = Joiner::default().take(bytes);
+    let _ = Joiner::default().push(bytes);
     let _ = read_ack(bytes);
     let _ = downlink::decode(bytes);
     let mut sealed = bytes.to_vec();

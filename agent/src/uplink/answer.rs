@@ -174,7 +174,7 @@ impl Uplink {
             .as_ref()
             .filter(|_| *self.tell.withdrawn.borrow() != withdrawn)
         {
-            tracing::warn!("{}: {}", withdrawn.in_words(), CardWithdrawn::ADVICE);
+            tracing::warn!("{withdrawn}: {}", CardWithdrawn::ADVICE);
         }
         self.tell.withdrawn.send_replace(withdrawn);
         if let Some(settings) = downlink.settings {

@@ -43,13 +43,16 @@ struct Curve {
 type Rows = dyn Fn(&Log) -> Vec<Sample> + Sync;
 
 /// A named choice of rows.
-struct Way {
+struct Variant {
     name: String,
     rows: Box<Rows>,
 }
 
-fn way(name: impl Into<String>, rows: impl Fn(&Log) -> Vec<Sample> + Sync + 'static) -> Way {
-    Way {
+fn variant(
+    name: impl Into<String>,
+    rows: impl Fn(&Log) -> Vec<Sample> + Sync + 'static,
+) -> Variant {
+    Variant {
         name: name.into(),
         rows: Box::new(rows),
     }
@@ -74,12 +77,12 @@ fn main() {
 
 /// Samples as each profile sends them, in batches of other sizes, and the
 /// remainder after thinning when the link does not keep up.
-fn thinned() -> Vec<Way> {
-    let mut ways = vec![way("ten minutes' means, unrounded", |log| {
+fn thinned() -> Vec<Variant> {
+    let mut variants = vec![variant("ten minutes' means, unrounded", |log| {
         log.samples.clone()
     })];
     for (profile, seal_h) in [("vsat", 1), ("standard", 6), ("metered", 24)] {
-        ways.push(way(profile, move |log| framed(&log.samples, seal_h)));
+        variants.push(variant(profile, move |log| framed(&log.samples, seal_h)));
     }
     for (name, seconds, most) in [
         ("thinned to two an hour", 3_600, 2),
@@ -87,11 +90,11 @@ fn thinned() -> Vec<Way> {
         ("to one in six hours", 6 * 3_600, 1),
         ("to one a day", 24 * 3_600, 1),
     ] {
-        ways.push(way(name, move |log| {
+        variants.push(variant(name, move |log| {
             framed(&thin(&log.samples, seconds, most), 24)
         }));
     }
-    ways
+    variants
 }
 
 /// Keeps the first `most` samples per 10° of heading and time window, as the
@@ -110,46 +113,48 @@ fn thin(samples: &[Sample], seconds: i64, most: usize) -> Vec<Sample> {
 
 /// Each column rounded alone, in the frame's step and in coarser ones; then all
 /// columns, through frames.
-fn rounded() -> Vec<Way> {
-    let mut ways = Vec::new();
+fn rounded() -> Vec<Variant> {
+    let mut variants = Vec::new();
     for step in [0.02, 0.05, 0.1, 0.2, 0.5] {
-        ways.push(way(
+        variants.push(variant(
             format!("compass less reference {step}°"),
-            each(move |s| s.compass = less(s, |apart| round(apart, step))),
+            for_each_sample(move |s| {
+                s.compass = with_difference(s, |difference| round(difference, step))
+            }),
         ));
     }
     for step in [0.05, 0.2, 0.5, 1.0] {
-        ways.push(way(
+        variants.push(variant(
             format!("gyro {step}°"),
-            each(move |s| {
-                let apart = less(s, |apart| apart);
+            for_each_sample(move |s| {
+                let difference = with_difference(s, |difference| difference);
                 let gyro = s.gyro.unwrap().degrees();
                 s.gyro = TrueHeading::new(round(gyro, step));
                 let shift = s.gyro.unwrap().degrees() - gyro;
-                s.compass = CompassHeading::new(apart.degrees() + shift).unwrap();
+                s.compass = CompassHeading::new(difference.degrees() + shift).unwrap();
             }),
         ));
     }
     for step in [0.001, 0.01, 0.1] {
-        ways.push(way(
+        variants.push(variant(
             format!("latitude, longitude {step}°"),
-            each(move |s| {
+            for_each_sample(move |s| {
                 let (lat, lon) = (s.position.lat_deg(), s.position.lon_deg());
                 s.position = Position::new(round(lat, step), wrap_180(round(lon, step))).unwrap();
             }),
         ));
     }
     for step in [0.2, 1.0] {
-        ways.push(way(
+        variants.push(variant(
             format!("speed {step} kn"),
-            each(move |s| s.sog_kn = s.sog_kn.map(|sog| round(sog, step))),
+            for_each_sample(move |s| s.sog_kn = s.sog_kn.map(|sog| round(sog, step))),
         ));
     }
-    ways.push(way("all, as frames do", |log| framed(&log.samples, 24)));
-    ways
+    variants.push(variant("all, as frames do", |log| framed(&log.samples, 24)));
+    variants
 }
 
-fn each(change: impl Fn(&mut Sample) + Sync) -> impl Fn(&Log) -> Vec<Sample> + Sync {
+fn for_each_sample(change: impl Fn(&mut Sample) + Sync) -> impl Fn(&Log) -> Vec<Sample> + Sync {
     move |log| {
         let mut samples = log.samples.clone();
         samples.iter_mut().for_each(&change);
@@ -162,7 +167,7 @@ fn round(value: f64, step: f64) -> f64 {
 }
 
 /// The compass heading after `change` of its difference from the gyro.
-fn less(s: &Sample, change: impl Fn(f64) -> f64) -> CompassHeading {
+fn with_difference(s: &Sample, change: impl Fn(f64) -> f64) -> CompassHeading {
     let gyro = s.gyro.unwrap().degrees();
     CompassHeading::new(gyro + change(wrap_180(s.compass.degrees() - gyro))).unwrap()
 }
@@ -201,30 +206,32 @@ struct Pair {
 
 /// Analyses each ship with the `usual` rows and with each variant, and prints
 /// the differences.
-fn compare(usual_name: &str, ships: u64, usual: fn(&Log) -> Vec<Sample>, ways: &[Way]) {
+fn compare(usual_name: &str, ships: u64, usual: fn(&Log) -> Vec<Sample>, variants: &[Variant]) {
     let found = each_ship(ships, |seed| {
         let log = sail(seed);
         let usual = curve(&log, &usual(&log));
         let truth = truth(&log);
         let pair = |other: Curve| {
             usual.map(|usual| Pair {
-                usual_error: apart(&usual.deviations_deg, &truth),
-                error: apart(&other.deviations_deg, &truth),
-                change: apart(&other.deviations_deg, &usual.deviations_deg),
+                usual_error: mean_square_difference(&usual.deviations_deg, &truth),
+                error: mean_square_difference(&other.deviations_deg, &truth),
+                change: mean_square_difference(&other.deviations_deg, &usual.deviations_deg),
                 usual_variance: usual.variance,
                 variance: other.variance,
             })
         };
-        let curves = ways.iter().map(|way| curve(&log, &(way.rows)(&log)));
+        let curves = variants
+            .iter()
+            .map(|variant| curve(&log, &(variant.rows)(&log)));
         curves.map(|curve| curve.and_then(pair)).collect::<Vec<_>>()
     });
     println!("\nagainst {usual_name}, {DAYS} days:");
-    for (number, way) in ways.iter().enumerate() {
+    for (number, variant) in variants.iter().enumerate() {
         let pairs: Vec<&Pair> = found
             .iter()
             .filter_map(|voyage| voyage[number].as_ref())
             .collect();
-        print(&way.name, &pairs);
+        print(&variant.name, &pairs);
     }
 }
 
@@ -265,7 +272,7 @@ fn print(name: &str, pairs: &[&Pair]) {
 }
 
 /// Mean square difference.
-fn apart(a: &[f64; HEADINGS], b: &[f64; HEADINGS]) -> f64 {
+fn mean_square_difference(a: &[f64; HEADINGS], b: &[f64; HEADINGS]) -> f64 {
     a.iter()
         .zip(b)
         .map(|(a, b)| wrap_180(a - b).powi(2))

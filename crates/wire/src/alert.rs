@@ -64,7 +64,7 @@ impl ShipAlert {
     /// The departure to report: from the gyro, or from the satellite compass
     /// where the gyro gave no data or the satellite compass is the suspect.
     pub fn departure_deg(&self) -> f64 {
-        let (first, second) = if self.is_of_satellite() {
+        let (first, second) = if self.reports_satellite() {
             (self.satellite_departure_deg, self.gyro_departure_deg)
         } else {
             (self.gyro_departure_deg, self.satellite_departure_deg)
@@ -74,21 +74,21 @@ impl ShipAlert {
 
     /// The reference of [`ShipAlert::departure_deg`].
     pub fn reference(&self) -> &'static str {
-        if self.is_of_satellite() {
+        if self.reports_satellite() {
             "satellite compass"
         } else {
             "gyro"
         }
     }
 
-    fn is_of_satellite(&self) -> bool {
+    fn reports_satellite(&self) -> bool {
         self.gyro_departure_deg.is_none() || self.suspect() == Suspect::Satellite
     }
 
     /// The instrument that the two others contradict: those two must lie near
     /// each other, and the third far from both.
     pub fn suspect(&self) -> Suspect {
-        let Some([gyro, satellite, between]) = self.sides_deg() else {
+        let Some([gyro, satellite, between]) = self.differences_deg() else {
             return Suspect::Unknown;
         };
         let is_pair = |near: f64, [one, other]: [f64; 2]| {
@@ -111,7 +111,7 @@ impl ShipAlert {
 
     /// Absolute differences: compass and gyro, compass and satellite compass,
     /// gyro and satellite compass.
-    fn sides_deg(&self) -> Option<[f64; 3]> {
+    fn differences_deg(&self) -> Option<[f64; 3]> {
         let (gyro, satellite) = (self.gyro_departure_deg?, self.satellite_departure_deg?);
         // Differences of headings wrap round the circle.
         let between = (gyro - satellite + 180.0).rem_euclid(360.0) - 180.0;
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn two_that_agree_speak_against_the_third() {
+    fn two_that_agree_contradict_the_third() {
         for (gyro, satellite, suspect) in [
             (Some(8.0), Some(7.0), Suspect::Compass),
             (Some(8.0), Some(0.5), Suspect::Gyro),
@@ -160,12 +160,12 @@ mod tests {
 
     #[test]
     fn the_departure_is_from_the_gyro_where_there_is_one() {
-        let said = |gyro, satellite| {
+        let reported = |gyro, satellite| {
             let alert = alert(gyro, satellite);
             (alert.departure_deg(), alert.reference())
         };
-        assert_eq!(said(Some(-6.2), Some(-7.2)), (-6.2, "gyro"));
-        assert_eq!(said(None, Some(-7.2)), (-7.2, "satellite compass"));
-        assert_eq!(said(Some(0.2), Some(-7.2)), (-7.2, "satellite compass"));
+        assert_eq!(reported(Some(-6.2), Some(-7.2)), (-6.2, "gyro"));
+        assert_eq!(reported(None, Some(-7.2)), (-7.2, "satellite compass"));
+        assert_eq!(reported(Some(0.2), Some(-7.2)), (-7.2, "satellite compass"));
     }
 }

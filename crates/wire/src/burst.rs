@@ -2,7 +2,7 @@
 //! carries a few hundred bytes at a time and loses, repeats and reorders them.
 //!
 //! Invariants: a joined frame can be read by [`decode`](crate::decode).
-//! Whatever the order of messages, [`Joiner`] keeps at most [`MOST_OPEN`]
+//! Whatever the order of messages, [`Joiner`] keeps at most [`MAX_OPEN`]
 //! frames' worth of them. No bytes cause a panic.
 
 use crate::batch::StreamId;
@@ -14,7 +14,7 @@ pub const MESSAGE_BYTES: usize = 340;
 /// The most parts of one frame.
 pub const PARTS_MAX: usize = 16;
 /// The most incomplete frames that a joiner keeps.
-pub const MOST_OPEN: usize = 256;
+pub const MAX_OPEN: usize = 256;
 
 /// First byte of a part of a frame.
 const PART: u8 = 0xb1;
@@ -39,7 +39,7 @@ pub enum BurstError {
     TooLong(usize),
     /// A message of an unknown kind.
     #[error("not a short-burst message")]
-    NotOurs,
+    UnknownKind,
     /// The message ends within its head.
     #[error("the message is cut short")]
     Truncated,
@@ -62,7 +62,7 @@ pub struct StreamTag([u8; TAG_BYTES]);
 
 impl StreamTag {
     /// Returns the tag of a stream.
-    pub fn of(stream: StreamId) -> StreamTag {
+    pub fn from_stream(stream: StreamId) -> StreamTag {
         let bytes = stream.0.as_bytes();
         let mut tag = [0; TAG_BYTES];
         tag.copy_from_slice(&bytes[bytes.len() - TAG_BYTES..]);
@@ -91,10 +91,10 @@ pub const fn capacity(messages: usize) -> usize {
 /// When it is not a frame, or too large.
 pub fn split(frame: &[u8]) -> Result<Vec<Vec<u8>>, BurstError> {
     let batch = codec::decode(frame)?;
-    let mut head = StreamTag::of(batch.stream).0.to_vec();
+    let mut head = StreamTag::from_stream(batch.stream).0.to_vec();
     put_varint(&mut head, batch.seq);
-    let room = MESSAGE_BYTES - HEAD_BYTES - head.len() - 1;
-    let parts = frame.len().div_ceil(room);
+    let capacity = MESSAGE_BYTES - HEAD_BYTES - head.len() - 1;
+    let parts = frame.len().div_ceil(capacity);
     if parts > PARTS_MAX {
         return Err(BurstError::TooLarge(frame.len()));
     }
@@ -132,12 +132,12 @@ pub fn read_ack(bytes: &[u8]) -> Result<Ack, BurstError> {
 #[derive(Debug, Default)]
 pub struct Joiner {
     /// Incomplete frames, the oldest first.
-    open: VecDeque<Open>,
+    open: VecDeque<OpenFrame>,
 }
 
 /// An incomplete frame.
 #[derive(Debug)]
-struct Open {
+struct OpenFrame {
     stream: StreamTag,
     seq: u64,
     parts: Vec<Option<Vec<u8>>>,
@@ -153,7 +153,7 @@ impl Joiner {
     /// # Errors
     /// When the message cannot be read, or the joined bytes are not a frame;
     /// those bytes are then dropped.
-    pub fn take(&mut self, bytes: &[u8]) -> Result<Option<Vec<u8>>, BurstError> {
+    pub fn push(&mut self, bytes: &[u8]) -> Result<Option<Vec<u8>>, BurstError> {
         let mut rest = content(PART, bytes)?;
         let (stream, seq) = (take_tag(&mut rest)?, take_varint(&mut rest)?);
         let (&place, chunk) = rest.split_first().ok_or(BurstError::Truncated)?;
@@ -161,22 +161,22 @@ impl Joiner {
         if part >= parts {
             return Err(BurstError::NoSuchPart { part, parts });
         }
-        let known = |open: &Open| (open.stream, open.seq) == (stream, seq);
+        let known = |open: &OpenFrame| (open.stream, open.seq) == (stream, seq);
         let mut open = match self.open.iter().position(known) {
             Some(index) => self
                 .open
                 .remove(index)
-                .unwrap_or(Open::new(stream, seq, parts)),
-            None => Open::new(stream, seq, parts),
+                .unwrap_or(OpenFrame::new(stream, seq, parts)),
+            None => OpenFrame::new(stream, seq, parts),
         };
         let is_other = |known: &Vec<u8>| known != chunk;
         if open.parts.len() != parts || open.parts[part].as_ref().is_some_and(is_other) {
-            open = Open::new(stream, seq, parts);
+            open = OpenFrame::new(stream, seq, parts);
         }
         open.parts[part] = Some(chunk.to_vec());
         let Some(chunks) = open.parts.iter().cloned().collect::<Option<Vec<_>>>() else {
             self.open.push_back(open);
-            if self.open.len() > MOST_OPEN {
+            if self.open.len() > MAX_OPEN {
                 self.open.pop_front();
             }
             return Ok(None);
@@ -196,9 +196,9 @@ impl Joiner {
     }
 }
 
-impl Open {
-    fn new(stream: StreamTag, seq: u64, parts: usize) -> Open {
-        Open {
+impl OpenFrame {
+    fn new(stream: StreamTag, seq: u64, parts: usize) -> OpenFrame {
+        OpenFrame {
             stream,
             seq,
             parts: vec![None; parts],
@@ -222,7 +222,7 @@ fn content(kind: u8, bytes: &[u8]) -> Result<&[u8], BurstError> {
         .split_first_chunk::<HEAD_BYTES>()
         .ok_or(BurstError::Truncated)?;
     if head[0] != kind {
-        return Err(BurstError::NotOurs);
+        return Err(BurstError::UnknownKind);
     }
     if u16::from_le_bytes([head[1], head[2]]) != check(kind, content) {
         return Err(BurstError::Damaged);

@@ -16,10 +16,10 @@ pub const MAX_NOTE: usize = 1000;
 /// The first instant of GPS time, 1980-01-06: the earliest time of a report.
 const EARLIEST_MICROS: i64 = 315_964_800_000_000;
 /// Tolerance for a reporter's wrong clock or time zone.
-const AHEAD_S: f64 = 86_400.0;
+const CLOCK_TOLERANCE_S: f64 = 86_400.0;
 /// Cargo and docks last for weeks or months: an end further ahead has a wrong
 /// year.
-const LONGEST_AHEAD_S: f64 = 366.0 * 86_400.0;
+const MAX_END_AHEAD_S: f64 = 366.0 * 86_400.0;
 
 /// One event, as its reporter writes it down.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,7 +61,7 @@ impl Report {
     /// # Errors
     /// [`ReportError`] with the first bad field.
     pub fn checked(self, now: Timestamp) -> Result<Report, ReportError> {
-        let latest = now.plus_seconds(AHEAD_S);
+        let latest = now.plus_seconds(CLOCK_TOLERANCE_S);
         if self.from.micros() < EARLIEST_MICROS {
             return Err(error("from", format!("{} is before 1980-01-06", self.from)));
         }
@@ -71,7 +71,7 @@ impl Report {
         let report = Report {
             hatch: optional("hatch", self.hatch.as_deref())?,
             port: optional("port", self.port.as_deref())?,
-            note: words("note", &self.note, MAX_NOTE)?,
+            note: trimmed("note", &self.note, MAX_NOTE)?,
             ..self
         };
         if report.hatch.is_some() && report.kind != LogbookKind::MagneticCargo {
@@ -92,7 +92,7 @@ impl Report {
     /// # Errors
     /// [`ReportError`] when it ends more than a year after `now`.
     pub fn ending_within_a_year(self, now: Timestamp) -> Result<Report, ReportError> {
-        let far = self.to.filter(|to| *to > now.plus_seconds(LONGEST_AHEAD_S));
+        let far = self.to.filter(|to| *to > now.plus_seconds(MAX_END_AHEAD_S));
         far.map_or(Ok(self), |to| {
             Err(error("to", format!("{to} is more than a year ahead")))
         })
@@ -115,7 +115,7 @@ impl Report {
 /// # Errors
 /// [`ReportError`] when it is too long or has control characters.
 pub fn reporter(name: &str) -> Result<String, ReportError> {
-    let name = words("reporter", name, MAX_NAME)?;
+    let name = trimmed("reporter", name, MAX_NAME)?;
     if name.contains('\n') {
         return Err(error("reporter", "is more than one line"));
     }
@@ -124,14 +124,14 @@ pub fn reporter(name: &str) -> Result<String, ReportError> {
 
 /// Returns a name on one line; `None` when it is empty.
 fn optional(field: &'static str, name: Option<&str>) -> Result<Option<String>, ReportError> {
-    let name = words(field, name.unwrap_or_default(), MAX_NAME)?;
+    let name = trimmed(field, name.unwrap_or_default(), MAX_NAME)?;
     if name.contains('\n') {
         return Err(error(field, "is more than one line"));
     }
     Ok(Some(name).filter(|name| !name.is_empty()))
 }
 
-fn words(field: &'static str, text: &str, most: usize) -> Result<String, ReportError> {
+fn trimmed(field: &'static str, text: &str, most: usize) -> Result<String, ReportError> {
     let text = text.trim().replace("\r\n", "\n");
     if text.chars().count() > most {
         return Err(error(field, format!("is longer than {most} characters")));
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_trimmed_and_empty_ones_are_none() {
+    fn texts_are_trimmed_and_empty_ones_are_none() {
         let changes = json!({ "hatch": " 2 ", "port": "  ", "note": " coils\r\nin the hold " });
         let report = read(&changes).unwrap();
         assert_eq!(report.hatch.as_deref(), Some("2"));
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn an_end_may_be_foreseen_for_a_year() {
+    fn an_end_may_lie_a_year_ahead() {
         let end = Timestamp::parse("2027-11-22T07:00:00Z").unwrap();
         assert_eq!(read(&json!({ "to": end })).unwrap().to, Some(end));
     }

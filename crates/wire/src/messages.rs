@@ -7,6 +7,7 @@ pub use crate::settings::Settings;
 use binnacle_magnetics::model::Model;
 use binnacle_magnetics::time::Timestamp;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 use uuid::Uuid;
 
 /// `POST /api/v1/agents/enrol`: exchanges a one-time code for a token.
@@ -43,8 +44,8 @@ pub struct NewToken {
     pub token: String,
 }
 
-impl std::fmt::Debug for NewToken {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Debug for NewToken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a token (withheld)")
     }
 }
@@ -93,7 +94,7 @@ pub struct Downlink {
 struct Received {
     contiguous_seq: u64,
     #[serde(default)]
-    model: Option<Sent>,
+    model: Option<ReceivedModel>,
     #[serde(default)]
     card_withdrawn: Option<CardWithdrawn>,
     #[serde(default)]
@@ -103,7 +104,7 @@ struct Received {
 
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum Sent {
+enum ReceivedModel {
     Readable(Box<ModelDownlink>),
     Other(UnreadModel),
 }
@@ -111,8 +112,8 @@ enum Sent {
 impl From<Received> for Downlink {
     fn from(received: Received) -> Downlink {
         let (model, unread) = match received.model {
-            Some(Sent::Readable(model)) => (Some(*model), None),
-            Some(Sent::Other(unread)) => (None, Some(unread)),
+            Some(ReceivedModel::Readable(model)) => (Some(*model), None),
+            Some(ReceivedModel::Other(unread)) => (None, Some(unread)),
             None => (None, None),
         };
         Downlink {
@@ -178,14 +179,13 @@ impl CardWithdrawn {
     /// Advice while there is no model.
     pub const ADVICE: &str = "steer by gyro or satellite compass, take an azimuth once a watch and \
         on each new course; steady courses on other headings make a new card soonest";
+}
 
-    /// Returns a sentence without a full stop.
-    pub fn in_words(&self) -> String {
-        format!(
-            "the card has not held since {} ({})",
-            self.since,
-            self.reason.replace('_', " ")
-        )
+/// A sentence without a full stop.
+impl fmt::Display for CardWithdrawn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let reason = self.reason.replace('_', " ");
+        write!(f, "the card has not held since {} ({reason})", self.since)
     }
 }
 
@@ -346,7 +346,7 @@ mod tests {
         });
         let withdrawn = assert_comes_back::<Downlink>(&sent).card_withdrawn.unwrap();
         assert_eq!(
-            withdrawn.in_words(),
+            withdrawn.to_string(),
             "the card has not held since 2026-11-20T00:00:00Z (corrector change)"
         );
     }

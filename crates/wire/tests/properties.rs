@@ -143,12 +143,12 @@ proptest! {
     }
 
     #[test]
-    fn any_bytes_are_answered_or_refused(
+    fn any_bytes_are_decoded_or_refused(
         body in prop::collection::vec(any::<u8>(), 0..400),
         head in prop_oneof![Just(&b""[..]), Just(&b"BN"[..]), Just(&b"BN\x01\0"[..]), Just(&b"BN\x01\x01"[..]), Just(&b"BN\x01\x02"[..])],
     ) {
-        answer(&with_checksum([head, &body].concat()));
-        answer(&body);
+        decode_and_encode(&with_checksum([head, &body].concat()));
+        decode_and_encode(&body);
     }
 }
 
@@ -159,7 +159,7 @@ fn with_checksum(mut body: Vec<u8>) -> Vec<u8> {
 }
 
 /// Every decoded batch can be encoded again.
-fn answer(bytes: &[u8]) -> bool {
+fn decode_and_encode(bytes: &[u8]) -> bool {
     let Ok(batch) = decode(bytes) else {
         return false;
     };
@@ -208,7 +208,7 @@ fn twenty_thousand_mutations_never_panic() {
                 Ok(_) if unchanged => stale += 1,
                 other => panic!("a stale checksum passed: {other:?}"),
             }
-        } else if answer(&with_checksum(body)) {
+        } else if decode_and_encode(&with_checksum(body)) {
             answered += 1;
         } else {
             refused += 1;

@@ -301,7 +301,7 @@ fn frames_are_written_and_read_as_they_always_were() {
 }
 
 #[test]
-fn a_note_of_a_later_agent_is_passed_over() {
+fn a_note_of_a_later_agent_is_skipped() {
     let batch = decode(&with_note(77, b"of a later agent")).unwrap();
     assert_eq!((batch.seq, batch.alerts.len()), (1, 0));
     let batch = decode(&with_note(1, &longer_alert())).unwrap();
@@ -309,7 +309,7 @@ fn a_note_of_a_later_agent_is_passed_over() {
 }
 
 #[test]
-fn a_column_of_a_later_version_is_passed_over() {
+fn a_column_of_a_later_version_is_skipped() {
     let batch = decode(&unknown_column()).unwrap();
     assert_eq!(batch.samples.len(), 1);
     assert_eq!(batch.samples[0].compass.degrees().to_string(), "90");

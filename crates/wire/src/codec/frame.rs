@@ -5,8 +5,8 @@ use super::columns::{self, Column};
 use super::dense;
 use super::error::{DecodeError, EncodeError};
 use super::notes::{self, Notes};
+use super::plain;
 use super::range::{RangeReader, RangeWriter};
-use super::stack;
 use super::step::Step;
 use super::tally;
 use crate::batch::{Batch, StreamId};
@@ -117,11 +117,11 @@ pub fn decode(bytes: &[u8]) -> Result<Batch, DecodeError> {
     let profile = read_profile(&mut reader)?;
     let columns = if flags & IS_DENSE == 0 {
         // Checked before anything of the size of `count` is allocated.
-        if count > 0 && columns::REQUIRED * stack::min_bits(count) > reader.left() {
+        if count > 0 && columns::REQUIRED * plain::min_bits(count) > reader.left() {
             return Err(DecodeError::TooManySamples(stated));
         }
         let columns = read_columns(&profile, |id, times| {
-            stack::read(&mut reader, id, count, times)
+            plain::read(&mut reader, id, count, times)
         })?;
         reader.finish()?;
         columns

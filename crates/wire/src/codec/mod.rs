@@ -15,10 +15,10 @@ mod dense;
 mod error;
 mod frame;
 mod notes;
+mod plain;
 mod predict;
 mod range;
 mod rice;
-mod stack;
 mod step;
 mod tally;
 #[cfg(test)]

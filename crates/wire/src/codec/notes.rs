@@ -15,8 +15,8 @@ const THINNED: u64 = 2;
 /// The first second of GPS time, and the first of the year 2100.
 const TIME_RANGE_S: std::ops::Range<i64> = 315_964_800..4_102_444_800;
 const TENTHS_PER_DEG: f64 = 10.0;
-const GYRO_THERE: u64 = 1;
-const SATELLITE_THERE: u64 = 2;
+const HAS_GYRO: u64 = 1;
+const HAS_SATELLITE: u64 = 2;
 
 /// The contents of a frame's notes.
 #[derive(Debug, Default)]
@@ -75,11 +75,8 @@ fn encode_alert(alert: &ShipAlert) -> Result<Vec<u8>, EncodeError> {
         note.varint(seconds.unsigned_abs());
     }
     let (gyro, satellite) = (alert.gyro_departure_deg, alert.satellite_departure_deg);
-    let there = |departure: Option<f64>, bit| if departure.is_some() { bit } else { 0 };
-    note.bits(
-        there(gyro, GYRO_THERE) | there(satellite, SATELLITE_THERE),
-        8,
-    );
+    let flag = |departure: Option<f64>, bit| if departure.is_some() { bit } else { 0 };
+    note.bits(flag(gyro, HAS_GYRO) | flag(satellite, HAS_SATELLITE), 8);
     let departures = gyro.into_iter().chain(satellite);
     for departure in departures {
         note.varint(zigzag(tenths("departure", departure)?));
@@ -144,14 +141,14 @@ fn alert(note: &mut BitReader<'_>) -> Result<Option<ShipAlert>, DecodeError> {
         _ => return Ok(None),
     };
     let (since, at) = (time(note.varint()?), time(note.varint()?));
-    let there = note.bits(8)?;
+    let present = note.bits(8)?;
     let mut departure = |bit| -> Result<Option<f64>, DecodeError> {
-        if there & bit == 0 {
+        if present & bit == 0 {
             return Ok(None);
         }
         Ok(Some(unzigzag(note.varint()?) as f64 / TENTHS_PER_DEG))
     };
-    let (gyro, satellite) = (departure(GYRO_THERE)?, departure(SATELLITE_THERE)?);
+    let (gyro, satellite) = (departure(HAS_GYRO)?, departure(HAS_SATELLITE)?);
     let limit_deg = note.varint()? as f64 / TENTHS_PER_DEG;
     let model_version = u32::try_from(note.varint()?);
     let angles = [gyro, satellite, Some(limit_deg)];

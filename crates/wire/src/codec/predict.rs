@@ -52,7 +52,7 @@ impl Predictor {
 
 /// The state of a predictor in one column.
 #[derive(Debug)]
-pub(super) struct Foresight {
+pub(super) struct PredictorState {
     predictor: Predictor,
     first: i64,
     /// The last value and its time.
@@ -63,10 +63,10 @@ pub(super) struct Foresight {
     mean: i64,
 }
 
-impl Foresight {
+impl PredictorState {
     /// Starts from the column's first value and its time.
-    pub(super) fn new(predictor: Predictor, value: i64, time: i64) -> Foresight {
-        Foresight {
+    pub(super) fn new(predictor: Predictor, value: i64, time: i64) -> PredictorState {
+        PredictorState {
             predictor,
             first: value,
             last: (value, time),
@@ -77,9 +77,9 @@ impl Foresight {
     }
 
     /// Returns the prediction for `time`.
-    pub(super) fn expect(&self, time: i64) -> i64 {
+    pub(super) fn predict(&self, time: i64) -> i64 {
         let (last, last_time) = self.last;
-        let foretold = match (self.predictor, self.before) {
+        let predicted = match (self.predictor, self.before) {
             (Predictor::First, _) => self.first,
             (Predictor::Mean(_), _) => (self.mean + (1 << (MEAN_BITS - 1))) >> MEAN_BITS,
             (Predictor::Linear, Some((before, _))) => 2 * last - before,
@@ -92,11 +92,11 @@ impl Foresight {
             (Predictor::BackToBack, _) => (time - last_time - last).min(self.greatest),
             _ => last,
         };
-        foretold.clamp(-VALUE_LIMIT, VALUE_LIMIT)
+        predicted.clamp(-VALUE_LIMIT, VALUE_LIMIT)
     }
 
     /// Updates the state with the actual value.
-    pub(super) fn learn(&mut self, value: i64, time: i64) {
+    pub(super) fn update(&mut self, value: i64, time: i64) {
         self.before = Some(self.last);
         self.last = (value, time);
         self.greatest = self.greatest.max(value);
@@ -110,13 +110,13 @@ impl Foresight {
 mod tests {
     use super::*;
 
-    fn expectations(predictor: Predictor, values: &[(i64, i64)]) -> Vec<i64> {
-        let mut foresight = Foresight::new(predictor, values[0].0, values[0].1);
+    fn predictions(predictor: Predictor, values: &[(i64, i64)]) -> Vec<i64> {
+        let mut state = PredictorState::new(predictor, values[0].0, values[0].1);
         values[1..]
             .iter()
             .map(|(value, time)| {
-                let expected = foresight.expect(*time);
-                foresight.learn(*value, *time);
+                let expected = state.predict(*time);
+                state.update(*value, *time);
                 expected
             })
             .collect()
@@ -125,21 +125,21 @@ mod tests {
     #[test]
     fn each_predictor_does_what_its_name_says() {
         let values = [(10, 0), (12, 1), (14, 3), (20, 6)];
-        assert_eq!(expectations(Predictor::First, &values), [10, 10, 10]);
-        assert_eq!(expectations(Predictor::Previous, &values), [10, 12, 14]);
-        assert_eq!(expectations(Predictor::Linear, &values), [10, 14, 16]);
-        assert_eq!(expectations(Predictor::Mean(1), &values), [10, 11, 13]);
-        assert_eq!(expectations(Predictor::LinearInTime, &values), [10, 16, 17]);
+        assert_eq!(predictions(Predictor::First, &values), [10, 10, 10]);
+        assert_eq!(predictions(Predictor::Previous, &values), [10, 12, 14]);
+        assert_eq!(predictions(Predictor::Linear, &values), [10, 14, 16]);
+        assert_eq!(predictions(Predictor::Mean(1), &values), [10, 11, 13]);
+        assert_eq!(predictions(Predictor::LinearInTime, &values), [10, 16, 17]);
         // The third began where the second ended; between the last two was a
         // gap.
         let lengths = [(60, 300), (60, 420), (20, 500), (60, 600)];
-        assert_eq!(expectations(Predictor::BackToBack, &lengths), [60, 20, 60]);
+        assert_eq!(predictions(Predictor::BackToBack, &lengths), [60, 20, 60]);
     }
 
     #[test]
     fn two_values_at_one_time_do_not_divide_by_zero() {
         let values = [(10, 0), (12, 0), (14, 0)];
-        assert_eq!(expectations(Predictor::LinearInTime, &values), [10, 12]);
+        assert_eq!(predictions(Predictor::LinearInTime, &values), [10, 12]);
     }
 
     #[test]
@@ -147,7 +147,7 @@ mod tests {
         let (low, high) = (-VALUE_LIMIT, VALUE_LIMIT);
         let values = [(low, low), (high, low + 1), (low, high), (high, high)];
         for predictor in Predictor::ALL {
-            for expected in expectations(predictor, &values) {
+            for expected in predictions(predictor, &values) {
                 assert!((low..=high).contains(&expected), "{predictor:?}");
             }
         }

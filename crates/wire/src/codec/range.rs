@@ -11,29 +11,29 @@ use super::error::DecodeError;
 const NARROW: u64 = 1 << 24;
 const WHOLE: u64 = 1 << 32;
 /// Bytes of the number that a decoder holds.
-const AHEAD: usize = 4;
+const NUMBER_BYTES: usize = 4;
 
 /// An adaptive bit model: counts of 0 and 1 so far.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Odds([u32; 2]);
+pub(super) struct BitModel([u32; 2]);
 
-impl Odds {
+impl BitModel {
     /// The model before the first bit.
-    pub(super) const EVEN: Odds = Odds([2, 2]);
+    pub(super) const INITIAL: BitModel = BitModel([2, 2]);
     /// Added to the count of each bit seen.
     const STEP: u32 = 5;
     /// Counts are halved when their sum exceeds this, so that the model adapts.
-    const MOST: u32 = 320;
+    const MAX_TOTAL: u32 = 320;
 
     /// The part of a range that belongs to 0.
-    fn no_of(self, range: u64) -> u64 {
-        let [no, yes] = self.0.map(u64::from);
-        range / (no + yes) * no
+    fn zero_share(self, range: u64) -> u64 {
+        let [zeros, ones] = self.0.map(u64::from);
+        range / (zeros + ones) * zeros
     }
 
-    fn learn(&mut self, yes: bool) {
-        self.0[usize::from(yes)] += Odds::STEP;
-        if self.0.iter().sum::<u32>() > Odds::MOST {
+    fn update(&mut self, bit: bool) {
+        self.0[usize::from(bit)] += BitModel::STEP;
+        if self.0.iter().sum::<u32>() > BitModel::MAX_TOTAL {
             self.0 = self.0.map(|count| count.div_ceil(2));
         }
     }
@@ -57,9 +57,9 @@ impl RangeWriter {
     }
 
     /// Writes a modelled bit.
-    pub(super) fn answer(&mut self, odds: &mut Odds, yes: bool) {
-        self.narrow(odds.no_of(self.range), yes);
-        odds.learn(yes);
+    pub(super) fn modelled_bit(&mut self, model: &mut BitModel, bit: bool) {
+        self.narrow(model.zero_share(self.range), bit);
+        model.update(bit);
     }
 
     /// Writes the lowest `count` bits of `value`, unmodelled.
@@ -90,12 +90,12 @@ impl RangeWriter {
         self.bytes
     }
 
-    fn narrow(&mut self, no: u64, yes: bool) {
-        if yes {
-            self.low += no;
-            self.range -= no;
+    fn narrow(&mut self, zero_share: u64, bit: bool) {
+        if bit {
+            self.low += zero_share;
+            self.range -= zero_share;
         } else {
-            self.range = no;
+            self.range = zero_share;
         }
         self.carry();
         while self.range < NARROW {
@@ -139,17 +139,17 @@ impl<'a> RangeReader<'a> {
             number: 0,
             range: WHOLE,
         };
-        for _ in 0..AHEAD {
+        for _ in 0..NUMBER_BYTES {
             reader.take()?;
         }
         Ok(reader)
     }
 
     /// Reads a modelled bit.
-    pub(super) fn answer(&mut self, odds: &mut Odds) -> Result<bool, DecodeError> {
-        let yes = self.narrow(odds.no_of(self.range))?;
-        odds.learn(yes);
-        Ok(yes)
+    pub(super) fn modelled_bit(&mut self, model: &mut BitModel) -> Result<bool, DecodeError> {
+        let bit = self.narrow(model.zero_share(self.range))?;
+        model.update(bit);
+        Ok(bit)
     }
 
     /// Reads an unmodelled, unsigned number of `count` bits, at most 64.
@@ -164,29 +164,29 @@ impl<'a> RangeReader<'a> {
     /// Refuses bytes that no bit was read from.
     pub(super) fn finish(self) -> Result<(), DecodeError> {
         // The writer's last byte may not have been needed so far.
-        if self.taken + 1 < self.bytes.len() + AHEAD {
+        if self.taken + 1 < self.bytes.len() + NUMBER_BYTES {
             return Err(DecodeError::TrailingBits);
         }
         Ok(())
     }
 
-    fn narrow(&mut self, no: u64) -> Result<bool, DecodeError> {
-        let yes = self.number >= no;
-        if yes {
-            self.number -= no;
-            self.range -= no;
+    fn narrow(&mut self, zero_share: u64) -> Result<bool, DecodeError> {
+        let bit = self.number >= zero_share;
+        if bit {
+            self.number -= zero_share;
+            self.range -= zero_share;
         } else {
-            self.range = no;
+            self.range = zero_share;
         }
         while self.range < NARROW {
             self.take()?;
             self.range <<= 8;
         }
-        Ok(yes)
+        Ok(bit)
     }
 
     fn take(&mut self) -> Result<(), DecodeError> {
-        if self.taken >= self.bytes.len() + AHEAD {
+        if self.taken >= self.bytes.len() + NUMBER_BYTES {
             return Err(DecodeError::Truncated);
         }
         let byte = self.bytes.get(self.taken).copied().unwrap_or(0);
@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     /// Random bits, true once in `rare`, by a linear congruential generator.
-    fn answers(seed: u64, count: usize, rare: u64) -> Vec<bool> {
+    fn random_bits(seed: u64, count: usize, rare: u64) -> Vec<bool> {
         let mut state = seed;
         let mut next = || {
             state = state
@@ -212,31 +212,31 @@ mod tests {
         (0..count).map(|_| next() % rare == 0).collect()
     }
 
-    fn written(answers: &[bool]) -> Vec<u8> {
-        let (mut writer, mut odds) = (RangeWriter::new(), Odds::EVEN);
-        for yes in answers {
-            writer.answer(&mut odds, *yes);
-            writer.bits(u64::from(*yes), 1);
+    fn written(bits: &[bool]) -> Vec<u8> {
+        let (mut writer, mut model) = (RangeWriter::new(), BitModel::INITIAL);
+        for bit in bits {
+            writer.modelled_bit(&mut model, *bit);
+            writer.bits(u64::from(*bit), 1);
         }
         writer.into_bytes()
     }
 
     fn read(bytes: &[u8], count: usize) -> Result<Vec<bool>, DecodeError> {
-        let (mut reader, mut odds) = (RangeReader::new(bytes)?, Odds::EVEN);
-        let mut answers = Vec::new();
+        let (mut reader, mut model) = (RangeReader::new(bytes)?, BitModel::INITIAL);
+        let mut bits = Vec::new();
         for _ in 0..count {
-            answers.push(reader.answer(&mut odds)?);
-            assert_eq!(reader.bits(1)?, u64::from(answers[answers.len() - 1]));
+            bits.push(reader.modelled_bit(&mut model)?);
+            assert_eq!(reader.bits(1)?, u64::from(bits[bits.len() - 1]));
         }
         reader.finish()?;
-        Ok(answers)
+        Ok(bits)
     }
 
     #[test]
-    fn answers_come_back_whatever_they_are() {
+    fn any_bits_come_back() {
         for seed in 0..300 {
             for rare in [1, 2, 3, 50, 5_000] {
-                let sent = answers(seed, seed as usize, rare);
+                let sent = random_bits(seed, seed as usize, rare);
                 let bytes = written(&sent);
                 assert_eq!(read(&bytes, sent.len()).unwrap(), sent, "{seed} {rare}");
             }
@@ -244,24 +244,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_foreseen_costs_little_and_what_is_not_a_bit() {
-        let (mut writer, mut odds) = (RangeWriter::new(), Odds::EVEN);
+    fn likely_bits_cost_little_and_unmodelled_bits_one_each() {
+        let (mut writer, mut model) = (RangeWriter::new(), BitModel::INITIAL);
         for _ in 0..65_535 {
-            writer.answer(&mut odds, false);
+            writer.modelled_bit(&mut model, false);
         }
         assert!(writer.bits_written() < 700, "{}", writer.bits_written());
         let mut writer = RangeWriter::new();
         writer.bits(0x0123_4567_89ab_cdef, 64);
         assert_eq!(writer.bits_written(), 64);
-        assert_eq!(
-            writer.into_bytes(),
-            0x0123_4567_89ab_cdef_u64.to_be_bytes()
-        );
+        assert_eq!(writer.into_bytes(), 0x0123_4567_89ab_cdef_u64.to_be_bytes());
     }
 
     #[test]
     fn bytes_too_many_or_too_few_are_refused() {
-        let sent = answers(1, 200, 3);
+        let sent = random_bits(1, 200, 3);
         let mut bytes = written(&sent);
         assert_eq!(
             read(&bytes[..bytes.len() - 6], 200),

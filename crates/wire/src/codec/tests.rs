@@ -34,7 +34,7 @@ fn batch(samples: Vec<Sample>) -> Batch {
     }
 }
 
-fn there_and_back(sent: &Batch) -> Batch {
+fn round_trip(sent: &Batch) -> Batch {
     let bytes = encode(sent).unwrap();
     let came = decode(&bytes).unwrap();
     assert_eq!(encode(&came).unwrap(), bytes);
@@ -51,7 +51,7 @@ fn an_empty_batch_carries_its_tally() {
     sent.seq = u64::MAX;
     sent.tally.insert(crate::reasons::TURNING.to_owned(), 12);
     sent.tally.insert("iceberg".to_owned(), u64::MAX);
-    assert_eq!(there_and_back(&sent), sent);
+    assert_eq!(round_trip(&sent), sent);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn headings_come_back_within_half_a_step_all_round_the_circle() {
         }
     }
     for few in samples.chunks(9000) {
-        let came = there_and_back(&batch(few.to_vec()));
+        let came = round_trip(&batch(few.to_vec()));
         for (sent, came) in few.iter().zip(&came.samples) {
             assert!(apart(sent.compass.degrees(), came.compass.degrees()) <= 0.010_001);
             assert_eq!(sent.gyro.is_some(), came.gyro.is_some());
@@ -95,7 +95,7 @@ fn a_missing_value_stays_missing() {
         sample.rate_of_turn_deg_min = None;
         sample.spread_deg = (row == 150).then_some(0.5);
     }
-    let came = there_and_back(&sent);
+    let came = round_trip(&sent);
     for (sent, came) in sent.samples.iter().zip(&came.samples) {
         assert_eq!(
             (sent.sog_kn, sent.spread_deg),
@@ -109,13 +109,13 @@ fn a_missing_value_stays_missing() {
 fn samples_come_out_in_order_of_time() {
     let late = sample("2026-11-21T08:00:00Z", 10.0, Some(9.0), None);
     let early = sample("2026-11-21T07:00:05Z", 20.0, Some(19.0), None);
-    let came = there_and_back(&batch(vec![late, early]));
+    let came = round_trip(&batch(vec![late, early]));
     let times: Vec<String> = came.samples.iter().map(|s| s.time.to_string()).collect();
     assert_eq!(times, ["2026-11-21T07:00:05Z", "2026-11-21T08:00:00Z"]);
 }
 
 #[test]
-fn what_no_ship_can_have_is_refused_by_name() {
+fn a_value_out_of_range_is_refused_by_name() {
     type Spoil = fn(&mut Sample);
     let spoilt: [(&str, Spoil); 6] = [
         ("time", |s| {
@@ -148,7 +148,7 @@ fn limits_are_named() {
         Err(EncodeError::TooManySamples(65_536))
     );
     assert_eq!(
-        there_and_back(&batch(vec![one; MAX_SAMPLES])).samples.len(),
+        round_trip(&batch(vec![one; MAX_SAMPLES])).samples.len(),
         MAX_SAMPLES
     );
     let zero = Batch {

@@ -39,7 +39,7 @@ const MAX_REASON_BYTES: usize = 255;
 pub enum DecodeError {
     /// The bytes are something else altogether.
     #[error("these bytes are not a compact answer: they do not begin with 42 44")]
-    NotOne,
+    BadMagic,
     /// The bytes were damaged or cut on the way.
     #[error("the compact answer is damaged")]
     Damaged,
@@ -94,7 +94,7 @@ pub fn is_compact(bytes: &[u8]) -> bool {
 /// When the bytes are another thing, incomplete, or of a later form.
 pub fn decode(bytes: &[u8]) -> Result<Downlink, DecodeError> {
     if !is_compact(bytes) {
-        return Err(DecodeError::NotOne);
+        return Err(DecodeError::BadMagic);
     }
     let body = bytes.len().checked_sub(CHECKSUM_BYTES);
     let body = body.filter(|body| *body >= HEAD_BYTES);

@@ -34,11 +34,11 @@ pub(super) fn encode(sent: &ModelDownlink) -> Option<Vec<u8>> {
     writer.bytes(sent.id.as_bytes());
     writer.varint(u64::from(sent.version));
     write_time(&mut writer, sent.data_until)?;
-    let there = |there: bool, flag| if there { flag } else { 0 };
-    let flags = there(sent.replaces.is_some(), HAS_REPLACES)
-        | there(model.covariance.is_some(), HAS_COVARIANCE)
-        | there(model.identifiable.is_some(), HAS_IDENTIFIABLE)
-        | there(model.rms_deg.is_some(), HAS_RMS);
+    let flag = |present: bool, flag| if present { flag } else { 0 };
+    let flags = flag(sent.replaces.is_some(), HAS_REPLACES)
+        | flag(model.covariance.is_some(), HAS_COVARIANCE)
+        | flag(model.identifiable.is_some(), HAS_IDENTIFIABLE)
+        | flag(model.rms_deg.is_some(), HAS_RMS);
     writer.varint(flags);
     if let Some(replaces) = &sent.replaces {
         write_withdrawn(&mut writer, replaces)?;
@@ -52,7 +52,7 @@ pub(super) fn encode(sent: &ModelDownlink) -> Option<Vec<u8>> {
         write_covariance(&mut writer, covariance)?;
     }
     if let Some(identifiable) = model.identifiable {
-        let bits = answers(identifiable);
+        let bits = identifiable_flags(identifiable);
         let byte = (0..COUNT).fold(0, |byte, i| byte | (u64::from(bits[i]) << i));
         writer.bits(byte, 8);
     }
@@ -146,7 +146,7 @@ fn values(p: &Parameters, constant_deg: f64) -> [f64; COUNT] {
     ]
 }
 
-fn answers(of: Identifiable) -> [bool; COUNT] {
+fn identifiable_flags(of: Identifiable) -> [bool; COUNT] {
     [
         of.bx_nt,
         of.chi13,

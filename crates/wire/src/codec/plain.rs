@@ -3,7 +3,7 @@
 
 use super::bits::{BitReader, unzigzag};
 use super::error::DecodeError;
-use super::predict::{Foresight, Predictor, VALUE_LIMIT};
+use super::predict::{Predictor, PredictorState, VALUE_LIMIT};
 use super::rice;
 
 /// The least number of bits of a column without gaps.
@@ -33,16 +33,16 @@ pub(super) fn read(
     let time = |row: usize| times.map_or(0, |times| times[row]);
     let first = bounded(unzigzag(reader.varint()?), id, first_row)?;
     values[first_row] = Some(first);
-    let mut foresight = Foresight::new(predictor, first, time(first_row));
+    let mut state = PredictorState::new(predictor, first, time(first_row));
     let left = presence
         .as_ref()
         .map_or(count, |p| p.iter().filter(|p| **p).count())
         - 1;
     rice::read(reader, left, id, |residual| {
         let row = rows.next().ok_or(DecodeError::BadRun(id))?;
-        let value = foresight.expect(time(row)).saturating_add(residual);
+        let value = state.predict(time(row)).saturating_add(residual);
         values[row] = Some(bounded(value, id, row)?);
-        foresight.learn(value, time(row));
+        state.update(value, time(row));
         Ok(())
     })?;
     Ok(values)
@@ -65,14 +65,14 @@ fn read_presence(
         return Ok(None);
     }
     let mut presence = Vec::with_capacity(count);
-    let mut there = true;
+    let mut present = true;
     while presence.len() < count {
         let run = reader.gamma()? - 1;
         if run > (count - presence.len()) as u64 {
             return Err(DecodeError::BadRun(id));
         }
-        presence.resize(presence.len() + run as usize, there);
-        there = !there;
+        presence.resize(presence.len() + run as usize, present);
+        present = !present;
     }
     Ok(Some(presence))
 }
