@@ -10,11 +10,12 @@
 //!   their number, and never panics.
 //! - Fields that a later server adds are skipped.
 
+mod fields;
 mod model;
 
 use crate::codec::bits::{BitReader, BitWriter};
-use crate::messages::{CardWithdrawn, Downlink, Settings};
-use binnacle_magnetics::time::Timestamp;
+use crate::messages::{Downlink, Settings};
+use fields::{read_time, read_withdrawn, write_time, write_withdrawn};
 use uuid::Uuid;
 
 /// The form that an agent asks for: `?form=1`.
@@ -31,8 +32,6 @@ const CHECKSUM_BYTES: usize = 4;
 const MODEL: u64 = 1;
 const CARD_WITHDRAWN: u64 = 2;
 const SETTINGS: u64 = 3;
-/// The most bytes of a reason for withdrawing a card.
-const MAX_REASON_BYTES: usize = 255;
 
 /// The reason why bytes are not a readable response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -149,39 +148,6 @@ fn read_part(reader: &mut BitReader<'_>) -> Option<(u64, Vec<u8>)> {
 
 fn read_settings(bytes: &[u8]) -> Result<Settings, DecodeError> {
     serde_json::from_slice(bytes).map_err(|_| DecodeError::Bad("settings"))
-}
-
-/// Writes whole seconds since 1970; `None` for an earlier time.
-fn write_time(writer: &mut BitWriter, time: Timestamp) -> Option<()> {
-    let seconds = u64::try_from(time.micros().div_euclid(1_000_000)).ok()?;
-    writer.varint(seconds);
-    Some(())
-}
-
-fn read_time(reader: &mut BitReader<'_>) -> Option<Timestamp> {
-    let seconds = i64::try_from(reader.varint().ok()?).ok()?;
-    Timestamp::from_micros(seconds.checked_mul(1_000_000)?).ok()
-}
-
-fn write_withdrawn(writer: &mut BitWriter, withdrawn: &CardWithdrawn) -> Option<()> {
-    write_time(writer, withdrawn.since)?;
-    let reason = withdrawn.reason.as_bytes();
-    if reason.len() > MAX_REASON_BYTES {
-        return None;
-    }
-    writer.varint(reason.len() as u64);
-    writer.bytes(reason);
-    Some(())
-}
-
-fn read_withdrawn(reader: &mut BitReader<'_>) -> Option<CardWithdrawn> {
-    let since = read_time(reader)?;
-    let length = usize::try_from(reader.varint().ok()?).ok()?;
-    if length > MAX_REASON_BYTES {
-        return None;
-    }
-    let reason = String::from_utf8(reader.bytes(length).ok()?).ok()?;
-    Some(CardWithdrawn { since, reason })
 }
 
 #[cfg(test)]

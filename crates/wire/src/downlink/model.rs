@@ -6,7 +6,7 @@
 //! share in it. This holds also where the large shares of two parameters all
 //! but cancel; rounding the covariance itself would not.
 
-use super::{read_time, read_withdrawn, write_time, write_withdrawn};
+use super::fields::{read_time, read_withdrawn, write_time, write_withdrawn};
 use crate::codec::bits::{BitReader, BitWriter};
 use crate::messages::ModelDownlink;
 use binnacle_magnetics::model::{Covariance, Identifiable, Model, Parameters};

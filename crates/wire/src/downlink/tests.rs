@@ -1,8 +1,9 @@
 use super::*;
-use crate::messages::ModelDownlink;
+use crate::messages::{CardWithdrawn, ModelDownlink};
 use binnacle_magnetics::angle::CompassHeading;
 use binnacle_magnetics::model::{Covariance, Model};
 use binnacle_magnetics::ship::EarthField;
+use binnacle_magnetics::time::Timestamp;
 use proptest::prelude::*;
 use serde_json::json;
 
