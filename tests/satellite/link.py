@@ -12,7 +12,7 @@ nothing is lost or counted: her instruments.
 
 Prints {"ship": PID} when both are up: whatever `nsenter --net --target PID` runs is
 on board. Then takes lines of JSON: settings to change, or {"tally": true}, which is
-answered by a line with the IP packets and octets put on the link so far, lost ones
+which prints a line with the IP packets and bytes put on the link so far, lost ones
 included. The end of its input is the end of the link.
 
     up             whether anything passes at all; what is sent meanwhile is lost
@@ -59,7 +59,7 @@ def bring_up(name, own, other):
     ip("link", "set", name, "up")
 
 
-def go_aboard(parent):
+def enter_ship(parent):
     """The ship's namespace, until the parent is gone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if ctypes.CDLL(None, use_errno=True).unshare(CLONE_NEWNET) != 0:
@@ -82,7 +82,7 @@ class Way:
         self.sink = sink
         self.free_at = 0.0
         self.packets = 0
-        self.octets = 0
+        self.bytes_sent = 0
 
 
 class Link:
@@ -105,7 +105,7 @@ class Link:
 
     def send(self, way, packet):
         way.packets += 1
-        way.octets += len(packet)
+        way.bytes_sent += len(packet)
         s = self.settings
         now = time.monotonic()
         takes = 8 * len(packet) / s["bits_per_s"] if s["bits_per_s"] else 0.0
@@ -134,7 +134,7 @@ class Link:
         asked = json.loads(line)
         if asked.pop("tally", False):
             ways = zip(("to_shore", "to_ship"), self.ways)
-            tally = {name: {"packets": w.packets, "octets": w.octets} for name, w in ways}
+            tally = {name: {"packets": w.packets, "bytes": w.bytes_sent} for name, w in ways}
             print(json.dumps(tally), flush=True)
         unknown = asked.keys() - self.settings.keys()
         if unknown:
@@ -147,7 +147,7 @@ def main():
     child = os.fork()
     if child == 0:
         here.close()
-        go_aboard(there)
+        enter_ship(there)
         os._exit(0)
     there.close()
     ip("link", "set", "lo", "up")

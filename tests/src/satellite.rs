@@ -56,14 +56,14 @@ pub struct Tally {
 pub struct Count {
     /// How many.
     pub packets: u64,
-    /// Their octets, IP headers included.
-    pub octets: u64,
+    /// Their bytes, IP headers included.
+    pub bytes: u64,
 }
 
 impl Tally {
     /// Octets both ways.
-    pub fn octets(&self) -> u64 {
-        self.to_shore.octets + self.to_ship.octets
+    pub fn bytes(&self) -> u64 {
+        self.to_shore.bytes + self.to_ship.bytes
     }
 }
 

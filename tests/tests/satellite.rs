@@ -79,7 +79,7 @@ async fn sail_on(at_sea: &mut AtSea, policy: &Policy, from: u32, to: u32) -> Res
 }
 
 fn per_day(before: &Tally, after: &Tally) -> f64 {
-    (after.octets() - before.octets()) as f64 / f64::from(days())
+    (after.bytes() - before.bytes()) as f64 / f64::from(days())
 }
 
 #[test]

@@ -1,4 +1,4 @@
-"""Batches in other forms, none of them with more digits than ours has."""
+"""Batches in other formats, none with more digits than a frame."""
 
 import gzip
 import json
@@ -163,12 +163,12 @@ class Protobuf:
         return message.SerializeToString()
 
 
-def gzipped(octets):
-    return gzip.compress(octets, 9, mtime=0)
+def gzipped(data):
+    return gzip.compress(data, 9, mtime=0)
 
 
-def zstd(octets):
-    return zstandard.ZstdCompressor(level=19).compress(octets)
+def zstd(data):
+    return zstandard.ZstdCompressor(level=19).compress(data)
 
 
 def forms():

@@ -1,10 +1,10 @@
-"""What a request over stock HTTPS costs on the link, packets and all, by its body's size.
+"""Bytes of a request over stock HTTPS on the link, packet headers included, by body size.
 
 Run in a network of its own (`unshare --net`): prints JSON, for a connection of its own and
-for one that stays open, [octets of body, IP octets both ways] of each request. The shore
+for one that stays open, [bytes of body, IP bytes both ways] of each request. The server
 is Python's HTTP server with OpenSSL as it comes, TLS 1.3, a chain of two certificates on
-P-256 under a root, as public authorities have it, and the answer's usual headers; the ship
-sends the usual ones of an HTTP client and a bearer token of 300 octets.
+P-256 under a root, as public authorities have it, and the usual response headers; the ship
+sends the usual ones of an HTTP client and a bearer token of 300 bytes.
 """
 
 import http.client
@@ -81,7 +81,7 @@ def serve(folder):
     threading.Thread(target=shore.serve_forever, daemon=True).start()
 
 
-def aboard(folder):
+def run_client(folder):
     """The ship: a line of the size of a body and whether to keep the connection."""
     tls = ssl.create_default_context(cafile=folder / "root.pem")
     line = None
@@ -113,24 +113,24 @@ def main():
         link.stdin.write(json.dumps(what) + "\n")
         link.stdin.flush()
 
-    def octets():
+    def bytes_on_link():
         time.sleep(SETTLE_S)
         order(tally=True)
-        return sum(way["octets"] for way in json.loads(link.stdout.readline()).values())
+        return sum(way["bytes"] for way in json.loads(link.stdout.readline()).values())
 
     order(round_trip_ms=300)
     serve(folder)
     client = subprocess.Popen(
-        ["nsenter", "--net", "--target", ship, "--", sys.executable, __file__, "aboard", folder],
+        ["nsenter", "--net", "--target", ship, "--", sys.executable, __file__, "client", folder],
         stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     def request(size, keep):
-        before = octets()
+        before = bytes_on_link()
         client.stdin.write(json.dumps([size, keep]) + "\n")
         client.stdin.flush()
         if client.stdout.readline() != "done\n":
             raise SystemExit("the ship's client ended")
-        return octets() - before
+        return bytes_on_link() - before
 
     def mean(size, keep):
         return sum(request(size, keep) for _ in range(TIMES)) / TIMES
@@ -146,7 +146,7 @@ def main():
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["aboard"]:
-        aboard(Path(sys.argv[2]))
+    if sys.argv[1:2] == ["client"]:
+        run_client(Path(sys.argv[2]))
     else:
         main()
