@@ -32,10 +32,10 @@ pub enum BurstError {
     #[error(transparent)]
     Frame(#[from] DecodeError),
     /// It would take more than [`PARTS_MAX`] messages.
-    #[error("a frame of {0} octets is too large for {PARTS_MAX} messages")]
+    #[error("a frame of {0} bytes is too large for {PARTS_MAX} messages")]
     TooLarge(usize),
     /// More than [`MESSAGE_BYTES`].
-    #[error("a message of {0} octets is too long")]
+    #[error("a message of {0} bytes is too long")]
     TooLong(usize),
     /// A message of an unknown kind.
     #[error("not a short-burst message")]
@@ -47,7 +47,7 @@ pub enum BurstError {
     #[error("the message is damaged")]
     Damaged,
     /// The part's number is beyond the last.
-    #[error("part {part} of {parts}")]
+    #[error("no part {part} in a frame of {parts} parts")]
     NoSuchPart {
         /// Number of the part, from 0.
         part: usize,

@@ -66,7 +66,7 @@ impl Report {
             return Err(error("from", format!("{} is before 1980-01-06", self.from)));
         }
         if self.from > latest {
-            return Err(error("from", format!("{} is yet to come", self.from)));
+            return Err(error("from", format!("{} is in the future", self.from)));
         }
         let report = Report {
             hatch: optional("hatch", self.hatch.as_deref())?,
@@ -75,14 +75,14 @@ impl Report {
             ..self
         };
         if report.hatch.is_some() && report.kind != LogbookKind::MagneticCargo {
-            return Err(error("hatch", "only magnetic cargo lies in one"));
+            return Err(error("hatch", "is only allowed for magnetic cargo"));
         }
         match report.entry().checked() {
             Ok(_) => Ok(report),
             Err(LogbookError::EndsBeforeItBegins { from, to }) => {
                 Err(error("to", format!("{to} is before from, {from}")))
             }
-            Err(LogbookError::NotACargo) => Err(error("cargo", "only magnetic cargo is one")),
+            Err(LogbookError::NotACargo) => Err(error("cargo", "is only allowed for magnetic cargo")),
         }
     }
 
@@ -117,7 +117,7 @@ impl Report {
 pub fn reporter(name: &str) -> Result<String, ReportError> {
     let name = trimmed("reporter", name, MAX_NAME)?;
     if name.contains('\n') {
-        return Err(error("reporter", "is more than one line"));
+        return Err(error("reporter", "must be a single line"));
     }
     Ok(name)
 }
@@ -126,7 +126,7 @@ pub fn reporter(name: &str) -> Result<String, ReportError> {
 fn optional(field: &'static str, name: Option<&str>) -> Result<Option<String>, ReportError> {
     let name = trimmed(field, name.unwrap_or_default(), MAX_NAME)?;
     if name.contains('\n') {
-        return Err(error(field, "is more than one line"));
+        return Err(error(field, "must be a single line"));
     }
     Ok(Some(name).filter(|name| !name.is_empty()))
 }

@@ -4,10 +4,10 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EncodeError {
     /// More samples than a frame may hold.
-    #[error("{0} samples are more than the 65535 of one batch")]
+    #[error("{0} samples exceed the limit of 65535 per batch")]
     TooManySamples(usize),
     /// The frame would be larger than the server accepts.
-    #[error("the batch takes {0} bytes, more than 262144")]
+    #[error("the batch has {0} bytes, more than the limit of 262144")]
     TooLarge(usize),
     /// Batches are numbered from 1.
     #[error("batch number 0: numbers start at 1")]
@@ -27,10 +27,10 @@ pub enum EncodeError {
         high: f64,
     },
     /// More reasons than a tally may have.
-    #[error("{0} reasons are more than the 255 of one tally")]
+    #[error("{0} reasons exceed the limit of 255 per tally")]
     TooManyReasons(usize),
     /// More alerts than a frame may hold.
-    #[error("{0} alerts are more than the 254 of one batch")]
+    #[error("{0} alerts exceed the limit of 254 per batch")]
     TooManyAlerts(usize),
     /// A value that no alert can have.
     #[error("an alert's {0} is out of range")]
@@ -47,13 +47,13 @@ pub enum DecodeError {
     #[error("the frame is cut short")]
     Truncated,
     /// More bytes than a frame may have.
-    #[error("{0} bytes are more than the 262144 of one batch")]
+    #[error("{0} bytes exceed the limit of 262144 per batch")]
     TooLarge(usize),
     /// The bytes are something else altogether.
     #[error("these bytes are not a batch: they do not begin with 42 4e")]
     BadMagic,
     /// The bytes were damaged on the way or on disk.
-    #[error("the checksum is {computed:08x}, the frame says {stated:08x}")]
+    #[error("the checksum is {computed:08x}, but the frame states {stated:08x}")]
     Checksum {
         /// The frame's last four bytes.
         stated: u32,
@@ -76,7 +76,7 @@ pub enum DecodeError {
     #[error("a number has more than 64 bits")]
     NumberTooLong,
     /// Column ids must rise, and at most 64 are allowed.
-    #[error("column {0} is out of order or one too many")]
+    #[error("column {0} is out of order or exceeds the limit of 64")]
     ColumnOrder(u64),
     /// A required column is missing or has gaps.
     #[error("column {0} is missing or has gaps")]
@@ -85,7 +85,7 @@ pub enum DecodeError {
     #[error("column {0} has no usable step")]
     BadStep(u64),
     /// The column of times cannot be predicted from times.
-    #[error("column {0} has a predictor it cannot have")]
+    #[error("column {0} has an invalid predictor")]
     BadPredictor(u64),
     /// A run that is longer than the rest of the column.
     #[error("column {0} has a run beyond its end")]
@@ -105,12 +105,12 @@ pub enum DecodeError {
     #[error("entry {0} of the tally cannot be read")]
     BadReason(usize),
     /// More notes than a frame may hold.
-    #[error("{0} notes are more than the 255 of one batch")]
+    #[error("{0} notes exceed the limit of 255 per batch")]
     TooManyNotes(u64),
     /// A note of a known kind that is cut short, out of range or repeated.
     #[error("a note of kind {0} cannot be read")]
     BadNote(u64),
     /// Bits follow the last column.
-    #[error("something follows the last column")]
+    #[error("unexpected data after the last column")]
     TrailingBits,
 }

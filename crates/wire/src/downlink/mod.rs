@@ -37,16 +37,16 @@ const SETTINGS: u64 = 3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum DecodeError {
     /// The bytes are something else altogether.
-    #[error("these bytes are not a compact answer: they do not begin with 42 44")]
+    #[error("these bytes are not a compact response: they do not begin with 42 44")]
     BadMagic,
     /// The bytes were damaged or cut on the way.
-    #[error("the compact answer is damaged")]
+    #[error("the compact response is damaged")]
     Damaged,
     /// A later form, although the agent did not ask for it.
-    #[error("the compact answer has form {0}, and this program reads form 1")]
+    #[error("the compact response has form {0}, and this program reads form 1")]
     Form(u8),
     /// A part is cut short or out of range.
-    #[error("the compact answer's {0} cannot be read")]
+    #[error("the compact response's {0} cannot be read")]
     Bad(&'static str),
 }
 
