@@ -82,7 +82,9 @@ impl Report {
             Err(LogbookError::EndsBeforeItBegins { from, to }) => {
                 Err(error("to", format!("{to} is before from, {from}")))
             }
-            Err(LogbookError::NotACargo) => Err(error("cargo", "is only allowed for magnetic cargo")),
+            Err(LogbookError::NotACargo) => {
+                Err(error("cargo", "is only allowed for magnetic cargo"))
+            }
         }
     }
 

@@ -92,36 +92,40 @@ fn batches() -> impl Strategy<Value = Batch> {
     })
 }
 
-fn close(sent: Option<f64>, came: Option<f64>, half_step: f64) -> bool {
-    match (sent, came) {
+fn close(sent: Option<f64>, decoded: Option<f64>, half_step: f64) -> bool {
+    match (sent, decoded) {
         (None, None) => true,
-        (Some(sent), Some(came)) => (sent - came).abs() <= half_step + SLACK,
+        (Some(sent), Some(decoded)) => (sent - decoded).abs() <= half_step + SLACK,
         _ => false,
     }
 }
 
-fn turned(sent: Option<TrueHeading>, came: Option<TrueHeading>, half_step: f64) -> bool {
-    match (sent, came) {
-        (Some(sent), Some(came)) => {
-            wrap_180(sent.degrees() - came.degrees()).abs() <= half_step + SLACK
+fn turned(sent: Option<TrueHeading>, decoded: Option<TrueHeading>, half_step: f64) -> bool {
+    match (sent, decoded) {
+        (Some(sent), Some(decoded)) => {
+            wrap_180(sent.degrees() - decoded.degrees()).abs() <= half_step + SLACK
         }
-        (sent, came) => sent.is_none() && came.is_none(),
+        (sent, decoded) => sent.is_none() && decoded.is_none(),
     }
 }
 
-fn within_half_a_step(sent: &Sample, came: &Sample) -> bool {
-    let east = wrap_180(sent.position.lon_deg() - came.position.lon_deg());
-    let compass = wrap_180(sent.compass.degrees() - came.compass.degrees());
-    sent.time.seconds_since(came.time).abs() <= 2.5
-        && (sent.position.lat_deg() - came.position.lat_deg()).abs() <= 0.000_5 + SLACK
+fn within_half_a_step(sent: &Sample, decoded: &Sample) -> bool {
+    let east = wrap_180(sent.position.lon_deg() - decoded.position.lon_deg());
+    let compass = wrap_180(sent.compass.degrees() - decoded.compass.degrees());
+    sent.time.seconds_since(decoded.time).abs() <= 2.5
+        && (sent.position.lat_deg() - decoded.position.lat_deg()).abs() <= 0.000_5 + SLACK
         && east.abs() <= 0.000_5 + SLACK
         && compass.abs() <= 0.01 + SLACK
-        && turned(sent.gyro, came.gyro, 0.025)
-        && turned(sent.satellite, came.satellite, 0.025)
-        && close(sent.sog_kn, came.sog_kn, 0.1)
-        && close(sent.rate_of_turn_deg_min, came.rate_of_turn_deg_min, 0.25)
-        && close(sent.spread_deg, came.spread_deg, 0.01)
-        && sent.windows == came.windows
+        && turned(sent.gyro, decoded.gyro, 0.025)
+        && turned(sent.satellite, decoded.satellite, 0.025)
+        && close(sent.sog_kn, decoded.sog_kn, 0.1)
+        && close(
+            sent.rate_of_turn_deg_min,
+            decoded.rate_of_turn_deg_min,
+            0.25,
+        )
+        && close(sent.spread_deg, decoded.spread_deg, 0.01)
+        && sent.windows == decoded.windows
 }
 
 proptest! {
@@ -130,15 +134,15 @@ proptest! {
     #[test]
     fn a_batch_comes_back_within_half_a_step_and_then_to_the_byte(sent in batches()) {
         let bytes = encode(&sent).unwrap();
-        let came = decode(&bytes).unwrap();
-        prop_assert_eq!(encode(&came).unwrap(), bytes);
-        prop_assert_eq!((came.stream, came.seq, &came.tally), (sent.stream, sent.seq, &sent.tally));
-        prop_assert_eq!((&came.alerts, came.thinned), (&sent.alerts, sent.thinned));
+        let decoded = decode(&bytes).unwrap();
+        prop_assert_eq!(encode(&decoded).unwrap(), bytes);
+        prop_assert_eq!((decoded.stream, decoded.seq, &decoded.tally), (sent.stream, sent.seq, &sent.tally));
+        prop_assert_eq!((&decoded.alerts, decoded.thinned), (&sent.alerts, sent.thinned));
         let mut samples = sent.samples;
         samples.sort_by_key(|sample| sample.time);
-        prop_assert_eq!(samples.len(), came.samples.len());
-        for (sent, came) in samples.iter().zip(&came.samples) {
-            prop_assert!(within_half_a_step(sent, came), "{:?} came as {:?}", sent, came);
+        prop_assert_eq!(samples.len(), decoded.samples.len());
+        for (sent, decoded) in samples.iter().zip(&decoded.samples) {
+            prop_assert!(within_half_a_step(sent, decoded), "{:?} decoded as {:?}", sent, decoded);
         }
     }
 

@@ -36,9 +36,9 @@ fn batch(samples: Vec<Sample>) -> Batch {
 
 fn round_trip(sent: &Batch) -> Batch {
     let bytes = encode(sent).unwrap();
-    let came = decode(&bytes).unwrap();
-    assert_eq!(encode(&came).unwrap(), bytes);
-    came
+    let decoded = decode(&bytes).unwrap();
+    assert_eq!(encode(&decoded).unwrap(), bytes);
+    decoded
 }
 
 fn apart(a: f64, b: f64) -> f64 {
@@ -71,12 +71,15 @@ fn headings_come_back_within_half_a_step_all_round_the_circle() {
         }
     }
     for few in samples.chunks(9000) {
-        let came = round_trip(&batch(few.to_vec()));
-        for (sent, came) in few.iter().zip(&came.samples) {
-            assert!(apart(sent.compass.degrees(), came.compass.degrees()) <= 0.010_001);
-            assert_eq!(sent.gyro.is_some(), came.gyro.is_some());
-            assert_eq!(sent.satellite.is_some(), came.satellite.is_some());
-            for (a, b) in [(sent.gyro, came.gyro), (sent.satellite, came.satellite)] {
+        let decoded = round_trip(&batch(few.to_vec()));
+        for (sent, decoded) in few.iter().zip(&decoded.samples) {
+            assert!(apart(sent.compass.degrees(), decoded.compass.degrees()) <= 0.010_001);
+            assert_eq!(sent.gyro.is_some(), decoded.gyro.is_some());
+            assert_eq!(sent.satellite.is_some(), decoded.satellite.is_some());
+            for (a, b) in [
+                (sent.gyro, decoded.gyro),
+                (sent.satellite, decoded.satellite),
+            ] {
                 let (Some(a), Some(b)) = (a, b) else { continue };
                 assert!(apart(a.degrees(), b.degrees()) <= 0.025_001, "{a:?} {b:?}");
             }
@@ -95,13 +98,16 @@ fn a_missing_value_stays_missing() {
         sample.rate_of_turn_deg_min = None;
         sample.spread_deg = (row == 150).then_some(0.5);
     }
-    let came = round_trip(&sent);
-    for (sent, came) in sent.samples.iter().zip(&came.samples) {
+    let decoded = round_trip(&sent);
+    for (sent, decoded) in sent.samples.iter().zip(&decoded.samples) {
         assert_eq!(
             (sent.sog_kn, sent.spread_deg),
-            (came.sog_kn, came.spread_deg)
+            (decoded.sog_kn, decoded.spread_deg)
         );
-        assert_eq!((came.rate_of_turn_deg_min, came.satellite), (None, None));
+        assert_eq!(
+            (decoded.rate_of_turn_deg_min, decoded.satellite),
+            (None, None)
+        );
     }
 }
 
@@ -109,8 +115,8 @@ fn a_missing_value_stays_missing() {
 fn samples_come_out_in_order_of_time() {
     let late = sample("2026-11-21T08:00:00Z", 10.0, Some(9.0), None);
     let early = sample("2026-11-21T07:00:05Z", 20.0, Some(19.0), None);
-    let came = round_trip(&batch(vec![late, early]));
-    let times: Vec<String> = came.samples.iter().map(|s| s.time.to_string()).collect();
+    let decoded = round_trip(&batch(vec![late, early]));
+    let times: Vec<String> = decoded.samples.iter().map(|s| s.time.to_string()).collect();
     assert_eq!(times, ["2026-11-21T07:00:05Z", "2026-11-21T08:00:00Z"]);
 }
 
