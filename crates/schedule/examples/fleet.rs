@@ -1,11 +1,14 @@
-//! Schedules a made-up fleet and says how long it took:
-//! `cargo run --release -p binnacle-schedule --example fleet VESSELS CALLS FIRMS SEED PORTS DAYS`.
+//! Schedules a made-up fleet and prints the time it took:
+//! `cargo run --release -p binnacle-schedule --example fleet VESSELS CALLS
+//! FIRMS SEED PORTS DAYS`.
 //!
-//! Ships call at forty large ports, or at the first so many of them, the larger ones more
-//! often, an eighth of the calls for less than a working day; an ETA is good to two hours
-//! tomorrow and to two days in half a year. All calls begin within half a year, or within so
-//! many days, and all is due by then: the fewer, the scarcer the teams. Firms serve three to nine ports with one to three teams, each of which
-//! does one or two jobs a day, and half of the firms are not accepted by every flag.
+//! Ships call at forty large ports, or at the first PORTS of them, and more
+//! often at the larger ones. An eighth of the calls last less than a working
+//! day. An ETA is good to two hours tomorrow and to two days in half a year.
+//! All calls begin, and all needs are due, within half a year or within DAYS:
+//! the fewer, the scarcer the teams. Firms serve three to nine ports with one
+//! to three teams, each of which does one or two jobs a day. Half of the firms
+//! are not accepted by every flag.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // a benchmark, run by hand
 
@@ -127,7 +130,7 @@ fn fleet([vessels, calls, firms]: [u64; 3], seed: u64, ports: u64, days: u64) ->
     input
 }
 
-/// A port: of two drawn, the larger.
+/// Draws two ports and returns the larger.
 fn often<'a>(ports: &[&'a str], random: &mut ChaCha8Rng) -> &'a str {
     let drawn = random
         .random_range(0..ports.len())

@@ -1,4 +1,5 @@
-//! Port calls from CSV and iCalendar: what is read, and what is refused with its line.
+//! Port calls from CSV and iCalendar: accepted files, and faults with their
+//! lines.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -221,7 +222,8 @@ fn a_calendars_times_are_taken_in_their_zone_summer_and_winter() {
         eta_of("DTSTART;TZID=\"Europe/Madrid\":20270101T060000"),
         "2027-01-01T05:00:00Z"
     );
-    // The last Sunday of March 2027 is the 28th, that of October 2026 was the 25th.
+    // The last Sunday of March 2027 is the 28th; that of October 2026 was the
+    // 25th.
     assert_eq!(
         eta_of("DTSTART;TZID=Europe/Madrid:20270328T013000"),
         "2027-03-28T00:30:00Z"
@@ -249,7 +251,7 @@ fn a_time_outside_the_calendars_years_is_refused_with_its_line() {
     }
 }
 
-/// The port of a call of which a calendar says `more`, or what is wrong.
+/// The port of a call in a calendar with the lines `more`, or the fault.
 fn port_of(more: &str) -> Result<String, String> {
     let text = calendar("DTSTART:20270701T060000Z", END, more);
     ics::read(&text, "v", now())
@@ -301,7 +303,7 @@ fn a_ships_name_and_a_part_of_a_ports_name_are_no_port() {
         "KYGEC"
     );
     assert_eq!(port_of("LOCATION:ES BIO Bilbao").unwrap(), "ESBIO");
-    // Two ports are called so: the summary may say which, and no third one.
+    // Two ports share the name: the summary may choose one, but no third.
     assert_eq!(
         port_of("SUMMARY:Nao\\, NLRTM\r\nLOCATION:Rotterdam").unwrap(),
         "NLRTM"
@@ -388,7 +390,8 @@ fn a_cancelled_event_is_no_call() {
     assert_eq!(read.cancelled, ["c1@agent"]);
 }
 
-/// What exports a ship's calls goes on with the one that she has left.
+/// Programs that export a ship's calls go on exporting the one that it has
+/// left.
 #[test]
 fn a_row_that_is_over_is_passed_by() {
     let over = "c,v,NLRTM,2026-11-01T06:00:00Z,2026-11-20T18:00:00Z,\n";

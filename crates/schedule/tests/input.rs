@@ -1,4 +1,4 @@
-//! Every kind of bad input is refused with the JSON path of what is wrong.
+//! Every kind of bad input is refused with the JSON path of the fault.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -18,7 +18,7 @@ fn good() -> Value {
     })
 }
 
-/// What is said when the value at a pointer is another.
+/// The error when the value at a pointer is replaced.
 fn complaint(pointer: &str, value: Value) -> String {
     let mut input = good();
     let (parent, field) = pointer.rsplit_once('/').unwrap();

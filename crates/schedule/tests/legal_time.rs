@@ -1,4 +1,5 @@
-//! Ports keep legal time: known days and hours, and the nights on which clocks change.
+//! Ports keep legal time: known days and hours, and the nights on which clocks
+//! change.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -201,7 +202,8 @@ mod laws {
     use proptest::prelude::*;
 
     proptest! {
-        /// What clocks show leads back to the instant, or to the first that shows it.
+        /// A local time leads back to the instant, or to the first one that
+        /// shows it.
         #[test]
         fn an_instant_is_found_again_by_what_clocks_show(
             which in 0_usize..10_000,

@@ -1,4 +1,4 @@
-//! Due dates by the shipped rules, each worked out by hand.
+//! Due dates by the built-in rules, each worked out by hand.
 
 #![allow(clippy::unwrap_used)] // helpers of tests
 
@@ -130,7 +130,7 @@ fn deviation_over_five_degrees_brings_a_marshall_islands_ship_forward() {
     assert_eq!(of("NO", 5.1).on, day("2028-06-01"));
 }
 
-/// Of a day that is past a prediction tells since when.
+/// For a past day, a prediction gives the day since which it holds.
 #[test]
 fn the_two_weeks_run_from_the_day_on_which_the_limit_was_passed() {
     let over = due_of(

@@ -1,16 +1,17 @@
-//! What is wrong with a file of port calls, and where.
+//! Faults of a file of port calls, with their places.
 //!
-//! What always holds: however many lines are wrong, [`FileErrors`] keeps [`MOST_NAMED`] of
-//! them, the first by their lines, and the number of the others.
+//! Invariant: however many lines are bad, [`FileErrors`] keeps the first
+//! [`MOST_NAMED`] by line, and counts the others.
 
 use std::fmt;
 
-/// No more faults of a file are named.
+/// The most faults of a file that are listed.
 pub const MOST_NAMED: usize = 50;
-/// No column's name and no word on it is longer, in characters: they repeat what is in the file.
+/// The most characters of a column's name and of a detail, which repeat text of
+/// the file.
 const LONGEST: (usize, usize) = (60, 400);
 
-/// What is wrong with a file, and where.
+/// A fault of a file, with its place.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, thiserror::Error)]
 #[error("line {line}: {field}: {detail}")]
 pub struct FileError {
@@ -18,12 +19,12 @@ pub struct FileError {
     pub line: usize,
     /// The column or property at fault.
     pub field: String,
-    /// What is wrong with it.
+    /// The fault.
     pub detail: String,
 }
 
 impl FileError {
-    /// What is wrong with a column or property of a line.
+    /// Builds the error of a column or property on a line.
     pub fn new(line: usize, field: &str, detail: impl Into<String>) -> FileError {
         let detail: String = detail.into();
         FileError {
@@ -34,7 +35,7 @@ impl FileError {
     }
 }
 
-/// Everything that is wrong with a file.
+/// All faults of a file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FileErrors {
     named: Vec<FileError>,
@@ -42,7 +43,7 @@ pub struct FileErrors {
 }
 
 impl FileErrors {
-    /// One more fault.
+    /// Adds a fault.
     pub fn push(&mut self, error: FileError) {
         let at = self.named.partition_point(|known| *known <= error);
         self.named.insert(at, error);
@@ -52,7 +53,7 @@ impl FileErrors {
         }
     }
 
-    /// What was made where nothing is wrong, else everything that is.
+    /// Returns `made` if there is no fault, and otherwise the faults.
     ///
     /// # Errors
     /// Itself, unless it is empty.
@@ -60,12 +61,12 @@ impl FileErrors {
         if self.is_empty() { Ok(made) } else { Err(self) }
     }
 
-    /// Whether nothing is wrong.
+    /// True without faults.
     pub fn is_empty(&self) -> bool {
         self.named.is_empty()
     }
 
-    /// The faults that are named, by line.
+    /// The listed faults, by line.
     pub fn named(&self) -> &[FileError] {
         &self.named
     }

@@ -1,11 +1,13 @@
-//! Port calls from iCalendar (RFC 5545), as agents and fleet programs export them.
+//! Reads port calls from iCalendar (RFC 5545), as agents and fleet programs
+//! export them.
 //!
-//! A `VEVENT` is a call: `UID` its name, `DTSTART` the ETA, `DTEND` the ETD; its port is
-//! that of `X-UNLOCODE`, of `LOCATION`, or without either of `SUMMARY`. Such programs
-//! export what is over and what is cancelled as well: neither is a call, and both are told.
+//! A `VEVENT` is a call: `UID` is its id, `DTSTART` the ETA, `DTEND` the ETD.
+//! Its port is that of `X-UNLOCODE`, of `LOCATION`, or without either of
+//! `SUMMARY`. Such programs also export past and cancelled calls; both are left
+//! out and reported.
 //!
-//! What always holds: a time is taken only where the file says in which zone it is:
-//! UTC, or a `VTIMEZONE` of one offset or of yearly rules; floating times, whole days and
+//! Invariant: a time counts only where the file states its zone, as UTC or as a
+//! `VTIMEZONE` of one offset or of yearly rules. Floating times, whole days and
 //! repeating events are refused with their line.
 
 mod duration;
@@ -23,21 +25,21 @@ use line::{Line, lines};
 use std::collections::BTreeMap;
 use zone::Zone;
 
-/// What a calendar says of a ship.
+/// The contents of a ship's calendar.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Calendar {
-    /// Her calls that are not over.
+    /// Calls that are not over.
     pub calls: Vec<Located>,
-    /// The names of calls that are cancelled.
+    /// Ids of cancelled calls.
     pub cancelled: Vec<String>,
-    /// Calls that are over.
+    /// Number of past calls.
     pub over: usize,
 }
 
 /// Reads the calls of one ship.
 ///
 /// # Errors
-/// [`FileError`] with the first thing that is wrong: nothing is kept of a bad file.
+/// [`FileError`] with the first fault: nothing of a bad file is kept.
 pub fn read(text: &str, vessel: &str, now: Instant) -> Result<Calendar, FileError> {
     let lines = lines(text)?;
     if lines
@@ -187,7 +189,7 @@ fn instant(line: &Line, zones: &BTreeMap<String, Zone>) -> Result<Instant, FileE
             )));
         }
     };
-    // A year of four digits may be a fifth one's, or none's, in another zone.
+    // In another zone, a four-digit year may end outside the years 1 to 9999.
     let utc = naive.checked_sub_signed(chrono::Duration::seconds(offset_s));
     let micros = utc.map(|utc| utc.and_utc().timestamp_micros());
     let micros = micros.and_then(|micros| Timestamp::from_micros(micros).ok());

@@ -1,22 +1,22 @@
-//! Whether an input hangs together.
+//! Checks the consistency of an input.
 
 use super::{Checked, Input, InputError, firm_is_sound};
 use crate::calls::overlap;
 use crate::ports;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// No list is longer.
+/// The longest list.
 const MOST: usize = 50_000;
-/// The most ways to do all jobs, as [`ways`] counts them: each takes about 250 bytes and a
-/// microsecond before any is weighed against another.
+/// The most ways to do all jobs, as [`ways`] counts them. Each takes about 250
+/// bytes and a microsecond before the search begins.
 const MOST_WAYS: u64 = 3_000_000;
 
 type Result<T> = std::result::Result<T, InputError>;
 
-/// Looks whether an input is too large to be planned, whatever it says.
+/// Refuses an input that is too large to plan.
 ///
 /// # Errors
-/// The first list that is too long, or how many ways there are to do all jobs.
+/// The first list that is too long, or the number of ways to do all jobs.
 pub fn must_fit(input: &Input) -> Result<()> {
     lists(input)?;
     match ways(input) {
@@ -31,8 +31,8 @@ pub fn must_fit(input: &Input) -> Result<()> {
     }
 }
 
-/// How many ways there are to do all jobs at most: each need on each day of its ship's calls by
-/// each firm of the port.
+/// An upper bound of the ways to do all jobs: each need on each day of its
+/// ship's calls by each firm of the port.
 fn ways(input: &Input) -> u64 {
     let (mut needs, mut firms) = (BTreeMap::new(), BTreeMap::new());
     let of_needs = input.needs.iter().map(|need| &need.vessel);
@@ -110,7 +110,7 @@ pub(super) fn check(input: Input) -> Result<Checked> {
                 ));
             }
         }
-        // A call may have been cancelled since; its name must still be one.
+        // A call may have been cancelled since; its id must still be given.
         if job.call.is_empty() && !calls.contains("") {
             return Err(InputError::new(format!("former[{at}].call"), "is empty"));
         }

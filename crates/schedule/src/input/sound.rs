@@ -1,25 +1,25 @@
-//! Whether a firm can be planned with.
+//! Checks that a firm can be scheduled.
 
 use super::Firm;
 use crate::ports;
 use std::collections::BTreeSet;
 
-/// Why a firm cannot be planned with.
+/// The reason why a firm cannot be scheduled.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{field}: {detail}")]
 pub struct FirmError {
     /// The field at fault.
     pub field: &'static str,
-    /// What is wrong with it.
+    /// The fault in it.
     pub detail: String,
-    /// Whether nothing is wrong but that it has no days or no ports.
+    /// True if the only fault is that it has no working days or no ports.
     pub idle: bool,
 }
 
-/// Looks at a firm; that it is idle comes last.
+/// Checks a firm; idleness is checked last.
 ///
 /// # Errors
-/// The first thing that is wrong.
+/// The first fault.
 pub fn firm_is_sound(firm: &Firm) -> Result<(), FirmError> {
     let wrong = |field, detail: &str| {
         let (detail, idle) = (detail.to_owned(), false);

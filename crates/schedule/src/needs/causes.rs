@@ -1,14 +1,14 @@
-//! Each cause of a due date.
+//! The causes of due dates.
 
 use super::{Cause, CauseKind, Compass, Event, Predicted, Ship, Side, Terms};
 use crate::rules::{Applies, DeviationRecord, Limit, Requirement, Rule};
 use chrono::{Days, NaiveDate};
 use std::cmp::Ordering;
 
-/// Said before the interval that begins with an adjustment which may yet fail.
+/// Prefix of an interval that begins with an unverified adjustment.
 const NOT_VERIFIED: &str = "adjusted, not yet verified at sea: ";
 
-/// All causes, those of rules in the rules' order.
+/// Finds all causes, those of rules in the rules' order.
 pub(super) fn find(
     ship: &Ship,
     compass: &Compass,
@@ -86,8 +86,8 @@ pub(super) fn find(
     causes
 }
 
-/// Over the limit that the ship's operator has set, where no rule that binds her sets as
-/// strict a one.
+/// The cause of exceeding the operator's own limit, where no applicable rule
+/// sets as strict a one.
 fn over_own_limit(
     ship: &Ship,
     compass: &Compass,
@@ -116,8 +116,8 @@ fn over_own_limit(
     })
 }
 
-/// Whether a rule binds a ship. What is not known of her is taken to be as the rule has
-/// it: to adjust too early costs a fee, to adjust too late a detention.
+/// True if a rule applies to a ship. An unknown fact is taken to match the
+/// rule: an early adjustment costs a fee, a late one a detention.
 fn binds(applies: &Applies, ship: &Ship) -> bool {
     let kept = ship.deviation_record.unwrap_or(DeviationRecord::NotKept);
     (applies.flags.is_empty() || ship.flag.is_none_or(|flag| applies.flags.contains(&flag)))
@@ -136,8 +136,8 @@ fn binds(applies: &Applies, ship: &Ship) -> bool {
 
 type Found = (CauseKind, NaiveDate, String);
 
-/// By instants where both are known, else by days: what an adjustment of the same day was for
-/// is over by it.
+/// Events since the last adjustment. Instants decide where both are known,
+/// otherwise days: an adjustment settles an event of the same day.
 fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
     let day = compass.adjusted_on.unwrap_or(NaiveDate::MIN);
     let is_since = move |event: &&Event| match (event.at, compass.adjusted_at) {
@@ -147,8 +147,8 @@ fn since_adjusted(compass: &Compass) -> impl Iterator<Item = &Event> {
     compass.events.iter().filter(is_since)
 }
 
-/// The first day on which the prediction is over a limit, or since which the deviation has
-/// been: since the last adjustment at the earliest, for what was before it is over.
+/// The first day on which the prediction exceeds a limit, or since which the
+/// deviation has, counted from the last adjustment at the earliest.
 fn over(
     compass: &Compass,
     limit: Limit,
@@ -220,7 +220,7 @@ fn at_transit(
         }
         Some(_) => {}
     }
-    // What holds at the transit is the last prediction before it.
+    // The last prediction before the transit holds at the transit.
     let then = compass
         .predicted
         .iter()

@@ -1,8 +1,8 @@
-//! When a compass must be adjusted next, how urgent that is, and why.
+//! The next due date of a compass, with its urgency and causes.
 //!
-//! What always holds: a due date is the earliest of its causes, each cause says in
-//! words what makes it and, where it is a rule, which; the same facts on the same day
-//! give the same need.
+//! Invariants: a due date is the earliest of its causes. Each cause has its
+//! reason as text and, where it is a rule, the rule's id. The same facts on the
+//! same day give the same need.
 
 mod causes;
 
@@ -11,23 +11,23 @@ use crate::time::Instant;
 use chrono::{Days, NaiveDate};
 use serde::{Deserialize, Serialize};
 
-/// What is known of a ship that rules ask about.
+/// Known facts of a ship that rules ask about.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ship {
-    /// Her flag; every flag's rules bind her when it is not known.
+    /// Flag; when unknown, every flag's rules apply.
     #[serde(default)]
     pub flag: Option<Flag>,
-    /// Her gross tonnage; a rule for large ships binds her when it is not known.
+    /// Gross tonnage; when unknown, rules for large ships apply.
     #[serde(default)]
     pub gross_tonnage: Option<u32>,
-    /// Her trade; a rule for some trades binds her when it is not known.
+    /// Trade; when unknown, rules for particular trades apply.
     #[serde(default)]
     pub trade: Option<Trade>,
-    /// Whether the deviation book is kept; when it is not known, it is not kept.
+    /// State of the deviation book; unknown counts as not kept.
     #[serde(default)]
     pub deviation_record: Option<DeviationRecord>,
-    /// Transits that are planned.
+    /// Planned transits.
     #[serde(default)]
     pub transits: Vec<Transit>,
 }
@@ -36,40 +36,41 @@ pub struct Ship {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Transit {
-    /// Through which canal.
+    /// The canal.
     pub canal: Canal,
-    /// On which day.
+    /// The day.
     pub on: NaiveDate,
 }
 
-/// What is known of one compass.
+/// Known facts of one compass.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Compass {
-    /// The day of the last adjustment; none where none is on record.
+    /// Day of the last adjustment; none where none is on record.
     #[serde(default)]
     pub adjusted_on: Option<NaiveDate>,
-    /// The instant of the last adjustment, where that is known.
+    /// Instant of the last adjustment, if known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub adjusted_at: Option<Instant>,
-    /// What befell ship and compass; what came before the last adjustment is over.
+    /// Events of ship and compass; those before the last adjustment are
+    /// settled.
     #[serde(default)]
     pub events: Vec<Event>,
-    /// The worst deviation on any heading, as the model predicts it, day by day; of a day
-    /// that is past, what it has been at least since.
+    /// Worst deviation on any heading, as the model predicts it, day by day.
+    /// For a past day, the deviation has been at least this since.
     #[serde(default)]
     pub predicted: Vec<Predicted>,
-    /// The greatest deviation on any heading that the ship's operator lets stand, degrees;
-    /// none where none is said.
+    /// The operator's limit of deviation on any heading, degrees; none if not
+    /// set.
     #[serde(default)]
     pub deviation_limit_deg: Option<Limit>,
-    /// A change of the ship's magnetism that was found.
+    /// A detected change of the ship's magnetism.
     #[serde(default)]
     pub change: Option<Change>,
-    /// A verification at sea that the last adjustment did not pass.
+    /// A verification at sea that the last adjustment failed.
     #[serde(default)]
     pub failed_verification: Option<FailedVerification>,
-    /// Whether headings at sea have yet to say whether the last adjustment holds.
+    /// True while the last adjustment awaits its verification at sea.
     #[serde(default)]
     pub awaits_verification: bool,
 }
@@ -78,12 +79,12 @@ pub struct Compass {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Event {
-    /// What happened.
+    /// Kind of event.
     pub kind: EventKind,
-    /// When, or when it is to end.
+    /// Its day, or the day on which it is to end.
     pub on: NaiveDate,
-    /// The instant of that, where it is known: what came after an adjustment of the same day
-    /// is told from what came before it.
+    /// Its instant, if known: it separates events before and after an
+    /// adjustment on the same day.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<Instant>,
 }
@@ -92,30 +93,30 @@ pub struct Event {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Predicted {
-    /// For which day.
+    /// Day of the prediction.
     pub on: NaiveDate,
-    /// For where, as it stands behind "at"; none where that is not said.
+    /// Place of the prediction, as it follows "at"; none if not given.
     #[serde(default)]
     pub place: Option<String>,
     /// The largest deviation on any heading, either way.
     pub worst_deviation_deg: f64,
-    /// Which way that is; none where it is not said.
+    /// Side of that deviation; none if not given.
     #[serde(default)]
     pub side: Option<Side>,
 }
 
-/// Which way a compass deviates.
+/// Side to which a compass deviates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// Its north lies east of magnetic north.
+    /// Compass north lies east of magnetic north.
     East,
-    /// Its north lies west of magnetic north.
+    /// Compass north lies west of magnetic north.
     West,
 }
 
 impl Side {
-    /// The side of a deviation, degrees, east positive.
+    /// The side of a deviation in degrees, positive to the east.
     pub fn of(deviation_deg: f64) -> Side {
         if deviation_deg < 0.0 {
             Side::West
@@ -129,35 +130,35 @@ impl Side {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
-    /// Since when.
+    /// Day of the change.
     pub on: NaiveDate,
-    /// By how much it changes the deviation on the worst heading.
+    /// Change of the deviation on the worst heading.
     pub size_deg: f64,
 }
 
-/// A verification that failed.
+/// A failed verification.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FailedVerification {
-    /// When.
+    /// Day of the verification.
     pub on: NaiveDate,
-    /// By how much headings at sea were off what the card says, on the worst heading.
+    /// Error of the card on the worst heading, by headings at sea.
     pub worst_error_deg: f64,
 }
 
-/// The product's own terms, where a rule says "must" and no date.
+/// The product's own terms, where a rule says "must" without a date.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Terms {
     /// Days from an event, a change or a failed verification to the due date.
     pub after_event_days: u32,
-    /// Days from the day on which deviation goes over its limit.
+    /// Days from the day on which deviation exceeds its limit.
     pub over_limit_days: u32,
-    /// What is due within so many days is urgent.
+    /// Days to the due date below which a need is urgent.
     pub urgent_days: u32,
-    /// What is due within so many days is due soon.
+    /// Days to the due date below which a need is due soon.
     pub soon_days: u32,
-    /// A change of this many hundredths of a degree, or more, counts.
+    /// The smallest change that counts, hundredths of a degree.
     pub change_centideg: u32,
 }
 
@@ -173,21 +174,21 @@ impl Default for Terms {
     }
 }
 
-/// How much a need presses.
+/// Urgency of a need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Urgency {
-    /// There is time.
+    /// Not due soon.
     Routine,
     /// Due soon.
     Soon,
-    /// Due very soon, or the card is not to be trusted.
+    /// Due very soon, or the card cannot be trusted.
     Urgent,
     /// The due date has passed, or there never was an adjustment.
     Overdue,
 }
 
-/// What brings a due date about.
+/// Kind of cause of a due date.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CauseKind {
@@ -197,44 +198,44 @@ pub enum CauseKind {
     Interval,
     /// A rule asks for an adjustment after an event.
     Event,
-    /// Predicted deviation is over a rule's limit, or the vessel's own.
+    /// Predicted deviation exceeds a rule's limit, or the vessel's own.
     OverLimit,
-    /// A transit asks for a newer table or a smaller deviation.
+    /// A transit requires a newer table or a smaller deviation.
     Transit,
     /// The ship's magnetism changed.
     Change,
-    /// The last adjustment did not pass at sea.
+    /// The last adjustment failed its verification at sea.
     FailedVerification,
 }
 
 /// One cause, with its own due date.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Cause {
-    /// What it is.
+    /// Kind of cause.
     pub kind: CauseKind,
-    /// By when it wants the compass adjusted.
+    /// Its own due date.
     pub due: NaiveDate,
-    /// In words.
+    /// Reason as text.
     pub reason: String,
-    /// The rule's name, where it is one.
+    /// Id of the rule, if it is one.
     pub rule: Option<String>,
 }
 
-/// When a compass is due, and why.
+/// A due date, with its causes.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Due {
-    /// The last day on which it may be adjusted.
+    /// The last day on which the compass may be adjusted.
     pub on: NaiveDate,
-    /// How much that presses.
+    /// Urgency.
     pub urgency: Urgency,
-    /// Why, in words.
+    /// Reason as text.
     pub reason: String,
     /// All causes, the earliest first.
     pub causes: Vec<Cause>,
 }
 
-/// When a compass is due by the rules that bind its ship and by what is known of it;
-/// nothing when no rule binds her and nothing is wrong.
+/// Returns the due date of a compass by the rules that apply to its ship and by
+/// its facts; `None` when no rule applies and nothing is wrong.
 pub fn due(
     ship: &Ship,
     compass: &Compass,
@@ -243,7 +244,7 @@ pub fn due(
     today: NaiveDate,
 ) -> Option<Due> {
     let mut causes = causes::find(ship, compass, rules, terms, today);
-    // Of causes on one day the one named first speaks for it.
+    // Among causes of one day, the first named gives the reason.
     causes.sort_by_key(|cause| cause.due);
     let first = causes.first()?;
     Some(Due {
@@ -254,8 +255,8 @@ pub fn due(
     })
 }
 
-/// The first cause's. Nothing is due before what was never adjusted, so what presses beside
-/// that is said with it.
+/// The first cause's reason. A missing adjustment comes before every other
+/// cause, so a deviation over its limit is added to it.
 fn reason(first: &Cause, causes: &[Cause]) -> String {
     let over = causes
         .iter()
@@ -269,7 +270,7 @@ fn reason(first: &Cause, causes: &[Cause]) -> String {
 }
 
 impl Terms {
-    /// How much a due date presses, when nothing but the date does.
+    /// The urgency of a due date, by the date alone.
     pub fn urgency(&self, due: NaiveDate, today: NaiveDate) -> Urgency {
         let within = |days: u32| {
             today
@@ -288,8 +289,8 @@ impl Terms {
     }
 }
 
-/// A card that is not to be trusted makes urgent what would be due soon. A compass without
-/// an adjustment on record is due today on every day: it is overdue.
+/// An untrustworthy card makes a need urgent that would be due soon. A compass
+/// without an adjustment on record is due today on every day: it is overdue.
 fn urgency(causes: &[Cause], terms: &Terms, today: NaiveDate) -> Urgency {
     let never = |cause: &Cause| cause.kind == CauseKind::NeverAdjusted;
     let first = match causes.first() {

@@ -1,4 +1,4 @@
-//! Which confirmed jobs stand, and the cause for which another does not.
+//! Checks confirmed jobs: those that stand, and the reasons why others do not.
 
 use super::jobs::Job;
 use super::quote::{self, Obstacle, Quote};
@@ -8,23 +8,24 @@ use crate::ports::PortCode;
 use chrono::NaiveDate;
 use std::collections::BTreeMap;
 
-/// Whether a job stands as a firm confirmed it.
+/// The state of a firm's confirmation.
 pub(super) enum Standing<'a> {
-    /// Nobody confirmed it.
+    /// Not confirmed.
     Open,
-    /// It stands.
+    /// It holds.
     Stands {
         call: &'a PortCall,
         firm: usize,
         day: NaiveDate,
         quote: Quote,
     },
-    /// It may move, for this cause; where it is only late, to a day that is not.
+    /// The job may move, for this cause; a job that is only late may move only
+    /// to a day in time.
     Loose { cause: String, only_late: bool },
 }
 
-/// For each job whether it stands. Where a firm confirmed more than it has teams for,
-/// what presses most, and then what is due first, stands.
+/// Checks the confirmation of each job. Where a firm confirmed more jobs than
+/// it has teams for, the more urgent and then the earlier due dates hold.
 pub(super) fn standing<'a>(input: &'a Input, jobs: &[Job<'a>]) -> Vec<Standing<'a>> {
     let mut all: Vec<Standing<'a>> = jobs.iter().map(|job| of(input, job)).collect();
     let mut order: Vec<usize> = (0..jobs.len()).collect();
@@ -82,7 +83,7 @@ fn of<'a>(input: &'a Input, job: &Job<'a>) -> Standing<'a> {
         ));
     }
     match quote::quote(input, job, call, firm, day) {
-        // Late as it is, it remains one of the job's options.
+        // A late one remains a candidate of the job.
         Ok(quote) if quote.late_days > 0 && !job.is_overdue(input.now.utc_date()) => {
             Standing::Loose {
                 cause: format!("{day} is after the due date, {}", job.due()),

@@ -1,7 +1,7 @@
-//! What would let a job be scheduled: the things that are lacking, together where one of them
-//! is not enough.
+//! Remedies: changes that would let a job be scheduled, several together where
+//! one is not enough.
 //!
-//! What always holds: a line that is told names everything that its way lacks.
+//! Invariant: a line names everything that its way lacks.
 
 use super::jobs::Job;
 use super::quote::{self, Obstacle};
@@ -13,14 +13,14 @@ use crate::time::{Eur, Instant};
 use chrono::{Days, NaiveDate};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// So many days ahead somebody is looked for who could come.
+/// Days ahead within which an available firm is looked for.
 const DAYS_AHEAD: u64 = 90;
-/// Ports that are named as served.
+/// The most ports listed as served.
 const MOST_PORTS: usize = 12;
-/// The hours of a firm that nobody knows yet.
+/// Assumed hours of a firm that is not in the input.
 const USUAL_HOURS: (f64, f64) = (8.0, 18.0);
 
-/// All that one way lacks.
+/// Everything that one way lacks.
 #[derive(Default)]
 pub(super) struct Lacking(Vec<String>);
 
@@ -38,7 +38,7 @@ impl Lacking {
         }
     }
 
-    /// Cents by which fee and travel are too high.
+    /// Adds a price cut by `too_dear` cents and a little more.
     pub(super) fn price(&mut self, firm: &Firm, port: &str, day: NaiveDate, too_dear: i64) {
         let euros = too_dear.div_euclid(100) + 1;
         let name = firm.called();
@@ -48,13 +48,13 @@ impl Lacking {
     }
 }
 
-/// What would help one job.
+/// Remedies for one job.
 pub(super) struct Help<'a> {
     pub(super) input: &'a Input,
     pub(super) job: &'a Job<'a>,
     pub(super) room: &'a Room<'a>,
     pub(super) planned_late: bool,
-    /// By how many things it takes, of which kind they are, and how soon it would be.
+    /// Number of changes, their kind, the day, and the line.
     near: BTreeSet<(usize, u8, NaiveDate, String)>,
 }
 
@@ -79,7 +79,7 @@ impl<'a> Help<'a> {
     }
 
     pub(super) fn lines(&self, most: usize) -> Vec<String> {
-        // Of what takes several things nobody wants to hear where one is enough.
+        // Where one change is enough, lines with several are left out.
         let least = self.near.first().map_or(0, |(things, ..)| *things);
         let lines = self.near.iter().filter(|(things, ..)| *things == least);
         lines.take(most).map(|(.., line)| line.clone()).collect()
@@ -92,7 +92,7 @@ impl<'a> Help<'a> {
         }
     }
 
-    /// Who has set the due date may set another.
+    /// Adds an extension of the due date.
     pub(super) fn extension(&mut self, day: NaiveDate) {
         let help = self.extension_to(day);
         self.add(4, day, Lacking(vec![help]));
@@ -106,7 +106,7 @@ impl<'a> Help<'a> {
         format!("an extension to {day}, asked of {whose} where its rules know one")
     }
 
-    /// Whether a job on that day would do, as far as the due date goes.
+    /// True if the due date allows a job on that day.
     fn may_be_on(&self, day: NaiveDate) -> bool {
         let late_days = (day - self.job.due()).num_days();
         let in_cap = |most: u32| late_days <= i64::from(most);
@@ -115,7 +115,7 @@ impl<'a> Help<'a> {
             || !self.planned_late && self.input.weights.late_days.is_none_or(in_cap)
     }
 
-    /// What stands against a firm's day of a call.
+    /// Adds what would remove the obstacles to a firm's day of a call.
     pub(super) fn against(
         &mut self,
         call: &PortCall,
@@ -137,13 +137,13 @@ impl<'a> Help<'a> {
         let (mut kind, mut about) = (1, day);
         if obstacles.contains(&Obstacle::AfterDue) {
             lacking.0.push(self.extension_to(day));
-            // What would help against days that are too late is about the due date.
+            // Remedies for days that are too late are sorted by the due date.
             (kind, about) = (4, self.job.due().max(day));
         }
         self.add(kind, about, lacking);
     }
 
-    /// None where nothing helps: the hours of that day are over.
+    /// `None` where nothing helps: the hours of that day are over.
     fn lacking_of_firm(
         &self,
         firm: &Firm,
@@ -188,7 +188,7 @@ impl<'a> Help<'a> {
         Some(lacking)
     }
 
-    /// What a firm lacks wherever she is.
+    /// Changes that a firm needs at any place.
     fn lacking_of_terms(&self, firm: &Firm, obstacles: &[Obstacle], there: &str) -> Vec<String> {
         let name = firm.called();
         let mut lacking = Vec::new();
@@ -206,7 +206,7 @@ impl<'a> Help<'a> {
         lacking
     }
 
-    /// Cents by which a firm is dearer than leaving the job undone may be; none where it is
+    /// Cents by which a firm costs more than an unmet need; `None` where it is
     /// worth its price on any day.
     pub(super) fn too_dear(&self, firm: &Firm, port: PortCode) -> Option<i64> {
         let more = self.job.needs.iter().skip(1);
@@ -216,7 +216,7 @@ impl<'a> Help<'a> {
         (price >= worth).then_some(price - worth)
     }
 
-    /// Somebody at a port that nobody serves.
+    /// Adds a firm at a port that none serves.
     pub(super) fn a_firm_at(&mut self, call: &PortCall) {
         let (port, now) = (quote::port_of(call), self.input.now);
         let long_enough = |day: &NaiveDate| {
@@ -241,8 +241,8 @@ impl<'a> Help<'a> {
         self.add(2, day, lacking);
     }
 
-    /// The first day on which a firm could come to a port, if she called there and it lacked
-    /// nothing that its terms say.
+    /// The first day on which a firm could come to a port, if the ship called
+    /// there and the firm's terms allowed it.
     fn first_day(&self, firm: &Firm, port: PortCode) -> Option<NaiveDate> {
         let zone = ports::zone(port);
         let (now, job_h) = (self.input.now, self.input.weights.job_h);
@@ -258,7 +258,7 @@ impl<'a> Help<'a> {
         })
     }
 
-    /// What stands against a firm wherever and whenever she calls.
+    /// Obstacles to a firm at any place and time.
     fn never(&self, firm: &Firm) -> Vec<Obstacle> {
         let mut never = Vec::new();
         if !firm.is_accepted_by(self.job.vessel.flag) {
@@ -279,7 +279,7 @@ impl<'a> Help<'a> {
         never
     }
 
-    /// A call in time where a firm could have come late.
+    /// Adds a call in time where a firm could only come late.
     fn earlier(&mut self, firm: &Firm, port: PortCode) {
         let able = self.never(firm).is_empty() && self.too_dear(firm, port).is_none();
         let Some(day) = self.first_day(firm, port).filter(|_| able) else {
@@ -296,8 +296,8 @@ impl<'a> Help<'a> {
         self.add(1, self.job.due(), lacking);
     }
 
-    /// That a call somewhere would help, where a firm could come first on a day. No ship makes
-    /// one by a day that it is, or before.
+    /// A call at a place, where a firm could come on `first` at the earliest. A
+    /// date in the past, or before `first`, is not offered.
     fn called(&self, first: NaiveDate, place: &str) -> String {
         let (today, due) = (self.input.now.utc_date(), self.job.due());
         if due <= today || self.job.is_overdue(today) || first > due {
@@ -307,7 +307,7 @@ impl<'a> Help<'a> {
         }
     }
 
-    /// A call at any port that a firm serves.
+    /// Adds a call at any port that a firm serves.
     pub(super) fn another_call(&mut self) {
         let due = self.job.due();
         let (mut in_time, mut later) = (BTreeSet::new(), BTreeMap::new());
@@ -348,7 +348,7 @@ impl<'a> Help<'a> {
             if !self.may_be_on(first) {
                 lacking.0.push(self.extension_to(first));
             }
-            // What is planned late already would be no earlier.
+            // A job that is planned late already would be no earlier.
             if !self.planned_late || !self.may_be_on(first) {
                 self.add(3, due, lacking);
             }
@@ -357,7 +357,8 @@ impl<'a> Help<'a> {
         }
     }
 
-    /// No firm could come anywhere: what the first of them lack, or another firm.
+    /// Adds the changes that each firm would need, or another firm, where none
+    /// could come anywhere.
     fn somebody(&mut self) {
         for firm in &self.input.firms {
             let never = self.never(firm);

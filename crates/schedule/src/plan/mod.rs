@@ -1,10 +1,13 @@
-//! The schedule: from a checked input to who does what where and when.
+//! The schedule: assigns firms and days to jobs, from a checked input.
 //!
-//! What always holds: a need is met at most once, by a firm that serves the port and is
-//! accepted, on a day on which it works and the ship is expected alongside long enough,
-//! within its teams; after the due date only where that has passed already, nothing in
-//! time is to be had, or the weights allow it. A confirmed job stays as it is while all that holds of it. The same
-//! input gives the same schedule.
+//! Invariants:
+//! - A need is met at most once, by a firm that serves the port and is
+//!   accepted, within its teams, on a working day on which the ship is expected
+//!   alongside long enough.
+//! - A job is planned after its due date only if that has passed already,
+//!   nothing in time is available, or the weights allow it.
+//! - A confirmed job stays unchanged while it remains possible.
+//! - The same input gives the same schedule.
 
 mod confirmed;
 mod help;
@@ -28,7 +31,8 @@ use jobs::Job;
 use quote::Quote;
 use std::collections::BTreeMap;
 
-/// What a confirmed job that stands is worth beyond its cost, in cents: ten million euros.
+/// Value of a confirmed job that holds, beyond its cost, in cents: ten million
+/// euros.
 const STANDS: i64 = 1_000_000_000;
 
 /// One way to do one job.
@@ -41,7 +45,7 @@ struct Way<'a> {
     visit: usize,
 }
 
-/// All ways to do all jobs, and the problem that they make.
+/// All ways to do all jobs, and the assignment problem that they form.
 struct Options<'a> {
     all: Vec<Way<'a>>,
     problem: Problem,
@@ -62,7 +66,7 @@ pub fn plan(checked: &Checked) -> Schedule {
         .map(|choice| choice.map(|choice| &options.all[choice]))
         .collect();
     let planned = planned(input, &jobs, &made);
-    // A sum of none would be less than nothing by its sign.
+    // A floating-point sum of nothing is −0.
     let paid = planned
         .iter()
         .fold(0.0, |paid: f64, job| paid + job.fee_eur + job.travel_eur);
@@ -123,7 +127,8 @@ impl<'a> Options<'a> {
                         let Ok(quote) = quote::quote(input, job, call, of, day) else {
                             continue;
                         };
-                        // What was agreed and is late gives way to what is not.
+                        // A confirmed but late job may stay, or move to a day
+                        // in time.
                         let as_late = only_late && quote.late_days > 0;
                         if !as_late || job.was(&call.id, &of.id, day) {
                             options.add(input, at, call, firm, day, quote);
@@ -131,8 +136,8 @@ impl<'a> Options<'a> {
                     }
                 }
             }
-            // Undone it waits longer than any of its ways: what that costs never makes it
-            // better left undone, only a fee with its travel can.
+            // An undone job waits longer than with any of its ways. So waiting
+            // never favours leaving it undone; only a fee with its travel can.
             let ways = options.all[first..].iter();
             let ways = ways.map(|way| way.quote.cost() - way.quote.fee);
             let waits = ways.fold(quote::waits_at_most(input, job), i64::max);

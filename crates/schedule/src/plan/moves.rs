@@ -1,4 +1,4 @@
-//! What moved against the former plan, and why.
+//! Changes from the previous plan, with their reasons.
 
 use super::confirmed::Standing;
 use super::jobs::Job;
@@ -8,7 +8,7 @@ use super::{Options, Way};
 use crate::input::{FormerJob, Input};
 use crate::time::euros;
 
-/// A line for each job of this plan or of the former one.
+/// Returns a change for each job of this plan or of the previous one.
 pub(super) fn changes(
     input: &Input,
     jobs: &[Job<'_>],

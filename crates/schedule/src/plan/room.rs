@@ -1,4 +1,4 @@
-//! What room a plan leaves with the firms.
+//! Capacity that a plan leaves with the firms.
 
 use super::Way;
 use super::jobs::Job;
@@ -7,7 +7,7 @@ use crate::ports::PortCode;
 use chrono::NaiveDate;
 use std::collections::BTreeMap;
 
-/// How firms' teams are taken in a plan.
+/// The ships that each firm's teams serve in a plan, by day and port.
 pub(super) struct Room<'a> {
     days: BTreeMap<(&'a str, NaiveDate), BTreeMap<PortCode, Vec<&'a str>>>,
 }
@@ -26,7 +26,8 @@ impl<'a> Room<'a> {
         room
     }
 
-    /// How many more teams a firm would need for one more job in a port.
+    /// Number of further teams that a firm would need for one more job in a
+    /// port.
     pub(super) fn lacking(&self, firm: &Firm, port: PortCode, day: NaiveDate) -> u32 {
         let none = BTreeMap::new();
         let ports = self.days.get(&(firm.id.as_str(), day)).unwrap_or(&none);
@@ -46,7 +47,7 @@ impl<'a> Room<'a> {
         needed.saturating_sub(firm.teams)
     }
 
-    /// Whom a firm is with on a day.
+    /// Names of the ships that a firm serves on a day.
     pub(super) fn others(&self, firm: &Firm, day: NaiveDate) -> Vec<&'a str> {
         let ports = self.days.get(&(firm.id.as_str(), day));
         ports

@@ -1,8 +1,9 @@
-//! Why a job could not be scheduled in time, and what would have helped.
+//! Reasons why a job could not be scheduled in time, and remedies.
 //!
-//! What always holds: each line of what would help is enough by itself, as far as this job is
-//! concerned: what several things stand against is told with all of them, and what nothing can
-//! help any more, as the hours of a day that are over, is not told. There is always one.
+//! Invariants: each remedy is enough by itself, as far as this job is
+//! concerned. A way with several obstacles is listed with all of them, and a
+//! hopeless one is left out: hours that are over cannot be changed. There is
+//! always one remedy.
 
 use super::Way;
 use super::help::{Help, Lacking};
@@ -14,11 +15,11 @@ use crate::calls::PortCall;
 use crate::input::{Firm, Input};
 use chrono::NaiveDate;
 
-/// Lines of either list.
+/// The most lines of either list.
 const MOST: usize = 8;
 
-/// All jobs that are not in the plan, or there after their due date; `unmet` is what each
-/// costs undone, in cents.
+/// Returns all jobs that are not in the plan, or planned after their due date;
+/// `unmet` is the cost of leaving each undone, in cents.
 pub(super) fn unscheduled(
     input: &Input,
     jobs: &[Job<'_>],
@@ -62,7 +63,7 @@ struct Found<'a> {
 }
 
 impl Found<'_> {
-    /// It is planned, and late.
+    /// Explains a job that is planned late.
     fn late(&mut self, way: &Way<'_>) {
         let (late, due) = (way.quote.late_days, self.help.job.due());
         let days = if late == 1 { "day" } else { "days" };
@@ -113,7 +114,8 @@ impl Found<'_> {
         }
         for firm in serving {
             for day in quote::days(call, input.now) {
-                // Of what is planned late, other late days would help nobody.
+                // For a job that is planned late, other late days are no
+                // remedy.
                 if self.help.planned_late && day > self.help.job.due() {
                     continue;
                 }
@@ -127,7 +129,7 @@ impl Found<'_> {
         match quote::quote(input, job, call, firm, day) {
             Ok(quote) => {
                 let travel = super::travel(firm, call.port);
-                // What is done late anyway is done in time for less than it is worth.
+                // A late job is done in time for less than it is worth.
                 let too_dear = if self.help.planned_late {
                     self.help.too_dear(firm, call.port).unwrap_or(-1)
                 } else {
@@ -147,7 +149,8 @@ impl Found<'_> {
         }
     }
 
-    /// Nothing stands against it but other jobs, or its price.
+    /// Explains a way without obstacles: the teams are taken, or the price is
+    /// too high.
     fn nothing_but_others(&mut self, firm: &Firm, call: &PortCall, day: NaiveDate, too_dear: i64) {
         let (name, port) = (firm.called(), quote::port_of(call).name);
         let teams = self.help.room.lacking(firm, call.port, day);
@@ -178,7 +181,7 @@ impl Found<'_> {
     }
 }
 
-/// What an obstacle is, in words.
+/// An obstacle as text.
 fn because(
     job: &Job<'_>,
     call: &PortCall,

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 static RULES: OnceLock<Vec<Rule>> = OnceLock::new();
 
-/// The rules of `data/rules.json`.
+/// Returns the rules of `data/rules.json`.
 #[allow(clippy::missing_panics_doc, reason = "a test reads the same file")]
 pub fn shipped() -> &'static [Rule] {
     RULES.get_or_init(|| {

@@ -1,4 +1,4 @@
-//! Rules in words.
+//! Rules as text.
 
 use super::{Citation, EventKind, Read};
 use std::fmt;

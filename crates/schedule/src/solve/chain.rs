@@ -1,13 +1,13 @@
-//! Chains of needs that make way for each other.
+//! Ejection chains: needs that displace each other.
 //!
-//! A need goes where another one was, which goes where a third was, and so on to one that
-//! finds room, or is given up: the shortest augmenting path of a minimum-cost flow, were
-//! teams not sent as a whole. Where a day's teams are all sent, one that has a single job
-//! may be called away for it. The way is searched in order of what it costs with the
-//! worth of the places that it takes.
+//! A need displaces another, which displaces a third, and so on, until one
+//! finds a free place or stays unmet. If teams were not sent as a whole, this
+//! would be the shortest augmenting path of a minimum-cost flow. Where all
+//! teams of a day are sent, one with a single job may be redirected. Chains are
+//! searched in the order of their cost plus the value of the places they take.
 //!
-//! What always holds: the assignment stays feasible, and a need is placed at the cost
-//! that is given back.
+//! Invariants: the assignment stays feasible, and a need is placed at exactly
+//! the returned cost.
 
 use super::moves::carry_out;
 use super::problem::Problem;
@@ -16,12 +16,13 @@ use super::work::Work;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Looks of one search, at most.
+/// The most steps of one search.
 const MOST_LOOKS: usize = 300_000;
-/// Beyond every cost.
+/// Larger than every cost.
 const NEVER: i64 = i64::MAX / 4;
 
-/// How a chain came to a visit: by which need, from the visit where that one made way.
+/// Link of a chain to a visit: the need that goes there, and the visit it was
+/// displaced from.
 #[derive(Clone, Copy)]
 struct Link {
     from: Option<usize>,
@@ -29,12 +30,12 @@ struct Link {
     choice: usize,
 }
 
-/// How far a chain is searched.
+/// Limit of a chain's search.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reach {
-    /// While it costs less at the worth of its places.
+    /// Search while the cost plus the value of the places is lower.
     Near,
-    /// While a free place elsewhere could still pay for it.
+    /// Search while a free place elsewhere could still pay for it.
     Far,
 }
 
@@ -42,16 +43,16 @@ pub(super) enum Reach {
 pub(super) struct Chains<'a> {
     /// Each need's choices, the cheapest first.
     order: &'a [Vec<usize>],
-    /// What a place on each visit is worth.
+    /// Value of a place on each visit.
     worth: &'a [i64],
     cost: Vec<i64>,
     by: Vec<Link>,
     queue: BinaryHeap<Reverse<(i64, usize)>>,
     /// Visits with a cost, to be cleared.
     seen: Vec<usize>,
-    /// How many choices each visit has.
+    /// Number of choices on each visit.
     wanted: Vec<u32>,
-    /// Looks of this search.
+    /// Steps of this search.
     looks: usize,
     pub(super) work: &'a mut Work,
 }
@@ -60,7 +61,7 @@ pub(super) struct Chains<'a> {
 struct End {
     cost: i64,
     at: Option<usize>,
-    /// Who is left unmet there.
+    /// The need left unmet there.
     given_up: Option<usize>,
 }
 
@@ -101,7 +102,7 @@ impl<'a> Chains<'a> {
         }
     }
 
-    /// Moves a need where a chain from it makes the whole cheaper.
+    /// Moves a need where a chain from it reduces the total cost.
     pub(super) fn improve(&mut self, state: &mut State<'_>, need: usize, reach: Reach) -> bool {
         let mark = state.mark();
         let mut home = self.worth_of_place(state, need);
@@ -116,13 +117,14 @@ impl<'a> Chains<'a> {
         false
     }
 
-    /// What the place is worth that a need has.
+    /// Value of the place that a need occupies.
     pub(super) fn worth_of_place(&self, state: &State<'_>, need: usize) -> i64 {
         state.chosen[need].map_or(0, |choice| self.worth[state.problem.choices[choice].visit])
     }
 
-    /// Places a need that has no choice, where that costs less than `limit`; gives what it
-    /// costs with all that makes way. Room that is found by the way is worth at most `room`.
+    /// Places an unplaced need if that costs less than `limit`, and returns the
+    /// cost with all displaced needs. Capacity freed on the way is worth at
+    /// most `room`.
     pub(super) fn place(
         &mut self,
         state: &mut State<'_>,
@@ -145,7 +147,8 @@ impl<'a> Chains<'a> {
         carry_out(state, need, &moves, limit)
     }
 
-    /// What the free places are worth at most, beyond what they cost, that someone wants.
+    /// Largest value, beyond its cost, of a free place that some need could
+    /// take.
     fn left_over(&mut self, state: &State<'_>) -> i64 {
         self.work.spend(self.worth.len() / 2);
         let worth = |at: usize| {
@@ -180,7 +183,7 @@ impl<'a> Chains<'a> {
         end
     }
 
-    /// Ends a chain on a visit, or lets a need there make way.
+    /// Ends a chain on a visit, or displaces a need there.
     fn arrive(&mut self, state: &State<'_>, at: usize, cost: i64, end: &mut End, room: i64) {
         let problem = state.problem;
         let visit = problem.visits[at];
@@ -190,7 +193,7 @@ impl<'a> Chains<'a> {
             let cost = if beside == at {
                 cost
             } else if state.has_single(beside) {
-                // The team that has one job there comes here.
+                // The team with one job there comes here.
                 cost + visit.travel - other.travel
             } else {
                 continue;
@@ -206,7 +209,7 @@ impl<'a> Chains<'a> {
         }
     }
 
-    /// From a need that makes way to all visits where it may go.
+    /// Extends a chain from a displaced need to all visits where it may go.
     fn go_on(
         &mut self,
         state: &State<'_>,
@@ -225,7 +228,7 @@ impl<'a> Chains<'a> {
             if cost >= most {
                 break;
             }
-            // Where there is a place now, a chain ends, whatever that place is worth.
+            // A chain ends at a free place, whatever the place is worth.
             let key = cost + self.worth[to.visit];
             let place = state.price_of_place(to.visit);
             let leads = match place {
@@ -247,7 +250,8 @@ impl<'a> Chains<'a> {
         }
     }
 
-    /// Whether a chain has been on a visit's day, whose teams it counts on only once.
+    /// True if a chain has used a visit's day before; it counts on that day's
+    /// teams only once.
     fn passed(&mut self, state: &State<'_>, from: Option<usize>, visit: usize) -> bool {
         let day = state.problem.visits[visit].firm_day;
         let mut at = from;

@@ -1,19 +1,19 @@
-//! What the teams of each firm's day take at given prices of the needs: the step of the
-//! prices, which is made thousands of times.
+//! The subproblem of the Lagrangian relaxation: the loads of each firm's teams
+//! at given prices. The price steps solve it thousands of times.
 
 use super::problem::Problem;
 
-/// What is taken, and what all costs with it.
+/// A solution of the subproblem, and its total cost.
 pub(super) struct Taken {
     pub(super) cost: f64,
     pub(super) choices: Vec<usize>,
 }
 
-/// The choices by visit, one after the other in memory, and the visits by day.
+/// The choices by visit, contiguous in memory, and the visits by day.
 pub(super) struct Days<'a> {
     problem: &'a Problem,
     seats: Vec<Seat>,
-    /// Where each visit's begin and end.
+    /// Range of each visit's seats.
     of_visit: Vec<(usize, usize)>,
     visits: Vec<Vec<usize>>,
 }
@@ -24,7 +24,7 @@ struct Seat {
     choice: usize,
 }
 
-/// The jobs that one team does on a visit, and what it gains by them: less than nothing.
+/// The jobs of one team on a visit, with their total gain, which is negative.
 struct Load {
     gain: f64,
     first: usize,
@@ -83,7 +83,8 @@ impl<'a> Days<'a> {
         taken
     }
 
-    /// Adds a visit's loads that are worth a team, the best first, as many as there are teams.
+    /// Adds the profitable loads of a visit, the best first, as many as there
+    /// are teams.
     fn loads(
         &self,
         index: usize,

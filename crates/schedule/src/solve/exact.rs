@@ -1,9 +1,11 @@
-//! What the bound leaves open, as a mixed-integer model, part by part.
+//! Branch and bound on the choices that the bound leaves open, as mixed-integer
+//! models of independent parts.
 //!
-//! What always holds: an assignment that comes back is feasible and no worse than the
-//! one given; it is called optimal only where the solver finished its proof on every
-//! part. Work is counted in nodes and pivots, not in seconds: the same problem, the same
-//! answer. What one relaxation takes is known only after it, and bounded by its part's size.
+//! Invariants: the returned assignment is feasible and no worse than the given
+//! one. It is called optimal only where the solver finished its proof on every
+//! part. Work is counted in nodes and pivots, not in seconds, so that the same
+//! problem has the same answer. The work of one relaxation is known only
+//! afterwards, and bounded by its part's size.
 
 use super::problem::{Assignment, Problem};
 use super::work::Work;
@@ -13,19 +15,19 @@ use microlp::{
 };
 use std::collections::BTreeMap;
 
-/// Looks at a choice that a step of the simplex takes for each choice.
+/// Work of a simplex step per choice.
 const PIVOT: usize = 2;
 
-/// What became of a problem.
+/// The result of branch and bound.
 pub(super) struct Finished {
     pub(super) assignment: Assignment,
-    /// Whether no other assignment of these choices is cheaper.
+    /// True if no other assignment of these choices is cheaper.
     pub(super) optimal: bool,
 }
 
-/// The cheapest assignment with what is `open`, part by part
-/// of the choices that share no need and no firm's day. A part of many choices may take
-/// fewer nodes, and one that is too large none: `effort` is nodes times choices.
+/// Finds the cheapest assignment within `open`, for each part of choices that
+/// share no need and no firm's day. A part of many choices may take fewer
+/// nodes, and one that is too large none: `effort` is nodes times choices.
 pub(super) fn finish(
     problem: &Problem,
     open: &Open,
@@ -37,8 +39,8 @@ pub(super) fn finish(
     let mut assignment = known;
     let mut optimal = true;
     for part in parts(problem, &open.choices) {
-        // With one choice for each need, that one made and none to give up, there is
-        // nothing to find.
+        // A part is settled if each need has one choice, which is made, and
+        // none may stay unmet.
         let is_settled = |index: &usize| {
             let need = problem.choices[*index].need;
             assignment[need] == Some(*index) && !open.unmet[need]
@@ -56,7 +58,7 @@ pub(super) fn finish(
             continue;
         };
         optimal &= proven;
-        // No other part has a firm's day of this one.
+        // No other part shares a firm's day with this one.
         let known = found.iter().map(|(need, _)| (*need, assignment[*need]));
         let known = problem.cost_of(known);
         let is_cheaper = match (problem.cost_of(found.iter().copied()), known) {
@@ -75,7 +77,7 @@ pub(super) fn finish(
     }
 }
 
-/// The open choices, by parts that do not touch.
+/// Splits the open choices into independent parts.
 fn parts(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
     let needs = problem.unmet.len();
     let mut leader: Vec<usize> = (0..needs + problem.teams.len()).collect();
@@ -108,7 +110,8 @@ fn find(leader: &mut [usize], mut of: usize) -> usize {
 
 type Found = Vec<(usize, Option<usize>)>;
 
-/// One part's best, and whether that is proven; nothing when the solver has none.
+/// Solves one part: its best choices and whether they are proven optimal;
+/// `None` without a solution.
 fn solve(
     problem: &Problem,
     part: &[usize],
@@ -124,7 +127,7 @@ fn solve(
     let mut going: BTreeMap<usize, u32> = BTreeMap::new();
     for &index in part {
         let choice = problem.choices[index];
-        // A choice is worth what it saves beside leaving the need unmet.
+        // A choice is worth its saving against leaving the need unmet.
         let worth = (choice.cost - problem.unmet[choice.need]) as f64 / CENTS;
         let x = model.add_binary_var(worth);
         let made = known[choice.need] == Some(index);

@@ -1,16 +1,17 @@
-//! A chain's moves, made together or not at all.
+//! Applies a chain's moves, all or none.
 
 use super::search::State;
 
-/// Makes a chain's moves; none of them where they are not possible together at less than
-/// the limit, for a link may have changed since the chain went on from it.
+/// Applies a chain's moves. Applies none if they are not possible together for
+/// less than the limit: a link may have changed after the chain went on from
+/// it.
 pub(super) fn carry_out(
     state: &mut State<'_>,
     need: usize,
     moves: &[(usize, Option<usize>)],
     limit: i64,
 ) -> Option<i64> {
-    // A need that is in it twice goes only once.
+    // A need that occurs twice in the chain moves only once.
     let twice = |at: usize| moves[..at].iter().any(|(need, _)| *need == moves[at].0);
     if (0..moves.len()).any(twice) {
         return None;

@@ -1,11 +1,11 @@
-//! Better assignments near one that is known: neighbourhoods of needs that compete for
-//! the same teams are solved anew, all others held.
+//! Large neighbourhood search: needs that compete for the same teams are solved
+//! again, while all others are fixed.
 
 use super::problem::{Assignment, Problem};
 use super::work::Work;
 use super::{EFFORT_NEAR, NEIGHBOURS, Open, exact};
 
-/// Goes through all neighbourhoods once.
+/// Improves all neighbourhoods once.
 pub(super) fn improve(
     problem: &Problem,
     open: &Open,
@@ -22,7 +22,7 @@ pub(super) fn improve(
     let mut found = known;
     let mut done = vec![false; problem.unmet.len()];
     for seed in 0..problem.unmet.len() {
-        // A need that was within an earlier neighbourhood is the middle of none.
+        // A need within an earlier neighbourhood is not the centre of another.
         if done[seed] || wishes[seed].len() < 2 {
             continue;
         }
@@ -55,7 +55,7 @@ pub(super) fn improve(
     found
 }
 
-/// The firms' days that each need has an open choice on.
+/// The firms' days on which each need has an open choice.
 fn wishes(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
     let mut wishes: Vec<Vec<usize>> = vec![Vec::new(); problem.unmet.len()];
     for (choice, open) in problem.choices.iter().zip(open) {
@@ -67,8 +67,8 @@ fn wishes(problem: &Problem, open: &[bool]) -> Vec<Vec<usize>> {
     wishes
 }
 
-/// The needs nearest to one, itself first: those that want the same firms' days, then
-/// those that want the same as these.
+/// The needs nearest to one, itself first: those that want the same firms'
+/// days, then those that want the same days as these.
 fn around(seed: usize, wishes: &[Vec<usize>], wanted_by: &[Vec<usize>]) -> Vec<usize> {
     let mut near = vec![seed];
     let mut at = 0;

@@ -1,58 +1,60 @@
-//! What no assignment can cost less than, what each choice costs beyond it, and which
-//! choices such prices lean to.
+//! Lagrangian relaxation: prices of the needs, the lower bound, and the choices
+//! that the prices favour.
 //!
-//! That a need is met at most once is given a price (Lagrangian relaxation): what is left
-//! falls into the days of the firms, on each of which the teams take the best loads of
-//! jobs, and that is exact. Such a bound is at least the linear relaxation's with x ≤ y for
-//! each job and its team (A. M. Geoffrion, "Lagrangean relaxation for integer
-//! programming", Mathematical Programming Study 2, 1974, Theorem 1). Prices follow the
-//! mean of what was taken, which tends to the relaxation's own solution (F. Barahona and
-//! R. Anbil, "The volume algorithm: producing primal solutions with a subgradient method",
-//! Mathematical Programming 87, 2000, section 3).
+//! The constraint that a need is met at most once is given a price. The rest
+//! falls into the firms' days, on each of which the teams take the best loads
+//! of jobs; that is exact. Such a bound is at least that of the linear
+//! relaxation with x ≤ y for each job and its team (A. M. Geoffrion,
+//! "Lagrangean relaxation for integer programming", Mathematical Programming
+//! Study 2, 1974, Theorem 1). Prices follow the mean of the subproblems'
+//! solutions, which tends to the solution of the relaxation (F. Barahona and R.
+//! Anbil, "The volume algorithm: producing primal solutions with a subgradient
+//! method", Mathematical Programming 87, 2000, section 3).
 //!
-//! What always holds: the bound is right whatever the prices are. They are rounded to
-//! cents and the bound is added up from them in whole numbers, so that a bad price makes
-//! the bound worse, never false.
+//! Invariant: the bound is right for any prices. They are rounded to cents and
+//! the bound is summed in integers, so that a bad price makes the bound worse,
+//! never false.
 
 use super::bound::{self, Bound};
 use super::days::{Days, Taken};
 use super::problem::Problem;
 use super::work::Work;
 
-/// Steps without a better bound, after which they are made smaller.
+/// Steps without a better bound, after which steps are made smaller.
 const PATIENCE: usize = 20;
-/// The factor of a step to begin with.
+/// The initial step factor.
 const FIRST_STEP: f64 = 0.1;
-/// Below this factor steps lead nowhere.
+/// The smallest useful step factor.
 const SMALLEST_STEP: f64 = 1e-5;
-/// A step aims at most at this much beyond the bound in hand, however far what is known is.
+/// A step aims at most at this fraction above the current bound, however far
+/// the known cost is.
 const AIM: f64 = 0.02;
-/// Steps after which the newest has less weight in the mean, where the bound has risen by
-/// less than a thousandth.
+/// Steps after which the newest solution gets less weight in the mean, if the
+/// bound has risen by less than a thousandth.
 const SLOW: usize = 100;
 /// The least such weight.
 const LEAST_WEIGHT: f64 = 1e-3;
 
-/// Prices of needs, in cents, at which the bound is the best so far.
+/// Prices of needs in cents, at the best bound so far.
 pub(super) struct Prices<'a> {
     problem: &'a Problem,
     days: Days<'a>,
     at: Vec<f64>,
     cost: f64,
-    /// What leaving each need unmet costs: its highest price.
+    /// Cost of leaving each need unmet: its highest price.
     most: Vec<f64>,
-    /// How much of each choice is in the mean.
+    /// Share of each choice in the mean.
     mean: Vec<f64>,
-    /// How often each need is met in the mean.
+    /// Number of times that each need is met in the mean.
     met: Vec<f64>,
-    /// A part of Polyak's step.
+    /// Fraction of Polyak's step.
     factor: f64,
-    /// The weight of the newest in the mean, at most.
+    /// The most weight of the newest solution in the mean.
     weight: f64,
 }
 
 impl<'a> Prices<'a> {
-    /// To begin with each need pays what its cheapest choice costs alone.
+    /// Starts with the cost of each need's cheapest choice alone.
     pub(super) fn new(problem: &'a Problem) -> Prices<'a> {
         let days = Days::of(problem);
         let most: Vec<f64> = problem.unmet.iter().map(|unmet| *unmet as f64).collect();
@@ -80,11 +82,13 @@ impl<'a> Prices<'a> {
         }
     }
 
-    /// Raises the bound by so many steps, at most, where an assignment costs `known`.
+    /// Raises the bound by at most `steps` steps, towards an assignment of cost
+    /// `known`.
     pub(super) fn improve(&mut self, known: i64, steps: usize, work: &mut Work) {
         let each = self.mean.len() + self.at.len();
         let (mut since, mut before) = (0, self.cost);
-        // Steps that became too small on the way to a worse assignment's cost begin anew.
+        // The step factor starts again: it may have become small on the way to
+        // a worse assignment's cost.
         self.factor = FIRST_STEP;
         for step in 1..=steps.min(work.steps(each)) {
             work.spend(each);
@@ -118,7 +122,8 @@ impl<'a> Prices<'a> {
         }
     }
 
-    /// The next prices; none where the mean meets each need once or the gap is closed.
+    /// The next prices; `None` where the mean meets each need once or the gap
+    /// is closed.
     fn trial(&self, known: f64) -> Option<Vec<f64>> {
         let slopes: Vec<f64> = (0..self.at.len()).map(|need| self.slope(need)).collect();
         let length: f64 = slopes.iter().map(|slope| slope * slope).sum();
@@ -135,7 +140,8 @@ impl<'a> Prices<'a> {
         )
     }
 
-    /// By the mean, more is asked of a need that is met too seldom.
+    /// Slope of a need's price by the mean: positive for a need that is met too
+    /// seldom.
     fn slope(&self, need: usize) -> f64 {
         let slope = 1.0 - self.met[need];
         let ended = if slope > 0.0 {
@@ -143,11 +149,11 @@ impl<'a> Prices<'a> {
         } else {
             self.at[need] <= 0.0
         };
-        // A price at its end goes no further.
+        // A price at its limit moves no further.
         if ended { 0.0 } else { slope }
     }
 
-    /// Whether the newest slope goes the way of the mean's.
+    /// True if the newest slope agrees with the mean's.
     fn uphill(&self, met: &[f64]) -> bool {
         let each = met.iter().enumerate();
         each.map(|(need, met)| (1.0 - met) * self.slope(need))
@@ -155,7 +161,8 @@ impl<'a> Prices<'a> {
             > 0.0
     }
 
-    /// Adds the newest with the weight that makes the mean's slope the shortest.
+    /// Adds the newest solution with the weight that makes the mean's slope the
+    /// shortest.
     fn add_to_mean(&mut self, taken: &Taken, met: &[f64], prices: &[f64]) {
         let (mut down, mut square) = (0.0, 0.0);
         for need in 0..met.len() {
@@ -183,7 +190,8 @@ impl<'a> Prices<'a> {
         }
     }
 
-    /// Choices that a twentieth of the mean has, or more, those with most first.
+    /// Choices with a share of at least a twentieth in the mean, the largest
+    /// share first.
     pub(super) fn leanings(&self) -> Vec<usize> {
         let mut choices: Vec<usize> = (0..self.mean.len())
             .filter(|choice| self.mean[*choice] > 0.05)
@@ -205,7 +213,7 @@ impl<'a> Prices<'a> {
     }
 }
 
-/// How often each need is met.
+/// Number of times that each need is met.
 fn met(problem: &Problem, taken: &Taken) -> Vec<f64> {
     let mut met = vec![0.0; problem.unmet.len()];
     for choice in &taken.choices {
@@ -224,7 +232,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
 
-        // The solver is held to every assignment there is by a test of its own.
+        // The solver is checked against every assignment in a test of its own.
         #[test]
         fn no_best_assignment_costs_less_nor_has_a_choice_beyond_the_gap(
             problem in problems(),

@@ -1,11 +1,11 @@
-//! An assignment under change, and a first one: each need in turn takes what is best for it.
+//! The assignment under search, and greedy starting points.
 //!
-//! What always holds: what is found is feasible, and the same for the same problem.
+//! Invariant: every result is feasible, and depends on the problem alone.
 
 use super::problem::{Assignment, Problem};
 use super::work::Work;
 
-/// An assignment under change, with what each visit and each firm's day carries.
+/// An assignment under search, with the load of each visit and each firm's day.
 pub(super) struct State<'a> {
     pub(super) problem: &'a Problem,
     pub(super) chosen: Assignment,
@@ -13,11 +13,12 @@ pub(super) struct State<'a> {
     pub(super) sent: Vec<u32>,
     pub(super) at_visit: Vec<Vec<usize>>,
     pub(super) visits_of: Vec<Vec<usize>>,
-    /// Who was put or taken since the last that is settled, and what it had before.
+    /// Moves since the last settled state: the need, and its choice before.
     moves: Vec<(usize, Option<usize>)>,
 }
 
-/// Each need in turn takes what is cheapest then, until none finds cheaper.
+/// Greedy improvement: each need in turn takes its cheapest choice, until none
+/// can improve.
 pub(super) fn greedy(
     problem: &Problem,
     begin: Assignment,
@@ -38,7 +39,7 @@ pub(super) fn greedy(
     }
 }
 
-/// The first of these choices for which there is a team, of each need.
+/// Takes the first of these choices for each need for which there is a team.
 pub(super) fn take_up(problem: &Problem, choices: &[usize]) -> Assignment {
     let mut state = State::new(problem, vec![None; problem.unmet.len()]);
     for &choice in choices {
@@ -70,13 +71,13 @@ impl<'a> State<'a> {
         state
     }
 
-    /// What it costs to add a choice, travel included; none when no team is left.
+    /// Cost of adding a choice, travel included; `None` when no team is left.
     pub(super) fn price_of(&self, choice: usize) -> Option<i64> {
         let choice = self.problem.choices[choice];
         Some(choice.cost + self.price_of_place(choice.visit)?)
     }
 
-    /// What one more place on a visit costs; none when no team is left.
+    /// Cost of one more place on a visit; `None` when no team is left.
     pub(super) fn price_of_place(&self, at: usize) -> Option<i64> {
         let visit = self.problem.visits[at];
         if !self.jobs[at].is_multiple_of(visit.jobs_a_team) {
@@ -86,13 +87,14 @@ impl<'a> State<'a> {
         free.then_some(visit.travel)
     }
 
-    /// Whether a visit has a team with one job there.
+    /// True if a visit has a team with one job there.
     pub(super) fn has_single(&self, visit: usize) -> bool {
         let others = self.jobs[visit].checked_sub(1);
         others.is_some_and(|others| others.is_multiple_of(self.problem.visits[visit].jobs_a_team))
     }
 
-    /// Meets a need by a choice, whether there is a team for it or not; gives what that costs.
+    /// Assigns a choice to a need, with or without a team for it, and returns
+    /// its cost.
     pub(super) fn put(&mut self, need: usize, choice: usize) -> i64 {
         let chosen = self.problem.choices[choice];
         let visit = self.problem.visits[chosen.visit];
@@ -108,7 +110,7 @@ impl<'a> State<'a> {
         chosen.cost
     }
 
-    /// Takes a need's choice back; gives what that saves.
+    /// Removes a need's choice, and returns the saving.
     pub(super) fn take(&mut self, need: usize) -> i64 {
         let Some(choice) = self.chosen[need].take() else {
             return self.problem.unmet[need];
@@ -125,7 +127,7 @@ impl<'a> State<'a> {
         choice.cost
     }
 
-    /// Where [`State::go_back`] leads to.
+    /// The mark for [`State::go_back`].
     pub(super) fn mark(&self) -> usize {
         self.moves.len()
     }
@@ -141,16 +143,17 @@ impl<'a> State<'a> {
         self.moves.truncate(mark);
     }
 
-    /// Forgets how to go back.
+    /// Forgets the moves.
     pub(super) fn settle(&mut self) {
         self.moves.clear();
     }
 
-    /// The cheapest way to meet a need now, `None` where leaving it unmet is.
+    /// The cheapest way to meet a need now, with its cost; `None` where leaving
+    /// it unmet is cheapest.
     fn best(&self, need: usize, order: &[Vec<usize>]) -> (Option<usize>, i64) {
         let mut best = (None, self.problem.unmet[need]);
         for &choice in &order[need] {
-            // In order of cost: what follows is no cheaper.
+            // In order of cost: the rest is no cheaper.
             if self.problem.choices[choice].cost >= best.1 {
                 break;
             }

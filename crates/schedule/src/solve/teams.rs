@@ -1,8 +1,9 @@
-//! Whole teams sent elsewhere.
+//! Redirects whole teams.
 //!
-//! Where a team has several jobs a day no chain of single needs calls it away. So each
-//! visit in turn is sent one team more, one that is free or another visit's of that day;
-//! it takes the jobs that are best there, and those that it had are placed anew by chains.
+//! Where a team has several jobs a day, no chain of single needs can redirect
+//! it. So each visit in turn gets one more team, either a free one or another
+//! visit's of that day. The team takes the best jobs there, and chains place
+//! its former jobs again.
 
 use super::bound::Bound;
 use super::chain::{Chains, Reach};
@@ -11,10 +12,11 @@ use super::search::State;
 use super::work::Work;
 use std::collections::BTreeSet;
 
-/// Rounds over all needs and all visits, at most.
+/// The most rounds over all needs and all visits.
 const ROUNDS: usize = 12;
 
-/// Improves an assignment by chains and by teams until neither makes it cheaper.
+/// Improves an assignment by chains and by teams until neither makes it
+/// cheaper.
 pub(super) fn improve(
     problem: &Problem,
     begin: Assignment,
@@ -49,7 +51,8 @@ struct Teams<'a> {
 }
 
 impl Teams<'_> {
-    /// Whether any need found a cheaper place; none when no work is left.
+    /// Returns true if any need found a cheaper place; false when no work is
+    /// left.
     fn chains_from_all(&mut self, reach: Reach) -> bool {
         let mut moved = false;
         let mut needs: Vec<usize> = (0..self.order.len()).collect();
@@ -67,7 +70,7 @@ impl Teams<'_> {
         moved
     }
 
-    /// Whether any visit was sent one more team; none when no work is left.
+    /// Returns true if any visit got one more team; false when no work is left.
     fn send_to_all(&mut self) -> bool {
         let mut sent = false;
         for visit in 0..self.of_visit.len() {
@@ -106,15 +109,15 @@ impl Teams<'_> {
         needs.split_off(needs.len() - load as usize)
     }
 
-    /// What a need's choice costs beyond the bound.
+    /// Excess of a need's choice over the bound.
     fn misfit(&self, need: usize) -> i64 {
         self.state.chosen[need].map_or(self.bound.reduced_unmet[need], |choice| {
             self.bound.reduced[choice]
         })
     }
 
-    /// Sends a team to a visit and places anew what it had elsewhere, where all that is
-    /// cheaper.
+    /// Sends a team to a visit and places its former jobs again, if that is
+    /// cheaper in total.
     fn send(&mut self, visit: usize, wishes: &[usize], called_away: &[usize]) -> bool {
         let problem = self.state.problem;
         let mark = self.state.mark();
@@ -142,7 +145,7 @@ impl Teams<'_> {
         false
     }
 
-    /// The choices that gain most on a visit, as many as a team does there.
+    /// The choices that gain most on a visit, up to the capacity of a team.
     fn wishes(&mut self, visit: usize) -> Vec<usize> {
         let problem = self.state.problem;
         let mut gains: Vec<(i64, usize)> = Vec::new();
@@ -157,7 +160,7 @@ impl Teams<'_> {
         }
         gains.sort_unstable();
         let most = problem.visits[visit].jobs_a_team as usize;
-        // Two choices of one need on a visit: the cheaper.
+        // Of two choices of one need on a visit, the cheaper.
         let mut needs = BTreeSet::new();
         let wishes = gains.into_iter().map(|(_, choice)| choice);
         wishes
@@ -166,8 +169,8 @@ impl Teams<'_> {
             .collect()
     }
 
-    /// Places needs one after the other; whether `cost` with what they cost is less than
-    /// nothing then.
+    /// Places needs one after the other; true if `cost` plus their costs is
+    /// negative.
     fn place_anew(&mut self, waiting: &[usize], mut cost: i64, room: i64) -> bool {
         let mut left: i64 = waiting.iter().map(|need| self.alone(*need)).sum();
         for &need in waiting {
@@ -181,7 +184,7 @@ impl Teams<'_> {
         cost < 0
     }
 
-    /// What a need costs where it has the first choice of all teams.
+    /// Cost of a need with the first choice of all teams.
     fn alone(&self, need: usize) -> i64 {
         let problem = self.state.problem;
         let cheapest = self.order[need].first();

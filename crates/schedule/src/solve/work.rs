@@ -1,7 +1,8 @@
-//! Work that is counted, so that no problem runs away.
+//! Limits of work.
 //!
-//! What always holds: the unit is a look at one choice, or what takes about as long (ten
-//! nanoseconds on a machine of 2026), never the clock: the same problem, the same answer.
+//! Invariant: the unit is one look at a choice, or whatever takes about as long
+//! (ten nanoseconds on a machine of 2026), never the clock. The same problem
+//! has the same answer.
 
 /// A limit of work.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +24,7 @@ impl Work {
         self.spent >= self.most
     }
 
-    /// How many steps of so many looks are left.
+    /// Number of steps left, at `looks` each.
     pub(super) fn steps(&self, looks: usize) -> usize {
         let steps = self.most.saturating_sub(self.spent) / (looks.max(1) as u64);
         usize::try_from(steps).unwrap_or(usize::MAX)

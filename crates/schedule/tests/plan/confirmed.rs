@@ -1,4 +1,5 @@
-//! A confirmed job moves only for cause; what is only proposed, for a better plan.
+//! A confirmed job moves only for cause; a proposed one moves for a better
+//! plan.
 
 use crate::{call, firm, need, schedule, vessel};
 use binnacle_schedule::input::JobState;
@@ -49,7 +50,7 @@ fn a_proposed_job_moves_when_that_saves_more_than_moving_costs() {
 fn a_firm_that_is_asked_already_is_not_to_be_asked_so_long_ahead_again() {
     let found = |state: &str| {
         let mut input = input(state);
-        // Of three weeks twelve days are left: it was asked before they began.
+        // Twelve days of three weeks are left: it was asked before they began.
         input["firms"][0]["lead_time_h"] = json!(21 * 24);
         input["firms"].as_array_mut().unwrap().truncate(1);
         input["port_calls"].as_array_mut().unwrap().truncate(1);
@@ -58,7 +59,7 @@ fn a_firm_that_is_asked_already_is_not_to_be_asked_so_long_ahead_again() {
     for state in ["offered", "confirmed"] {
         assert_eq!(found(state), ChangeKind::Kept, "{state}");
     }
-    // What is only proposed would have to be asked for now.
+    // A proposed job would have to be asked for now.
     assert_eq!(found("proposed"), ChangeKind::Dropped);
 }
 

@@ -1,4 +1,4 @@
-//! What docs/schedule.md shows is what comes out.
+//! The examples of docs/schedule.md are real results.
 
 use binnacle_schedule::input::read;
 use binnacle_schedule::plan::plan;
@@ -12,7 +12,7 @@ fn blocks() -> Vec<&'static str> {
         .collect()
 }
 
-/// Whether all that one value has, another has too.
+/// True if one value contains everything of another.
 fn has(whole: &Value, part: &Value) -> bool {
     match (whole, part) {
         (Value::Object(whole), Value::Object(part)) => part

@@ -1,4 +1,4 @@
-//! What could not be scheduled says why, and what would help.
+//! Unscheduled jobs state their reasons and remedies.
 
 use crate::{call, firm, need, schedule, vessel};
 use binnacle_schedule::plan::Unscheduled;
@@ -43,7 +43,8 @@ fn what_is_overdue_or_due_today_is_wanted_as_soon_as_can_be_and_by_no_day_gone_b
         input["needs"][0]["due"] = json!("2026-11-21");
         input["weights"] = json!({"late_days": 0});
     });
-    // Nobody comes on a Saturday, and after it she is late wherever she calls.
+    // No firm works on a Saturday, and after it the ship is late wherever it
+    // calls.
     assert_eq!(
         today.would_help,
         ["an extension to 2026-12-01, asked of flag NO where its rules know one"]

@@ -17,7 +17,7 @@ pub(crate) fn schedule(mut input: Value) -> Schedule {
     plan(&read(&input.to_string()).unwrap())
 }
 
-/// A call in Rotterdam, whose ship's time is UTC, alongside from midnight to midnight.
+/// A call in Rotterdam from midnight to midnight UTC.
 pub(crate) fn call(id: &str, vessel: &str, from: &str, to: &str) -> Value {
     json!({"id": id, "vessel": vessel, "port": "NLRTM",
            "eta": format!("{from}T00:00:00Z"), "etd": format!("{to}T00:00:00Z")})
@@ -35,7 +35,7 @@ pub(crate) fn firm(id: &str, fee_eur: u32) -> Value {
     json!({"id": id, "ports": [{"port": "NLRTM", "travel_eur": 100}], "fee_eur": fee_eur})
 }
 
-/// Who goes where on which day.
+/// Vessel, firm and day of each job.
 fn jobs(schedule: &Schedule) -> Vec<(String, String, String)> {
     let jobs = schedule.jobs.iter();
     jobs.map(|job| (job.vessel.clone(), job.firm.clone(), job.day.to_string()))
@@ -178,7 +178,7 @@ fn a_ship_overdue_for_years_is_done_at_the_last_call_of_the_horizon() {
         "firms": [firm("f", 1500)],
     }));
     assert_eq!(jobs(&found), [job("v", "f", "2027-05-17")]);
-    // Only the 177 days to come are weighed.
+    // Only the 177 days to come count.
     assert!((found.jobs[0].weighed.late_eur - 177.0 * 500.0).abs() < 1e-9);
 }
 
@@ -212,7 +212,7 @@ fn no_job_is_late_for_the_sake_of_money() {
         jobs(&schedule(input.clone())),
         [job("v", "dear", "2026-12-01")]
     );
-    // Unless somebody has said how late it may be.
+    // Unless the weights allow lateness.
     let mut late = input;
     late["weights"] = json!({"late_days": 1});
     assert_eq!(jobs(&schedule(late)), [job("v", "cheap", "2026-12-02")]);
@@ -253,7 +253,7 @@ fn the_same_input_gives_the_same_schedule() {
     assert_eq!(schedule(input.clone()), schedule(input));
 }
 
-/// Who has to choose a firm is told that a plan got cheaper only where it did.
+/// An obstacle never makes a plan look cheaper.
 #[test]
 fn what_becomes_impossible_makes_no_plan_cheaper() {
     // Only late, and both by one team that has a single day for them.

@@ -1,9 +1,9 @@
-//! How long an event lasts, where its end is not given (RFC 5545, section 3.3.6).
+//! The duration of an event without an end (RFC 5545, section 3.3.6).
 
 use super::line::Line;
 use crate::calls::FileError;
 
-/// Hours of `P2DT12H`, `PT90M`, `P1W` and their like.
+/// Parses hours from `P2DT12H`, `PT90M`, `P1W` and the like.
 ///
 /// # Errors
 /// When it is something else, negative, or more than [`MOST_HOURS`].
@@ -18,7 +18,7 @@ pub(super) fn hours(line: &Line) -> Result<f64, FileError> {
     })
 }
 
-/// No call is longer than a year.
+/// The longest call, a year.
 const MOST_HOURS: f64 = 366.0 * 24.0;
 
 fn read(text: &str) -> Option<f64> {
@@ -36,7 +36,7 @@ fn read(text: &str) -> Option<f64> {
         while !rest.is_empty() {
             let end = rest.find(|c: char| !c.is_ascii_digit())?;
             let (digits, unit) = rest.split_at(end);
-            // Greater units come first, each once at most.
+            // Larger units come first, each at most once.
             let (letter, hours) = units.find(|(letter, _)| unit.starts_with(*letter))?;
             sum += f64::from(digits.parse::<u32>().ok()?) * hours;
             rest = &unit[letter.len_utf8()..];

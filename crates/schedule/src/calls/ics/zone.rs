@@ -1,36 +1,37 @@
 //! Time zones as a calendar defines them: one offset, or two with yearly rules.
 //!
-//! Of rules, those that zones in use are written with are read: `FREQ=YEARLY` with
-//! `BYMONTH` and `BYDAY` of a weekday counted from either end of the month. Another rule
-//! is refused, rather than an hour be wrong.
+//! Only the rules of zones in use are read: `FREQ=YEARLY` with `BYMONTH` and
+//! `BYDAY` of a weekday, counted from either end of the month. Any other rule
+//! is refused, since it could put times off by an hour.
 
 use super::line::Line;
 use crate::calls::FileError;
 use chrono::{Datelike, Days, NaiveDate, NaiveDateTime, Weekday};
 use std::collections::BTreeMap;
 
-/// The most offsets of one zone: those in use have two, and far fewer with all their past.
-/// Each time of the file is held against every one of them.
+/// The most offsets of one zone. Zones in use have two, and far fewer than this
+/// with all their past. Each time in the file is compared with every one of
+/// them.
 const MOST_OFFSETS: usize = 200;
 
-/// A zone.
+/// A time zone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Zone {
-    /// At least one.
+    /// The offsets; at least one.
     observed: Vec<Observance>,
 }
 
-/// An offset, from when it is observed.
+/// An offset and its beginning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Observance {
     begins: NaiveDateTime,
     offset_s: i64,
-    /// Month, weekday, and which one of the month: from its end, where negative.
+    /// The rule of its yearly beginning.
     yearly: Option<(u32, Weekday, i32)>,
 }
 
 impl Zone {
-    /// Seconds ahead of UTC at a local time: those of the observance that began last.
+    /// Seconds ahead of UTC at a local time, by the observance that began last.
     pub(super) fn offset_s(&self, local: NaiveDateTime) -> i64 {
         let last = self
             .observed
@@ -73,7 +74,7 @@ fn on(year: i32, (month, weekday, which): (u32, Weekday, i32)) -> Option<NaiveDa
     ))
 }
 
-/// The zones that a calendar defines, by name.
+/// Reads the zones that a calendar defines, by name.
 pub(super) fn zones(lines: &[Line]) -> Result<BTreeMap<String, Zone>, FileError> {
     let mut zones = BTreeMap::new();
     let mut begun: Option<(usize, String, Vec<Observance>)> = None;
@@ -130,7 +131,7 @@ pub(super) fn zones(lines: &[Line]) -> Result<BTreeMap<String, Zone>, FileError>
     Ok(zones)
 }
 
-/// `+0100`, or with seconds.
+/// Parses `+0100`, with optional seconds.
 fn offset(text: &str) -> Option<i64> {
     let digits = text.strip_prefix(['+', '-'])?;
     if !(digits.len() == 4 || digits.len() == 6)
@@ -172,7 +173,7 @@ fn yearly(line: &Line) -> Result<(u32, Weekday, i32), FileError> {
     Ok((month, weekday, which))
 }
 
-/// `-1SU` and its like.
+/// Parses `-1SU` and the like.
 fn by_day(text: &str) -> Option<(Weekday, i32)> {
     let (which, day) = text.split_at_checked(text.len().checked_sub(2)?)?;
     let which: i32 = which
